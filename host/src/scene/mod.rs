@@ -4,6 +4,14 @@
 //! transforms of groups and instances into the geometry, so that nothing downstream knows of
 //! them. Colours are linear RGB, 1.0 being full display white.
 
+mod error;
+mod molecule;
+mod nff;
+mod obj;
+pub mod toml;
+
+pub use error::SceneError;
+
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
@@ -153,6 +161,57 @@ impl Default for Scene {
             objects: Vec::new(),
             render: RenderSettings::default(),
         }
+    }
+}
+
+/// What a molecule file does not say and a person may choose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MoleculeOptions {
+    pub style: MoleculeStyle,
+    /// Which model of the file, counted from 1.
+    pub model: usize,
+    /// Which alternate location; without one the first that each residue has.
+    pub altloc: Option<char>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MoleculeStyle {
+    /// Atoms as spheres of their van der Waals radius.
+    SpaceFilling,
+    /// Small spheres, and bonds as cylinders in the colours of the atoms at their ends.
+    BallAndStick,
+}
+
+impl Default for MoleculeOptions {
+    fn default() -> Self {
+        Self { style: MoleculeStyle::SpaceFilling, model: 1, altloc: None }
+    }
+}
+
+/// A scene, and what its importer had to pass over to read it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Imported {
+    pub scene: Scene,
+    /// Sentences for the user, each with file and line.
+    pub warnings: Vec<String>,
+}
+
+/// Reads a scene file; its extension says which format it is in.
+///
+/// # Errors
+/// If the file cannot be read, its extension is unknown, or its content is broken.
+pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneError> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+    match extension.as_str() {
+        "toml" => toml::load(path, molecule),
+        "obj" => obj::load(path),
+        "nff" => nff::load(path),
+        "pdb" | "ent" | "cif" | "mmcif" => molecule::load(path, molecule),
+        _ => Err(SceneError::new(
+            path,
+            format!("the extension {extension:?} names no scene format"),
+            "use .toml, .obj, .nff, .pdb, .ent, .cif or .mmcif",
+        )),
     }
 }
 

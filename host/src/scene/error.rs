@@ -1,0 +1,68 @@
+//! What is wrong with a scene file: the file, the place, the cause and the remedy.
+
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use std::path::{Path, PathBuf};
+
+/// An error in a scene file (or in one that it imports).
+#[derive(Debug)]
+pub struct SceneError {
+    /// The file that is at fault.
+    pub file: PathBuf,
+    /// Line, counted from 1, where the format has lines and the line is known.
+    pub line: Option<usize>,
+    /// What is wrong, in one sentence without a full stop.
+    pub cause: String,
+    /// What to do about it, in one sentence without a full stop.
+    pub remedy: String,
+    /// The text of the file and the span (byte offset, length) to underline in it.
+    excerpt: Option<(NamedSource<String>, (usize, usize))>,
+}
+
+impl SceneError {
+    pub fn new(file: &Path, cause: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self { file: file.to_owned(), line: None, cause: cause.into(), remedy: remedy.into(), excerpt: None }
+    }
+
+    /// Names the line, counted from 1.
+    pub fn at_line(mut self, line: usize) -> Self {
+        self.line = Some(line);
+        self
+    }
+
+    /// Underlines `length` bytes at `offset` of `text` and derives the line from them.
+    pub fn at_span(mut self, text: &str, offset: usize, length: usize) -> Self {
+        let offset = offset.min(text.len());
+        let before = &text.as_bytes()[..offset];
+        self.line = Some(1 + before.iter().filter(|&&byte| byte == b'\n').count());
+        let source = NamedSource::new(self.file.display().to_string(), text.to_owned());
+        self.excerpt = Some((source, (offset, length.min(text.len() - offset))));
+        self
+    }
+}
+
+impl std::fmt::Display for SceneError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}", self.file.display())?;
+        if let Some(line) = self.line {
+            write!(f, ":{line}")?;
+        }
+        write!(f, ": {}", self.cause)
+    }
+}
+
+impl std::error::Error for SceneError {}
+
+impl Diagnostic for SceneError {
+    fn help<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
+        Some(Box::new(&self.remedy))
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.excerpt.as_ref().map(|(source, _)| source as &dyn SourceCode)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let (_, span) = self.excerpt.as_ref()?;
+        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(None, *span))))
+    }
+}
