@@ -8,6 +8,10 @@ mod error;
 mod molecule;
 mod nff;
 mod obj;
+mod polygon;
+#[cfg(test)]
+mod test_scenes;
+mod text;
 pub mod toml;
 
 pub use error::SceneError;

@@ -1,0 +1,424 @@
+//! Reads NFF, the Neutral File Format of Eric Haines's Standard Procedural Databases (version
+//! 3.1 of its text, 1992).
+//!
+//! What the format leaves open is settled so:
+//! * A light without a colour has intensity 1 / sqrt(n), n being the number of lights, as the
+//!   databases' notes suggest but for the factor: nothing is kept back for ambient light, of
+//!   which the format knows nothing.
+//! * `angle` is the full vertical field of view. `hither` is not needed.
+//! * Of `f`, Kd weighs the colour, Ks is the white highlight and the grey mirror, T the
+//!   transmittance.
+//! * The normals of `pp` smooth the shading elsewhere; geometry is exact here, so they are passed
+//!   over. A negative radius (only the inside is visible) counts as its absolute value, since
+//!   both sides are drawn.
+//! * Polygons and patches are one mesh each, every other primitive one object, in file order.
+
+mod reader;
+mod view;
+
+use super::polygon::{self, MAX_CONCAVE};
+use super::text::{Source, Warnings};
+use super::{Color, Diffuse, Imported, Light, Material, Object, Scene, SceneError, Shape};
+use glam::DVec3;
+use reader::{Line, Lines};
+use std::collections::HashMap;
+use std::path::Path;
+
+/// Reads an NFF file.
+///
+/// # Errors
+/// If the file cannot be read or its content is broken; the error names the line.
+pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
+    import(&Source::read(path)?)
+}
+
+fn import(source: &Source) -> Result<Imported, SceneError> {
+    let mut importer = Importer::new(source);
+    let mut lines = Lines::new(source);
+    while let Some(line) = lines.next() {
+        importer.entity(&line, &mut lines)?;
+    }
+    importer.finish()
+}
+
+struct Importer<'a> {
+    source: &'a Source,
+    scene: Scene,
+    warnings: Warnings,
+    /// Lights whose colour is to be set once all are counted.
+    plain_lights: Vec<usize>,
+    /// Index of a material by the bits of its eight numbers.
+    materials: HashMap<[u64; 8], usize>,
+    material: Option<usize>,
+    /// How many spheres, cones and polygons there are, for their names.
+    counts: [usize; 3],
+}
+
+impl<'a> Importer<'a> {
+    fn new(source: &'a Source) -> Self {
+        Self {
+            source,
+            scene: Scene::default(),
+            warnings: Warnings::default(),
+            plain_lights: Vec::new(),
+            materials: HashMap::new(),
+            material: None,
+            counts: [0; 3],
+        }
+    }
+
+    fn entity(&mut self, line: &Line<'a>, lines: &mut Lines<'a>) -> Result<(), SceneError> {
+        match line.word(0) {
+            "v" => self.view(line, lines),
+            "b" => self.background(line),
+            "l" => self.light(line),
+            "f" => self.fill(line),
+            "s" => self.sphere(line),
+            "c" => self.cone(line, lines),
+            "p" => self.polygon(line, lines, 3),
+            "pp" => self.polygon(line, lines, 6),
+            word if word.parse::<f64>().is_ok() => Err(self.source.error_at(
+                word,
+                format!("the number {word} belongs to no entity"),
+                "start a line with v, b, l, f, s, c, p or pp, or correct the vertex count before it",
+            )),
+            word => {
+                self.warnings.add(self.source, line.number, format!("the entity {word:?} is unknown and passed over"));
+                Ok(())
+            }
+        }
+    }
+
+    fn background(&mut self, line: &Line<'a>) -> Result<(), SceneError> {
+        let numbers = line.numbers::<3>(self.source, &mut self.warnings, 1, "b r g b")?;
+        self.scene.background = self.color(line, numbers)?;
+        Ok(())
+    }
+
+    fn light(&mut self, line: &Line<'a>) -> Result<(), SceneError> {
+        let given = line.words.len() - 1;
+        let color = match given {
+            3 => {
+                self.plain_lights.push(self.scene.lights.len());
+                [1.0; 3]
+            }
+            given if given >= 6 => {
+                let [_, _, _, color @ ..] =
+                    line.numbers::<6>(self.source, &mut self.warnings, 1, "l x y z r g b")?;
+                self.color(line, color)?
+            }
+            _ => {
+                return Err(self.source.error_at(
+                    line.text,
+                    format!("a light has a position (3 numbers) or a position and a colour (6), not {given} numbers"),
+                    "write `l x y z` or `l x y z r g b`",
+                ));
+            }
+        };
+        let mut position = [0.0; 3];
+        for (axis, value) in position.iter_mut().enumerate() {
+            *value = self
+                .source
+                .number(line.word(axis + 1), "a coordinate of the light")?;
+        }
+        self.scene.lights.push(Light::Point {
+            position: DVec3::from_array(position),
+            color,
+        });
+        Ok(())
+    }
+
+    /// Checks a colour that may not be negative.
+    fn color(&self, line: &Line<'a>, color: Color) -> Result<Color, SceneError> {
+        if color.iter().any(|&c| c < 0.0) {
+            return Err(self.source.error_at(
+                line.text,
+                "a colour is negative",
+                "write numbers from 0 to 1",
+            ));
+        }
+        Ok(color)
+    }
+
+    fn fill(&mut self, line: &Line<'a>) -> Result<(), SceneError> {
+        let format = "f r g b Kd Ks Shine T ior";
+        let numbers = match line.numbers_from(1) {
+            // Short lines are common in files written by hand; what is missing is what says
+            // "opaque".
+            given @ (6 | 7) => {
+                self.warnings.add(
+                    self.source,
+                    line.number,
+                    format!("a material of {given} numbers instead of 8 is read as opaque"),
+                );
+                let [r, g, b, kd, ks, shine] =
+                    line.numbers::<6>(self.source, &mut self.warnings, 1, format)?;
+                if given == 7
+                    && line.numbers::<7>(self.source, &mut self.warnings, 1, format)?[6] != 0.0
+                {
+                    return Err(self.source.error_at(
+                        line.text,
+                        "a transparent material has no index of refraction",
+                        format!("write `{format}`, with ior 1.5 for glass"),
+                    ));
+                }
+                [r, g, b, kd, ks, shine, 0.0, 1.0]
+            }
+            _ => line.numbers::<8>(self.source, &mut self.warnings, 1, format)?,
+        };
+        self.color(line, [numbers[0], numbers[1], numbers[2]])?;
+        if let Some(value) = [3, 4, 5, 6]
+            .into_iter()
+            .map(|i| numbers[i])
+            .find(|&value| value < 0.0)
+        {
+            return Err(self.source.error_at(
+                line.text,
+                format!("Kd, Ks, Shine and T may not be negative, but one is {value}"),
+                "write numbers at or above 0",
+            ));
+        }
+        let key = numbers.map(f64::to_bits);
+        if let Some(&known) = self.materials.get(&key) {
+            self.material = Some(known);
+            return Ok(());
+        }
+        let [r, g, b, kd, ks, shine, transmit, ior] = numbers;
+        if transmit > 0.0 && !(1.0..=4.0).contains(&ior) {
+            self.warnings.add(
+                self.source,
+                line.number,
+                format!(
+                    "the index of refraction {ior} is taken as {}, since it must be 1 to 4",
+                    ior.clamp(1.0, 4.0)
+                ),
+            );
+        }
+        let index = self.scene.materials.len();
+        self.scene.materials.push(Material {
+            name: format!("fill {}", index + 1),
+            diffuse: Diffuse::Plain([kd * r, kd * g, kd * b]),
+            highlight: [ks; 3],
+            shininess: shine.round().clamp(1.0, 1024.0) as u16,
+            mirror: [ks; 3],
+            transmit: [transmit; 3],
+            ior: ior.clamp(1.0, 4.0),
+            absorption: [0.0; 3],
+        });
+        self.materials.insert(key, index);
+        self.material = Some(index);
+        Ok(())
+    }
+
+    fn sphere(&mut self, line: &Line<'a>) -> Result<(), SceneError> {
+        let [x, y, z, radius] =
+            line.numbers::<4>(self.source, &mut self.warnings, 1, "s x y z radius")?;
+        if radius == 0.0 {
+            return Err(self.source.error_at(
+                line.text,
+                "the radius of a sphere is 0",
+                "write a radius above 0",
+            ));
+        }
+        self.add(
+            "sphere",
+            line,
+            Shape::Sphere {
+                center: DVec3::new(x, y, z),
+                radius: radius.abs(),
+            },
+        );
+        Ok(())
+    }
+
+    fn cone(&mut self, line: &Line<'a>, lines: &mut Lines<'a>) -> Result<(), SceneError> {
+        // The text of the format shows three lines; the programs of the databases write one.
+        let [bx, by, bz, base_radius, ax, ay, az, apex_radius] = if line.words.len() > 1 {
+            line.numbers::<8>(
+                self.source,
+                &mut self.warnings,
+                1,
+                "c x y z radius x y z radius",
+            )?
+        } else {
+            let mut numbers = [0.0; 8];
+            for (end, name) in numbers.chunks_exact_mut(4).zip(["base", "apex"]) {
+                let given = lines.next().ok_or_else(|| {
+                    self.source.error_at(
+                        line.text,
+                        format!("the file ends before the {name} of this cone"),
+                        "write two lines `x y z radius` after `c`",
+                    )
+                })?;
+                end.copy_from_slice(&given.numbers::<4>(
+                    self.source,
+                    &mut self.warnings,
+                    0,
+                    "x y z radius",
+                )?);
+            }
+            numbers
+        };
+        let (base, apex) = (DVec3::new(bx, by, bz), DVec3::new(ax, ay, az));
+        let fault = if base == apex {
+            Some((
+                "the base and the apex of a cone are the same point",
+                "move them apart",
+            ))
+        } else if base_radius == 0.0 && apex_radius == 0.0 {
+            Some((
+                "both radii of a cone are 0",
+                "write at least one radius above 0",
+            ))
+        } else if base_radius * apex_radius < 0.0 {
+            Some((
+                "one radius of a cone is negative and one is not",
+                "give both radii the same sign",
+            ))
+        } else {
+            None
+        };
+        if let Some((cause, remedy)) = fault {
+            return Err(self.source.error_at(line.text, cause, remedy));
+        }
+        let (base_radius, apex_radius) = (base_radius.abs(), apex_radius.abs());
+        self.add(
+            "cone",
+            line,
+            Shape::Cone {
+                base,
+                base_radius,
+                apex,
+                apex_radius,
+            },
+        );
+        Ok(())
+    }
+
+    /// Reads `p` (three numbers a vertex) and `pp` (six).
+    fn polygon(
+        &mut self,
+        line: &Line<'a>,
+        lines: &mut Lines<'a>,
+        numbers: usize,
+    ) -> Result<(), SceneError> {
+        let count = line.word(1);
+        let count: usize = count.parse().map_err(|_| {
+            self.source.error_at(
+                if count.is_empty() { line.text } else { count },
+                format!("the vertex count of a polygon is {count:?}"),
+                "write a whole number from 3 up",
+            )
+        })?;
+        if count < 3 {
+            let cause = format!("a polygon of {count} vertices has no surface");
+            return Err(self
+                .source
+                .error_at(line.text, cause, "give it at least 3 vertices"));
+        }
+        // Nothing is reserved for the count before its lines are there: it may be a lie.
+        let mut vertices = Vec::new();
+        while vertices.len() < count {
+            let Some(given) = lines.next() else {
+                return Err(self.source.error_at(
+                    line.text,
+                    format!(
+                        "the file ends after {} of the {count} vertices of this polygon",
+                        vertices.len()
+                    ),
+                    "add the missing vertices or correct the count",
+                ));
+            };
+            if given.numbers_from(0) == 0 {
+                return Err(self.source.error_at(
+                    given.text,
+                    format!(
+                        "{:?} stands where vertex {} of {count} is due",
+                        given.word(0),
+                        vertices.len() + 1
+                    ),
+                    "add the missing vertices or correct the count",
+                ));
+            }
+            let [x, y, z] = if numbers == 6 && given.numbers_from(0) >= 6 {
+                let [x, y, z, ..] =
+                    given.numbers::<6>(self.source, &mut self.warnings, 0, "x y z nx ny nz")?;
+                [x, y, z]
+            } else {
+                given.numbers::<3>(self.source, &mut self.warnings, 0, "x y z")?
+            };
+            vertices.push(DVec3::new(x, y, z));
+        }
+        let Some(result) = polygon::triangulate(&vertices) else {
+            return Err(self.source.error_at(
+                line.text,
+                format!("a concave polygon of {count} vertices is too large"),
+                format!("split it into polygons of at most {MAX_CONCAVE} vertices"),
+            ));
+        };
+        if !result.exact {
+            self.warnings.add(
+                self.source,
+                line.number,
+                "a polygon crosses itself; its triangles cover more than it encloses",
+            );
+        }
+        self.add(
+            "polygon",
+            line,
+            Shape::Mesh {
+                vertices,
+                triangles: result.triangles,
+            },
+        );
+        Ok(())
+    }
+
+    fn add(&mut self, kind: &str, line: &Line<'a>, shape: Shape) {
+        let material = self.material.unwrap_or_else(|| {
+            self.warnings.add(
+                self.source,
+                line.number,
+                "an object before the first `f` line has the default material",
+            );
+            self.scene.materials.push(Material::default());
+            self.scene.materials.len() - 1
+        });
+        self.material = Some(material);
+        let count = match shape {
+            Shape::Sphere { .. } => &mut self.counts[0],
+            Shape::Cone { .. } => &mut self.counts[1],
+            _ => &mut self.counts[2],
+        };
+        *count += 1;
+        let name = format!("{kind} {count}");
+        self.scene.objects.push(Object {
+            name,
+            material,
+            shape,
+            place: self.source.place(line.number),
+        });
+    }
+
+    fn finish(mut self) -> Result<Imported, SceneError> {
+        if self.scene.objects.is_empty() {
+            return Err(self.source.error(
+                "the file has no objects",
+                "add spheres (s), cones (c) or polygons (p, pp), or check that the file is NFF",
+            ));
+        }
+        let intensity = 1.0 / (self.scene.lights.len() as f64).sqrt();
+        for &plain in &self.plain_lights {
+            if let Light::Point { color, .. } = &mut self.scene.lights[plain] {
+                *color = [intensity; 3];
+            }
+        }
+        Ok(Imported {
+            scene: self.scene,
+            warnings: self.warnings.into_sentences(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

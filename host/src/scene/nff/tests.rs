@@ -1,0 +1,251 @@
+use super::*;
+use crate::scene::test_scenes;
+use std::collections::BTreeMap;
+
+fn read(text: &str) -> Result<Imported, SceneError> {
+    import(&Source::from_bytes(Path::new("t.nff"), text.as_bytes()))
+}
+
+fn fault(text: &str) -> String {
+    read(text).unwrap_err().to_string()
+}
+
+const VIEW: &str = "v\nfrom 0 0 9\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 64 48\n";
+
+#[test]
+fn everything_the_format_has() {
+    let text = format!(
+        "b .1 .2 .3 # sky\n{VIEW}l 1 2 3\nl 4 5 6\nl 4 5 6 1 .5 0\nf 1 .5 0 .8 .25 20 .5 1.5\ns 1 2 3 -4\n\
+         c\n0 0 0 2\n0 0 5 1\np 3\n0 0 0\n1 0 0\n0 1 0\npp 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n\
+         f 1 1 1 1 0 0 0 0\ns 0 0 0 1\nf 1 .5 0 .8 .25 20 .5 1.5\ns 0 0 0 1\n"
+    );
+    let Imported { scene, warnings } = read(&text).unwrap();
+    assert_eq!(warnings, [] as [&str; 0]);
+    assert_eq!(scene.background, [0.1, 0.2, 0.3]);
+    let camera = scene.camera.unwrap();
+    assert_eq!(
+        (camera.eye, camera.fov_degrees),
+        (DVec3::new(0.0, 0.0, 9.0), 40.0)
+    );
+    assert_eq!((scene.render.width, scene.render.height), (64, 48));
+    let colors: Vec<Color> = scene
+        .lights
+        .iter()
+        .map(|light| match light {
+            Light::Point { color, .. } | Light::Directional { color, .. } => *color,
+        })
+        .collect();
+    assert_eq!(
+        colors,
+        [
+            [1.0 / 3.0_f64.sqrt(); 3],
+            [1.0 / 3.0_f64.sqrt(); 3],
+            [1.0, 0.5, 0.0]
+        ]
+    );
+    assert_eq!(scene.materials.len(), 2);
+    let glass = &scene.materials[0];
+    assert_eq!(glass.diffuse, Diffuse::Plain([0.8, 0.4, 0.0]));
+    assert_eq!(
+        (glass.highlight, glass.mirror, glass.transmit),
+        ([0.25; 3], [0.25; 3], [0.5; 3])
+    );
+    assert_eq!((glass.shininess, glass.ior), (20, 1.5));
+    let names: Vec<_> = scene
+        .objects
+        .iter()
+        .map(|o| (o.name.as_str(), o.material, o.place.line))
+        .collect();
+    assert_eq!(
+        names,
+        [
+            ("sphere 1", 0, 13),
+            ("cone 1", 0, 14),
+            ("polygon 1", 0, 17),
+            ("polygon 2", 0, 21),
+            ("sphere 2", 1, 26),
+            ("sphere 3", 0, 28)
+        ]
+    );
+    assert_eq!(
+        scene.objects[0].shape,
+        Shape::Sphere {
+            center: DVec3::new(1.0, 2.0, 3.0),
+            radius: 4.0
+        }
+    );
+}
+
+#[test]
+fn faults_name_line_and_cause() {
+    assert_eq!(fault(""), "t.nff: the file has no objects");
+    assert_eq!(fault("s 1 2 3\n"), "t.nff:1: the line has 3 of 4 numbers");
+    assert_eq!(
+        fault("\n\ns 1 2 x 3\n"),
+        "t.nff:3: a number of `s x y z radius` is \"x\", which is not a number"
+    );
+    assert_eq!(
+        fault("s 1 2 inf 3\n"),
+        "t.nff:1: a number of `s x y z radius` is \"inf\", which is not a finite number"
+    );
+    assert_eq!(fault("s 1 2 3 0\n"), "t.nff:1: the radius of a sphere is 0");
+    assert_eq!(
+        fault("p 4000000000\n0 0 0\n1 0 0\n"),
+        "t.nff:1: the file ends after 2 of the 4000000000 vertices of this polygon"
+    );
+    assert_eq!(
+        fault("p -3\n"),
+        "t.nff:1: the vertex count of a polygon is \"-3\""
+    );
+    assert_eq!(
+        fault("p\n"),
+        "t.nff:1: the vertex count of a polygon is \"\""
+    );
+    assert_eq!(
+        fault("p 2\n0 0 0\n1 0 0"),
+        "t.nff:1: a polygon of 2 vertices has no surface"
+    );
+    assert_eq!(
+        fault("p 3\n0 0 0\n1 0 0\ns 0 0 0 1\n"),
+        "t.nff:4: \"s\" stands where vertex 3 of 3 is due"
+    );
+    assert_eq!(
+        fault("p 3\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"),
+        "t.nff:5: the number 0 belongs to no entity"
+    );
+    assert_eq!(
+        fault("c 0 0 0 1 0 0 1\n"),
+        "t.nff:1: the line has 7 of 8 numbers"
+    );
+    assert_eq!(
+        fault("c\n0 0 0 1\n"),
+        "t.nff:1: the file ends before the apex of this cone"
+    );
+    assert_eq!(
+        fault("c\n0 0 0 1\n0 0 0 2\n"),
+        "t.nff:1: the base and the apex of a cone are the same point"
+    );
+    assert_eq!(
+        fault("c\n0 0 0 1\n0 0 1 -2\n"),
+        "t.nff:1: one radius of a cone is negative and one is not"
+    );
+    assert_eq!(
+        fault("l 1 2 3 4\n"),
+        "t.nff:1: a light has a position (3 numbers) or a position and a colour (6), not 4 numbers"
+    );
+    assert_eq!(
+        fault("f 1 1 1 1 0\n"),
+        "t.nff:1: the line has 5 of 8 numbers"
+    );
+    assert_eq!(
+        fault("f 1 1 1 1 0 1 .5\n"),
+        "t.nff:1: a transparent material has no index of refraction"
+    );
+    assert_eq!(
+        fault("v\nfrom 0 0 0\nat 0 0 1\nup 0 1 0\n"),
+        "t.nff:1: the view has no line `angle`"
+    );
+    assert_eq!(
+        fault(&VIEW.replace("up 0 1 0", "up 0 0 -1")),
+        "t.nff:1: the up vector of the view is zero or parallel to the direction of view"
+    );
+    assert_eq!(
+        fault(&VIEW.replace("40", "180")),
+        "t.nff:5: the angle of view is 180 degrees"
+    );
+    assert_eq!(
+        fault(&VIEW.replace("64 48", "64 4000000000")),
+        "t.nff:7: the resolution 4000000000 is no number of pixels"
+    );
+}
+
+#[test]
+fn dialects_are_read_with_warnings() {
+    let text = "s 5 5 5 3\nf 0 0 1 0 1 1\ns 1 2 3 4 8 8\nf 1 1 1 .5 .5 45 0 1 earth.jpg\ns 1 2 3 4\ntess 0\n";
+    let Imported { scene, warnings } = read(text).unwrap();
+    assert_eq!(scene.objects.len(), 3);
+    assert_eq!(
+        warnings,
+        [
+            "t.nff:1: an object before the first `f` line has the default material",
+            "t.nff:2: a material of 6 numbers instead of 8 is read as opaque",
+            "t.nff:3: what follows the 4 numbers of `s x y z radius` is passed over",
+            "t.nff:4: what follows the 8 numbers of `f r g b Kd Ks Shine T ior` is passed over",
+            "t.nff:6: the entity \"tess\" is unknown and passed over",
+        ]
+    );
+}
+
+#[test]
+fn bytes_that_are_not_utf8_are_harmless_in_comments_alone() {
+    let read = |bytes: &[u8]| import(&Source::from_bytes(Path::new("t.nff"), bytes));
+    assert!(read(b"# caf\xe9\ns 0 0 0 1\n").is_ok());
+    let error = read(b"# caf\xe9\ns 0 0 \xe9 1\n").unwrap_err();
+    assert_eq!(error.line, Some(2));
+}
+
+/// Counts objects by kind as `s`, `c` and `p`, and lights as `l`.
+fn counts(scene: &Scene) -> BTreeMap<char, usize> {
+    let mut counts = BTreeMap::from([('l', scene.lights.len())]);
+    for object in &scene.objects {
+        let kind = match object.shape {
+            Shape::Sphere { .. } => 's',
+            Shape::Cone { .. } => 'c',
+            _ => 'p',
+        };
+        *counts.entry(kind).or_default() += 1;
+    }
+    counts
+}
+
+/// Twice the area vector of a closed outline, summed around its first vertex.
+fn outline(vertices: &[DVec3]) -> DVec3 {
+    vertices.windows(2).fold(DVec3::ZERO, |sum, pair| {
+        sum + (pair[0] - vertices[0]).cross(pair[1] - vertices[0])
+    })
+}
+
+#[test]
+fn standard_procedural_databases() {
+    let facts: [(&str, &[(char, usize)]); 9] = [
+        ("balls.nff", &[('s', 7381), ('p', 1), ('l', 3)]),
+        ("balls_s2.nff", &[('s', 91), ('p', 1), ('l', 3)]),
+        ("gears.nff", &[('p', 9345), ('l', 5)]),
+        ("jacks.nff", &[('s', 6), ('c', 3), ('l', 1)]),
+        ("mount.nff", &[('p', 8192), ('s', 4), ('l', 1)]),
+        ("sample.nff", &[('c', 1), ('p', 880), ('l', 1)]),
+        ("sombrero.nff", &[('p', 1922), ('l', 1)]),
+        ("teapot.nff", &[('p', 9264), ('l', 2)]),
+        ("tetra.nff", &[('p', 4096), ('l', 1)]),
+    ];
+    for (name, expected) in facts {
+        let Some(path) = test_scenes::find(&format!("spd/{name}")) else {
+            continue;
+        };
+        let Imported { scene, warnings } = load(&path).unwrap();
+        assert_eq!(warnings, [] as [&str; 0], "{name}");
+        assert_eq!(counts(&scene), expected.iter().copied().collect(), "{name}");
+        assert!(scene.camera.is_some());
+        for object in &scene.objects {
+            let Shape::Mesh {
+                vertices,
+                triangles,
+            } = &object.shape
+            else {
+                continue;
+            };
+            // The polygons are flat but for the rounding of their six digits, so all area
+            // vectors point one way and their lengths add up.
+            let whole = outline(vertices).length();
+            let sum: f64 = triangles
+                .iter()
+                .map(|t| outline(&t.map(|i| vertices[i as usize])).length())
+                .sum();
+            assert!(
+                (sum - whole).abs() <= 1e-4 * whole,
+                "{name} {}: {sum} for {whole}",
+                object.name
+            );
+        }
+    }
+}

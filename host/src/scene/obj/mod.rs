@@ -1,0 +1,194 @@
+//! Reads Wavefront OBJ with its MTL materials.
+//!
+//! The parser is our own. The crate `tobj` was tried first, but it divides positions by `w`, makes
+//! triangles of polylines (`l`), lets NaN through, refuses comments and continuations on face
+//! lines, panics on a colour of two numbers, and never says in which line anything is, so that all
+//! of a file would have had to be parsed before it was handed over.
+//!
+//! Every `o`, `g` and change of `usemtl` starts a new mesh, in file order, which holds only the
+//! vertices that it uses. Faces are cut into triangles in file order; normals, texture
+//! coordinates, smoothing groups and vertex colours are passed over, since geometry is exact here
+//! and colours come from materials. Zero-area triangles are kept for the compiler to report.
+
+mod mtl;
+mod parser;
+
+use super::polygon::{self, MAX_CONCAVE};
+use super::text::{Source, Warnings};
+use super::{Imported, Material, Object, Scene, SceneError, Shape};
+use glam::DVec3;
+use parser::{Parsed, Part};
+use std::collections::HashMap;
+use std::path::Path;
+
+/// Reads an OBJ file and the material files it names, which lie beside it. It has no camera and
+/// no lights; the compiler adds them.
+///
+/// # Errors
+/// If the file cannot be read, has no faces, or its content is broken; the error names the line.
+pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
+    import(&Source::read(path)?)
+}
+
+fn import(source: &Source) -> Result<Imported, SceneError> {
+    let mut warnings = Warnings::default();
+    let parsed = parser::parse(source, &mut warnings)?;
+    if parsed.parts.is_empty() {
+        return Err(source.error(
+            "the file has no faces",
+            "export the surfaces as polygons (f lines)",
+        ));
+    }
+    let library = read_libraries(source, &parsed, &mut warnings)?;
+    let mut materials = Materials {
+        library,
+        used: Vec::new(),
+        index: HashMap::new(),
+    };
+    let mut mesher = Mesher {
+        vertices: &parsed.vertices,
+        seen: vec![(usize::MAX, 0); parsed.vertices.len()],
+    };
+    let mut scene = Scene::default();
+    for (number, part) in parsed.parts.iter().enumerate() {
+        let name = if part.name.is_empty() {
+            format!("mesh {}", number + 1)
+        } else {
+            part.name.to_owned()
+        };
+        let material = materials.resolve(part, source, &mut warnings);
+        let shape = mesher.mesh(number, part, source, &mut warnings)?;
+        scene.objects.push(Object {
+            name,
+            material,
+            shape,
+            place: source.place(part.line),
+        });
+    }
+    scene.materials = materials.used;
+    Ok(Imported {
+        scene,
+        warnings: warnings.into_sentences(),
+    })
+}
+
+/// Reads the files that `mtllib` names. One that is missing is worth a warning alone: it was
+/// often left behind, and the geometry is all there.
+fn read_libraries(
+    source: &Source,
+    parsed: &Parsed<'_>,
+    warnings: &mut Warnings,
+) -> Result<HashMap<String, Material>, SceneError> {
+    let mut library = HashMap::new();
+    let folder = source.path.parent().unwrap_or(Path::new(""));
+    for &(line, names) in &parsed.libraries {
+        // A name may contain spaces, and a line may contain several names.
+        let whole = folder.join(names);
+        let names: Vec<&str> = if whole.is_file() {
+            vec![names]
+        } else {
+            names.split_whitespace().collect()
+        };
+        for name in names {
+            match Source::read(&folder.join(name.replace('\\', "/"))) {
+                Ok(file) => library.extend(mtl::read(&file, warnings)?),
+                Err(error) => {
+                    let cause = format!(
+                        "the material file {name:?} {}; its materials are replaced",
+                        error.cause
+                    );
+                    warnings.add(source, line, cause);
+                }
+            }
+        }
+    }
+    Ok(library)
+}
+
+/// The materials in use, in the order of their first use.
+struct Materials<'a> {
+    library: HashMap<String, Material>,
+    used: Vec<Material>,
+    index: HashMap<Option<&'a str>, usize>,
+}
+
+impl<'a> Materials<'a> {
+    fn resolve(&mut self, part: &Part<'a>, source: &Source, warnings: &mut Warnings) -> usize {
+        if let Some(&index) = self.index.get(&part.material) {
+            return index;
+        }
+        let known = part
+            .material
+            .and_then(|name| self.library.get(name))
+            .cloned();
+        if let (Some(name), None) = (part.material, &known) {
+            let sentence = format!("the material {name:?} is defined nowhere; the default is used");
+            warnings.add(source, part.line, sentence);
+        }
+        let index = self.used.len();
+        self.used.push(known.unwrap_or_default());
+        self.index.insert(part.material, index);
+        index
+    }
+}
+
+/// Makes meshes of parts of one file.
+struct Mesher<'a> {
+    vertices: &'a [DVec3],
+    /// For each vertex of the file, the last part that used it and its index there.
+    seen: Vec<(usize, u32)>,
+}
+
+impl Mesher<'_> {
+    fn mesh(
+        &mut self,
+        number: usize,
+        part: &Part<'_>,
+        source: &Source,
+        warnings: &mut Warnings,
+    ) -> Result<Shape, SceneError> {
+        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        let mut corners = part.corners.as_slice();
+        let (mut local, mut points) = (Vec::new(), Vec::new());
+        for face in &part.faces {
+            let (outline, rest) = corners.split_at(face.corners);
+            corners = rest;
+            local.clear();
+            points.clear();
+            for &corner in outline {
+                let seen = &mut self.seen[corner as usize];
+                if seen.0 != number {
+                    *seen = (number, vertices.len() as u32);
+                    vertices.push(self.vertices[corner as usize]);
+                }
+                local.push(seen.1);
+                points.push(self.vertices[corner as usize]);
+            }
+            let Some(result) = polygon::triangulate(&points) else {
+                return Err(source
+                    .error(
+                        format!("a concave face of {} vertices is too large", face.corners),
+                        format!("split it into faces of at most {MAX_CONCAVE} vertices"),
+                    )
+                    .at_line(face.line));
+            };
+            if !result.exact {
+                let sentence = "a face crosses itself; its triangles cover more than it encloses";
+                warnings.add(source, face.line, sentence);
+            }
+            triangles.extend(
+                result
+                    .triangles
+                    .iter()
+                    .map(|t| t.map(|corner| local[corner as usize])),
+            );
+        }
+        Ok(Shape::Mesh {
+            vertices,
+            triangles,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

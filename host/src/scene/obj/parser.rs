@@ -1,0 +1,220 @@
+//! The lines of an OBJ file: vertices, and parts of faces that share a name and a material.
+
+use crate::scene::SceneError;
+use crate::scene::text::{Source, Warnings};
+use glam::DVec3;
+
+#[derive(Default)]
+pub(super) struct Parsed<'a> {
+    pub(super) vertices: Vec<DVec3>,
+    /// In file order; each has at least one face.
+    pub(super) parts: Vec<Part<'a>>,
+    /// What follows each `mtllib`, with its line.
+    pub(super) libraries: Vec<(usize, &'a str)>,
+}
+
+/// Faces in a row that belong to one object and have one material.
+pub(super) struct Part<'a> {
+    /// From `o` or `g`; empty where there is none.
+    pub(super) name: &'a str,
+    pub(super) material: Option<&'a str>,
+    /// The line of its first face.
+    pub(super) line: usize,
+    pub(super) faces: Vec<Face>,
+    /// Vertex indices of all faces, one after the other.
+    pub(super) corners: Vec<u32>,
+}
+
+pub(super) struct Face {
+    pub(super) line: usize,
+    /// How many, at least 3.
+    pub(super) corners: usize,
+}
+
+/// Statements about what is not drawn, or not needed to draw it.
+const PASSED_OVER: [&str; 12] = [
+    "vt", "vn", "vp", "s", "mg", "bevel", "c_interp", "d_interp", "lod", "usemap", "maplib", "call",
+];
+
+/// Reads all lines.
+///
+/// # Errors
+/// If a vertex is not finite, or a face names a vertex that does not exist.
+pub(super) fn parse<'a>(
+    source: &'a Source,
+    warnings: &mut Warnings,
+) -> Result<Parsed<'a>, SceneError> {
+    let mut parser = Parser {
+        source,
+        parsed: Parsed::default(),
+        name: "",
+        material: None,
+        fresh: true,
+        highest: None,
+    };
+    let mut lines = source.lines();
+    while let Some((number, line)) = lines.next() {
+        let mut words: Vec<&str> = Vec::new();
+        let mut rest = line.trim_end();
+        // A backslash at its end continues a line on the next one.
+        while let Some(continued) = rest.strip_suffix('\\') {
+            words.extend(continued.split_whitespace());
+            rest = lines.next().map_or("", |(_, line)| line.trim_end());
+        }
+        words.extend(rest.split_whitespace());
+        // A comment may follow numbers; in names a number sign is common.
+        let end = words
+            .iter()
+            .position(|word| word.starts_with('#'))
+            .unwrap_or(words.len());
+        match words.first() {
+            Some(&"v") => parser.vertex(line, &words[1..end])?,
+            Some(&"f") => parser.face(number, &words[1..end], warnings)?,
+            _ => parser.statement(number, line.trim(), warnings),
+        }
+    }
+    parser.finish()
+}
+
+struct Parser<'a> {
+    source: &'a Source,
+    parsed: Parsed<'a>,
+    name: &'a str,
+    material: Option<&'a str>,
+    /// Whether the next face starts a part.
+    fresh: bool,
+    /// The highest index of a face and its word; it may point ahead to vertices not yet read.
+    highest: Option<(u64, &'a str)>,
+}
+
+impl<'a> Parser<'a> {
+    fn vertex(&mut self, line: &'a str, words: &[&'a str]) -> Result<(), SceneError> {
+        if words.len() < 3 {
+            return Err(self.source.error_at(
+                line.trim(),
+                format!("a vertex has {} of 3 coordinates", words.len()),
+                "write `v x y z`",
+            ));
+        }
+        let mut position = [0.0; 3];
+        for (axis, value) in position.iter_mut().enumerate() {
+            *value = self.source.number(
+                words[axis],
+                &format!("the {} coordinate of a vertex", ["x", "y", "z"][axis]),
+            )?;
+        }
+        // What may follow is a weight, which only curved surfaces use, or a colour.
+        for word in &words[3..] {
+            self.source
+                .number(word, "what follows the coordinates of a vertex")?;
+        }
+        self.parsed.vertices.push(DVec3::from_array(position));
+        Ok(())
+    }
+
+    fn face(
+        &mut self,
+        line: usize,
+        words: &[&'a str],
+        warnings: &mut Warnings,
+    ) -> Result<(), SceneError> {
+        let corners = words
+            .iter()
+            .map(|word| self.corner(word))
+            .collect::<Result<Vec<u32>, _>>()?;
+        if corners.len() < 3 {
+            let sentence = format!(
+                "a face of {} vertices has no surface and is skipped",
+                corners.len()
+            );
+            warnings.add(self.source, line, sentence);
+            return Ok(());
+        }
+        if self.fresh {
+            self.parsed.parts.push(Part {
+                name: self.name,
+                material: self.material,
+                line,
+                faces: Vec::new(),
+                corners: Vec::new(),
+            });
+            self.fresh = false;
+        }
+        if let Some(part) = self.parsed.parts.last_mut() {
+            part.faces.push(Face {
+                line,
+                corners: corners.len(),
+            });
+            part.corners.extend(corners);
+        }
+        Ok(())
+    }
+
+    /// Reads the position of `position/texture/normal` as an index counted from 0.
+    fn corner(&mut self, word: &'a str) -> Result<u32, SceneError> {
+        let index = word.split('/').next().unwrap_or("");
+        let remedy = "vertices are counted from 1, or backwards from -1";
+        let count = self.parsed.vertices.len();
+        let fault = |cause: String| Err(self.source.error_at(word, cause, remedy));
+        match index.parse::<i64>() {
+            Err(_) => fault(format!(
+                "a face has the vertex {word:?}, which is not an index"
+            )),
+            Ok(0) => fault("a face has the vertex index 0".to_owned()),
+            Ok(index) if index < 0 && index.unsigned_abs() > count as u64 => fault(format!(
+                "a face has the vertex index {index}, but only {count} vertices come before it"
+            )),
+            Ok(index) if index < 0 => Ok((count as u64 - index.unsigned_abs()) as u32),
+            Ok(index) => {
+                let index = index.unsigned_abs();
+                if self.highest.is_none_or(|(highest, _)| index > highest) {
+                    self.highest = Some((index, word));
+                }
+                // Where this wraps, the highest index is an error.
+                Ok((index - 1) as u32)
+            }
+        }
+    }
+
+    fn statement(&mut self, number: usize, line: &'a str, warnings: &mut Warnings) {
+        let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        let rest = rest.trim();
+        match keyword {
+            "o" | "g" => {
+                self.name = rest;
+                self.fresh = true;
+            }
+            "usemtl" => {
+                let material = (!rest.is_empty()).then_some(rest);
+                self.fresh |= material != self.material;
+                self.material = material;
+            }
+            "mtllib" => self.parsed.libraries.push((number, rest)),
+            "l" | "p" => warnings.add(
+                self.source,
+                number,
+                "points and lines have no surface and are skipped",
+            ),
+            "" => {}
+            _ if keyword.starts_with('#') || PASSED_OVER.contains(&keyword) => {}
+            _ => {
+                let sentence = format!(
+                    "the statement {keyword:?} is unknown or about curves, and passed over"
+                );
+                warnings.add(self.source, number, sentence);
+            }
+        }
+    }
+
+    fn finish(self) -> Result<Parsed<'a>, SceneError> {
+        let count = self.parsed.vertices.len();
+        match self.highest {
+            Some((index, word)) if index > count as u64 => Err(self.source.error_at(
+                word,
+                format!("a face has the vertex index {index}, but the file has {count} vertices"),
+                "correct the index, or check that the file is complete",
+            )),
+            _ => Ok(self.parsed),
+        }
+    }
+}

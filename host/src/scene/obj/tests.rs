@@ -1,0 +1,284 @@
+use super::*;
+use crate::scene::{Diffuse, test_scenes};
+
+fn read(text: &str) -> Result<Imported, SceneError> {
+    import(&Source::from_bytes(Path::new("t.obj"), text.as_bytes()))
+}
+
+fn fault(text: &str) -> String {
+    read(text).unwrap_err().to_string()
+}
+
+fn mesh(object: &Object) -> (&[DVec3], &[[u32; 3]]) {
+    match &object.shape {
+        Shape::Mesh {
+            vertices,
+            triangles,
+        } => (vertices, triangles),
+        other => panic!("{other:?} is no mesh"),
+    }
+}
+
+const CORNERS: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+#[test]
+fn parts_follow_the_file() {
+    let text = format!(
+        "{CORNERS}f 1 2 3\no first # 1\nf 1 2 3 # a comment\nusemtl a\nf 1 3 4\nusemtl a\nf 2 3 4\nusemtl b\n\
+         f -4/1/1 -3//2 -1/7\ng second one\nf 1 2 \\\n3 4\n"
+    );
+    let Imported { scene, warnings } = read(&text).unwrap();
+    let parts: Vec<_> = scene
+        .objects
+        .iter()
+        .map(|o| (o.name.as_str(), o.material, o.place.line, mesh(o).1.len()))
+        .collect();
+    assert_eq!(
+        parts,
+        [
+            ("mesh 1", 0, 5, 1),
+            ("first # 1", 0, 7, 1),
+            ("first # 1", 1, 9, 2),
+            ("first # 1", 2, 13, 1),
+            ("second one", 2, 15, 2)
+        ]
+    );
+    let (vertices, triangles) = mesh(&scene.objects[3]);
+    assert_eq!(vertices, [DVec3::ZERO, DVec3::X, DVec3::Y]);
+    assert_eq!(triangles, [[0, 1, 2]]);
+    assert_eq!(
+        warnings,
+        [
+            "t.obj:9: the material \"a\" is defined nowhere; the default is used",
+            "t.obj:13: the material \"b\" is defined nowhere; the default is used"
+        ]
+    );
+}
+
+#[test]
+fn faces_may_come_before_their_vertices() {
+    let scene = read(&format!("f 1 2 3\no later\n{CORNERS}")).unwrap().scene;
+    assert_eq!(mesh(&scene.objects[0]).0.len(), 3);
+}
+
+#[test]
+fn weights_colours_and_lines_are_no_geometry() {
+    let text = "v 1 2 3 .5\nv 0 1 0 1 0 0\nv 0 0 1\nl 1 2 3\np 1\nf 1 2 3\n";
+    let Imported { scene, warnings } = read(text).unwrap();
+    assert_eq!(mesh(&scene.objects[0]).0[0], DVec3::new(1.0, 2.0, 3.0));
+    assert_eq!(mesh(&scene.objects[0]).1.len(), 1);
+    assert_eq!(
+        warnings,
+        ["t.obj:4: points and lines have no surface and are skipped (and once more)"]
+    );
+}
+
+#[test]
+fn faults_name_line_and_cause() {
+    assert_eq!(fault(""), "t.obj: the file has no faces");
+    assert_eq!(fault(CORNERS), "t.obj: the file has no faces");
+    assert_eq!(fault("v 1 2\n"), "t.obj:1: a vertex has 2 of 3 coordinates");
+    assert_eq!(
+        fault("\nv 1 nan 2\n"),
+        "t.obj:2: the y coordinate of a vertex is \"nan\", which is not a finite number"
+    );
+    assert_eq!(
+        fault("v 1 2 1e999\n"),
+        "t.obj:1: the z coordinate of a vertex is \"1e999\", which is not a finite number"
+    );
+    assert_eq!(
+        fault("v 1.#IND 0 0\n"),
+        "t.obj:1: the x coordinate of a vertex is \"1.#IND\", which is not a number"
+    );
+    assert_eq!(
+        fault("v 1 2 3 red\n"),
+        "t.obj:1: what follows the coordinates of a vertex is \"red\", which is not a number"
+    );
+    assert_eq!(
+        fault(&format!("{CORNERS}f 1 0 2\n")),
+        "t.obj:5: a face has the vertex index 0"
+    );
+    assert_eq!(
+        fault(&format!("{CORNERS}f 1 2 3\nf 1 2 5\n")),
+        "t.obj:6: a face has the vertex index 5, but the file has 4 vertices"
+    );
+    assert_eq!(
+        fault(&format!("{CORNERS}f 1 2 4294967297\n")),
+        "t.obj:5: a face has the vertex index 4294967297, but the file has 4 vertices"
+    );
+    assert_eq!(
+        fault(&format!("{CORNERS}f 1 2 -5\n")),
+        "t.obj:5: a face has the vertex index -5, but only 4 vertices come before it"
+    );
+    assert_eq!(
+        fault(&format!("{CORNERS}f 1 2 x/1\n")),
+        "t.obj:5: a face has the vertex \"x/1\", which is not an index"
+    );
+}
+
+#[test]
+fn faces_without_surface_are_skipped_with_a_warning() {
+    let Imported { scene, warnings } = read(&format!("{CORNERS}f\nf 1\nf 1 2\nf 1 2 2\n")).unwrap();
+    assert_eq!(mesh(&scene.objects[0]).1, [[0, 1, 1]]);
+    assert_eq!(warnings.len(), 3);
+    assert_eq!(
+        warnings[2],
+        "t.obj:7: a face of 2 vertices has no surface and is skipped"
+    );
+}
+
+#[test]
+fn concave_faces_keep_their_area() {
+    let text = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 1 0\nf 1 2 3 4\n";
+    let scene = read(text).unwrap().scene;
+    assert_eq!(mesh(&scene.objects[0]).1, [[3, 0, 1], [1, 2, 3]]);
+}
+
+fn material(text: &str) -> (Material, Vec<String>) {
+    let mut warnings = Warnings::default();
+    let source = Source::from_bytes(Path::new("t.mtl"), text.as_bytes());
+    let mut all = mtl::read(&source, &mut warnings).unwrap();
+    (all.remove(0).1, warnings.into_sentences())
+}
+
+#[test]
+fn materials() {
+    let (plain, warnings) =
+        material("newmtl my red #2\nKd 1 0 .5\nKs .2 # grey\nNs 96.08\nillum 2\nKe 0 0 0\n");
+    assert_eq!(warnings, [] as [&str; 0]);
+    assert_eq!(plain.name, "my red #2");
+    assert_eq!(plain.diffuse, Diffuse::Plain([1.0, 0.0, 0.5]));
+    assert_eq!(
+        (plain.highlight, plain.shininess, plain.mirror),
+        ([0.2; 3], 96, [0.0; 3])
+    );
+    assert_eq!(plain.transmit, [0.0; 3]);
+
+    let (mirror, _) = material("newmtl a\nKs .9 .8 .7\nillum 3\n");
+    assert_eq!(mirror.mirror, [0.9, 0.8, 0.7]);
+
+    let (glass, _) = material("newmtl a\nKd 1 1 1\nillum 7\nNi 1.5\nTf .9 1 .9\nd 1\n");
+    assert_eq!((glass.transmit, glass.ior), ([0.9, 1.0, 0.9], 1.5));
+    assert_eq!(glass.diffuse, Diffuse::Plain([0.0; 3]));
+
+    let (pane, _) = material("newmtl a\nKd 1 1 1\nd -halo .25\nNi 1.45\n");
+    assert_eq!((pane.transmit, pane.ior), ([0.75; 3], 1.0));
+
+    let (opaque, warnings) = material("newmtl a\nTr 1\nillum 1\nKs 1 1 1\nmap_Kd a.jpg\n");
+    assert_eq!((opaque.transmit, opaque.highlight), ([0.0; 3], [0.0; 3]));
+    assert_eq!(warnings.len(), 2);
+}
+
+#[test]
+fn material_faults_name_their_own_file() {
+    let fault = |text: &str| {
+        let source = Source::from_bytes(Path::new("t.mtl"), text.as_bytes());
+        mtl::read(&source, &mut Warnings::default())
+            .unwrap_err()
+            .to_string()
+    };
+    assert_eq!(fault("newmtl a\nKd .5 .5\n"), "t.mtl:2: Kd has 2 numbers");
+    assert_eq!(fault("newmtl a\nNs\n"), "t.mtl:2: Ns has no value");
+    assert_eq!(
+        fault("newmtl a\nd x\n"),
+        "t.mtl:2: the value of d is \"x\", which is not a number"
+    );
+}
+
+#[test]
+fn a_missing_material_file_is_a_warning() {
+    let warnings = read(&format!("mtllib no such file.mtl\n{CORNERS}f 1 2 3\n"))
+        .unwrap()
+        .warnings;
+    assert_eq!(warnings.len(), 3);
+    assert!(
+        warnings[0].starts_with("t.obj:1: the material file \"no\" cannot be read"),
+        "{}",
+        warnings[0]
+    );
+}
+
+/// Bounding box and area as printed in the facts.
+fn measure(scene: &Scene) -> (usize, [f64; 6], f64) {
+    let (mut count, mut area) = (0, 0.0);
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for object in &scene.objects {
+        let (vertices, triangles) = mesh(object);
+        count += triangles.len();
+        for t in triangles {
+            let [a, b, c] = t.map(|i| vertices[i as usize]);
+            low = low.min(a).min(b).min(c);
+            high = high.max(a).max(b).max(c);
+            area += (b - a).cross(c - a).length() / 2.0;
+        }
+    }
+    let [a, b, c] = low.to_array();
+    let [d, e, f] = high.to_array();
+    (count, [a, b, c, d, e, f], area)
+}
+
+#[test]
+fn real_meshes_have_the_triangles_box_and_area_that_trimesh_finds() {
+    let Some(facts) = test_scenes::find("reference/mesh_facts_by_trimesh.csv") else {
+        return;
+    };
+    let text = std::fs::read_to_string(facts).unwrap();
+    let mut compared = 0;
+    for line in text
+        .lines()
+        .filter(|line| line.starts_with("dev/meshes/") && line.contains(".obj,"))
+    {
+        let fields: Vec<&str> = line.split(',').collect();
+        let name = fields[0].trim_start_matches("dev/");
+        let Some(path) = test_scenes::find(name) else {
+            continue;
+        };
+        let (count, bounds, area) = measure(&load(&path).unwrap().scene);
+        assert_eq!(count, fields[7].parse().unwrap(), "{name}");
+        let expected: Vec<f64> = fields[8]
+            .split(' ')
+            .map(|word| word.parse().unwrap())
+            .collect();
+        for (found, expected) in bounds.into_iter().zip(expected) {
+            assert!(
+                (found - expected).abs() <= 1e-5 * expected.abs().max(1e-9),
+                "{name}: {found} for {expected}"
+            );
+        }
+        let expected = match name {
+            // A fan covers the hole of this ring many times over; this is what it encloses.
+            "meshes/concave_polygon.obj" => "0.2454966872",
+            // Its pentagon is bent, so that its area depends on where it is cut.
+            "meshes/polygonfaces.obj" => "",
+            _ => fields[9],
+        };
+        if let Ok(expected) = expected.parse::<f64>() {
+            assert!(
+                (area - expected).abs() <= 1e-6 * expected,
+                "{name}: {area} for {expected}"
+            );
+        }
+        compared += 1;
+    }
+    println!("{compared} meshes compared");
+}
+
+#[test]
+fn known_meshes() {
+    for (name, objects, triangles) in [
+        ("suzanne.obj", 1, 968),
+        ("stanford-bunny.obj", 1, 69_451),
+        ("cornell_box.obj", 8, 36),
+    ] {
+        let Some(path) = test_scenes::find(&format!("meshes/{name}")) else {
+            continue;
+        };
+        let Imported { scene, warnings } = load(&path).unwrap();
+        assert_eq!(measure(&scene).0, triangles, "{name}");
+        assert_eq!(
+            (scene.objects.len(), warnings.as_slice()),
+            (objects, [].as_slice()),
+            "{name}"
+        );
+    }
+}
