@@ -1,0 +1,3 @@
+//! stub
+use super::*;
+pub(super) fn load(path: &Path, _: &MoleculeOptions) -> Result<Imported, SceneError> { Err(SceneError::new(path, "x", "y")) }
