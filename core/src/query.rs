@@ -57,7 +57,11 @@ impl<'s, 'a, N: Number> Search<'s, 'a, N> {
         Self {
             scene,
             ray,
-            recip_norm2: if scene.needs_norm { N::recip_norm2(ray.slope) } else { N::ZERO },
+            recip_norm2: if scene.needs_norm {
+                N::recip_norm2(ray.slope)
+            } else {
+                N::ZERO
+            },
             tmax: ray.tmax,
             best: None,
         }
@@ -66,11 +70,24 @@ impl<'s, 'a, N: Number> Search<'s, 'a, N> {
     /// Takes a crossing that beats the best hit: a smaller t, or the same t of an earlier primitive.
     #[inline(always)]
     fn consider(&mut self, crossing: Crossing<N>, kind: Kind, index: u32) {
-        let Some(bounds) = self.scene.shapes.bounds(kind, index as usize) else { return };
-        let Some((t, part)) = accept(self.ray, crossing, bounds, self.tmax) else { return };
+        let Some(bounds) = self.scene.shapes.bounds(kind, index as usize) else {
+            return;
+        };
+        let Some((t, part)) = accept(self.ray, crossing, bounds, self.tmax) else {
+            return;
+        };
         let primitive = self.scene.primitive(kind, index);
-        if self.best.is_none_or(|best| t < best.t || primitive < best.primitive) {
-            self.best = Some(Best { t, primitive, kind, index, part });
+        if self
+            .best
+            .is_none_or(|best| t < best.t || primitive < best.primitive)
+        {
+            self.best = Some(Best {
+                t,
+                primitive,
+                kind,
+                index,
+                part,
+            });
             self.tmax = t;
         }
     }
@@ -92,10 +109,14 @@ impl<'s, 'a, N: Number> Search<'s, 'a, N> {
                 Spheres::S24(spheres) => self.spheres(spheres.get(first..end), leaf),
             },
             Kind::Box => {
-                self.solids(shapes.boxes.get(first..end), leaf, |search, cuboid| cuboid.cross(search.ray));
+                self.solids(shapes.boxes.get(first..end), leaf, |search, cuboid| {
+                    cuboid.cross(search.ray)
+                });
             }
             Kind::Disc => {
-                self.solids(shapes.discs.get(first..end), leaf, |search, disc| disc.cross(search.ray));
+                self.solids(shapes.discs.get(first..end), leaf, |search, disc| {
+                    disc.cross(search.ray)
+                });
             }
             Kind::Cone => self.solids(shapes.cones.get(first..end), leaf, |search, cone| {
                 cone.cross(search.ray, search.recip_norm2)
@@ -128,7 +149,12 @@ impl<'s, 'a, N: Number> Search<'s, 'a, N> {
 
     /// Chooses the copy of the triangle test for the ray's major axis.
     #[inline(always)]
-    fn triangles<V: Vertex, I: Corners>(&mut self, vertices: &[V], triangles: Option<&[I]>, leaf: Leaf) {
+    fn triangles<V: Vertex, I: Corners>(
+        &mut self,
+        vertices: &[V],
+        triangles: Option<&[I]>,
+        leaf: Leaf,
+    ) {
         match self.ray.major {
             0 => self.triangles_along::<0, V, I>(vertices, triangles, leaf),
             1 => self.triangles_along::<1, V, I>(vertices, triangles, leaf),
@@ -168,7 +194,9 @@ pub fn closest_hit<N: Number, A: Accel, C: Count>(
     });
     let best = search.best?;
     let point = ray.at(best.t);
-    let surface = scene.shapes.surface(best.kind, best.index as usize, best.part, point)?;
+    let surface = scene
+        .shapes
+        .surface(best.kind, best.index as usize, best.part, point)?;
     let scale = extent(ray.origin).max(extent(point)).max(surface.extent);
     Some(Hit {
         t: best.t.widen() + ray.moved,
@@ -192,7 +220,11 @@ pub fn any_hit<N: Number, A: Accel, C: Count>(
     A::walk(scene, &ray.cull, stack, count, |leaf, count| {
         count.objects(leaf.count);
         search.leaf(leaf);
-        if search.best.is_some() { i32::MIN } else { step_above(search.tmax) }
+        if search.best.is_some() {
+            i32::MIN
+        } else {
+            step_above(search.tmax)
+        }
     });
     search.best.is_some()
 }

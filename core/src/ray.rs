@@ -79,7 +79,11 @@ impl<N: Number> Ray<N> {
 
         let [first, last] = bounds.0[major];
         let forward = slope[major] > N::ZERO;
-        let (entry, exit) = if forward { (first, last) } else { (last, first) };
+        let (entry, exit) = if forward {
+            (first, last)
+        } else {
+            (last, first)
+        };
         let ahead = |unit: i16| {
             let distance = N::from_unit(unit).widen() - origin[major];
             if forward { distance } else { -distance }
@@ -99,7 +103,11 @@ impl<N: Number> Ray<N> {
             slope,
             major,
             moved,
-            tmin: if tmin > zero { N::narrow(if tmin < far { tmin } else { far }) } else { N::ZERO },
+            tmin: if tmin > zero {
+                N::narrow(if tmin < far { tmin } else { far })
+            } else {
+                N::ZERO
+            },
             tmax: if tmax < far { N::narrow(tmax) } else { N::FAR },
             cull: Cull::default(),
         };

@@ -19,7 +19,10 @@ impl Blob {
     pub fn new(bytes: &[u8]) -> Self {
         let mut words = vec![0_u128; bytes.len().div_ceil(ALIGNMENT)];
         bytemuck::cast_slice_mut(&mut words)[..bytes.len()].copy_from_slice(bytes);
-        Self { words, length: bytes.len() }
+        Self {
+            words,
+            length: bytes.len(),
+        }
     }
 
     /// Reads a blob file, unchecked.
@@ -39,14 +42,19 @@ impl Blob {
 }
 
 /// Writes a file whole or not at all: what was there stays until the new content is complete.
-pub fn write_whole(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+pub fn write_whole(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
     // Devices and pipes cannot be replaced; they are written to.
     if std::fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
         let mut file = std::fs::OpenOptions::new().write(true).open(path)?;
         write(&mut file)?;
         return file.flush();
     }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
     let mut file = tempfile::Builder::new()
         .prefix(".gridel-")
         .tempfile_in(folder.unwrap_or(Path::new(".")))?;

@@ -100,21 +100,33 @@ fn rows<N: Number, A: Accel, const EFFECTS: u32>(
         counters: None,
         work: Vec::new(),
     };
-    let rows = job.rows.clone().into_par_iter().zip(picture.pixels.par_chunks_mut(width.into()));
+    let rows = job
+        .rows
+        .clone()
+        .into_par_iter()
+        .zip(picture.pixels.par_chunks_mut(width.into()));
     if job.count {
         let counted: Vec<(Counters, Vec<u32>)> = rows
             .map(|(y, pixels)| {
                 let mut work = Vec::with_capacity(width.into());
                 let mut total = Counters::default();
-                render_row(&renderer, y, pixels, || Counters::default(), |counters: Counters| {
-                    work.push((counters.boxes + counters.objects).min(u32::MAX.into()) as u32);
-                    total = total.plus(&counters);
-                });
+                render_row(
+                    &renderer,
+                    y,
+                    pixels,
+                    || Counters::default(),
+                    |counters: Counters| {
+                        work.push((counters.boxes + counters.objects).min(u32::MAX.into()) as u32);
+                        total = total.plus(&counters);
+                    },
+                );
                 progress();
                 (total, work)
             })
             .collect();
-        let total = counted.iter().fold(Counters::default(), |sum, (row, _)| sum.plus(row));
+        let total = counted
+            .iter()
+            .fold(Counters::default(), |sum, (row, _)| sum.plus(row));
         picture.counters = Some(total);
         picture.work = counted.into_iter().flat_map(|(_, work)| work).collect();
     } else {

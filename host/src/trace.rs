@@ -28,8 +28,12 @@ pub struct SceneHit {
 impl SceneHit {
     /// Nothing was met, or the ray was none: its direction was zero, infinite or NaN, its origin
     /// infinite or NaN, or its tmin greater than its tmax.
-    pub const MISS: Self =
-        Self { t: f64::INFINITY, object: u32::MAX, primitive: u32::MAX, normal: [0.0; 3] };
+    pub const MISS: Self = Self {
+        t: f64::INFINITY,
+        object: u32::MAX,
+        primitive: u32::MAX,
+        normal: [0.0; 3],
+    };
 }
 
 /// How to trace.
@@ -81,13 +85,21 @@ fn trace_through<N: Number, A: Accel, C: Count>(
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
     for (ray, hit) in rays.iter().zip(hits) {
         *hit = SceneHit::MISS;
-        let Some((core_ray, scale)) = frame.ray::<N>(scene, ray) else { continue };
+        let Some((core_ray, scale)) = frame.ray::<N>(scene, ray) else {
+            continue;
+        };
         count.ray(gridel_core::RayKind::Primary);
         if any {
             if any_hit::<N, A, C>(scene, &core_ray, stack.as_view(), count) {
-                *hit = SceneHit { t: 0.0, object: 0, primitive: 0, normal: [0.0; 3] };
+                *hit = SceneHit {
+                    t: 0.0,
+                    object: 0,
+                    primitive: 0,
+                    normal: [0.0; 3],
+                };
             }
-        } else if let Some(found) = closest_hit::<N, A, C>(scene, &core_ray, stack.as_view(), count) {
+        } else if let Some(found) = closest_hit::<N, A, C>(scene, &core_ray, stack.as_view(), count)
+        {
             *hit = SceneHit {
                 t: N::far_to_f64(found.t) / scale,
                 object: found.object,

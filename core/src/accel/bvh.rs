@@ -36,7 +36,8 @@ impl PairRecord for Pair {
     }
 
     fn boxes(&self, _: &UnitBox) -> [UnitBox; 2] {
-        self.planes.map(|words| UnitBox(words.map(|word| [word as i16, (word >> 16) as i16])))
+        self.planes
+            .map(|words| UnitBox(words.map(|word| [word as i16, (word >> 16) as i16])))
     }
 
     #[inline(always)]

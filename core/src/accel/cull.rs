@@ -91,7 +91,10 @@ impl Cull {
         let (near, far) = self.order(axis, planes);
         let inverse = self.inverse[axis] as i64;
         let step = |plane: i16| ((inverse * plane as i64) >> 16) as i32;
-        (step(near).wrapping_add(self.near[axis]), step(far).wrapping_add(self.far[axis]))
+        (
+            step(near).wrapping_add(self.near[axis]),
+            step(far).wrapping_add(self.far[axis]),
+        )
     }
 
     /// One bit an axis, set where the ray runs down it.

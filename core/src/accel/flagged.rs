@@ -57,8 +57,15 @@ impl PairRecord for FlaggedPair {
         let owners = self.link().owners();
         let swapped = (owners ^ owners >> 3) & cull.descending();
         let pattern = owners ^ swapped ^ swapped << 3;
-        let parent = Interval { near: parent.near, far: parent.far.min(limit) };
-        if JUMPS { jump(self, pattern, parent, cull) } else { select(self, pattern, parent, cull) }
+        let parent = Interval {
+            near: parent.near,
+            far: parent.far.min(limit),
+        };
+        if JUMPS {
+            jump(self, pattern, parent, cull)
+        } else {
+            select(self, pattern, parent, cull)
+        }
     }
 }
 
@@ -103,7 +110,11 @@ fn jump(pair: &FlaggedPair, pattern: u32, parent: Interval, cull: &Cull) -> [Int
 
 /// Narrows for one pattern of owners, known when this is compiled.
 #[inline(always)]
-fn narrow_by<const PATTERN: u32>(pair: &FlaggedPair, parent: Interval, cull: &Cull) -> [Interval; 2] {
+fn narrow_by<const PATTERN: u32>(
+    pair: &FlaggedPair,
+    parent: Interval,
+    cull: &Cull,
+) -> [Interval; 2] {
     let mut intervals = [parent; 2];
     for axis in 0..3 {
         let (near, far) = cull.planes(axis, pair.planes[axis]);
@@ -126,14 +137,24 @@ mod tests {
     fn jumping_and_selecting_agree() {
         let bounds = UnitBox([[-1000, 1000]; 3]);
         for signs in 0..8 {
-            let component = |axis: u32| f64::from(axis + 1) * if signs >> axis & 1 == 0 { 1.0 } else { -1.0 };
+            let component =
+                |axis: u32| f64::from(axis + 1) * if signs >> axis & 1 == 0 { 1.0 } else { -1.0 };
             let direction = [component(0), component(1), component(2)];
             let ray = Ray::<Fixed>::from_f64(&bounds, [3.0, -7.0, 11.0], direction, 0.0, 1e9);
             let cull = ray.expect("a ray").cull;
-            let pair = FlaggedPair { planes: [0x0123_ff00, 0x0040_ffc0, 0x0300_0100], link: 0 };
-            let parent = Interval { near: -40, far: 900 };
+            let pair = FlaggedPair {
+                planes: [0x0123_ff00, 0x0040_ffc0, 0x0300_0100],
+                link: 0,
+            };
+            let parent = Interval {
+                near: -40,
+                far: 900,
+            };
             for pattern in 0..64 {
-                assert_eq!(select(&pair, pattern, parent, &cull), jump(&pair, pattern, parent, &cull));
+                assert_eq!(
+                    select(&pair, pattern, parent, &cull),
+                    jump(&pair, pattern, parent, &cull)
+                );
             }
         }
     }

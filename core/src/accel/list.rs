@@ -25,7 +25,15 @@ impl Accel for List {
             let end = scene.shapes.count(kind) as u32;
             while first < end {
                 let size = (end - first).min(Leaf::MAX_COUNT);
-                if leaf(Leaf { kind, first, count: size }, count) == i32::MIN {
+                if leaf(
+                    Leaf {
+                        kind,
+                        first,
+                        count: size,
+                    },
+                    count,
+                ) == i32::MIN
+                {
                     return;
                 }
                 first += size;

@@ -136,7 +136,11 @@ impl Leaf {
     #[inline(always)]
     pub fn from_word(word: u32) -> Option<Self> {
         let kind = Kind::from_number(word >> 29)?;
-        Some(Self { kind, first: word & 0xff_ffff, count: word >> 24 & 31 })
+        Some(Self {
+            kind,
+            first: word & 0xff_ffff,
+            count: word >> 24 & 31,
+        })
     }
 }
 
@@ -199,7 +203,14 @@ impl Link {
         // Without branches: a leaf's bit goes to the top, and the number is picked by it.
         [
             Node(left << 31 | if left != 0 { first_leaf } else { first_pair }),
-            Node(right << 31 | if right != 0 { first_leaf + left } else { first_pair + 1 - left }),
+            Node(
+                right << 31
+                    | if right != 0 {
+                        first_leaf + left
+                    } else {
+                        first_pair + 1 - left
+                    },
+            ),
         ]
     }
 }

@@ -39,17 +39,25 @@ pub(super) fn walk<P: PairRecord, C: Count>(
     let mut interval = cull.clip(&scene.bounds_words, cull.start, limit);
     count.planes(6);
     count.boxes(1);
-    let mut node = if pairs.is_empty() { Node::leaf(0) } else { Node::pair(0) };
+    let mut node = if pairs.is_empty() {
+        Node::leaf(0)
+    } else {
+        Node::pair(0)
+    };
     if interval.near > interval.far {
         return;
     }
     stack.clear();
     loop {
         if node.is_leaf() {
-            let Some(range) = scene.leaf(node.number()) else { return };
+            let Some(range) = scene.leaf(node.number()) else {
+                return;
+            };
             limit = leaf(range, count);
         } else {
-            let Some(pair) = pairs.get(node.number() as usize) else { return };
+            let Some(pair) = pairs.get(node.number() as usize) else {
+                return;
+            };
             let [left, right] = pair.narrow(interval, cull, limit);
             count.planes(P::PLANES);
             count.boxes(2);
@@ -64,7 +72,11 @@ pub(super) fn walk<P: PairRecord, C: Count>(
                     (near, node, far, far_node) = (left, left_node, right, right_node);
                 }
                 interval = near;
-                let entry = Entry { node: far_node.0, near: far.near, far: far.far };
+                let entry = Entry {
+                    node: far_node.0,
+                    near: far.near,
+                    far: far.far,
+                };
                 if stack.push(entry).is_err() {
                     return;
                 }
@@ -105,7 +117,11 @@ pub(crate) fn check_pairs<P: PairRecord>(
     let section = P::SECTION;
     let expected = leaves.len().saturating_sub(1);
     if pairs.len() != expected {
-        return Err(BlobError::Count { section, found: pairs.len(), expected });
+        return Err(BlobError::Count {
+            section,
+            found: pairs.len(),
+            expected,
+        });
     }
     let depth = check_order(pairs)?;
     if leaves.is_empty() {
@@ -113,7 +129,14 @@ pub(crate) fn check_pairs<P: PairRecord>(
     }
 
     let mut waiting: Vec<(Node, UnitBox), MAX_STACK_DEPTH> = Vec::new();
-    let mut current = (if pairs.is_empty() { Node::leaf(0) } else { Node::pair(0) }, *bounds);
+    let mut current = (
+        if pairs.is_empty() {
+            Node::leaf(0)
+        } else {
+            Node::pair(0)
+        },
+        *bounds,
+    );
     loop {
         let (node, parent) = current;
         let number = node.number() as usize;

@@ -133,26 +133,49 @@ impl fmt::Display for BlobError {
                 "the scene calls for the effects {missing}, which this build was compiled without: \
                  enable the Cargo features of the same names in gridel-core"
             ),
-            BlobError::Header { field, found, expected } => write!(
+            BlobError::Header {
+                field,
+                found,
+                expected,
+            } => write!(
                 f,
                 "the header's {field} is {found} and must be (at most) {expected}"
             ),
-            BlobError::Table { index, what, found, expected } => write!(
+            BlobError::Table {
+                index,
+                what,
+                found,
+                expected,
+            } => write!(
                 f,
                 "line {index} of the section table: the {what} is {found} and must be (at most) \
                  {expected}"
             ),
-            BlobError::Stride { section, found, expected } => write!(
+            BlobError::Stride {
+                section,
+                found,
+                expected,
+            } => write!(
                 f,
                 "section {}: a record has {found} bytes and should have {expected}",
                 section.name()
             ),
-            BlobError::Count { section, found, expected } => write!(
+            BlobError::Count {
+                section,
+                found,
+                expected,
+            } => write!(
                 f,
                 "section {}: there are {found} records and should be {expected}",
                 section.name()
             ),
-            BlobError::Record { section, index, what, found, expected } => write!(
+            BlobError::Record {
+                section,
+                index,
+                what,
+                found,
+                expected,
+            } => write!(
                 f,
                 "section {}, record {index}: the {what} is {found} and must be (at most) {expected}",
                 section.name()

@@ -24,7 +24,13 @@ impl<'a> Indices<'a> {
             (_, 1) => Indices::U8(section.bytes),
             (_, 2) => Indices::U16(sections.records(kind)?),
             (_, 4) => Indices::U32(sections.records(kind)?),
-            (_, found) => return Err(BlobError::Stride { section: kind, found, expected: 4 }),
+            (_, found) => {
+                return Err(BlobError::Stride {
+                    section: kind,
+                    found,
+                    expected: 4,
+                });
+            }
         })
     }
 

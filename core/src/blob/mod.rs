@@ -123,7 +123,11 @@ impl<'a> Scene<'a> {
     /// The object that a primitive belongs to.
     pub fn object(&self, primitive: u32) -> u32 {
         if self.object_first.is_empty() {
-            return if self.header.objects == self.header.primitives { primitive } else { 0 };
+            return if self.header.objects == self.header.primitives {
+                primitive
+            } else {
+                0
+            };
         }
         // The last object whose first primitive is not beyond this one.
         let (mut low, mut high) = (0, self.object_first.len());
@@ -146,7 +150,9 @@ impl<'a> Scene<'a> {
 
     #[inline(always)]
     pub(crate) fn leaf(&self, number: u32) -> Option<Leaf> {
-        self.leaves.get(number as usize).and_then(|&word| Leaf::from_word(word))
+        self.leaves
+            .get(number as usize)
+            .and_then(|&word| Leaf::from_word(word))
     }
 }
 
@@ -161,7 +167,11 @@ pub fn checksum(blob: &[u8]) -> u32 {
         for (byte, &source) in bytes.iter_mut().zip(word) {
             *byte = source;
         }
-        let word = if index == OWN_WORD { 0 } else { u32::from_le_bytes(bytes) };
+        let word = if index == OWN_WORD {
+            0
+        } else {
+            u32::from_le_bytes(bytes)
+        };
         state = (state ^ word).wrapping_mul(0x0100_0193);
     }
     state
@@ -181,7 +191,8 @@ pub struct Aligned<T: ?Sized>(pub T);
 macro_rules! include_blob {
     ($path:expr) => {{
         const BYTES: &[u8] = include_bytes!($path);
-        static ALIGNED: $crate::Aligned<[u8; BYTES.len()]> = $crate::Aligned(*include_bytes!($path));
+        static ALIGNED: $crate::Aligned<[u8; BYTES.len()]> =
+            $crate::Aligned(*include_bytes!($path));
         &ALIGNED.0 as &'static [u8]
     }};
 }

@@ -100,7 +100,10 @@ impl UnitBox {
     /// The smallest box around both.
     pub fn union(&self, other: &Self) -> Self {
         let axis = |k: usize| {
-            [self.0[k][0].min(other.0[k][0]), self.0[k][1].max(other.0[k][1])]
+            [
+                self.0[k][0].min(other.0[k][0]),
+                self.0[k][1].max(other.0[k][1]),
+            ]
         };
         Self([axis(0), axis(1), axis(2)])
     }

@@ -105,18 +105,33 @@ impl<'a> Sections<'a> {
         let table_bytes = usize::from(count) * size_of::<SectionEntry>();
         let table = blob
             .get(size_of::<Header>()..size_of::<Header>() + table_bytes)
-            .ok_or(BlobError::Truncated { needed: size_of::<Header>() + table_bytes, found: blob.len() })?;
+            .ok_or(BlobError::Truncated {
+                needed: size_of::<Header>() + table_bytes,
+                found: blob.len(),
+            })?;
         let entries: &[SectionEntry] =
             bytemuck::try_cast_slice(table).map_err(|_| BlobError::Misaligned)?;
         let mut sections = Self([Section::default(); SectionKind::ALL.len()]);
         let mut end = size_of::<Header>() + table_bytes;
         let mut last = 0;
         for (index, entry) in entries.iter().enumerate() {
-            let malformed = |what, found, expected| BlobError::Table { index, what, found, expected };
-            let kind = SectionKind::from_number(entry.kind)
-                .ok_or(malformed("kind", entry.kind.into(), SectionKind::ALL.len() as u64))?;
+            let malformed = |what, found, expected| BlobError::Table {
+                index,
+                what,
+                found,
+                expected,
+            };
+            let kind = SectionKind::from_number(entry.kind).ok_or(malformed(
+                "kind",
+                entry.kind.into(),
+                SectionKind::ALL.len() as u64,
+            ))?;
             if entry.kind <= last {
-                return Err(malformed("kind, which must ascend,", entry.kind.into(), u64::from(last) + 1));
+                return Err(malformed(
+                    "kind, which must ascend,",
+                    entry.kind.into(),
+                    u64::from(last) + 1,
+                ));
             }
             last = entry.kind;
             if entry.spare != 0 {
@@ -138,11 +153,17 @@ impl<'a> Sections<'a> {
                 ))?;
             end = start + bytes.len();
             if let Some(slot) = sections.0.get_mut(kind as usize - 1) {
-                *slot = Section { bytes, stride: entry.stride.into() };
+                *slot = Section {
+                    bytes,
+                    stride: entry.stride.into(),
+                };
             }
         }
         if end != blob.len() {
-            return Err(BlobError::Truncated { needed: end, found: blob.len() });
+            return Err(BlobError::Truncated {
+                needed: end,
+                found: blob.len(),
+            });
         }
         Ok(sections)
     }
@@ -152,13 +173,20 @@ impl<'a> Sections<'a> {
     }
 
     /// The records of a section, which must have the stride of `T` unless it is empty.
-    pub(super) fn records<T: bytemuck::Pod>(&self, kind: SectionKind) -> Result<&'a [T], BlobError> {
+    pub(super) fn records<T: bytemuck::Pod>(
+        &self,
+        kind: SectionKind,
+    ) -> Result<&'a [T], BlobError> {
         let section = self.get(kind);
         if section.bytes.is_empty() {
             return Ok(&[]);
         }
         if section.stride != size_of::<T>() {
-            return Err(BlobError::Stride { section: kind, found: section.stride, expected: size_of::<T>() });
+            return Err(BlobError::Stride {
+                section: kind,
+                found: section.stride,
+                expected: size_of::<T>(),
+            });
         }
         bytemuck::try_cast_slice(section.bytes).map_err(|_| BlobError::Misaligned)
     }

@@ -22,7 +22,10 @@ const RADIANCE_BITS: u32 = 20;
 /// scene gives mirrored numbers.
 #[inline(always)]
 const fn round_off(product: i64, bits: u32) -> i64 {
-    (product.wrapping_add(1 << (bits - 1)).wrapping_add(product >> 63)) >> bits
+    (product
+        .wrapping_add(1 << (bits - 1))
+        .wrapping_add(product >> 63))
+        >> bits
 }
 
 #[inline(always)]
@@ -39,7 +42,11 @@ const fn saturate(value: i64) -> Fixed {
 /// Gives a magnitude the sign of `sign`.
 #[inline(always)]
 const fn with_sign(magnitude: u64, sign: i64) -> Fixed {
-    let magnitude = if magnitude > i32::MAX as u64 { i32::MAX } else { magnitude as i32 };
+    let magnitude = if magnitude > i32::MAX as u64 {
+        i32::MAX
+    } else {
+        magnitude as i32
+    };
     Fixed(if sign < 0 { -magnitude } else { magnitude })
 }
 
@@ -59,9 +66,16 @@ fn scaled_root(square: u64) -> (u64, u32) {
 #[inline(always)]
 const fn shift_magnitude(v: i64, bits: i32) -> i32 {
     let magnitude = v.unsigned_abs();
-    let shifted =
-        if bits >= 0 { magnitude >> (bits & 63) } else { magnitude << (-bits & 63) } as i32;
-    if v < 0 { shifted.wrapping_neg() } else { shifted }
+    let shifted = if bits >= 0 {
+        magnitude >> (bits & 63)
+    } else {
+        magnitude << (-bits & 63)
+    } as i32;
+    if v < 0 {
+        shifted.wrapping_neg()
+    } else {
+        shifted
+    }
 }
 
 /// How far to shift down so that the largest magnitude keeps `bits` bits.
@@ -244,7 +258,10 @@ impl Number for Fixed {
             return Fixed(0);
         }
         let binary = (((exponent >> 5) * LOG2_E) >> (RATIO_BITS - 5)) as i64;
-        let (whole, part) = ((binary >> RATIO_BITS) as u32, Fixed((binary & ((1 << 30) - 1)) as i32));
+        let (whole, part) = (
+            (binary >> RATIO_BITS) as u32,
+            Fixed((binary & ((1 << 30) - 1)) as i32),
+        );
         // 2^-x on [0, 1] by Horner's rule over the Taylor series of e^(-x ln 2) up to the tenth
         // power, whose remainder is below 2^-30.
         const TAYLOR: [i32; 10] = [
@@ -317,7 +334,11 @@ impl Number for Fixed {
         let a = numerator.0.unsigned_abs();
         let b = denominator.0.unsigned_abs();
         if b == 0 {
-            return if a == 0 { Fixed(0) } else { with_sign(u64::MAX, sign) };
+            return if a == 0 {
+                Fixed(0)
+            } else {
+                with_sign(u64::MAX, sign)
+            };
         }
         // The divisor's upper 32 bits are enough: t is a length of at most 31 bits.
         let shift = b.leading_zeros();
@@ -342,7 +363,11 @@ impl Number for Fixed {
             .map(|&component| shift_magnitude(component, bits) as i64)
             .fold(0, |sum, part| sum + (part * part) as u64);
         let norm = nearest_root(square);
-        Product(if bits >= 0 { norm << (bits & 63) } else { norm >> (-bits & 63) } as i64)
+        Product(if bits >= 0 {
+            norm << (bits & 63)
+        } else {
+            norm >> (-bits & 63)
+        } as i64)
     }
 
     fn geometric_mean(a: Product, b: Product) -> Product {
@@ -384,7 +409,11 @@ impl Number for Fixed {
             let magnitude = (component.unsigned_abs() as i64 * reciprocal) as u64 >> 32;
             with_sign(magnitude, component as i64)
         });
-        slopes[axis] = Fixed(if v[axis] < 0 { -Self::ONE.0 } else { Self::ONE.0 });
+        slopes[axis] = Fixed(if v[axis] < 0 {
+            -Self::ONE.0
+        } else {
+            Self::ONE.0
+        });
         Some((slopes, axis))
     }
 
@@ -398,7 +427,9 @@ impl Number for Fixed {
         let wide = v.map(|component| component.0 as i64);
         let bits = excess_bits(wide, 31);
         let scaled = wide.map(|component| shift_magnitude(component, bits) as i64);
-        let square: u64 = scaled.iter().fold(0, |sum, part| sum + (part * part) as u64);
+        let square: u64 = scaled
+            .iter()
+            .fold(0, |sum, part| sum + (part * part) as u64);
         let norm = nearest_root(square);
         if norm == 0 {
             return ([Fixed(0); 3], Fixed(0));
@@ -408,7 +439,11 @@ impl Number for Fixed {
             with_sign(magnitude.checked_div(norm).unwrap_or(0), component)
         });
         // The vector has at most 32 bits, so it was shifted up, or down by one.
-        let length = if bits >= 0 { norm << (bits & 63) } else { norm >> (-bits & 63) };
+        let length = if bits >= 0 {
+            norm << (bits & 63)
+        } else {
+            norm >> (-bits & 63)
+        };
         (unit, with_sign(length, 0))
     }
 
@@ -424,7 +459,11 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn scale_down(self, bits: u32) -> Self {
-        if bits == 0 { self } else { Fixed(round_off(self.0 as i64, bits & 63) as i32) }
+        if bits == 0 {
+            self
+        } else {
+            Fixed(round_off(self.0 as i64, bits & 63) as i32)
+        }
     }
 
     #[inline(always)]
@@ -432,6 +471,9 @@ impl Number for Fixed {
         let magnitude = slope.0.unsigned_abs().max(1 << 18);
         let inverse = ((1u64 << 47) / magnitude as u64) as i32;
         let inverse = if slope.0 < 0 { -inverse } else { inverse };
-        (inverse, ((x.0 as i64 * inverse as i64) >> (16 + LENGTH_BITS)) as i32)
+        (
+            inverse,
+            ((x.0 as i64 * inverse as i64) >> (16 + LENGTH_BITS)) as i32,
+        )
     }
 }

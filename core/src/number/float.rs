@@ -135,7 +135,11 @@ macro_rules! float_number {
 
             #[inline(always)]
             fn settle(self) -> Self {
-                if $float::abs(self) < $flush { 0.0 } else { self }
+                if $float::abs(self) < $flush {
+                    0.0
+                } else {
+                    self
+                }
             }
 
             #[inline(always)]
@@ -248,7 +252,11 @@ macro_rules! float_number {
                 let mut slopes = v.map(|component| {
                     let slope = component / largest;
                     // Adding zero turns -0.0 into 0.0.
-                    if slope.abs() < $flush { 0.0 } else { slope + 0.0 }
+                    if slope.abs() < $flush {
+                        0.0
+                    } else {
+                        slope + 0.0
+                    }
                 });
                 slopes[axis] = if v[axis] < 0.0 { -1.0 } else { 1.0 };
                 Some((slopes, axis))

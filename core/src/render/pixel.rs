@@ -31,8 +31,11 @@ impl Pixel for Rgb888 {
 impl Pixel for Rgb565 {
     fn encode(linear: [u16; 3], dither: Option<[u16; 2]>) -> Self {
         let [red, green, blue] = linear;
-        let (red, green, blue) =
-            (quantize(red, 31, dither), quantize(green, 63, dither), quantize(blue, 31, dither));
+        let (red, green, blue) = (
+            quantize(red, 31, dither),
+            quantize(green, 63, dither),
+            quantize(blue, 31, dither),
+        );
         Self((red << 11 | green << 5 | blue) as u16)
     }
 }
@@ -99,7 +102,11 @@ mod tests {
     fn the_table_is_the_standards() {
         for (code, &linear) in LINEAR_OF_SRGB.iter().enumerate() {
             let s = code as f64 / 255.0;
-            let exact = if s <= 0.04045 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) };
+            let exact = if s <= 0.04045 {
+                s / 12.92
+            } else {
+                ((s + 0.055) / 1.055).powf(2.4)
+            };
             assert_eq!(linear, (exact * 65535.0).round() as u16, "code {code}");
         }
     }
@@ -132,7 +139,10 @@ mod tests {
                 }
             }
             let exact = f64::from(srgb(linear)) * 31.0 / (256.0 * 255.0);
-            assert!((f64::from(sum) / 64.0 - exact).abs() < 1.0 / 64.0, "linear {linear}");
+            assert!(
+                (f64::from(sum) / 64.0 - exact).abs() < 1.0 / 64.0,
+                "linear {linear}"
+            );
         }
     }
 }

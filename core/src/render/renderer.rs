@@ -81,10 +81,16 @@ impl fmt::Display for RenderError {
                  and the width at most 64 times the height"
             ),
             RenderError::Samples(samples) => {
-                write!(f, "{samples} samples a pixel are not possible: ask for 1 to {MAX_SAMPLES}")
+                write!(
+                    f,
+                    "{samples} samples a pixel are not possible: ask for 1 to {MAX_SAMPLES}"
+                )
             }
             RenderError::Depth(depth) => {
-                write!(f, "a depth of {depth} is not possible: ask for 0 to {MAX_RAY_DEPTH}")
+                write!(
+                    f,
+                    "a depth of {depth} is not possible: ask for 0 to {MAX_RAY_DEPTH}"
+                )
             }
             RenderError::Structure(structure) => write!(
                 f,
@@ -95,7 +101,11 @@ impl fmt::Display for RenderError {
                 f,
                 "the scene calls for the effects {effects}, which the renderer's type leaves out"
             ),
-            RenderError::Workspace { what, found, needed } => write!(
+            RenderError::Workspace {
+                what,
+                found,
+                needed,
+            } => write!(
                 f,
                 "the {what} of the workspace has room for {found} and this scene needs {needed}"
             ),
@@ -126,7 +136,13 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     /// If a setting is out of its range, the blob lacks the structure, or the scene calls for an
     /// effect that is not in `EFFECTS`.
     pub fn new(scene: &'s Scene<'a>, settings: Settings) -> Result<Self, RenderError> {
-        let Settings { width, height, samples, depth, .. } = settings;
+        let Settings {
+            width,
+            height,
+            samples,
+            depth,
+            ..
+        } = settings;
         if width == 0 || height == 0 || u32::from(width) > 64 * u32::from(height) {
             return Err(RenderError::Size { width, height });
         }
@@ -144,7 +160,12 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
             return Err(RenderError::Effects(missing));
         }
         let camera = Camera::new(scene.view(), width, height);
-        Ok(Self { scene, settings, camera, structure: PhantomData })
+        Ok(Self {
+            scene,
+            settings,
+            camera,
+            structure: PhantomData,
+        })
     }
 
     /// The settings.
@@ -158,14 +179,26 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     /// If it is not, with what it lacks. Rendering in it all the same is safe, but rays that find
     /// no room see nothing.
     pub fn check_workspace(&self, space: &WorkspaceView<'_, N>) -> Result<(), RenderError> {
-        let depth = if self.casts_rays() { self.settings.depth } else { 0 };
+        let depth = if self.casts_rays() {
+            self.settings.depth
+        } else {
+            0
+        };
         let rooms = [
             ("stack", space.stack.capacity(), self.scene.stack_depth()),
-            ("work list", space.work.capacity(), work_depth(depth) - usize::from(depth == 0)),
+            (
+                "work list",
+                space.work.capacity(),
+                work_depth(depth) - usize::from(depth == 0),
+            ),
         ];
         for (what, found, needed) in rooms {
             if found < needed {
-                return Err(RenderError::Workspace { what, found, needed });
+                return Err(RenderError::Workspace {
+                    what,
+                    found,
+                    needed,
+                });
             }
         }
         Ok(())
@@ -184,7 +217,10 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         count: &mut C,
     ) -> [u16; 3] {
         let Settings { samples, depth, .. } = self.settings;
-        let tracing = Loop { scene: self.scene, depth };
+        let tracing = Loop {
+            scene: self.scene,
+            depth,
+        };
         let mut sum = Color::BLACK;
         for index in 0..samples {
             let [dx, dy] = place(index, samples);
@@ -192,14 +228,20 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
             let direction = self.camera.direction(&row, i32::from(x) * SUBPIXELS + dx);
             let (eye, zero) = (self.camera.eye(), N::Wide::default());
             let far = N::far(1 << 60);
-            let Ok(ray) = Ray::new(self.scene.bounds(), eye, direction, zero, far) else { continue };
+            let Ok(ray) = Ray::new(self.scene.bounds(), eye, direction, zero, far) else {
+                continue;
+            };
             let radiance = tracing.radiance::<N, A, C, EFFECTS>(&ray, space, count);
             // Clamped before they are averaged, so that the edge of a highlight is smooth.
             let white = N::radiance(1 << 20);
             let seen = Color(radiance.0.map(|channel| channel.max(N::ZERO).min(white)));
             sum = sum.plus(seen);
         }
-        let mean = if samples == 1 { sum } else { sum.scaled(N::ratio((1 << 30) / i32::from(samples))) };
+        let mean = if samples == 1 {
+            sum
+        } else {
+            sum.scaled(N::ratio((1 << 30) / i32::from(samples)))
+        };
         let linear: Linear = mean.0.map(N::to_linear16);
         linear
     }
@@ -212,7 +254,10 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         space: &mut WorkspaceView<'_, N>,
         count: &mut C,
     ) -> P {
-        P::encode(self.linear(x, y, space, count), self.settings.dither.then_some([x, y]))
+        P::encode(
+            self.linear(x, y, space, count),
+            self.settings.dither.then_some([x, y]),
+        )
     }
 
     /// A part of a row: as many pixels as `row` has, from column `x` on.

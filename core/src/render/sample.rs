@@ -22,7 +22,10 @@ pub(crate) fn place(index: u16, count: u16) -> [i32; 2] {
     }
     // Half a cell of the finest power of two that holds the samples.
     let half_cell = SUBPIXELS / (2 * i32::from(count.next_power_of_two().min(128)));
-    [i32::from(mirrored) + half_cell, i32::from(second) + half_cell]
+    [
+        i32::from(mirrored) + half_cell,
+        i32::from(second) + half_cell,
+    ]
 }
 
 #[cfg(test)]
@@ -40,7 +43,10 @@ mod tests {
                     let place = place(index, count)[axis];
                     assert!((0..SUBPIXELS).contains(&place));
                     let cell = (place * i32::from(count) / SUBPIXELS) as usize;
-                    assert!(!seen[cell], "two of {count} samples in cell {cell} of axis {axis}");
+                    assert!(
+                        !seen[cell],
+                        "two of {count} samples in cell {cell} of axis {axis}"
+                    );
                     seen[cell] = true;
                 }
             }

@@ -51,12 +51,18 @@ pub const fn work_depth(depth: u8) -> usize {
 impl<N: Number, const STACK: usize, const WORK: usize> Workspace<N, STACK, WORK> {
     /// An empty workspace.
     pub const fn new() -> Self {
-        Self { stack: Stack::new(), work: Vec::new() }
+        Self {
+            stack: Stack::new(),
+            work: Vec::new(),
+        }
     }
 
     /// The workspace as renderers take it.
     pub fn as_view(&mut self) -> WorkspaceView<'_, N> {
-        WorkspaceView { stack: self.stack.as_view(), work: &mut self.work }
+        WorkspaceView {
+            stack: self.stack.as_view(),
+            work: &mut self.work,
+        }
     }
 }
 
@@ -135,16 +141,32 @@ impl Loop<'_, '_> {
             weight = weight.times(glass::absorb(material, path_length(ray, &hit)));
         }
 
-        let normal = if hit.front { hit.normal } else { hit.normal.map(|x| -x) };
-        let needs_direction = Effects::HIGHLIGHT.with(Effects::MIRROR).with(Effects::GLASS);
-        let direction =
-            if EFFECTS & needs_direction.0 == 0 { ray.slope } else { N::normalize(ray.slope).0 };
+        let normal = if hit.front {
+            hit.normal
+        } else {
+            hit.normal.map(|x| -x)
+        };
+        let needs_direction = Effects::HIGHLIGHT
+            .with(Effects::MIRROR)
+            .with(Effects::GLASS);
+        let direction = if EFFECTS & needs_direction.0 == 0 {
+            ray.slope
+        } else {
+            N::normalize(ray.slope).0
+        };
 
         let diffuse = material.diffuse_at::<N, EFFECTS>(&hit);
         let mut local = Color::radiance(view.ambient).times(diffuse);
         for light in self.scene.lights {
             let lit = self.lit::<N, A, C, EFFECTS>(
-                light, material, &hit, normal, direction, diffuse, space.stack, count,
+                light,
+                material,
+                &hit,
+                normal,
+                direction,
+                diffuse,
+                space.stack,
+                count,
             );
             local = local.plus(lit);
         }
@@ -161,20 +183,38 @@ impl Loop<'_, '_> {
         };
         if glass {
             let k = N::ratio(material.inverse_ior);
-            let Split { reflected, refracted } =
-                glass::split(k, hit.front, direction, normal, cos_in);
+            let Split {
+                reflected,
+                refracted,
+            } = glass::split(k, hit.front, direction, normal, cos_in);
             let transmit = Color::ratios(material.transmit);
             mirrored = mirrored.plus_up_to_one(transmit.scaled(reflected));
             let weight = weight.times(transmit.scaled(N::ONE - reflected));
             let kind = RayKind::Refracted;
-            self.send(space, hit, refracted, normal.map(|x| -x), weight, depth, kind);
+            self.send(
+                space,
+                hit,
+                refracted,
+                normal.map(|x| -x),
+                weight,
+                depth,
+                kind,
+            );
         }
         if glass || effects.contains(Effects::MIRROR) {
             // Half the mirrored direction; its length does not matter.
             let axis = |k: usize| direction[k].half() + cos_in * normal[k];
             let reflected = [axis(0), axis(1), axis(2)];
             let kind = RayKind::Reflected;
-            self.send(space, hit, reflected, normal, weight.times(mirrored), depth, kind);
+            self.send(
+                space,
+                hit,
+                reflected,
+                normal,
+                weight.times(mirrored),
+                depth,
+                kind,
+            );
         }
     }
 
@@ -195,13 +235,22 @@ impl Loop<'_, '_> {
         if peak > N::ZERO && peak * N::radiance(1 << 20) > N::radiance(self.scene.view.cutoff) {
             let origin = depart(&hit, side);
             // The list is as long as the depth asks for, so there is a place.
-            let _ = space.work.push(Pending { origin, direction, weight, depth: depth + 1, kind });
+            let _ = space.work.push(Pending {
+                origin,
+                direction,
+                weight,
+                depth: depth + 1,
+                kind,
+            });
         }
     }
 
     /// What a light adds: diffuse and highlight, if it is not in shadow.
     #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "one surface under one light is this much")]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "one surface under one light is this much"
+    )]
     fn lit<N: Number, A: Accel, C: Count, const EFFECTS: u32>(
         &self,
         light: &Light,
@@ -216,7 +265,9 @@ impl Loop<'_, '_> {
         let effects = Effects(EFFECTS);
         let origin = depart(hit, normal);
         let (way, distance) = light.seen_from(origin);
-        let Some((slopes, _)) = N::slopes(way) else { return Color::BLACK };
+        let Some((slopes, _)) = N::slopes(way) else {
+            return Color::BLACK;
+        };
         let (to_light, _) = N::normalize(slopes);
         let cos = N::from_wide(N::dot(normal, to_light));
         if cos <= N::ZERO {
@@ -227,16 +278,25 @@ impl Loop<'_, '_> {
             // Halfway between the light and where the ray came from (Blinn-Phong).
             let axis = |k: usize| to_light[k].half() - direction[k].half();
             let (halfway, _) = N::normalize([axis(0), axis(1), axis(2)]);
-            let cos = N::from_wide(N::dot(normal, halfway)).max(N::ZERO).min(N::ONE);
+            let cos = N::from_wide(N::dot(normal, halfway))
+                .max(N::ZERO)
+                .min(N::ONE);
             let strength = power(cos, material.shininess);
-            reflected = reflected.plus_up_to_one(Color::ratios(material.highlight).scaled(strength));
+            reflected =
+                reflected.plus_up_to_one(Color::ratios(material.highlight).scaled(strength));
         }
         if reflected == Color::BLACK {
             return Color::BLACK;
         }
         let mut arriving = Color::radiance(light.color);
         if effects.contains(Effects::SHADOW) {
-            let shadow = Shadow { origin, way, distance, to_light, error: hit.error };
+            let shadow = Shadow {
+                origin,
+                way,
+                distance,
+                to_light,
+                error: hit.error,
+            };
             let through = self.through::<N, A, C, EFFECTS>(shadow, stack, count);
             arriving = arriving.times(through);
         }
@@ -255,12 +315,19 @@ impl Loop<'_, '_> {
     ) -> Color<N> {
         let effects = Effects(EFFECTS);
         let zero = N::Wide::default();
-        let Shadow { mut origin, mut way, mut distance, to_light, mut error } = shadow;
+        let Shadow {
+            mut origin,
+            mut way,
+            mut distance,
+            to_light,
+            mut error,
+        } = shadow;
         let mut left = Color::WHITE;
         for _ in 0..SHADOW_SURFACES {
             // The light itself, and what touches it, casts no shadow.
             let end = distance.map_or(N::FAR.widen(), |distance| distance - error.widen());
-            let Ok(ray) = Ray::new(self.scene.bounds(), origin.map(N::widen), way, zero, end) else {
+            let Ok(ray) = Ray::new(self.scene.bounds(), origin.map(N::widen), way, zero, end)
+            else {
                 return left;
             };
             count.ray(RayKind::Shadow);
@@ -284,7 +351,11 @@ impl Loop<'_, '_> {
             if left.peak() * N::radiance(1 << 20) <= N::radiance(self.scene.view.cutoff) {
                 return Color::BLACK;
             }
-            let onward = if hit.front { hit.normal.map(|x| -x) } else { hit.normal };
+            let onward = if hit.front {
+                hit.normal.map(|x| -x)
+            } else {
+                hit.normal
+            };
             origin = depart(&hit, onward);
             error = hit.error;
             // The way goes on along the same slopes, so its largest component stays the measure.

@@ -79,7 +79,10 @@ impl Effects {
 
     /// The names of the effects in this set.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
-        Self::NAMED.into_iter().filter(move |(effect, _)| self.contains(*effect)).map(|(_, name)| name)
+        Self::NAMED
+            .into_iter()
+            .filter(move |(effect, _)| self.contains(*effect))
+            .map(|(_, name)| name)
     }
 }
 

@@ -37,7 +37,10 @@ pub(crate) fn split<N: Number>(
     cos_in: N,
 ) -> Split<N> {
     if k == N::ONE {
-        return Split { reflected: N::ZERO, refracted: d };
+        return Split {
+            reflected: N::ZERO,
+            refracted: d,
+        };
     }
     let sin2_in = (N::ONE - cos_in * cos_in).max(N::ZERO);
     let (cos_out, scale, lift);
@@ -46,13 +49,19 @@ pub(crate) fn split<N: Number>(
         (scale, lift) = (k, k * cos_in - cos_out);
     } else {
         if sin2_in >= k * k {
-            return Split { reflected: N::ONE, refracted: d };
+            return Split {
+                reflected: N::ONE,
+                refracted: d,
+            };
         }
         cos_out = (N::ONE - sin2_in.over(k * k)).sqrt();
         (scale, lift) = (N::ONE, cos_in - k * cos_out);
     }
     let axis = |i: usize| scale * d[i] + lift * normal[i];
-    Split { reflected: fresnel(k, cos_in, cos_out), refracted: [axis(0), axis(1), axis(2)] }
+    Split {
+        reflected: fresnel(k, cos_in, cos_out),
+        refracted: [axis(0), axis(1), axis(2)],
+    }
 }
 
 /// The part of light that passes a surface straight on, as shadows do: what Fresnel's equations
@@ -67,5 +76,9 @@ pub(crate) fn straight_through<N: Number>(k: N, cos_in: N) -> N {
 
 /// What is left of light after a length of glass.
 pub(crate) fn absorb<N: Number>(material: &Material, length: N) -> Color<N> {
-    Color(material.absorption.map(|coefficient| length.exp_neg(coefficient)))
+    Color(
+        material
+            .absorption
+            .map(|coefficient| length.exp_neg(coefficient)),
+    )
 }

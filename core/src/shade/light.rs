@@ -15,8 +15,16 @@ impl Light {
         let way = [axis(0), axis(1), axis(2)];
         let zero = N::Wide::default();
         let distance = way.iter().fold(zero, |largest, &component| {
-            let magnitude = if component < zero { -component } else { component };
-            if magnitude > largest { magnitude } else { largest }
+            let magnitude = if component < zero {
+                -component
+            } else {
+                component
+            };
+            if magnitude > largest {
+                magnitude
+            } else {
+                largest
+            }
         });
         (way, Some(distance))
     }

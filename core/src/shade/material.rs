@@ -43,6 +43,10 @@ impl Material {
             let beneath = hit.point[axis] - hit.error * hit.normal[axis];
             parity ^ (beneath - length(self.checker_origin[axis])).cell(size)
         });
-        Color::ratios(if parity & 1 == 0 { self.diffuse } else { self.odd })
+        Color::ratios(if parity & 1 == 0 {
+            self.diffuse
+        } else {
+            self.odd
+        })
     }
 }

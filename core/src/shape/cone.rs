@@ -107,9 +107,8 @@ impl Cone {
         let (cos, sin) = (frame.cos, frame.sin);
         let g = frame.radius.scale_up(bits) * cos - q_axial * sin;
         let e = d_axial * sin;
-        let cross = |i: usize, j: usize| {
-            q_across[i].wide(d_across[j]) - q_across[j].wide(d_across[i])
-        };
+        let cross =
+            |i: usize, j: usize| q_across[i].wide(d_across[j]) - q_across[j].wide(d_across[i]);
         let twist = N::wide_scale(N::wide_norm([cross(1, 2), cross(2, 0), cross(0, 1)]), cos);
         let lever = |k: usize| d_across[k].wide(g) + q_across[k].wide(e);
         let lever = N::wide_norm([lever(0), lever(1), lever(2)]);
@@ -125,7 +124,11 @@ impl Cone {
         let sum = if b < zero { -b + root } else { -(b + root) };
         // The roots of a s^2 + 2 b s + c = 0, without a difference of near equals.
         let (first, second) = (N::divide(sum, a), N::divide(c, sum));
-        let (low, high) = if first < second { (first, second) } else { (second, first) };
+        let (low, high) = if first < second {
+            (first, second)
+        } else {
+            (second, first)
+        };
         let (from, to) = if a > zero {
             // Both roots lie on one nappe: the real one if g is positive halfway between them.
             if g * N::from_wide(a) + N::from_wide(b) * e < N::ZERO {
@@ -134,7 +137,11 @@ impl Cone {
             (low, high)
         } else if a < zero {
             // One root on each nappe; on the real one g - e s is positive.
-            if e > N::ZERO { (-N::FAR, low) } else { (high, N::FAR) }
+            if e > N::ZERO {
+                (-N::FAR, low)
+            } else {
+                (high, N::FAR)
+            }
         } else if b == zero {
             // Along a line of the mantle, or parallel to the axis of a cylinder: inside or not.
             if c > zero {
@@ -146,7 +153,11 @@ impl Cone {
             return None;
         } else {
             let root = N::divide(-c, b).half();
-            if b > zero { (-N::FAR, root) } else { (root, N::FAR) }
+            if b > zero {
+                (-N::FAR, root)
+            } else {
+                (root, N::FAR)
+            }
         };
         if from > enter.0 {
             enter = (from, MANTLE);
@@ -158,7 +169,10 @@ impl Cone {
             return None;
         }
         let back = |(s, part): (N, Part)| (closest + s.scale_down(bits), part);
-        Some(Crossing { enter: back(enter), leave: back(leave) })
+        Some(Crossing {
+            enter: back(enter),
+            leave: back(leave),
+        })
     }
 
     /// Outward; at the tip of a cone along the axis.
@@ -177,7 +191,11 @@ impl Cone {
                 let axis = |k: usize| q[k] - axial * frame.axis[k];
                 let (outward, distance) = N::normalize([axis(0), axis(1), axis(2)]);
                 if distance == N::ZERO {
-                    if axial > N::ZERO { frame.axis } else { frame.axis.map(|x| -x) }
+                    if axial > N::ZERO {
+                        frame.axis
+                    } else {
+                        frame.axis.map(|x| -x)
+                    }
                 } else {
                     let axis = |k: usize| outward[k] * frame.cos + frame.axis[k] * frame.sin;
                     N::normalize([axis(0), axis(1), axis(2)]).0

@@ -33,7 +33,11 @@ impl Cuboid {
             }
             let lower: Part = 2 * axis as Part;
             let (below, above) = ((below.over(slope), lower), (above.over(slope), lower + 1));
-            let (near, far) = if slope > N::ZERO { (below, above) } else { (above, below) };
+            let (near, far) = if slope > N::ZERO {
+                (below, above)
+            } else {
+                (above, below)
+            };
             if near.0 > enter.0 {
                 enter = near;
             }
@@ -52,6 +56,9 @@ impl Cuboid {
             *component = outward;
         }
         let far = |corner: [i32; 3]| extent(corner.map(N::from_lattice));
-        Surface { normal, extent: far(self.lowest).max(far(self.highest)) }
+        Surface {
+            normal,
+            extent: far(self.lowest).max(far(self.highest)),
+        }
     }
 }

@@ -34,7 +34,13 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds, in order.
-    pub const ALL: [Kind; 5] = [Kind::Triangle, Kind::Sphere, Kind::Box, Kind::Disc, Kind::Cone];
+    pub const ALL: [Kind; 5] = [
+        Kind::Triangle,
+        Kind::Sphere,
+        Kind::Box,
+        Kind::Disc,
+        Kind::Cone,
+    ];
 
     #[inline(always)]
     pub(crate) const fn from_number(number: u32) -> Option<Self> {
@@ -73,7 +79,10 @@ pub(crate) struct Crossing<N> {
 impl<N: Copy> Crossing<N> {
     #[inline(always)]
     pub(crate) fn flat(t: N) -> Self {
-        Self { enter: (t, 0), leave: (t, 0) }
+        Self {
+            enter: (t, 0),
+            leave: (t, 0),
+        }
     }
 }
 
@@ -133,7 +142,10 @@ pub(crate) fn cross_plane<N: Number>(ray: &Ray<N>, normal: [N; 3], relative: [N;
 /// The larger of two extents, for error bounds.
 #[inline(always)]
 pub(crate) fn extent<N: Number>(coordinates: [N; 3]) -> N {
-    coordinates[0].abs().max(coordinates[1].abs()).max(coordinates[2].abs())
+    coordinates[0]
+        .abs()
+        .max(coordinates[1].abs())
+        .max(coordinates[2].abs())
 }
 
 /// The vertices of all meshes.
@@ -265,7 +277,8 @@ impl Shapes<'_> {
     pub(crate) fn leaf_inside(&self, leaf: Leaf, outer: &UnitBox) -> bool {
         let first = leaf.first as usize;
         (first..first + leaf.count as usize).all(|index| {
-            self.bounds(leaf.kind, index).is_some_and(|bounds| outer.contains(&bounds))
+            self.bounds(leaf.kind, index)
+                .is_some_and(|bounds| outer.contains(&bounds))
         })
     }
 

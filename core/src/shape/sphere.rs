@@ -34,7 +34,10 @@ pub(crate) fn cross<N: Number>(
         return None;
     }
     let half = N::root(N::wide_scale(square, recip_norm2));
-    Some(Crossing { enter: (closest - half, 0), leave: (closest + half, 0) })
+    Some(Crossing {
+        enter: (closest - half, 0),
+        leave: (closest + half, 0),
+    })
 }
 
 /// The box of a sphere.

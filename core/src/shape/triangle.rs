@@ -23,7 +23,13 @@ pub(crate) fn cross<const MAJOR: usize, N: Number, V: Vertex>(
 ) -> Option<Crossing<N>> {
     let (x, y) = ((MAJOR + 1) % 3, (MAJOR + 2) % 3);
     let forward = ray.slope[MAJOR] > N::ZERO;
-    let shear = |axis: usize| if forward { ray.slope[axis] } else { -ray.slope[axis] };
+    let shear = |axis: usize| {
+        if forward {
+            ray.slope[axis]
+        } else {
+            -ray.slope[axis]
+        }
+    };
     let (shear_x, shear_y) = (shear(x), shear(y));
     let project = |vertex: &V| {
         let depth = vertex.length::<N>(MAJOR) - ray.origin[MAJOR];
@@ -47,7 +53,12 @@ pub(crate) fn cross<const MAJOR: usize, N: Number, V: Vertex>(
     }
     let corners = corners.map(Vertex::position);
     let relative = |axis: usize| N::from_lattice(corners[0][axis]) - ray.origin[axis];
-    cross_plane(ray, normal(corners), [relative(0), relative(1), relative(2)]).map(Crossing::flat)
+    cross_plane(
+        ray,
+        normal(corners),
+        [relative(0), relative(1), relative(2)],
+    )
+    .map(Crossing::flat)
 }
 
 /// The normal, of any length: exact but for one rounding a component.
@@ -59,7 +70,10 @@ fn normal<N: Number>([a, b, c]: [[i32; 3]; 3]) -> [N; 3] {
     };
     let (p, q) = (edge(a, b), edge(a, c));
     // Edges have 25 bits and a sign, so the products have 51.
-    let component = |i: usize, j: usize| p[i].wrapping_mul(q[j]).wrapping_sub(p[j].wrapping_mul(q[i]));
+    let component = |i: usize, j: usize| {
+        p[i].wrapping_mul(q[j])
+            .wrapping_sub(p[j].wrapping_mul(q[i]))
+    };
     N::direction([component(1, 2), component(2, 0), component(0, 1)])
 }
 
@@ -68,7 +82,10 @@ fn normal<N: Number>([a, b, c]: [[i32; 3]; 3]) -> [N; 3] {
 pub(crate) fn bounds([a, b, c]: [[i32; 3]; 3]) -> UnitBox {
     let lowest = |k: usize| a[k].min(b[k]).min(c[k]);
     let highest = |k: usize| a[k].max(b[k]).max(c[k]);
-    UnitBox::around([lowest(0), lowest(1), lowest(2)], [highest(0), highest(1), highest(2)])
+    UnitBox::around(
+        [lowest(0), lowest(1), lowest(2)],
+        [highest(0), highest(1), highest(2)],
+    )
 }
 
 /// The front is where the corners run counter-clockwise.

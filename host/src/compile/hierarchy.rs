@@ -8,8 +8,8 @@
 //! would not do otherwise, a node is cut in two halves of equal count. So the depth never exceeds
 //! [`MAX_STACK_DEPTH`], and time is `O(n log n)` a level at the most.
 
-use gridel_core::accel::{Leaf, MAX_STACK_DEPTH};
 use gridel_core::Kind;
+use gridel_core::accel::{Leaf, MAX_STACK_DEPTH};
 use gridel_core::blob::record::UnitBox;
 
 /// A primitive as the builder sees it.
@@ -32,8 +32,15 @@ impl Primitive {
 /// A node: a leaf's range of the (reordered) primitives, or two children.
 #[derive(Debug)]
 pub enum Node {
-    Leaf { bounds: UnitBox, first: usize, count: usize },
-    Inner { bounds: UnitBox, children: Box<[Node; 2]> },
+    Leaf {
+        bounds: UnitBox,
+        first: usize,
+        count: usize,
+    },
+    Inner {
+        bounds: UnitBox,
+        children: Box<[Node; 2]>,
+    },
 }
 
 impl Node {
@@ -79,14 +86,22 @@ pub fn sah_cost(root: &Node) -> f64 {
 fn build_node(primitives: &mut [Primitive], first: usize, levels: usize) -> Node {
     let bounds = union(primitives);
     let count = primitives.len();
-    let leaf = Node::Leaf { bounds, first, count };
+    let leaf = Node::Leaf {
+        bounds,
+        first,
+        count,
+    };
     if count == 1 {
         return leaf;
     }
     let one_kind = primitives.iter().all(|p| p.kind == primitives[0].kind);
     // Halving needs as many levels as the count has bits; kinds may have to be told apart below.
     let halvings = usize::BITS as usize - count.leading_zeros() as usize + Kind::ALL.len();
-    let split = if levels <= halvings { None } else { best_split(primitives, &bounds) };
+    let split = if levels <= halvings {
+        None
+    } else {
+        best_split(primitives, &bounds)
+    };
     let leaf_cost = count as f64;
     let worth_it = split.as_ref().is_some_and(|split| split.cost < leaf_cost);
     if one_kind && count <= LEAF_SIZE && !worth_it {
@@ -113,7 +128,10 @@ fn build_node(primitives: &mut [Primitive], first: usize, levels: usize) -> Node
     } else {
         (build_left(left), build_right(right))
     };
-    Node::Inner { bounds, children: Box::new([children.0, children.1]) }
+    Node::Inner {
+        bounds,
+        children: Box::new([children.0, children.1]),
+    }
 }
 
 /// A split: the primitives whose key is below a limit go left.
@@ -177,7 +195,11 @@ fn sweep(primitives: &[Primitive], axis: usize, scale: f64) -> Option<Split> {
         (area(&bounds) * place as f64 + right_costs[place], place)
     });
     let (cost, place) = costs.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(Split { cost: STEP_COST + cost * scale, axis, rule: Rule::First(place) })
+    Some(Split {
+        cost: STEP_COST + cost * scale,
+        axis,
+        rule: Rule::First(place),
+    })
 }
 
 /// Tries the limits of equal bins.
@@ -205,7 +227,8 @@ fn bin(primitives: &[Primitive], axis: usize, low: i32, high: i32, scale: f64) -
         if left_count == 0 || left_count == primitives.len() {
             continue;
         }
-        let cost = left.map_or(0.0, |bounds| area(&bounds)) * left_count as f64 + right_costs[place];
+        let cost =
+            left.map_or(0.0, |bounds| area(&bounds)) * left_count as f64 + right_costs[place];
         if best.is_none_or(|(least, _)| cost < least) {
             best = Some((cost, place));
         }
@@ -213,7 +236,11 @@ fn bin(primitives: &[Primitive], axis: usize, low: i32, high: i32, scale: f64) -
     let (cost, place) = best?;
     // The least centroid of the bin: ceil(place * width / BINS) from the low end.
     let limit = low + ((place as i64 * width + BINS as i64 - 1) / BINS as i64) as i32;
-    Some(Split { cost: STEP_COST + cost * scale, axis, rule: Rule::Below(limit) })
+    Some(Split {
+        cost: STEP_COST + cost * scale,
+        axis,
+        rule: Rule::Below(limit),
+    })
 }
 
 /// Cuts in two halves of equal count along the longest side.
@@ -242,7 +269,9 @@ fn same_box(primitives: &[Primitive]) -> bool {
 }
 
 fn union(primitives: &[Primitive]) -> UnitBox {
-    primitives.iter().fold(primitives[0].bounds, |bounds, p| bounds.union(&p.bounds))
+    primitives
+        .iter()
+        .fold(primitives[0].bounds, |bounds, p| bounds.union(&p.bounds))
 }
 
 fn grow(bounds: Option<UnitBox>, other: &UnitBox) -> UnitBox {

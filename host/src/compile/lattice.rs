@@ -27,7 +27,11 @@ impl Lattice {
         }
         // Two steps to spare, for the rounding of the origin and of the coordinates.
         let units = f64::from(i16::MAX) - 2.0 * exp2(16 - i32::from(bits)).max(1.0);
-        let mut exponent = if half > 0.0 { log2_below(half / units) } else { 0 };
+        let mut exponent = if half > 0.0 {
+            log2_below(half / units)
+        } else {
+            0
+        };
         while half > units * exp2(exponent) {
             exponent += 1;
         }
@@ -35,12 +39,19 @@ impl Lattice {
         if !(-900..=900).contains(&exponent) {
             return Err(CompileError::Extent { size: 2.0 * half });
         }
-        let mut lattice = Self { bits, unit_exponent: exponent as i16, origin: DVec3::ZERO };
+        let mut lattice = Self {
+            bits,
+            unit_exponent: exponent as i16,
+            origin: DVec3::ZERO,
+        };
         let step = lattice.step();
         let middle = (lowest + highest) * 0.5;
         let steps = (middle / step).round();
         if steps.abs().max_element() > exp2(52) {
-            return Err(CompileError::TooFar { middle, size: 2.0 * half });
+            return Err(CompileError::TooFar {
+                middle,
+                size: 2.0 * half,
+            });
         }
         lattice.origin = steps * step;
         Ok(lattice)

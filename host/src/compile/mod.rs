@@ -29,7 +29,11 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { structures: vec![Structure::Flagged], lattice_bits: 24, max_bytes: None }
+        Self {
+            structures: vec![Structure::Flagged],
+            lattice_bits: 24,
+            max_bytes: None,
+        }
     }
 }
 
@@ -65,7 +69,9 @@ pub enum CompileError {
     #[error("the scene's size is {size}, which no lattice can hold")]
     #[diagnostic(help("scale the scene to a size between 1e-250 and 1e250"))]
     Extent { size: f64 },
-    #[error("the scene lies at {middle} and is only {size} large, so its coordinates hold no detail")]
+    #[error(
+        "the scene lies at {middle} and is only {size} large, so its coordinates hold no detail"
+    )]
     #[diagnostic(help("move the scene nearer to the origin"))]
     TooFar { middle: DVec3, size: f64 },
     #[error("{bits} lattice bits are not possible")]
@@ -73,13 +79,27 @@ pub enum CompileError {
     LatticeBits { bits: u8 },
     #[error("the scene has {count} {what}, more than the {most} that a blob can hold")]
     #[diagnostic(help("split the scene into several blobs"))]
-    TooMany { what: &'static str, count: usize, most: usize },
-    #[error("the {what} lies {distance:.3e} scene units from a scene of {size:.3e}: too far to be told")]
+    TooMany {
+        what: &'static str,
+        count: usize,
+        most: usize,
+    },
+    #[error(
+        "the {what} lies {distance:.3e} scene units from a scene of {size:.3e}: too far to be told"
+    )]
     #[diagnostic(help("move it nearer; a directional light is as good as one this far away"))]
-    FarAway { what: String, distance: f64, size: f64 },
+    FarAway {
+        what: String,
+        distance: f64,
+        size: f64,
+    },
     #[error("the blob would have {bytes} bytes, {over} more than --max-bytes allows")]
     #[diagnostic(help("{advice}"))]
-    TooLarge { bytes: u64, over: u64, advice: String },
+    TooLarge {
+        bytes: u64,
+        over: u64,
+        advice: String,
+    },
 }
 
 /// Compiles a scene.
@@ -91,14 +111,19 @@ pub enum CompileError {
 /// the options allow.
 pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileError> {
     if !LATTICE_BITS.contains(&options.lattice_bits) {
-        return Err(CompileError::LatticeBits { bits: options.lattice_bits });
+        return Err(CompileError::LatticeBits {
+            bits: options.lattice_bits,
+        });
     }
     let (lowest, highest) = primitives::extent(scene);
     let lattice = Lattice::around(lowest, highest, options.lattice_bits)?;
     let snapped = Primitives::snap(scene, &lattice)?;
     let mut order: Vec<Primitive> = snapped.boxes();
     let root = hierarchy::build(&mut order);
-    let flat = root.as_ref().map(|root| pairs::flatten(root, &order)).unwrap_or_default();
+    let flat = root
+        .as_ref()
+        .map(|root| pairs::flatten(root, &order))
+        .unwrap_or_default();
     let sah_cost = root.as_ref().map_or(0.0, hierarchy::sah_cost);
     let bounds = root.map(|root| *root.bounds());
     let surroundings = surroundings::Surroundings::of(scene, &lattice, (lowest, highest))?;
@@ -114,7 +139,11 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
     let bytes = blob.bytes().len();
     if let Some(most) = options.max_bytes.filter(|&most| bytes as u64 > most) {
         let advice = advice(options, &snapped, &flat);
-        return Err(CompileError::TooLarge { bytes: bytes as u64, over: bytes as u64 - most, advice });
+        return Err(CompileError::TooLarge {
+            bytes: bytes as u64,
+            over: bytes as u64 - most,
+            advice,
+        });
     }
     let report = Report {
         step: lattice.step(),
@@ -143,7 +172,9 @@ fn advice(options: &Options, snapped: &Primitives, flat: &pairs::Flat) -> String
     }
     if options.structures.contains(&Structure::Flagged) {
         let saved = size_of_val(&flat.flagged[..]);
-        steps.push(format!("`--accel list` instead of a hierarchy saves {saved} bytes and costs time"));
+        steps.push(format!(
+            "`--accel list` instead of a hierarchy saves {saved} bytes and costs time"
+        ));
     }
     steps.push(String::from("a scene with fewer primitives"));
     steps.join("; ")

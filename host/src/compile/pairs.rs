@@ -25,7 +25,10 @@ pub fn flatten(root: &Node, primitives: &[Primitive]) -> Flat {
     let mut level = vec![root];
     let mut pairs_before = 0;
     while !level.is_empty() {
-        let pairs_here = level.iter().filter(|node| matches!(node, Node::Inner { .. })).count();
+        let pairs_here = level
+            .iter()
+            .filter(|node| matches!(node, Node::Inner { .. }))
+            .count();
         let mut next_pair = pairs_before + pairs_here;
         let mut next_level = Vec::new();
         for node in &level {
@@ -33,7 +36,10 @@ pub fn flatten(root: &Node, primitives: &[Primitive]) -> Flat {
                 Node::Leaf { first, count, .. } => flat.leaf(&primitives[*first..first + count]),
                 Node::Inner { bounds, children } => {
                     flat.pair(bounds, children, next_pair as u32);
-                    next_pair += children.iter().filter(|c| matches!(c, Node::Inner { .. })).count();
+                    next_pair += children
+                        .iter()
+                        .filter(|c| matches!(c, Node::Inner { .. }))
+                        .count();
                     next_level.extend(children.iter());
                 }
             }
@@ -49,7 +55,11 @@ impl Flat {
     fn leaf(&mut self, primitives: &[Primitive]) {
         let kind = primitives[0].kind;
         let slots = &mut self.slots[kind as usize];
-        let leaf = Leaf { kind, first: slots.len() as u32, count: primitives.len() as u32 };
+        let leaf = Leaf {
+            kind,
+            first: slots.len() as u32,
+            count: primitives.len() as u32,
+        };
         slots.extend(primitives.iter().map(|p| p.index));
         self.leaves.push(leaf.to_word());
         self.longest_leaf = self.longest_leaf.max(primitives.len());
@@ -60,7 +70,10 @@ impl Flat {
         let [left, right] = children;
         let link = Link::new(first_pair, is_leaf(left), is_leaf(right));
         let boxes = [left.bounds(), right.bounds()];
-        self.pairs.push(Pair { planes: boxes.map(|b| b.0.map(plane_word)), link: link.0 });
+        self.pairs.push(Pair {
+            planes: boxes.map(|b| b.0.map(plane_word)),
+            link: link.0,
+        });
 
         // On each side of the parent, the plane of the child that does not touch it.
         let mut owners = 0;
@@ -77,6 +90,9 @@ impl Flat {
             }
             planes[axis] = plane_word(inner);
         }
-        self.flagged.push(FlaggedPair { planes, link: link.with_owners(owners).0 });
+        self.flagged.push(FlaggedPair {
+            planes,
+            link: link.with_owners(owners).0,
+        });
     }
 }

@@ -56,11 +56,20 @@ pub fn extent(scene: &Scene) -> (DVec3, DVec3) {
             Shape::Sphere { center, radius } => add(*center - *radius, *center + *radius),
             Shape::Mesh { vertices, .. } => vertices.iter().for_each(|&vertex| add(vertex, vertex)),
             Shape::Box { min, max } => add(*min, *max),
-            Shape::Disc { center, normal, radius } => {
+            Shape::Disc {
+                center,
+                normal,
+                radius,
+            } => {
                 let reach = disc_reach(*normal) * *radius;
                 add(*center - reach, *center + reach);
             }
-            Shape::Cone { base, base_radius, apex, apex_radius } => {
+            Shape::Cone {
+                base,
+                base_radius,
+                apex,
+                apex_radius,
+            } => {
                 let reach = disc_reach(*apex - *base);
                 for (center, radius) in [(base, base_radius), (apex, apex_radius)] {
                     add(*center - reach * *radius, *center + reach * *radius);
@@ -68,13 +77,19 @@ pub fn extent(scene: &Scene) -> (DVec3, DVec3) {
             }
         }
     }
-    if lowest.x > highest.x { (DVec3::ZERO, DVec3::ZERO) } else { (lowest, highest) }
+    if lowest.x > highest.x {
+        (DVec3::ZERO, DVec3::ZERO)
+    } else {
+        (lowest, highest)
+    }
 }
 
 /// How far a unit disc with a normal reaches along each axis.
 fn disc_reach(normal: DVec3) -> DVec3 {
     let normal = (normal / normal.abs().max_element()).normalize();
-    (DVec3::ONE - normal * normal).max(DVec3::ZERO).map(f64::sqrt)
+    (DVec3::ONE - normal * normal)
+        .max(DVec3::ZERO)
+        .map(f64::sqrt)
 }
 
 impl Primitives {
@@ -92,7 +107,13 @@ impl Primitives {
     /// The box of every primitive, for the builder.
     pub fn boxes(&self) -> Vec<Primitive> {
         let of = |kind: Kind, count: usize, bounds: &dyn Fn(usize) -> UnitBox| -> Vec<Primitive> {
-            (0..count).map(|i| Primitive { bounds: bounds(i), kind, index: i as u32 }).collect()
+            (0..count)
+                .map(|i| Primitive {
+                    bounds: bounds(i),
+                    kind,
+                    index: i as u32,
+                })
+                .collect()
         };
         let triangle = |i: usize| {
             let corners = self.triangles[i].map(|v| IVec3::from(self.vertices[v as usize]));
@@ -122,7 +143,10 @@ impl Primitives {
         vertex_numbers: &mut HashMap<[i32; 3], u32>,
     ) -> Result<(), CompileError> {
         match &object.shape {
-            Shape::Mesh { vertices, triangles } => {
+            Shape::Mesh {
+                vertices,
+                triangles,
+            } => {
                 let snapped: Vec<_> = vertices.iter().map(|&v| self.point(v, lattice)).collect();
                 for (number, triangle) in triangles.iter().enumerate() {
                     let corners = triangle.map(|vertex| snapped[vertex as usize]);
@@ -155,22 +179,39 @@ impl Primitives {
                 self.boxes.push(Cuboid { lowest, highest });
                 self.keep(Kind::Box);
             }
-            Shape::Disc { center, normal, radius } => {
+            Shape::Disc {
+                center,
+                normal,
+                radius,
+            } => {
                 let center = self.point(*center, lattice);
                 let radius = self.length(*radius, lattice);
                 // The direction to a part in 2^24.
                 let normal = *normal / normal.abs().max_element();
-                let normal = (normal * f64::from(1 << 24)).round().to_array().map(|x| x as i32);
+                let normal = (normal * f64::from(1 << 24))
+                    .round()
+                    .to_array()
+                    .map(|x| x as i32);
                 if radius == 0 {
                     self.collapse(object, None);
                 } else {
                     let reach = disc_reach(DVec3::from_array(normal.map(f64::from)));
                     let bounds = around(&[(center, reach * f64::from(radius))]);
-                    self.discs.push(Disc { center, normal, radius, bounds });
+                    self.discs.push(Disc {
+                        center,
+                        normal,
+                        radius,
+                        bounds,
+                    });
                     self.keep(Kind::Disc);
                 }
             }
-            Shape::Cone { base, base_radius, apex, apex_radius } => {
+            Shape::Cone {
+                base,
+                base_radius,
+                apex,
+                apex_radius,
+            } => {
                 let (base, apex) = (self.point(*base, lattice), self.point(*apex, lattice));
                 let base_radius = self.length(*base_radius, lattice);
                 let apex_radius = self.length(*apex_radius, lattice);
@@ -184,14 +225,24 @@ impl Primitives {
                         (base, reach * f64::from(base_radius)),
                         (apex, reach * f64::from(apex_radius)),
                     ]);
-                    self.cones.push(Cone { base, apex, base_radius, apex_radius, bounds });
+                    self.cones.push(Cone {
+                        base,
+                        apex,
+                        base_radius,
+                        apex_radius,
+                        bounds,
+                    });
                     self.keep(Kind::Cone);
                 }
             }
         }
         if self.total as usize > MOST {
             let count = self.total as usize;
-            return Err(CompileError::TooMany { what: "primitives", count, most: MOST });
+            return Err(CompileError::TooMany {
+                what: "primitives",
+                count,
+                most: MOST,
+            });
         }
         Ok(())
     }
@@ -208,7 +259,8 @@ impl Primitives {
         let part = triangle.map_or(String::new(), |number| format!(", triangle {number}"));
         match self.collapsed.len() {
             known if known < NAMED => {
-                self.collapsed.push(format!("{} ({}{part})", object.name, object.place));
+                self.collapsed
+                    .push(format!("{} ({}{part})", object.name, object.place));
             }
             NAMED => self.collapsed.push(String::from("and 1 more")),
             _ => {
@@ -257,10 +309,16 @@ fn around(points: &[([i32; 3], DVec3)]) -> UnitBox {
     let ends = points.iter().map(|&(center, reach)| {
         let center = DVec3::from_array(center.map(f64::from));
         let slack = reach * 1e-9;
-        ((center - reach - slack).floor(), (center + reach + slack).ceil())
+        (
+            (center - reach - slack).floor(),
+            (center + reach + slack).ceil(),
+        )
     });
     let (lowest, highest) = ends
         .reduce(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)))
         .unwrap_or_default();
-    UnitBox::around(lowest.to_array().map(|x| x as i32), highest.to_array().map(|x| x as i32))
+    UnitBox::around(
+        lowest.to_array().map(|x| x as i32),
+        highest.to_array().map(|x| x as i32),
+    )
 }

@@ -36,11 +36,16 @@ impl Surroundings {
         });
         let mut lights = scene.lights.clone();
         if lights.is_empty() && scene.ambient == [0.0; 3] {
-            supplied.push(String::from("a directional light from above the camera's left shoulder"));
+            supplied.push(String::from(
+                "a directional light from above the camera's left shoulder",
+            ));
             let view = (camera.target - camera.eye).normalize();
             let right = view.cross(camera.up).normalize();
             let direction = view + 0.5 * right - 0.7 * camera.up.normalize();
-            lights.push(Light::Directional { direction, color: [1.0; 3] });
+            lights.push(Light::Directional {
+                direction,
+                color: [1.0; 3],
+            });
         }
         let size = (highest - lowest).max_element();
         let far = |what: String, point: DVec3| -> Result<[i64; 3], CompileError> {
@@ -48,7 +53,11 @@ impl Surroundings {
             // Comparisons that NaN fails.
             if !(q13.abs().max_element() <= f64::powi(2.0, 50)) {
                 let distance = (point - lattice.origin).length();
-                return Err(CompileError::FarAway { what, distance, size });
+                return Err(CompileError::FarAway {
+                    what,
+                    distance,
+                    size,
+                });
             }
             Ok(q13.round().to_array().map(|x| x as i64))
         };
@@ -70,13 +79,20 @@ impl Surroundings {
         if scene.render.shadows && !lights.is_empty() && !scene.objects.is_empty() {
             called_for.push((Effects::SHADOW, format!("{} lights", lights.len())));
         }
-        let effects = called_for.iter().fold(Effects::NONE, |all, (effects, _)| all.with(*effects));
+        let effects = called_for
+            .iter()
+            .fold(Effects::NONE, |all, (effects, _)| all.with(*effects));
         let called_for = Effects::NAMED
             .iter()
             .filter(|(effect, _)| effects.contains(*effect))
             .map(|(effect, name)| {
-                let callers = called_for.iter().filter(|(effects, _)| effects.contains(*effect));
-                (String::from(*name), callers.map(|(_, caller)| caller.clone()).collect())
+                let callers = called_for
+                    .iter()
+                    .filter(|(effects, _)| effects.contains(*effect));
+                (
+                    String::from(*name),
+                    callers.map(|(_, caller)| caller.clone()).collect(),
+                )
             })
             .collect();
 
@@ -86,7 +102,15 @@ impl Surroundings {
             .map(|(number, light)| light_record(light, number, &far))
             .collect::<Result<_, _>>()?;
         let view = view_record(scene, &camera, far(String::from("camera"), camera.eye)?);
-        Ok(Self { view, lights, materials, object_material, effects, called_for, supplied })
+        Ok(Self {
+            view,
+            lights,
+            materials,
+            object_material,
+            effects,
+            called_for,
+            supplied,
+        })
     }
 }
 
@@ -97,7 +121,12 @@ fn framing(lowest: DVec3, highest: DVec3) -> Camera {
     let fov_degrees: f64 = 40.0;
     let distance = radius / (fov_degrees.to_radians() * 0.5).sin();
     let eye = target + DVec3::new(0.45, 0.35, 1.0).normalize() * distance;
-    Camera { eye, target, up: DVec3::Y, fov_degrees }
+    Camera {
+        eye,
+        target,
+        up: DVec3::Y,
+        fov_degrees,
+    }
 }
 
 /// Vectors of the picture's frame, scaled so that their largest component has 28 bits.
@@ -106,7 +135,10 @@ fn view_record(scene: &Scene, camera: &Camera, eye: [i64; 3]) -> record::View {
     let right = forward.cross(camera.up).normalize();
     let half = (camera.fov_degrees.to_radians() * 0.5).tan();
     let frame = [forward, right * half, right.cross(forward) * half];
-    let largest = frame.iter().map(|v| v.abs().max_element()).fold(0.0, f64::max);
+    let largest = frame
+        .iter()
+        .map(|v| v.abs().max_element())
+        .fold(0.0, f64::max);
     let scale = f64::from(1 << 28) / largest;
     let [forward, right, up] = frame.map(|v| (v * scale).round().to_array().map(|x| x as i32));
     let render = &scene.render;
@@ -139,8 +171,15 @@ fn light_record(
         },
         Light::Directional { direction, color } => {
             let towards = -(direction / direction.abs().max_element()).normalize();
-            let vector = (towards * f64::from(1 << 30)).round().to_array().map(|x| x as i64);
-            record::Light { vector, color: radiance(color), directional: 1 }
+            let vector = (towards * f64::from(1 << 30))
+                .round()
+                .to_array()
+                .map(|x| x as i64);
+            record::Light {
+                vector,
+                color: radiance(color),
+                directional: 1,
+            }
         }
     })
 }
@@ -148,12 +187,20 @@ fn light_record(
 fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
     let (even, odd, checker_size, checker_origin) = match material.diffuse {
         Diffuse::Plain(color) => (color, color, 0, [0; 3]),
-        Diffuse::Checker { even, odd, size, origin } => {
+        Diffuse::Checker {
+            even,
+            odd,
+            size,
+            origin,
+        } => {
             let unit = lattice.unit();
             // At least one sub-step, at most what a length can hold.
             let size = (size / unit).clamp(1.0 / 8192.0, 131_071.0);
             // The pattern repeats after two cells.
-            let origin = lattice.to_units(origin).to_array().map(|x| x.rem_euclid(2.0 * size));
+            let origin = lattice
+                .to_units(origin)
+                .to_array()
+                .map(|x| x.rem_euclid(2.0 * size));
             let q13 = |units: f64| (units * 8192.0).round() as i32;
             (even, odd, q13(size), origin.map(|x| q13(x).min(1 << 30)))
         }
@@ -170,7 +217,11 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
         inverse_ior: ratio([1.0 / material.ior.clamp(1.0, 4.0); 3])[0],
         // The cast saturates: one unit of such glass lets nothing through anyway.
         absorption: material.absorption.map(|coefficient| {
-            if glass { (coefficient * lattice.unit() * f64::powi(2.0, 32)).round() as u32 } else { 0 }
+            if glass {
+                (coefficient * lattice.unit() * f64::powi(2.0, 32)).round() as u32
+            } else {
+                0
+            }
         }),
         shininess: material.shininess.clamp(1, 1024),
         spare: 0,

@@ -34,30 +34,50 @@ struct Section {
 }
 
 fn section<T: bytemuck::NoUninit>(kind: SectionKind, records: &[T]) -> Section {
-    Section { kind, stride: size_of::<T>(), bytes: bytemuck::cast_slice(records).to_vec() }
+    Section {
+        kind,
+        stride: size_of::<T>(),
+        bytes: bytemuck::cast_slice(records).to_vec(),
+    }
 }
 
 /// A section of integers, in as few bytes each as the largest needs, but at least `narrowest`.
 fn indices(kind: SectionKind, values: &[u32], narrowest: usize) -> Section {
     let largest = values.iter().copied().max().unwrap_or(0);
     if narrowest == 1 && largest <= u8::MAX.into() {
-        section(kind, &values.iter().map(|&value| value as u8).collect::<Vec<_>>())
+        section(
+            kind,
+            &values.iter().map(|&value| value as u8).collect::<Vec<_>>(),
+        )
     } else if largest <= u16::MAX.into() {
-        section(kind, &values.iter().map(|&value| value as u16).collect::<Vec<_>>())
+        section(
+            kind,
+            &values.iter().map(|&value| value as u16).collect::<Vec<_>>(),
+        )
     } else {
         section(kind, values)
     }
 }
 
 fn counts_up(values: &[u32]) -> bool {
-    values.iter().enumerate().all(|(index, &value)| index as u32 == value)
+    values
+        .iter()
+        .enumerate()
+        .all(|(index, &value)| index as u32 == value)
 }
 
 /// Writes a blob.
 pub fn write(parts: &Parts<'_>) -> Result<Blob, CompileError> {
     let has = |structure| parts.structures.contains(&structure);
     let hierarchy = has(Structure::Bvh) || has(Structure::Flagged);
-    let Parts { scene, lattice, primitives, flat, surroundings, .. } = *parts;
+    let Parts {
+        scene,
+        lattice,
+        primitives,
+        flat,
+        surroundings,
+        ..
+    } = *parts;
     let objects = scene.objects.len() as u32;
     let total = primitives.total;
 
@@ -65,16 +85,26 @@ pub fn write(parts: &Parts<'_>) -> Result<Blob, CompileError> {
     sections.push(section(SectionKind::Lights, &surroundings.lights));
     sections.push(section(SectionKind::Materials, &surroundings.materials));
     if objects != total && objects > 1 {
-        sections.push(indices(SectionKind::ObjectFirst, &primitives.object_first, 2));
+        sections.push(indices(
+            SectionKind::ObjectFirst,
+            &primitives.object_first,
+            2,
+        ));
     }
     if surroundings.materials.len() > 1 {
-        sections.push(indices(SectionKind::ObjectMaterial, &surroundings.object_material, 1));
+        sections.push(indices(
+            SectionKind::ObjectMaterial,
+            &surroundings.object_material,
+            1,
+        ));
     }
     let order: Vec<u32> = Kind::ALL
         .iter()
         .flat_map(|&kind| {
             let numbers = &primitives.numbers[kind as usize];
-            flat.slots[kind as usize].iter().map(|&index| numbers[index as usize])
+            flat.slots[kind as usize]
+                .iter()
+                .map(|&index| numbers[index as usize])
         })
         .collect();
     if !counts_up(&order) || order.len() as u32 != total {
@@ -108,7 +138,11 @@ pub fn write(parts: &Parts<'_>) -> Result<Blob, CompileError> {
         structures,
         effects: surroundings.effects.0,
         stack_depth,
-        longest_leaf: if hierarchy { flat.longest_leaf as u16 } else { 0 },
+        longest_leaf: if hierarchy {
+            flat.longest_leaf as u16
+        } else {
+            0
+        },
         primitives: total,
         objects,
         lattice_bits: lattice.bits,
@@ -156,11 +190,20 @@ fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Sect
         let vertices: Vec<_> = vertices.iter().map(|v| Vertex16(v.map(unit))).collect();
         let spheres: Vec<_> = spheres
             .iter()
-            .map(|s| Sphere16 { center: Vertex16(s.center.map(unit)), radius: (s.radius >> 8) as u16 })
+            .map(|s| Sphere16 {
+                center: Vertex16(s.center.map(unit)),
+                radius: (s.radius >> 8) as u16,
+            })
             .collect();
-        (section(SectionKind::Vertices, &vertices), section(SectionKind::Spheres, &spheres))
+        (
+            section(SectionKind::Vertices, &vertices),
+            section(SectionKind::Spheres, &spheres),
+        )
     } else {
-        let vertices: Vec<_> = vertices.iter().map(|v| Vertex24(v.map(three_bytes))).collect();
+        let vertices: Vec<_> = vertices
+            .iter()
+            .map(|v| Vertex24(v.map(three_bytes)))
+            .collect();
         let spheres: Vec<_> = spheres
             .iter()
             .map(|s| Sphere24 {
@@ -168,10 +211,16 @@ fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Sect
                 radius: three_bytes(s.radius),
             })
             .collect();
-        (section(SectionKind::Vertices, &vertices), section(SectionKind::Spheres, &spheres))
+        (
+            section(SectionKind::Vertices, &vertices),
+            section(SectionKind::Spheres, &spheres),
+        )
     };
     let triangle_section = if vertices.len() <= usize::from(u16::MAX) + 1 {
-        let narrow: Vec<_> = triangles.iter().map(|t| t.map(|vertex| vertex as u16)).collect();
+        let narrow: Vec<_> = triangles
+            .iter()
+            .map(|t| t.map(|vertex| vertex as u16))
+            .collect();
         section(SectionKind::Triangles, &narrow)
     } else {
         section(SectionKind::Triangles, &triangles)
@@ -180,9 +229,18 @@ fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Sect
         vertex_section,
         triangle_section,
         sphere_section,
-        section(SectionKind::Boxes, &in_order(&primitives.boxes, slots(Kind::Box))),
-        section(SectionKind::Discs, &in_order(&primitives.discs, slots(Kind::Disc))),
-        section(SectionKind::Cones, &in_order(&primitives.cones, slots(Kind::Cone))),
+        section(
+            SectionKind::Boxes,
+            &in_order(&primitives.boxes, slots(Kind::Box)),
+        ),
+        section(
+            SectionKind::Discs,
+            &in_order(&primitives.discs, slots(Kind::Disc)),
+        ),
+        section(
+            SectionKind::Cones,
+            &in_order(&primitives.cones, slots(Kind::Cone)),
+        ),
     ]
 }
 
@@ -203,7 +261,11 @@ fn assemble(mut header: Header, sections: &[Section]) -> Result<Blob, CompileErr
     }
     let most = u32::MAX as usize;
     if offset > most {
-        return Err(CompileError::TooMany { what: "bytes", count: offset, most });
+        return Err(CompileError::TooMany {
+            what: "bytes",
+            count: offset,
+            most,
+        });
     }
     header.blob_bytes = offset as u32;
     let mut bytes = Vec::with_capacity(offset);

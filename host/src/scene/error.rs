@@ -27,7 +27,13 @@ struct Excerpt {
 
 impl SceneError {
     pub fn new(file: &Path, cause: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { file: file.to_owned(), line: None, cause: cause.into(), remedy: remedy.into(), excerpt: None }
+        Self {
+            file: file.to_owned(),
+            line: None,
+            cause: cause.into(),
+            remedy: remedy.into(),
+            excerpt: None,
+        }
     }
 
     /// Names the line, counted from 1.
@@ -66,11 +72,15 @@ impl Diagnostic for SceneError {
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.excerpt.as_ref().map(|excerpt| &excerpt.source as &dyn SourceCode)
+        self.excerpt
+            .as_ref()
+            .map(|excerpt| &excerpt.source as &dyn SourceCode)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let span = self.excerpt.as_deref()?.span;
-        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(None, span))))
+        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(
+            None, span,
+        ))))
     }
 }

@@ -87,7 +87,12 @@ pub enum Diffuse {
     Plain(Color),
     /// Cubes of edge `size` (scene units, above 0) in two alternating colours, aligned with the axes;
     /// a corner of the pattern lies at `origin`.
-    Checker { even: Color, odd: Color, size: f64, origin: DVec3 },
+    Checker {
+        even: Color,
+        odd: Color,
+        size: f64,
+        origin: DVec3,
+    },
 }
 
 /// One object: a shape and its material.
@@ -105,17 +110,35 @@ pub struct Object {
 /// A shape in world space. Solids are closed; a mesh is whatever its triangles are.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    Sphere { center: DVec3, radius: f64 },
+    Sphere {
+        center: DVec3,
+        radius: f64,
+    },
     /// An indexed mesh; every triangle is a primitive. Counter-clockwise is the front.
-    Mesh { vertices: Vec<DVec3>, triangles: Vec<[u32; 3]> },
+    Mesh {
+        vertices: Vec<DVec3>,
+        triangles: Vec<[u32; 3]>,
+    },
     /// An axis-aligned box (a box that was turned becomes a mesh).
-    Box { min: DVec3, max: DVec3 },
+    Box {
+        min: DVec3,
+        max: DVec3,
+    },
     /// A flat disc; `normal` has any length above 0.
-    Disc { center: DVec3, normal: DVec3, radius: f64 },
+    Disc {
+        center: DVec3,
+        normal: DVec3,
+        radius: f64,
+    },
     /// A solid between two flat caps: a cylinder where the radii are equal, a cone where one is
     /// 0, a frustum otherwise. NFF's open cones are closed by caps, because the solid is what
     /// refraction needs.
-    Cone { base: DVec3, base_radius: f64, apex: DVec3, apex_radius: f64 },
+    Cone {
+        base: DVec3,
+        base_radius: f64,
+        apex: DVec3,
+        apex_radius: f64,
+    },
 }
 
 /// Rendering defaults; the command line overrides them.
@@ -137,7 +160,14 @@ pub struct RenderSettings {
 
 impl Default for RenderSettings {
     fn default() -> Self {
-        Self { width: 320, height: 240, samples: 1, depth: 5, cutoff: 1.0 / 512.0, shadows: true }
+        Self {
+            width: 320,
+            height: 240,
+            samples: 1,
+            depth: 5,
+            cutoff: 1.0 / 512.0,
+            shadows: true,
+        }
     }
 }
 
@@ -190,7 +220,11 @@ pub enum MoleculeStyle {
 
 impl Default for MoleculeOptions {
     fn default() -> Self {
-        Self { style: MoleculeStyle::SpaceFilling, model: 1, altloc: None }
+        Self {
+            style: MoleculeStyle::SpaceFilling,
+            model: 1,
+            altloc: None,
+        }
     }
 }
 
@@ -207,7 +241,11 @@ pub struct Imported {
 /// # Errors
 /// If the file cannot be read, its extension is unknown, or its content is broken.
 pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneError> {
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+    let extension = path
+        .extension()
+        .and_then(|e| e.to_str())
+        .unwrap_or("")
+        .to_ascii_lowercase();
     match extension.as_str() {
         "toml" => toml::load(path, molecule),
         "obj" => obj::load(path),

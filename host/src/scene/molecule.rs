@@ -1,3 +1,5 @@
 //! stub
 use super::*;
-pub(super) fn load(path: &Path, _: &MoleculeOptions) -> Result<Imported, SceneError> { Err(SceneError::new(path, "x", "y")) }
+pub(super) fn load(path: &Path, _: &MoleculeOptions) -> Result<Imported, SceneError> {
+    Err(SceneError::new(path, "x", "y"))
+}
