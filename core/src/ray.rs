@@ -111,7 +111,7 @@ impl<N: Number> Ray<N> {
             tmax: if tmax < far { N::narrow(tmax) } else { N::FAR },
             cull: Cull::default(),
         };
-        let mut misses = tmax < zero || ahead(exit) < zero;
+        let mut misses = tmax < zero || ahead(exit) - moved < zero;
         // A ray rises by at most 2^16 units on its way through the box.
         let reach = N::from_unit(i16::MAX).widen();
         let reach = reach + reach + reach;
