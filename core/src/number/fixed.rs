@@ -257,10 +257,11 @@ impl Number for Fixed {
         if exponent >= 22 << RATIO_BITS {
             return Fixed(0);
         }
-        let binary = (((exponent >> 5) * LOG2_E) >> (RATIO_BITS - 5)) as i64;
+        let fraction = exponent & ((1 << RATIO_BITS) - 1);
+        let binary = (exponent >> RATIO_BITS) * LOG2_E + ((fraction * LOG2_E) >> RATIO_BITS);
         let (whole, part) = (
             (binary >> RATIO_BITS) as u32,
-            Fixed((binary & ((1 << 30) - 1)) as i32),
+            Fixed((binary & ((1 << RATIO_BITS) - 1)) as i32),
         );
         // 2^-x on [0, 1] by Horner's rule over the Taylor series of e^(-x ln 2) up to the tenth
         // power, whose remainder is below 2^-30.
@@ -477,3 +478,6 @@ impl Number for Fixed {
         )
     }
 }
+
+#[cfg(test)]
+mod tests;
