@@ -122,3 +122,6 @@ impl Cull {
         self.clip(&words, i32::MIN, i32::MAX)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -341,3 +341,6 @@ float_number!(
     product_difference_f64,
     |v: [i64; 3]| v.map(|component| component as f64)
 );
+
+#[cfg(test)]
+mod tests;
