@@ -14,8 +14,15 @@ pub struct SceneError {
     pub cause: String,
     /// What to do about it, in one sentence without a full stop.
     pub remedy: String,
-    /// The text of the file and the span (byte offset, length) to underline in it.
-    excerpt: Option<(NamedSource<String>, (usize, usize))>,
+    /// Boxed, so that results stay small where nothing is wrong.
+    excerpt: Option<Box<Excerpt>>,
+}
+
+/// The text of a file and the span (byte offset, length) to underline in it.
+#[derive(Debug)]
+struct Excerpt {
+    source: NamedSource<String>,
+    span: (usize, usize),
 }
 
 impl SceneError {
@@ -35,7 +42,8 @@ impl SceneError {
         let before = &text.as_bytes()[..offset];
         self.line = Some(1 + before.iter().filter(|&&byte| byte == b'\n').count());
         let source = NamedSource::new(self.file.display().to_string(), text.to_owned());
-        self.excerpt = Some((source, (offset, length.min(text.len() - offset))));
+        let span = (offset, length.min(text.len() - offset));
+        self.excerpt = Some(Box::new(Excerpt { source, span }));
         self
     }
 }
@@ -58,11 +66,11 @@ impl Diagnostic for SceneError {
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.excerpt.as_ref().map(|(source, _)| source as &dyn SourceCode)
+        self.excerpt.as_ref().map(|excerpt| &excerpt.source as &dyn SourceCode)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let (_, span) = self.excerpt.as_ref()?;
-        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(None, *span))))
+        let span = self.excerpt.as_deref()?.span;
+        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(None, span))))
     }
 }

@@ -133,11 +133,13 @@ pub struct RenderSettings {
     /// A secondary ray that can change no channel by more than this (1.0 being display white) is
     /// not traced.
     pub cutoff: f64,
+    /// Whether objects stand in each other's light.
+    pub shadows: bool,
 }
 
 impl Default for RenderSettings {
     fn default() -> Self {
-        Self { width: 320, height: 240, samples: 1, depth: 5, cutoff: 1.0 / 512.0 }
+        Self { width: 320, height: 240, samples: 1, depth: 5, cutoff: 1.0 / 512.0, shadows: true }
     }
 }
 

@@ -1,0 +1,35 @@
+//! The plain list: every primitive is tested. What all structures are measured against.
+
+use super::cull::Cull;
+use super::{Accel, Leaf, StackView, Structure};
+use crate::blob::Scene;
+use crate::count::Count;
+use crate::shape::Kind;
+
+/// Tests every primitive; needs no stack.
+#[derive(Clone, Copy, Debug)]
+pub enum List {}
+
+impl Accel for List {
+    const STRUCTURE: Structure = Structure::List;
+
+    fn walk<C: Count>(
+        scene: &Scene<'_>,
+        _: &Cull,
+        _: &mut StackView,
+        count: &mut C,
+        mut leaf: impl FnMut(Leaf, &mut C) -> i32,
+    ) {
+        for kind in Kind::ALL {
+            let mut first = 0;
+            let end = scene.shapes.count(kind) as u32;
+            while first < end {
+                let size = (end - first).min(Leaf::MAX_COUNT);
+                if leaf(Leaf { kind, first, count: size }, count) == i32::MIN {
+                    return;
+                }
+                first += size;
+            }
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! What the ordinary and the flagged hierarchy share: the walk, and the proof that it is sound.
+
+use super::cull::{Cull, Interval};
+use super::{Entry, Leaf, Link, MAX_STACK_DEPTH, Node, StackView};
+use crate::blob::record::UnitBox;
+use crate::blob::{BlobError, Scene, SectionKind};
+use crate::count::Count;
+use crate::shape::Shapes;
+use heapless::Vec;
+
+/// A record of two children.
+pub(crate) trait PairRecord: Copy {
+    /// The section that holds these records.
+    const SECTION: SectionKind;
+    /// Planes that [`narrow`](Self::narrow) tests.
+    const PLANES: u32;
+
+    /// What the children are.
+    fn link(&self) -> Link;
+
+    /// The children's boxes, given their parent's.
+    fn boxes(&self, parent: &UnitBox) -> [UnitBox; 2];
+
+    /// The children's intervals on a ray, given their parent's, up to `limit`.
+    fn narrow(&self, parent: Interval, cull: &Cull, limit: i32) -> [Interval; 2];
+}
+
+/// Visits the leaves of a hierarchy whose boxes the ray can meet, the nearer child first.
+#[inline(always)]
+pub(super) fn walk<P: PairRecord, C: Count>(
+    scene: &Scene<'_>,
+    pairs: &[P],
+    cull: &Cull,
+    stack: &mut StackView,
+    count: &mut C,
+    mut leaf: impl FnMut(Leaf, &mut C) -> i32,
+) {
+    let mut limit = cull.end;
+    let mut interval = cull.clip(&scene.bounds_words, cull.start, limit);
+    count.planes(6);
+    count.boxes(1);
+    let mut node = if pairs.is_empty() { Node::leaf(0) } else { Node::pair(0) };
+    if interval.near > interval.far {
+        return;
+    }
+    stack.clear();
+    loop {
+        if node.is_leaf() {
+            let Some(range) = scene.leaf(node.number()) else { return };
+            limit = leaf(range, count);
+        } else {
+            let Some(pair) = pairs.get(node.number() as usize) else { return };
+            let [left, right] = pair.narrow(interval, cull, limit);
+            count.planes(P::PLANES);
+            count.boxes(2);
+            let [left_node, right_node] = pair.link().children(node.number());
+            let meets_left = left.near <= left.far;
+            let meets_right = right.near <= right.far;
+            if meets_left && meets_right {
+                let (near, far, far_node);
+                if right.near < left.near {
+                    (near, node, far, far_node) = (right, right_node, left, left_node);
+                } else {
+                    (near, node, far, far_node) = (left, left_node, right, right_node);
+                }
+                interval = near;
+                let entry = Entry { node: far_node.0, near: far.near, far: far.far };
+                if stack.push(entry).is_err() {
+                    return;
+                }
+                continue;
+            } else if meets_left {
+                (interval, node) = (left, left_node);
+                continue;
+            } else if meets_right {
+                (interval, node) = (right, right_node);
+                continue;
+            }
+        }
+        loop {
+            let Some(entry) = stack.pop() else { return };
+            if entry.near <= limit {
+                node = Node(entry.node);
+                interval = Interval {
+                    near: entry.near,
+                    far: if entry.far < limit { entry.far } else { limit },
+                };
+                break;
+            }
+        }
+    }
+}
+
+/// Proves a hierarchy: pairs in breadth-first order (so that children come after their parents and
+/// every node is reached once), boxes inside their parents', primitives inside their leaves, and
+/// every leaf used. Returns the stack that a walk needs.
+///
+/// Linear in pairs and primitives; uses [`MAX_STACK_DEPTH`] times 16 bytes of stack.
+pub(crate) fn check_pairs<P: PairRecord>(
+    pairs: &[P],
+    leaves: &[u32],
+    shapes: &Shapes<'_>,
+    bounds: &UnitBox,
+) -> Result<usize, BlobError> {
+    let section = P::SECTION;
+    let expected = leaves.len().saturating_sub(1);
+    if pairs.len() != expected {
+        return Err(BlobError::Count { section, found: pairs.len(), expected });
+    }
+    let depth = check_order(pairs)?;
+    if leaves.is_empty() {
+        return Ok(depth);
+    }
+
+    let mut waiting: Vec<(Node, UnitBox), MAX_STACK_DEPTH> = Vec::new();
+    let mut current = (if pairs.is_empty() { Node::leaf(0) } else { Node::pair(0) }, *bounds);
+    loop {
+        let (node, parent) = current;
+        let number = node.number() as usize;
+        if node.is_leaf() {
+            let leaf = leaves.get(number).and_then(|&word| Leaf::from_word(word));
+            let inside = leaf.is_some_and(|leaf| shapes.leaf_inside(leaf, &parent));
+            if !inside {
+                return Err(BlobError::Record {
+                    section: SectionKind::Leaves,
+                    index: number,
+                    what: "leaf, or a primitive of it, lies outside its box: excess",
+                    found: 1,
+                    expected: 0,
+                });
+            }
+        } else if let Some(pair) = pairs.get(number) {
+            let [left, right] = pair.boxes(&parent);
+            for (child, bounds) in [left, right].iter().enumerate() {
+                if !parent.contains(bounds) {
+                    return Err(BlobError::Record {
+                        section,
+                        index: number,
+                        what: "box lies outside its parent's: the number of the child",
+                        found: child as i64,
+                        expected: -1,
+                    });
+                }
+            }
+            let [left_node, right_node] = pair.link().children(node.number());
+            // The depth was proved to fit.
+            let _ = waiting.push((right_node, right));
+            current = (left_node, left);
+            continue;
+        }
+        match waiting.pop() {
+            Some(next) => current = next,
+            None => return Ok(depth),
+        }
+    }
+}
+
+/// Proves breadth-first order and returns the number of levels of pairs.
+fn check_order<P: PairRecord>(pairs: &[P]) -> Result<usize, BlobError> {
+    let section = P::SECTION;
+    let (mut levels, mut level_end, mut next) = (0, 0, 1);
+    for (index, pair) in pairs.iter().enumerate() {
+        if index == level_end {
+            levels += 1;
+            level_end = next;
+        }
+        let link = pair.link();
+        if link.first_pair() as usize != next {
+            return Err(BlobError::Record {
+                section,
+                index,
+                what: "first child, which must follow breadth first,",
+                found: link.first_pair().into(),
+                expected: next as i64,
+            });
+        }
+        next += usize::from(!link.left_is_leaf()) + usize::from(!link.right_is_leaf());
+        // A pair that nothing leads to, or a child beyond the last pair.
+        if next <= index + 1 && index + 1 < pairs.len() || next > pairs.len() {
+            return Err(BlobError::Record {
+                section,
+                index,
+                what: "number of pairs that are reached up to here",
+                found: next as i64,
+                expected: pairs.len() as i64,
+            });
+        }
+    }
+    if levels > MAX_STACK_DEPTH {
+        return Err(BlobError::Header {
+            field: "stack depth",
+            found: levels as u64,
+            expected: MAX_STACK_DEPTH as u64,
+        });
+    }
+    Ok(levels)
+}

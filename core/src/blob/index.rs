@@ -1,0 +1,56 @@
+//! Arrays of integers that are as narrow as their values allow.
+
+use super::error::BlobError;
+use super::section::{SectionKind, Sections};
+
+/// A read-only array of integers in one, two or four bytes each, or none at all.
+#[derive(Clone, Copy, Debug)]
+pub enum Indices<'a> {
+    /// No array: the caller's rule says what an index means.
+    Absent,
+    /// One byte each.
+    U8(&'a [u8]),
+    /// Two bytes each.
+    U16(&'a [u16]),
+    /// Four bytes each.
+    U32(&'a [u32]),
+}
+
+impl<'a> Indices<'a> {
+    pub(super) fn read(sections: &Sections<'a>, kind: SectionKind) -> Result<Self, BlobError> {
+        let section = sections.get(kind);
+        Ok(match (section.bytes.is_empty(), section.stride) {
+            (true, _) => Indices::Absent,
+            (_, 1) => Indices::U8(section.bytes),
+            (_, 2) => Indices::U16(sections.records(kind)?),
+            (_, 4) => Indices::U32(sections.records(kind)?),
+            (_, found) => return Err(BlobError::Stride { section: kind, found, expected: 4 }),
+        })
+    }
+
+    /// Number of integers; 0 for an absent array.
+    pub fn len(&self) -> usize {
+        match self {
+            Indices::Absent => 0,
+            Indices::U8(array) => array.len(),
+            Indices::U16(array) => array.len(),
+            Indices::U32(array) => array.len(),
+        }
+    }
+
+    /// Whether there is no array.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The integer at `index`; `None` beyond the end and for an absent array.
+    #[inline]
+    pub fn get(&self, index: usize) -> Option<u32> {
+        match self {
+            Indices::Absent => None,
+            Indices::U8(array) => array.get(index).map(|&value| value.into()),
+            Indices::U16(array) => array.get(index).map(|&value| value.into()),
+            Indices::U32(array) => array.get(index).copied(),
+        }
+    }
+}

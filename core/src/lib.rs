@@ -1,0 +1,44 @@
+//! Ray traces straight out of a scene blob: `no_std`, no allocation, no panic, no recursion, no
+//! `unsafe`, and the same bits on every machine.
+//!
+//! A host compiles a scene file into one binary blob (`gridel build`). [`Scene::from_bytes`] checks
+//! the blob once; after that nothing can fail. Two things can be asked of a scene:
+//!
+//! - **rays**: [`closest_hit`] and [`any_hit`], with a [`Ray`] of your own;
+//! - **pictures**: a [`Renderer`] gives pixels row by row or for any rectangle.
+//!
+//! Both are generic over the number format (see [`Number`]): [`Fixed`] for cores without a
+//! floating-point unit, `f32`, `f64`; and over the acceleration structure ([`List`], [`Bvh`],
+//! [`Flagged`]). The structure never changes a bit of an answer.
+//!
+//! # Memory
+//! The blob stays where it is. The caller owns the two things that are written to: a [`Stack`] of
+//! 12 bytes an entry, whose depth the blob's header states and `from_bytes` proves, and, for
+//! pictures, a list of rays that wait (see [`Workspace`]).
+//!
+//! # A ray through a hole in the world
+//! The length unit of the core is the *unit*, one step of the 16-bit box lattice; see
+//! [`blob::record::Header`] for how units relate to scene coordinates.
+#![cfg_attr(not(any(test, feature = "std")), no_std)]
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+
+pub mod accel;
+pub mod blob;
+pub mod count;
+pub mod number;
+mod query;
+pub mod ray;
+pub mod render;
+pub mod shade;
+mod shape;
+
+pub use accel::{Accel, Bvh, Flagged, List, Stack, StackView, Structure};
+pub use blob::{Aligned, BlobError, Scene};
+pub use count::{Count, Counters, NoCount, RayKind};
+pub use number::{Fixed, Format, Number};
+pub use query::{Hit, any_hit, closest_hit};
+pub use ray::{Ray, RayError};
+pub use render::{Renderer, Rgb565, Rgb888, Settings, Workspace};
+pub use shade::Effects;
+pub use shape::Kind;

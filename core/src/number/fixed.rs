@@ -1,0 +1,437 @@
+//! Fixed point in 32 bits, products in 64: for cores without a floating-point unit.
+
+use super::{Format, Number};
+use core::ops::{Add, Mul, Neg, Sub};
+
+/// A number in fixed point. Where its binary point lies depends on what it stands for: a length
+/// has 13 fraction bits, a ratio 30, a radiance 20 (see [`Number`]).
+///
+/// All operators wrap; none panics, whatever the build's overflow checks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(transparent)]
+pub struct Fixed(pub i32);
+
+/// Fraction bits of a length.
+pub(crate) const LENGTH_BITS: u32 = 13;
+/// Fraction bits of a ratio.
+const RATIO_BITS: u32 = 30;
+/// Fraction bits of a radiance.
+const RADIANCE_BITS: u32 = 20;
+
+/// A product's `bits` lowest bits rounded away: to nearest, ties away from zero, so that a mirrored
+/// scene gives mirrored numbers.
+#[inline(always)]
+const fn round_off(product: i64, bits: u32) -> i64 {
+    (product.wrapping_add(1 << (bits - 1)).wrapping_add(product >> 63)) >> bits
+}
+
+#[inline(always)]
+const fn saturate(value: i64) -> Fixed {
+    if value > i32::MAX as i64 {
+        Fixed(i32::MAX)
+    } else if value < -(i32::MAX as i64) {
+        Fixed(-i32::MAX)
+    } else {
+        Fixed(value as i32)
+    }
+}
+
+/// Gives a magnitude the sign of `sign`.
+#[inline(always)]
+const fn with_sign(magnitude: u64, sign: i64) -> Fixed {
+    let magnitude = if magnitude > i32::MAX as u64 { i32::MAX } else { magnitude as i32 };
+    Fixed(if sign < 0 { -magnitude } else { magnitude })
+}
+
+/// Square root to nearest.
+fn nearest_root(square: u64) -> u64 {
+    let root = square.isqrt();
+    root + u64::from(square - root * root > root)
+}
+
+/// Square root as a mantissa of 32 bits and the power of two it is to be divided by.
+fn scaled_root(square: u64) -> (u64, u32) {
+    let shift = square.leading_zeros() & !1;
+    ((square << (shift & 63)).isqrt(), shift / 2)
+}
+
+/// `v >> bits` on the magnitude, so that rounding does not depend on the sign.
+#[inline(always)]
+const fn shift_magnitude(v: i64, bits: i32) -> i32 {
+    let magnitude = v.unsigned_abs();
+    let shifted =
+        if bits >= 0 { magnitude >> (bits & 63) } else { magnitude << (-bits & 63) } as i32;
+    if v < 0 { shifted.wrapping_neg() } else { shifted }
+}
+
+/// How far to shift down so that the largest magnitude keeps `bits` bits.
+#[inline(always)]
+fn excess_bits(v: [i64; 3], bits: i32) -> i32 {
+    let all = v[0].unsigned_abs() | v[1].unsigned_abs() | v[2].unsigned_abs();
+    64 - all.leading_zeros() as i32 - bits
+}
+
+impl Add for Fixed {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0.wrapping_add(other.0))
+    }
+}
+
+impl Sub for Fixed {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0.wrapping_sub(other.0))
+    }
+}
+
+impl Neg for Fixed {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.0.wrapping_neg())
+    }
+}
+
+impl Mul for Fixed {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, ratio: Self) -> Self {
+        Self(round_off(self.0 as i64 * ratio.0 as i64, RATIO_BITS) as i32)
+    }
+}
+
+/// A product in 64 bits; its operators wrap like those of [`Fixed`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(transparent)]
+pub struct Product(pub i64);
+
+impl Add for Product {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0.wrapping_add(other.0))
+    }
+}
+
+impl Sub for Product {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0.wrapping_sub(other.0))
+    }
+}
+
+impl Neg for Product {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.0.wrapping_neg())
+    }
+}
+
+impl Number for Fixed {
+    type Wide = Product;
+
+    const FORMAT: Format = Format::Fixed;
+    const ZERO: Self = Fixed(0);
+    const ONE: Self = Fixed(1 << RATIO_BITS);
+    const FAR: Self = Fixed(i32::MAX);
+    const RELATIVE_ERROR: Self = Fixed(0);
+    // Eight sub-steps: two from the slopes over the longest ray, one each from t, the point's three
+    // products and the plane's normal, and one to spare.
+    const ABSOLUTE_ERROR: Self = Fixed(8);
+
+    #[inline(always)]
+    fn from_lattice(steps: i32) -> Self {
+        Fixed(steps.wrapping_shl(LENGTH_BITS - 8))
+    }
+
+    #[inline(always)]
+    fn from_unit(unit: i16) -> Self {
+        Fixed((unit as i32) << LENGTH_BITS)
+    }
+
+    #[inline(always)]
+    fn ratio(q30: i32) -> Self {
+        Fixed(q30)
+    }
+
+    #[inline(always)]
+    fn radiance(q20: i32) -> Self {
+        Fixed(q20)
+    }
+
+    #[inline(always)]
+    fn to_linear16(self) -> u16 {
+        let clamped = self.0.clamp(0, 1 << RADIANCE_BITS) as u64;
+        ((clamped * 65535 + (1 << (RADIANCE_BITS - 1))) >> RADIANCE_BITS) as u16
+    }
+
+    #[inline(always)]
+    fn from_cull(steps: i32) -> Self {
+        saturate((steps as i64) << (LENGTH_BITS - 1))
+    }
+
+    #[inline(always)]
+    fn to_cull_floor(self) -> i32 {
+        self.0 >> (LENGTH_BITS - 1)
+    }
+
+    fn length_from_f64(units: f64) -> Self {
+        let q13 = libm::round(units * f64::from(1 << LENGTH_BITS));
+        Fixed((q13 as i32).max(-i32::MAX))
+    }
+
+    fn ratio_from_f64(value: f64) -> Self {
+        let q30 = libm::round(value * f64::from(1 << RATIO_BITS));
+        Fixed((q30 as i32).max(-i32::MAX))
+    }
+
+    fn far_from_f64(units: f64) -> Product {
+        Product(libm::round(units * f64::from(1 << LENGTH_BITS)) as i64)
+    }
+
+    fn far_to_f64(wide: Product) -> f64 {
+        wide.0 as f64 / f64::from(1 << LENGTH_BITS)
+    }
+
+    fn length_to_f64(self) -> f64 {
+        f64::from(self.0) / f64::from(1 << LENGTH_BITS)
+    }
+
+    fn ratio_to_f64(self) -> f64 {
+        f64::from(self.0) / f64::from(1 << RATIO_BITS)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Fixed(self.0.saturating_abs())
+    }
+
+    #[inline(always)]
+    fn half(self) -> Self {
+        Fixed(self.0 >> 1)
+    }
+
+    #[inline(always)]
+    fn settle(self) -> Self {
+        self
+    }
+
+    fn sqrt(self) -> Self {
+        Fixed(nearest_root((self.0.max(0) as u64) << RATIO_BITS) as i32)
+    }
+
+    fn over(self, divisor: Self) -> Self {
+        let sign = self.0 as i64 ^ divisor.0 as i64;
+        let numerator = (self.0.unsigned_abs() as u64) << RATIO_BITS;
+        let denominator = divisor.0.unsigned_abs() as u64;
+        match (numerator + denominator / 2).checked_div(denominator) {
+            Some(quotient) => with_sign(quotient, sign),
+            None if self.0 == 0 => Fixed(0),
+            None => with_sign(u64::MAX, sign),
+        }
+    }
+
+    fn exp_neg(self, coefficient_q32: u32) -> Self {
+        // The exponent in powers of two, with 30 fraction bits.
+        const LOG2_E: u64 = 1_549_082_005;
+        let exponent = (self.0.max(0) as u64 * coefficient_q32 as u64) >> 15;
+        if exponent >= 22 << RATIO_BITS {
+            return Fixed(0);
+        }
+        let binary = (((exponent >> 5) * LOG2_E) >> (RATIO_BITS - 5)) as i64;
+        let (whole, part) = ((binary >> RATIO_BITS) as u32, Fixed((binary & ((1 << 30) - 1)) as i32));
+        // 2^-x on [0, 1] by Horner's rule over the Taylor series of e^(-x ln 2) up to the tenth
+        // power, whose remainder is below 2^-30.
+        const TAYLOR: [i32; 10] = [
+            1_073_741_824,
+            -744_261_118,
+            257_941_248,
+            -59_597_083,
+            10_327_387,
+            -1_431_680,
+            165_394,
+            -16_377,
+            1_419,
+            -109,
+        ];
+        let mut power = Fixed(8);
+        for &coefficient in TAYLOR.iter().rev() {
+            power = power * part + Fixed(coefficient);
+        }
+        Fixed(power.0 >> (whole & 31))
+    }
+
+    fn cell(self, size: Self) -> i32 {
+        self.0.checked_div_euclid(size.0).unwrap_or(0)
+    }
+
+    #[inline(always)]
+    fn wide(self, other: Self) -> Product {
+        Product(self.0 as i64 * other.0 as i64)
+    }
+
+    #[inline(always)]
+    fn widen(self) -> Product {
+        Product(self.0 as i64)
+    }
+
+    #[inline(always)]
+    fn narrow(wide: Product) -> Self {
+        saturate(wide.0)
+    }
+
+    #[inline(always)]
+    fn wide_times(wide: Product, factor: i32) -> Product {
+        Product(wide.0.wrapping_mul(factor as i64))
+    }
+
+    #[inline(always)]
+    fn wide_over(wide: Product, divisor: i32) -> Product {
+        Product(wide.0.checked_div(divisor as i64).unwrap_or(0))
+    }
+
+    #[inline(always)]
+    fn far(q13: i64) -> Product {
+        Product(q13)
+    }
+
+    #[inline(always)]
+    fn from_wide(product: Product) -> Self {
+        saturate(round_off(product.0, RATIO_BITS))
+    }
+
+    #[inline(always)]
+    fn wide_scale(wide: Product, ratio: Self) -> Product {
+        let high = (wide.0 >> 32).wrapping_mul(ratio.0 as i64);
+        let low = (wide.0 & 0xffff_ffff).wrapping_mul(ratio.0 as i64);
+        Product((high << (32 - RATIO_BITS)).wrapping_add(low >> RATIO_BITS))
+    }
+
+    fn divide(numerator: Product, denominator: Product) -> Self {
+        let sign = numerator.0 ^ denominator.0;
+        let a = numerator.0.unsigned_abs();
+        let b = denominator.0.unsigned_abs();
+        if b == 0 {
+            return if a == 0 { Fixed(0) } else { with_sign(u64::MAX, sign) };
+        }
+        // The divisor's upper 32 bits are enough: t is a length of at most 31 bits.
+        let shift = b.leading_zeros();
+        let divisor = (b << shift) >> 32;
+        let dividend = match shift.checked_sub(32 - RATIO_BITS) {
+            Some(up) if up > a.leading_zeros() => return with_sign(u64::MAX, sign),
+            Some(up) => a << up,
+            None => a >> (32 - RATIO_BITS - shift),
+        };
+        with_sign(dividend.saturating_add(divisor / 2) / divisor, sign)
+    }
+
+    fn root(square: Product) -> Self {
+        with_sign(nearest_root(square.0.max(0) as u64), 0)
+    }
+
+    fn wide_norm(v: [Product; 3]) -> Product {
+        let v = v.map(|product| product.0);
+        let bits = excess_bits(v, 31);
+        let square: u64 = v
+            .iter()
+            .map(|&component| shift_magnitude(component, bits) as i64)
+            .fold(0, |sum, part| sum + (part * part) as u64);
+        let norm = nearest_root(square);
+        Product(if bits >= 0 { norm << (bits & 63) } else { norm >> (-bits & 63) } as i64)
+    }
+
+    fn geometric_mean(a: Product, b: Product) -> Product {
+        let (root_a, shift_a) = scaled_root(a.0.max(0) as u64);
+        let (root_b, shift_b) = scaled_root(b.0.max(0) as u64);
+        Product(((root_a * root_b) >> ((shift_a + shift_b) & 63)) as i64)
+    }
+
+    #[inline(always)]
+    fn cross2(a: [Self; 2], b: [Self; 2]) -> Product {
+        a[0].wide(b[1]) - a[1].wide(b[0])
+    }
+
+    #[inline(always)]
+    fn direction(v: [i64; 3]) -> [Self; 3] {
+        let bits = excess_bits(v, 30);
+        v.map(|component| Fixed(shift_magnitude(component, bits)))
+    }
+
+    fn slopes(v: [Product; 3]) -> Option<([Self; 3], usize)> {
+        let v = v.map(|product| product.0);
+        let magnitude = v.map(i64::unsigned_abs);
+        let largest = magnitude[0].max(magnitude[1]).max(magnitude[2]);
+        if largest == 0 {
+            return None;
+        }
+        let axis = if magnitude[0] == largest {
+            0
+        } else if magnitude[1] == largest {
+            1
+        } else {
+            2
+        };
+        let bits = excess_bits(v, 31);
+        let scaled = v.map(|component| shift_magnitude(component, bits));
+        let divisor = (shift_magnitude(largest as i64, bits).unsigned_abs() as u64).max(1 << 30);
+        let reciprocal = ((1 << 62) / divisor).min(u32::MAX as u64) as i64;
+        let mut slopes = scaled.map(|component| {
+            let magnitude = (component.unsigned_abs() as i64 * reciprocal) as u64 >> 32;
+            with_sign(magnitude, component as i64)
+        });
+        slopes[axis] = Fixed(if v[axis] < 0 { -Self::ONE.0 } else { Self::ONE.0 });
+        Some((slopes, axis))
+    }
+
+    #[inline(always)]
+    fn recip_norm2(d: [Self; 3]) -> Self {
+        let norm2 = (Self::dot(d, d).0 >> RATIO_BITS) as u64;
+        Fixed(((1u64 << 60) / norm2.max(1 << 30)) as i32)
+    }
+
+    fn normalize(v: [Self; 3]) -> ([Self; 3], Self) {
+        let wide = v.map(|component| component.0 as i64);
+        let bits = excess_bits(wide, 31);
+        let scaled = wide.map(|component| shift_magnitude(component, bits) as i64);
+        let square: u64 = scaled.iter().fold(0, |sum, part| sum + (part * part) as u64);
+        let norm = nearest_root(square);
+        if norm == 0 {
+            return ([Fixed(0); 3], Fixed(0));
+        }
+        let unit = scaled.map(|component| {
+            let magnitude = (component.unsigned_abs() << RATIO_BITS) + norm / 2;
+            with_sign(magnitude.checked_div(norm).unwrap_or(0), component)
+        });
+        // The vector has at most 32 bits, so it was shifted up, or down by one.
+        let length = if bits >= 0 { norm << (bits & 63) } else { norm >> (-bits & 63) };
+        (unit, with_sign(length, 0))
+    }
+
+    #[inline(always)]
+    fn headroom(size: Self) -> u32 {
+        size.0.leading_zeros().saturating_sub(3)
+    }
+
+    #[inline(always)]
+    fn scale_up(self, bits: u32) -> Self {
+        Fixed(self.0.wrapping_shl(bits))
+    }
+
+    #[inline(always)]
+    fn scale_down(self, bits: u32) -> Self {
+        if bits == 0 { self } else { Fixed(round_off(self.0 as i64, bits & 63) as i32) }
+    }
+
+    #[inline(always)]
+    fn cull_axis(slope: Self, x: Self) -> (i32, i32) {
+        let magnitude = slope.0.unsigned_abs().max(1 << 18);
+        let inverse = ((1u64 << 47) / magnitude as u64) as i32;
+        let inverse = if slope.0 < 0 { -inverse } else { inverse };
+        (inverse, ((x.0 as i64 * inverse as i64) >> (16 + LENGTH_BITS)) as i32)
+    }
+}

@@ -1,0 +1,335 @@
+//! IEEE 754 arithmetic in single and double precision.
+//!
+//! Only operations whose result is the same on every machine: no fused multiply-add, no `min` and
+//! `max` of the standard library (they differ on signed zeros), square roots by libm.
+
+use super::{Format, Number};
+
+/// The sign of `a b - c d`, exactly, for `f32` factors: their products fit `f64`.
+#[cold]
+fn product_difference_f32(a: f32, b: f32, c: f32, d: f32) -> f32 {
+    let difference = f64::from(a) * f64::from(b) - f64::from(c) * f64::from(d);
+    if difference > 0.0 {
+        f32::MIN_POSITIVE
+    } else if difference < 0.0 {
+        -f32::MIN_POSITIVE
+    } else {
+        0.0
+    }
+}
+
+/// The sign of `a b - c d`, exactly, for `f64` factors whose rounded products are equal.
+///
+/// Dekker's product gives the rounding error of each (T. J. Dekker, "A floating-point technique
+/// for extending the available precision", 1971). Exact as long as nothing underflows, which the
+/// ray's set-up sees to: the origin's coordinates and the slopes are 0 or at least 2^-100.
+#[cold]
+fn product_difference_f64(a: f64, b: f64, c: f64, d: f64) -> f64 {
+    let difference = product_error(a, b) - product_error(c, d);
+    if difference > 0.0 {
+        f64::MIN_POSITIVE
+    } else if difference < 0.0 {
+        -f64::MIN_POSITIVE
+    } else {
+        0.0
+    }
+}
+
+/// `a b` minus its rounded product.
+fn product_error(a: f64, b: f64) -> f64 {
+    let split = |x: f64| {
+        let scaled = x * 134_217_729.0;
+        let high = scaled - (scaled - x);
+        (high, x - high)
+    };
+    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
+    let product = a * b;
+    ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
+}
+
+macro_rules! float_number {
+    ($float:ident, $format:expr, $precision:expr, $flush:expr, $sqrt:path, $exp:path, $floor:path,
+     $product_difference:path, $direction:expr) => {
+        impl Number for $float {
+            type Wide = $float;
+
+            const FORMAT: Format = $format;
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const FAR: Self = 262_144.0;
+            // Sixteen roundings of coordinates: the point's product and sum, t's three products,
+            // sums and quotient, the plane's normal, and the next test of the same surface.
+            const RELATIVE_ERROR: Self = 16.0 * $precision;
+            const ABSOLUTE_ERROR: Self = $flush;
+
+            #[inline(always)]
+            fn from_lattice(steps: i32) -> Self {
+                steps as $float * (1.0 / 256.0)
+            }
+
+            #[inline(always)]
+            fn from_unit(unit: i16) -> Self {
+                $float::from(unit)
+            }
+
+            #[inline(always)]
+            fn ratio(q30: i32) -> Self {
+                q30 as $float * (1.0 / 1_073_741_824.0)
+            }
+
+            #[inline(always)]
+            fn radiance(q20: i32) -> Self {
+                q20 as $float * (1.0 / 1_048_576.0)
+            }
+
+            #[inline(always)]
+            fn to_linear16(self) -> u16 {
+                (self * 65535.0 + 0.5) as u16
+            }
+
+            #[inline(always)]
+            fn from_cull(steps: i32) -> Self {
+                steps as $float * 0.5
+            }
+
+            #[inline(always)]
+            fn to_cull_floor(self) -> i32 {
+                let steps = self * 2.0;
+                let truncated = steps as i32;
+                truncated.saturating_sub((truncated as $float > steps) as i32)
+            }
+
+            fn length_from_f64(units: f64) -> Self {
+                if units == units { units as $float } else { 0.0 }
+            }
+
+            fn ratio_from_f64(value: f64) -> Self {
+                Self::length_from_f64(value)
+            }
+
+            fn far_from_f64(units: f64) -> Self {
+                Self::length_from_f64(units)
+            }
+
+            fn far_to_f64(wide: Self) -> f64 {
+                wide as f64
+            }
+
+            fn length_to_f64(self) -> f64 {
+                self as f64
+            }
+
+            fn ratio_to_f64(self) -> f64 {
+                self as f64
+            }
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                $float::abs(self)
+            }
+
+            #[inline(always)]
+            fn half(self) -> Self {
+                self * 0.5
+            }
+
+            #[inline(always)]
+            fn settle(self) -> Self {
+                if $float::abs(self) < $flush { 0.0 } else { self }
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                if self > 0.0 { $sqrt(self) } else { 0.0 }
+            }
+
+            #[inline(always)]
+            fn over(self, divisor: Self) -> Self {
+                if self == 0.0 { 0.0 } else { self / divisor }
+            }
+
+            fn exp_neg(self, coefficient_q32: u32) -> Self {
+                $exp(-(self * (coefficient_q32 as $float * (1.0 / 4_294_967_296.0))))
+            }
+
+            fn cell(self, size: Self) -> i32 {
+                $floor(self / size) as i32
+            }
+
+            #[inline(always)]
+            fn wide(self, other: Self) -> Self {
+                self * other
+            }
+
+            #[inline(always)]
+            fn widen(self) -> Self {
+                self
+            }
+
+            #[inline(always)]
+            fn narrow(wide: Self) -> Self {
+                wide
+            }
+
+            #[inline(always)]
+            fn wide_times(wide: Self, factor: i32) -> Self {
+                wide * factor as $float
+            }
+
+            #[inline(always)]
+            fn wide_over(wide: Self, divisor: i32) -> Self {
+                wide / divisor as $float
+            }
+
+            #[inline(always)]
+            fn far(q13: i64) -> Self {
+                q13 as $float * (1.0 / 8192.0)
+            }
+
+            #[inline(always)]
+            fn from_wide(product: Self) -> Self {
+                product
+            }
+
+            #[inline(always)]
+            fn wide_scale(wide: Self, ratio: Self) -> Self {
+                wide * ratio
+            }
+
+            #[inline(always)]
+            fn divide(numerator: Self, denominator: Self) -> Self {
+                numerator.over(denominator)
+            }
+
+            #[inline(always)]
+            fn root(square: Self) -> Self {
+                Number::sqrt(square)
+            }
+
+            fn wide_norm(v: [Self; 3]) -> Self {
+                Number::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+            }
+
+            fn geometric_mean(a: Self, b: Self) -> Self {
+                Number::sqrt(a * b)
+            }
+
+            #[inline(always)]
+            fn cross2(a: [Self; 2], b: [Self; 2]) -> Self {
+                // Rounding is monotone, so the difference of the rounded products has the right
+                // sign unless it is zero.
+                let difference = a[0] * b[1] - a[1] * b[0];
+                if difference == 0.0 {
+                    $product_difference(a[0], b[1], a[1], b[0])
+                } else {
+                    difference
+                }
+            }
+
+            #[inline(always)]
+            fn direction(v: [i64; 3]) -> [Self; 3] {
+                $direction(v)
+            }
+
+            #[inline(always)]
+            fn slopes(v: [Self; 3]) -> Option<([Self; 3], usize)> {
+                let [x, y, z] = v.map($float::abs);
+                let axis = if x >= y && x >= z {
+                    0
+                } else if y >= z {
+                    1
+                } else {
+                    2
+                };
+                let largest = v[axis].abs();
+                if !(largest > 0.0 && (x + y + z).is_finite()) {
+                    return None;
+                }
+                let mut slopes = v.map(|component| {
+                    let slope = component / largest;
+                    // Adding zero turns -0.0 into 0.0.
+                    if slope.abs() < $flush { 0.0 } else { slope + 0.0 }
+                });
+                slopes[axis] = if v[axis] < 0.0 { -1.0 } else { 1.0 };
+                Some((slopes, axis))
+            }
+
+            #[inline(always)]
+            fn recip_norm2(d: [Self; 3]) -> Self {
+                1.0 / Self::dot(d, d)
+            }
+
+            #[inline(always)]
+            fn normalize(v: [Self; 3]) -> ([Self; 3], Self) {
+                let norm = Self::wide_norm(v);
+                if norm > 0.0 {
+                    let inverse = 1.0 / norm;
+                    (v.map(|component| component * inverse), norm)
+                } else {
+                    ([0.0; 3], 0.0)
+                }
+            }
+
+            #[inline(always)]
+            fn headroom(_: Self) -> u32 {
+                0
+            }
+
+            #[inline(always)]
+            fn scale_up(self, _: u32) -> Self {
+                self
+            }
+
+            #[inline(always)]
+            fn scale_down(self, _: u32) -> Self {
+                self
+            }
+
+            #[inline(always)]
+            fn cull_axis(slope: Self, x: Self) -> (i32, i32) {
+                const LIMIT: $float = 536_870_912.0;
+                let inverse = 131_072.0 / slope;
+                let inverse = if inverse.abs() < LIMIT {
+                    inverse
+                } else if slope < 0.0 {
+                    -LIMIT
+                } else {
+                    LIMIT
+                };
+                (inverse as i32, (x * inverse * (1.0 / 65_536.0)) as i32)
+            }
+        }
+    };
+}
+
+float_number!(
+    f32,
+    Format::F32,
+    1.0 / 16_777_216.0,
+    1.0 / (1u64 << 60) as f32,
+    libm::sqrtf,
+    libm::expf,
+    libm::floorf,
+    product_difference_f32,
+    |v: [i64; 3]| {
+        // Through 31 bits: cores with a single-precision unit convert those in one instruction.
+        let all = v[0].unsigned_abs() | v[1].unsigned_abs() | v[2].unsigned_abs();
+        let excess = 33_u32.saturating_sub(all.leading_zeros());
+        v.map(|component| {
+            let magnitude = (component.unsigned_abs() >> excess) as i32;
+            (if component < 0 { -magnitude } else { magnitude }) as f32
+        })
+    }
+);
+
+float_number!(
+    f64,
+    Format::F64,
+    1.0 / 9_007_199_254_740_992.0,
+    1.0 / (1u64 << 62) as f64 / (1u64 << 38) as f64,
+    libm::sqrt,
+    libm::exp,
+    libm::floor,
+    product_difference_f64,
+    |v: [i64; 3]| v.map(|component| component as f64)
+);

@@ -1,0 +1,228 @@
+//! The arithmetic of a kernel: one sealed trait, three number formats.
+//!
+//! Every kernel is written once, over [`Number`], and reads the same in `fixed`, `f32` and `f64`.
+//! A number stands for one of four quantities. In the float formats all four are plain floats; in
+//! [`Fixed`] each has its own binary point, and the operations are defined so that the same
+//! expression keeps it:
+//!
+//! | quantity | unit | [`Fixed`] | range |
+//! |---|---|---|---|
+//! | length (coordinate, t, radius) | one step of the 16-bit box lattice, the *unit* | 13 fraction bits | +-2^18 units |
+//! | ratio (slope, cosine, reflectance) | 1 | 30 fraction bits | -2 to 2 |
+//! | radiance | display white | 20 fraction bits | +-2048 |
+//! | [`Number::Wide`] (any product of two of these, a far coordinate) | | an `i64` | |
+//!
+//! The operator `*` multiplies by a *ratio*: length by ratio is a length, ratio by ratio a ratio,
+//! radiance by ratio a radiance. Products of two lengths go through [`Number::wide`].
+//!
+//! The operators of [`Fixed`] wrap and never panic. That no kernel wraps is a matter of ranges,
+//! which the ray's set-up establishes (see [`crate::ray`]) and every kernel keeps.
+
+mod fixed;
+mod float;
+
+pub use fixed::Fixed;
+
+use core::fmt::Debug;
+use core::ops::{Add, Mul, Neg, Sub};
+
+/// Which arithmetic a kernel runs in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// Integers only: no floating-point instruction from the camera to the pixel.
+    Fixed,
+    /// IEEE 754 single precision.
+    F32,
+    /// IEEE 754 double precision.
+    F64,
+}
+
+impl Format {
+    /// All formats, in the order of their names.
+    pub const ALL: [Format; 3] = [Format::Fixed, Format::F32, Format::F64];
+
+    /// The name that command lines and tables use.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Format::Fixed => "fixed",
+            Format::F32 => "f32",
+            Format::F64 => "f64",
+        }
+    }
+}
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for super::Fixed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+/// Arithmetic for kernels; see the [module](self) for the four quantities.
+///
+/// Sealed: a fourth format would have to keep the exactness that the watertight tests rely on.
+pub trait Number:
+    sealed::Sealed
+    + Copy
+    + Default
+    + Debug
+    + PartialEq
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Neg<Output = Self>
+    + Mul<Output = Self>
+    + Send
+    + Sync
+    + 'static
+{
+    /// Products of two numbers, and coordinates beyond the scene.
+    type Wide: Copy
+        + Default
+        + Debug
+        + PartialEq
+        + PartialOrd
+        + Add<Output = Self::Wide>
+        + Sub<Output = Self::Wide>
+        + Neg<Output = Self::Wide>
+        + Send
+        + Sync
+        + 'static;
+
+    /// The name of this format.
+    const FORMAT: Format;
+    /// Zero of every quantity.
+    const ZERO: Self;
+    /// The ratio 1.
+    const ONE: Self;
+    /// A length beyond every scene, for a ray without end.
+    const FAR: Self;
+    /// The error bound's slope: a coordinate of magnitude `x` is known to within `x` times this.
+    /// Zero in [`Fixed`], whose resolution is the same everywhere.
+    const RELATIVE_ERROR: Self;
+    /// The error bound's constant part, a length.
+    const ABSOLUTE_ERROR: Self;
+
+    // Conversions
+
+    /// A length from a coordinate of the storage lattice, in 1/256 unit; exact for 24 bits.
+    fn from_lattice(steps: i32) -> Self;
+    /// A length from whole units; exact.
+    fn from_unit(unit: i16) -> Self;
+    /// A ratio from an integer with 30 fraction bits.
+    fn ratio(q30: i32) -> Self;
+    /// A radiance from an integer with 20 fraction bits.
+    fn radiance(q20: i32) -> Self;
+    /// Radiance clamped to \[0, 1\] as an integer of 16 bits: 65535 is display white. NaN is 0.
+    fn to_linear16(self) -> u16;
+    /// A length from culling steps, which are half units (see [`crate::accel::cull`]); exact.
+    fn from_cull(steps: i32) -> Self;
+    /// The culling step at or below a length; saturates.
+    fn to_cull_floor(self) -> i32;
+    /// A length from scene data in double precision: rounded, saturating, NaN to 0.
+    fn length_from_f64(units: f64) -> Self;
+    /// A far coordinate in units from double precision: rounded, saturating, NaN to 0.
+    fn far_from_f64(units: f64) -> Self::Wide;
+    /// A far coordinate in units in double precision, for reports.
+    fn far_to_f64(wide: Self::Wide) -> f64;
+    /// A ratio in -2 to 2 from double precision: rounded, saturating, NaN to 0.
+    fn ratio_from_f64(value: f64) -> Self;
+    /// A length in units in double precision, for reports.
+    fn length_to_f64(self) -> f64;
+    /// A ratio in double precision, for reports.
+    fn ratio_to_f64(self) -> f64;
+
+    // Single numbers
+
+    /// Magnitude; the most negative number becomes the largest.
+    fn abs(self) -> Self;
+    /// Half; exact in floats, rounded down in [`Fixed`].
+    fn half(self) -> Self;
+    /// A coordinate without digits so small that exact products would lose them: 0 in their place.
+    fn settle(self) -> Self;
+    /// The smaller; the first where they are equal.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if other < self { other } else { self }
+    }
+    /// The larger; the first where they are equal.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if other > self { other } else { self }
+    }
+    /// Square root of a ratio in \[0, 2\]; 0 for anything negative.
+    fn sqrt(self) -> Self;
+    /// Undoes `*`: length over ratio is a length, and two of one quantity make a ratio. Saturates
+    /// at the range's end; anything over 0 saturates, 0 over 0 is 0.
+    fn over(self, divisor: Self) -> Self;
+    /// e to the power of minus the product of a non-negative length and a coefficient in 1/unit,
+    /// given with 32 fraction bits: a ratio in \[0, 1\].
+    fn exp_neg(self, coefficient_q32: u32) -> Self;
+    /// The greatest integer at or below `self / size`, for lengths and `size` above 0.
+    fn cell(self, size: Self) -> i32;
+
+    /// The bound of what one hit's arithmetic can be off by, for coordinates of a magnitude.
+    #[inline(always)]
+    fn error_bound(magnitude: Self) -> Self {
+        magnitude * Self::RELATIVE_ERROR + Self::ABSOLUTE_ERROR
+    }
+
+    // Wide products
+
+    /// Product of two numbers.
+    fn wide(self, other: Self) -> Self::Wide;
+    /// A number as a wide one with the same binary point: a length as a far coordinate.
+    fn widen(self) -> Self::Wide;
+    /// The inverse of [`widen`](Self::widen); saturates.
+    fn narrow(wide: Self::Wide) -> Self;
+    /// A wide number times an integer.
+    fn wide_times(wide: Self::Wide, factor: i32) -> Self::Wide;
+    /// A wide number over a positive integer, towards zero.
+    fn wide_over(wide: Self::Wide, divisor: i32) -> Self::Wide;
+    /// A far coordinate from an integer with 13 fraction bits.
+    fn far(q13: i64) -> Self::Wide;
+    /// Three products added: `a . b`.
+    #[inline(always)]
+    fn dot(a: [Self; 3], b: [Self; 3]) -> Self::Wide {
+        a[0].wide(b[0]) + a[1].wide(b[1]) + a[2].wide(b[2])
+    }
+    /// A product with a ratio as a single number: undoes one [`wide`](Self::wide) by a ratio; saturates.
+    fn from_wide(product: Self::Wide) -> Self;
+    /// Product of a `Wide` (length by ratio, or length squared) with a ratio, as the same kind of `Wide`.
+    fn wide_scale(wide: Self::Wide, ratio: Self) -> Self::Wide;
+    /// Quotient of two products whose kinds differ by one factor: (length by ratio) over (ratio by
+    /// ratio), or (length by length) over (length by ratio): a length; saturates, and 0 / 0 is 0.
+    fn divide(numerator: Self::Wide, denominator: Self::Wide) -> Self;
+    /// Square root of length squared: a length; 0 for anything negative.
+    fn root(square: Self::Wide) -> Self;
+    /// Length of a vector of three products, as the same kind of product.
+    fn wide_norm(v: [Self::Wide; 3]) -> Self::Wide;
+    /// Square root of the product of two non-negative products, as the same kind of product.
+    fn geometric_mean(a: Self::Wide, b: Self::Wide) -> Self::Wide;
+
+    // Vectors
+
+    /// Cross product of two plane vectors, `a.x b.y - a.y b.x`: its sign is exact, always.
+    fn cross2(a: [Self; 2], b: [Self; 2]) -> Self::Wide;
+    /// A vector of integers (below 2^62) as ratios: exact up to one common factor and one rounding
+    /// each; the largest magnitude in \[1/4, 1\] in [`Fixed`], unscaled in floats.
+    fn direction(v: [i64; 3]) -> [Self; 3];
+    /// A direction of any length as slopes: divided by the magnitude of its largest component, with
+    /// that component's axis. `None` for zero, NaN and infinite vectors.
+    fn slopes(v: [Self::Wide; 3]) -> Option<([Self; 3], usize)>;
+    /// 1 / (d . d) for slopes, whose d . d lies in \[1, 3\].
+    fn recip_norm2(d: [Self; 3]) -> Self;
+    /// A vector of one quantity scaled to length 1 (ratios), and its length. A zero vector stays zero.
+    fn normalize(v: [Self; 3]) -> ([Self; 3], Self);
+    /// For lengths up to `size`, how many bits they can be shifted up before products overflow;
+    /// 0 in floats, which need no such thing.
+    fn headroom(size: Self) -> u32;
+    /// Shifts a length up by [`headroom`](Self::headroom).
+    fn scale_up(self, bits: u32) -> Self;
+    /// Undoes [`scale_up`](Self::scale_up), rounding to nearest.
+    fn scale_down(self, bits: u32) -> Self;
+    /// The culling form of one axis: `1 / slope` in culling steps a unit with 16 fraction bits,
+    /// limited to 2^29, with the sign of the slope; and `x * that`, for a length `x` of at most
+    /// 2^17 units, in culling steps.
+    fn cull_axis(slope: Self, x: Self) -> (i32, i32);
+}

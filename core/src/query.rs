@@ -1,0 +1,198 @@
+//! Queries: what does a ray meet first, does it meet anything at all?
+
+use crate::accel::cull::step_above;
+use crate::accel::{Accel, Leaf, StackView};
+use crate::blob::Scene;
+use crate::blob::record::{Corners, Sphere, Vertex};
+use crate::count::Count;
+use crate::number::Number;
+use crate::ray::Ray;
+use crate::shape::{Crossing, Kind, Part, Spheres, Triangles, Vertices, accept, extent};
+use crate::shape::{sphere, triangle};
+
+/// What a ray met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit<N: Number> {
+    /// Where on the ray: a length in units along the ray's major axis (see [`Ray`]).
+    pub t: N::Wide,
+    /// The point, in units.
+    pub point: [N; 3],
+    /// The geometric normal, of length 1: outward from solids, to the side from which a triangle's
+    /// corners run counter-clockwise, along a disc's own.
+    pub normal: [N; 3],
+    /// Whether the ray came from the side to which the normal points.
+    pub front: bool,
+    /// The object, counted in scene-file order.
+    pub object: u32,
+    /// The primitive, counted in scene-file order over all objects.
+    pub primitive: u32,
+    /// The surface lies within this length of `point`, measured along the normal.
+    pub error: N,
+}
+
+/// The best hit so far.
+#[derive(Clone, Copy, Debug)]
+struct Best<N> {
+    t: N,
+    /// The primitive in scene-file order.
+    primitive: u32,
+    kind: Kind,
+    index: u32,
+    part: Part,
+}
+
+/// The search for hits, one leaf at a time.
+struct Search<'s, 'a, N: Number> {
+    scene: &'s Scene<'a>,
+    ray: &'s Ray<N>,
+    recip_norm2: N,
+    /// No hit beyond this counts.
+    tmax: N,
+    best: Option<Best<N>>,
+}
+
+impl<'s, 'a, N: Number> Search<'s, 'a, N> {
+    #[inline(always)]
+    fn new(scene: &'s Scene<'a>, ray: &'s Ray<N>) -> Self {
+        Self {
+            scene,
+            ray,
+            recip_norm2: if scene.needs_norm { N::recip_norm2(ray.slope) } else { N::ZERO },
+            tmax: ray.tmax,
+            best: None,
+        }
+    }
+
+    /// Takes a crossing that beats the best hit: a smaller t, or the same t of an earlier primitive.
+    #[inline(always)]
+    fn consider(&mut self, crossing: Crossing<N>, kind: Kind, index: u32) {
+        let Some(bounds) = self.scene.shapes.bounds(kind, index as usize) else { return };
+        let Some((t, part)) = accept(self.ray, crossing, bounds, self.tmax) else { return };
+        let primitive = self.scene.primitive(kind, index);
+        if self.best.is_none_or(|best| t < best.t || primitive < best.primitive) {
+            self.best = Some(Best { t, primitive, kind, index, part });
+            self.tmax = t;
+        }
+    }
+
+    /// Tests the primitives of a leaf.
+    #[inline(always)]
+    fn leaf(&mut self, leaf: Leaf) {
+        let (first, end) = (leaf.first as usize, (leaf.first + leaf.count) as usize);
+        let shapes = &self.scene.shapes;
+        match leaf.kind {
+            Kind::Triangle => match (shapes.vertices, shapes.triangles) {
+                (Vertices::V16(v), Triangles::U16(t)) => self.triangles(v, t.get(first..end), leaf),
+                (Vertices::V16(v), Triangles::U32(t)) => self.triangles(v, t.get(first..end), leaf),
+                (Vertices::V24(v), Triangles::U16(t)) => self.triangles(v, t.get(first..end), leaf),
+                (Vertices::V24(v), Triangles::U32(t)) => self.triangles(v, t.get(first..end), leaf),
+            },
+            Kind::Sphere => match shapes.spheres {
+                Spheres::S16(spheres) => self.spheres(spheres.get(first..end), leaf),
+                Spheres::S24(spheres) => self.spheres(spheres.get(first..end), leaf),
+            },
+            Kind::Box => {
+                self.solids(shapes.boxes.get(first..end), leaf, |search, cuboid| cuboid.cross(search.ray));
+            }
+            Kind::Disc => {
+                self.solids(shapes.discs.get(first..end), leaf, |search, disc| disc.cross(search.ray));
+            }
+            Kind::Cone => self.solids(shapes.cones.get(first..end), leaf, |search, cone| {
+                cone.cross(search.ray, search.recip_norm2)
+            }),
+        }
+    }
+
+    /// Tests records one after the other.
+    #[inline(always)]
+    fn solids<T>(
+        &mut self,
+        records: Option<&[T]>,
+        leaf: Leaf,
+        cross: impl Fn(&Self, &T) -> Option<Crossing<N>>,
+    ) {
+        for (index, record) in (leaf.first..).zip(records.unwrap_or_default()) {
+            if let Some(crossing) = cross(self, record) {
+                self.consider(crossing, leaf.kind, index);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn spheres<S: Sphere>(&mut self, spheres: Option<&[S]>, leaf: Leaf) {
+        self.solids(spheres, leaf, |search, record| {
+            let (center, radius) = record.lattice();
+            sphere::cross(search.ray, search.recip_norm2, center, radius)
+        });
+    }
+
+    /// Chooses the copy of the triangle test for the ray's major axis.
+    #[inline(always)]
+    fn triangles<V: Vertex, I: Corners>(&mut self, vertices: &[V], triangles: Option<&[I]>, leaf: Leaf) {
+        match self.ray.major {
+            0 => self.triangles_along::<0, V, I>(vertices, triangles, leaf),
+            1 => self.triangles_along::<1, V, I>(vertices, triangles, leaf),
+            _ => self.triangles_along::<2, V, I>(vertices, triangles, leaf),
+        }
+    }
+
+    fn triangles_along<const MAJOR: usize, V: Vertex, I: Corners>(
+        &mut self,
+        vertices: &[V],
+        triangles: Option<&[I]>,
+        leaf: Leaf,
+    ) {
+        self.solids(triangles, leaf, |search, record| {
+            let [a, b, c] = record.corners();
+            let corners = [vertices.get(a)?, vertices.get(b)?, vertices.get(c)?];
+            triangle::cross::<MAJOR, N, V>(search.ray, corners)
+        });
+    }
+}
+
+/// The first hit of a ray in its interval, found through the structure `A`.
+///
+/// Of hits at the same t the one that comes first in the scene file counts, so the answer is the
+/// same whatever the structure. The stack must be as deep as the blob says.
+pub fn closest_hit<N: Number, A: Accel, C: Count>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    stack: &mut StackView,
+    count: &mut C,
+) -> Option<Hit<N>> {
+    let mut search = Search::new(scene, ray);
+    A::walk(scene, &ray.cull, stack, count, |leaf, count| {
+        count.objects(leaf.count);
+        search.leaf(leaf);
+        step_above(search.tmax)
+    });
+    let best = search.best?;
+    let point = ray.at(best.t);
+    let surface = scene.shapes.surface(best.kind, best.index as usize, best.part, point)?;
+    let scale = extent(ray.origin).max(extent(point)).max(surface.extent);
+    Some(Hit {
+        t: best.t.widen() + ray.moved,
+        point,
+        normal: surface.normal,
+        front: N::dot(surface.normal, ray.slope) < N::Wide::default(),
+        object: scene.object(best.primitive),
+        primitive: best.primitive,
+        error: N::error_bound(scale),
+    })
+}
+
+/// Whether a ray meets anything in its interval: whether [`closest_hit`] would find something.
+pub fn any_hit<N: Number, A: Accel, C: Count>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    stack: &mut StackView,
+    count: &mut C,
+) -> bool {
+    let mut search = Search::new(scene, ray);
+    A::walk(scene, &ray.cull, stack, count, |leaf, count| {
+        count.objects(leaf.count);
+        search.leaf(leaf);
+        if search.best.is_some() { i32::MIN } else { step_above(search.tmax) }
+    });
+    search.best.is_some()
+}

@@ -1,0 +1,167 @@
+//! Rays, in the one form that every kernel uses.
+
+use crate::accel::cull::Cull;
+use crate::blob::record::UnitBox;
+use crate::number::Number;
+use core::fmt;
+
+/// A half-line with an interval, ready to be traced through one scene.
+///
+/// A ray is parametrised along the *major axis* of its direction, the one with the largest
+/// component: `point = origin + t * slope`, where the slope of the major axis is 1 or -1 and the
+/// others lie between. `t` is therefore a length in units (see [`Number`]), never
+/// overflows, and needs no normalised direction. For a direction `d` of any length, the parameter
+/// in multiples of `d` is `t / |d[major]|`.
+///
+/// An origin before the scene's box is moved along the ray to the plane in which the box begins,
+/// and `t` is counted from there inside the kernels; [`Hit::t`](crate::Hit) is counted from the
+/// origin that was given. So origins may be arbitrarily far away.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray<N: Number> {
+    pub(crate) origin: [N; 3],
+    pub(crate) slope: [N; 3],
+    pub(crate) major: usize,
+    /// How far the origin was moved.
+    pub(crate) moved: N::Wide,
+    pub(crate) tmin: N,
+    pub(crate) tmax: N,
+    pub(crate) cull: Cull,
+}
+
+/// Why something is not a ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RayError {
+    /// The direction is zero, infinite or NaN.
+    Direction,
+    /// The origin is infinite or NaN.
+    Origin,
+    /// `tmin` is greater than `tmax`, or one of them is NaN.
+    Interval,
+}
+
+impl fmt::Display for RayError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            RayError::Direction => "the ray's direction is zero, infinite or NaN",
+            RayError::Origin => "the ray's origin is infinite or NaN",
+            RayError::Interval => "the ray's tmin is greater than its tmax, or one of them is NaN",
+        })
+    }
+}
+
+impl core::error::Error for RayError {}
+
+impl<N: Number> Ray<N> {
+    /// A ray through a scene whose box is `bounds` (see [`Scene::bounds`](crate::Scene::bounds)).
+    ///
+    /// Origin and interval are lengths in units; the direction is of any length but 0. Hits are
+    /// reported for `tmin <= t <= tmax`, in lengths along the major axis; `tmin` may be negative.
+    ///
+    /// # Errors
+    /// If the direction is zero, or anything is NaN, or the origin or direction infinite, or
+    /// `tmin > tmax`. Queries for which no ray can be made have no hit.
+    pub fn new(
+        bounds: &UnitBox,
+        origin: [N::Wide; 3],
+        direction: [N::Wide; 3],
+        tmin: N::Wide,
+        tmax: N::Wide,
+    ) -> Result<Self, RayError> {
+        let (slope, major) = N::slopes(direction).ok_or(RayError::Direction)?;
+        if !(tmin <= tmax) {
+            return Err(RayError::Interval);
+        }
+        let zero = N::Wide::default();
+        // Anything minus itself is zero, unless it is infinite or NaN.
+        if origin.iter().any(|&o| o - o != zero) {
+            return Err(RayError::Origin);
+        }
+
+        let [first, last] = bounds.0[major];
+        let forward = slope[major] > N::ZERO;
+        let (entry, exit) = if forward { (first, last) } else { (last, first) };
+        let ahead = |unit: i16| {
+            let distance = N::from_unit(unit).widen() - origin[major];
+            if forward { distance } else { -distance }
+        };
+        let to_box = ahead(entry);
+        let moved = if to_box > zero {
+            to_box
+        } else if tmin < zero {
+            if tmin > to_box { tmin } else { to_box }
+        } else {
+            zero
+        };
+        let (tmin, tmax) = (tmin - moved, tmax - moved);
+        let far = N::FAR.widen();
+        let mut ray = Self {
+            origin: [N::ZERO; 3],
+            slope,
+            major,
+            moved,
+            tmin: if tmin > zero { N::narrow(if tmin < far { tmin } else { far }) } else { N::ZERO },
+            tmax: if tmax < far { N::narrow(tmax) } else { N::FAR },
+            cull: Cull::default(),
+        };
+        let mut misses = tmax < zero || ahead(exit) < zero;
+        // A ray rises by at most 2^16 units on its way through the box.
+        let reach = N::from_unit(i16::MAX).widen();
+        let reach = reach + reach + reach;
+        for (axis, coordinate) in ray.origin.iter_mut().enumerate() {
+            let moved = origin[axis] + N::wide_scale(moved, slope[axis]);
+            if moved <= reach && -moved <= reach {
+                *coordinate = N::settle(N::narrow(moved));
+            } else {
+                misses = true;
+            }
+        }
+        if misses {
+            ray.tmax = -N::ONE;
+        }
+        ray.cull = Cull::new(&ray);
+        Ok(ray)
+    }
+
+    /// A ray given in double precision, rounded to this format only after its origin was moved to
+    /// the scene: what hosts use, and tests.
+    ///
+    /// # Errors
+    /// As [`Ray::new`].
+    pub fn from_f64(
+        bounds: &UnitBox,
+        origin: [f64; 3],
+        direction: [f64; 3],
+        tmin: f64,
+        tmax: f64,
+    ) -> Result<Self, RayError> {
+        let exact = Ray::<f64>::new(bounds, origin, direction, tmin, tmax)?;
+        let mut ray = Self {
+            origin: exact.origin.map(|x| N::settle(N::length_from_f64(x))),
+            slope: exact.slope.map(N::ratio_from_f64),
+            major: exact.major,
+            moved: N::far_from_f64(exact.moved),
+            tmin: N::length_from_f64(exact.tmin),
+            tmax: N::length_from_f64(exact.tmax),
+            cull: Cull::default(),
+        };
+        ray.cull = Cull::new(&ray);
+        Ok(ray)
+    }
+
+    /// The axis along which `t` is measured: 0, 1 or 2.
+    pub fn major_axis(&self) -> usize {
+        self.major
+    }
+
+    /// The direction, scaled so that its major component is 1 or -1.
+    pub fn slope(&self) -> [N; 3] {
+        self.slope
+    }
+
+    /// The point at a parameter that is counted inside the kernels.
+    #[inline(always)]
+    pub(crate) fn at(&self, t: N) -> [N; 3] {
+        let along = |axis: usize| self.origin[axis] + t * self.slope[axis];
+        [along(0), along(1), along(2)]
+    }
+}

@@ -1,0 +1,22 @@
+//! Pictures: from a pixel to rays, through what they meet, and back to a pixel.
+//!
+//! | step | file |
+//! |---|---|
+//! | where in the pixel, and in which direction | `sample.rs`, `camera.rs` |
+//! | what the ray and those it causes bring | `trace.rs` |
+//! | from radiance to the bytes of a display | `pixel.rs` |
+
+mod camera;
+mod pixel;
+mod renderer;
+mod sample;
+mod trace;
+
+pub use pixel::{Pixel, Rgb565, Rgb888};
+pub use renderer::{RenderError, Renderer, Settings};
+pub use trace::{Workspace, WorkspaceView, work_depth};
+
+/// The largest ray depth that a scene can ask for.
+pub const MAX_RAY_DEPTH: usize = 16;
+/// Most samples a pixel.
+pub const MAX_SAMPLES: u16 = 256;

@@ -1,0 +1,247 @@
+//! The renderer: pixels of one scene at one size, wherever and in whatever order they are wanted.
+
+use super::camera::Camera;
+use super::pixel::{Linear, Pixel};
+use super::sample::{SUBPIXELS, place};
+use super::trace::{Loop, WorkspaceView, work_depth};
+use super::{MAX_RAY_DEPTH, MAX_SAMPLES};
+use crate::accel::{Accel, Structure};
+use crate::blob::Scene;
+use crate::count::Count;
+use crate::number::Number;
+use crate::ray::Ray;
+use crate::shade::{Color, Effects};
+use core::fmt;
+use core::marker::PhantomData;
+
+/// What a picture shall be like; [`Settings::of`] gives what the scene file states.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Pixels from left to right, above 0.
+    pub width: u16,
+    /// Pixels from top to bottom, above 0. The field of view is vertical.
+    pub height: u16,
+    /// Samples a pixel, 1 to 256; powers of two are spread best.
+    pub samples: u16,
+    /// How often a ray may be reflected or refracted, 0 to 16.
+    pub depth: u8,
+    /// Whether pixels are dithered.
+    pub dither: bool,
+}
+
+impl Settings {
+    /// What the scene file states, without dithering.
+    pub fn of(scene: &Scene<'_>) -> Self {
+        let view = scene.view();
+        Self {
+            width: view.width,
+            height: view.height,
+            samples: view.samples,
+            depth: view.depth,
+            dither: false,
+        }
+    }
+}
+
+/// Why there is no picture of this scene with these settings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RenderError {
+    /// The picture has no pixels, or is more than 64 times as wide as high.
+    Size {
+        /// The width asked for.
+        width: u16,
+        /// The height asked for.
+        height: u16,
+    },
+    /// Not 1 to 256 samples.
+    Samples(u16),
+    /// The depth is above 16.
+    Depth(u8),
+    /// The blob does not hold the structure.
+    Structure(Structure),
+    /// The scene calls for effects that the renderer was not compiled for.
+    Effects(Effects),
+    /// The workspace has fewer entries or places than it needs.
+    Workspace {
+        /// What is short: the stack, or the work list.
+        what: &'static str,
+        /// What it holds.
+        found: usize,
+        /// What it must hold.
+        needed: usize,
+    },
+}
+
+impl fmt::Display for RenderError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            RenderError::Size { width, height } => write!(
+                f,
+                "a picture of {width} by {height} pixels cannot be made: both sides must be above 0, \
+                 and the width at most 64 times the height"
+            ),
+            RenderError::Samples(samples) => {
+                write!(f, "{samples} samples a pixel are not possible: ask for 1 to {MAX_SAMPLES}")
+            }
+            RenderError::Depth(depth) => {
+                write!(f, "a depth of {depth} is not possible: ask for 0 to {MAX_RAY_DEPTH}")
+            }
+            RenderError::Structure(structure) => write!(
+                f,
+                "the blob holds no structure `{name}`: build it with `--accel {name}`",
+                name = structure.name()
+            ),
+            RenderError::Effects(effects) => write!(
+                f,
+                "the scene calls for the effects {effects}, which the renderer's type leaves out"
+            ),
+            RenderError::Workspace { what, found, needed } => write!(
+                f,
+                "the {what} of the workspace has room for {found} and this scene needs {needed}"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for RenderError {}
+
+/// Renders pixels of a scene in the number format `N`, through the structure `A`, compiled for the
+/// effects in `EFFECTS` (an [`Effects`] as its bits; those of the scene must be among them).
+///
+/// Holds the camera for one picture size, some 100 bytes; everything that changes lies in the
+/// caller's [`Workspace`](super::Workspace). Pixels do not depend on each other, so any number of
+/// renderers can share a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Renderer<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> {
+    scene: &'s Scene<'a>,
+    settings: Settings,
+    camera: Camera<N>,
+    structure: PhantomData<A>,
+}
+
+impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFFECTS> {
+    /// A renderer for one scene and picture size.
+    ///
+    /// # Errors
+    /// If a setting is out of its range, the blob lacks the structure, or the scene calls for an
+    /// effect that is not in `EFFECTS`.
+    pub fn new(scene: &'s Scene<'a>, settings: Settings) -> Result<Self, RenderError> {
+        let Settings { width, height, samples, depth, .. } = settings;
+        if width == 0 || height == 0 || u32::from(width) > 64 * u32::from(height) {
+            return Err(RenderError::Size { width, height });
+        }
+        if samples == 0 || samples > MAX_SAMPLES {
+            return Err(RenderError::Samples(samples));
+        }
+        if usize::from(depth) > MAX_RAY_DEPTH {
+            return Err(RenderError::Depth(depth));
+        }
+        if !scene.holds(A::STRUCTURE) {
+            return Err(RenderError::Structure(A::STRUCTURE));
+        }
+        let missing = scene.effects().without(Effects(EFFECTS));
+        if missing != Effects::NONE {
+            return Err(RenderError::Effects(missing));
+        }
+        let camera = Camera::new(scene.view(), width, height);
+        Ok(Self { scene, settings, camera, structure: PhantomData })
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> Settings {
+        self.settings
+    }
+
+    /// Whether a workspace is large enough.
+    ///
+    /// # Errors
+    /// If it is not, with what it lacks. Rendering in it all the same is safe, but rays that find
+    /// no room see nothing.
+    pub fn check_workspace(&self, space: &WorkspaceView<'_, N>) -> Result<(), RenderError> {
+        let depth = if self.casts_rays() { self.settings.depth } else { 0 };
+        let rooms = [
+            ("stack", space.stack.capacity(), self.scene.stack_depth()),
+            ("work list", space.work.capacity(), work_depth(depth) - usize::from(depth == 0)),
+        ];
+        for (what, found, needed) in rooms {
+            if found < needed {
+                return Err(RenderError::Workspace { what, found, needed });
+            }
+        }
+        Ok(())
+    }
+
+    fn casts_rays(&self) -> bool {
+        EFFECTS & Effects::MIRROR.with(Effects::GLASS).0 != 0
+    }
+
+    /// One pixel, linear, 65535 being white. Outside of the picture pixels go on.
+    pub fn linear<C: Count>(
+        &self,
+        x: u16,
+        y: u16,
+        space: &mut WorkspaceView<'_, N>,
+        count: &mut C,
+    ) -> [u16; 3] {
+        let Settings { samples, depth, .. } = self.settings;
+        let tracing = Loop { scene: self.scene, depth };
+        let mut sum = Color::BLACK;
+        for index in 0..samples {
+            let [dx, dy] = place(index, samples);
+            let row = self.camera.row(i32::from(y) * SUBPIXELS + dy);
+            let direction = self.camera.direction(&row, i32::from(x) * SUBPIXELS + dx);
+            let (eye, zero) = (self.camera.eye(), N::Wide::default());
+            let far = N::far(1 << 60);
+            let Ok(ray) = Ray::new(self.scene.bounds(), eye, direction, zero, far) else { continue };
+            let radiance = tracing.radiance::<N, A, C, EFFECTS>(&ray, space, count);
+            // Clamped before they are averaged, so that the edge of a highlight is smooth.
+            let white = N::radiance(1 << 20);
+            let seen = Color(radiance.0.map(|channel| channel.max(N::ZERO).min(white)));
+            sum = sum.plus(seen);
+        }
+        let mean = if samples == 1 { sum } else { sum.scaled(N::ratio((1 << 30) / i32::from(samples))) };
+        let linear: Linear = mean.0.map(N::to_linear16);
+        linear
+    }
+
+    /// One pixel in a display's form.
+    pub fn pixel<P: Pixel, C: Count>(
+        &self,
+        x: u16,
+        y: u16,
+        space: &mut WorkspaceView<'_, N>,
+        count: &mut C,
+    ) -> P {
+        P::encode(self.linear(x, y, space, count), self.settings.dither.then_some([x, y]))
+    }
+
+    /// A part of a row: as many pixels as `row` has, from column `x` on.
+    pub fn row<P: Pixel, C: Count>(
+        &self,
+        x: u16,
+        y: u16,
+        row: &mut [P],
+        space: &mut WorkspaceView<'_, N>,
+        count: &mut C,
+    ) {
+        for (column, pixel) in (x..=u16::MAX).zip(row) {
+            *pixel = self.pixel(column, y, space, count);
+        }
+    }
+
+    /// Any rectangle, pixel by pixel, row by row from its upper left corner.
+    pub fn rectangle<P: Pixel, C: Count>(
+        &self,
+        corner: [u16; 2],
+        size: [u16; 2],
+        space: &mut WorkspaceView<'_, N>,
+        count: &mut C,
+        mut sink: impl FnMut(u16, u16, P),
+    ) {
+        for y in (corner[1]..=u16::MAX).take(size[1].into()) {
+            for x in (corner[0]..=u16::MAX).take(size[0].into()) {
+                sink(x, y, self.pixel(x, y, space, count));
+            }
+        }
+    }
+}

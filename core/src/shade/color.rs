@@ -1,0 +1,60 @@
+//! Three channels of radiance, or of the ratios that it is weighted with.
+
+use crate::number::Number;
+
+/// Red, green and blue.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Color<N>(pub(crate) [N; 3]);
+
+impl<N: Number> Color<N> {
+    pub(crate) const BLACK: Self = Self([N::ZERO; 3]);
+    pub(crate) const WHITE: Self = Self([N::ONE; 3]);
+
+    /// Ratios with 30 fraction bits.
+    #[inline(always)]
+    pub(crate) fn ratios(q30: [i32; 3]) -> Self {
+        Self(q30.map(N::ratio))
+    }
+
+    /// Radiance with 20 fraction bits.
+    #[inline(always)]
+    pub(crate) fn radiance(q20: [i32; 3]) -> Self {
+        Self(q20.map(N::radiance))
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, join: impl Fn(N, N) -> N) -> Self {
+        let ([a, b, c], [d, e, f]) = (self.0, other.0);
+        Self([join(a, d), join(b, e), join(c, f)])
+    }
+
+    /// Channel by channel; one of the two holds ratios.
+    #[inline(always)]
+    pub(crate) fn times(self, ratios: Self) -> Self {
+        self.zip(ratios, |a, b| a * b)
+    }
+
+    /// All channels by one ratio.
+    #[inline(always)]
+    pub(crate) fn scaled(self, ratio: N) -> Self {
+        Self(self.0.map(|channel| channel * ratio))
+    }
+
+    #[inline(always)]
+    pub(crate) fn plus(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+
+    /// The sum of two sets of ratios, none above 1.
+    #[inline(always)]
+    pub(crate) fn plus_up_to_one(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > N::ONE - b { N::ONE } else { a + b })
+    }
+
+    /// The largest channel.
+    #[inline(always)]
+    pub(crate) fn peak(self) -> N {
+        let [red, green, blue] = self.0;
+        red.max(green).max(blue)
+    }
+}

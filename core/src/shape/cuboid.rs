@@ -1,0 +1,57 @@
+//! Axis-aligned boxes as objects, by the slabs of Kay and Kajiya.
+//!
+//! Closed: a ray that lies in a face meets it. An axis along which the ray does not move is a
+//! containment test, so nothing is divided by zero.
+
+use super::{Crossing, Part, Surface, extent};
+use crate::blob::record::{Cuboid, UnitBox};
+use crate::number::Number;
+use crate::ray::Ray;
+
+impl Cuboid {
+    /// The box on the box lattice.
+    #[inline(always)]
+    pub(crate) fn bounds(&self) -> UnitBox {
+        UnitBox::around(self.lowest, self.highest)
+    }
+
+    /// The crossing with the box; six divisions. Part `2 k` is the lower face of axis `k`, and
+    /// `2 k + 1` the upper one.
+    #[inline(always)]
+    pub(crate) fn cross<N: Number>(&self, ray: &Ray<N>) -> Option<Crossing<N>> {
+        let mut enter = (-N::FAR, 0);
+        let mut leave = (N::FAR, 0);
+        for axis in 0..3 {
+            let below = N::from_lattice(self.lowest[axis]) - ray.origin[axis];
+            let above = N::from_lattice(self.highest[axis]) - ray.origin[axis];
+            let slope = ray.slope[axis];
+            if slope == N::ZERO {
+                if below > N::ZERO || above < N::ZERO {
+                    return None;
+                }
+                continue;
+            }
+            let lower: Part = 2 * axis as Part;
+            let (below, above) = ((below.over(slope), lower), (above.over(slope), lower + 1));
+            let (near, far) = if slope > N::ZERO { (below, above) } else { (above, below) };
+            if near.0 > enter.0 {
+                enter = near;
+            }
+            if far.0 < leave.0 {
+                leave = far;
+            }
+        }
+        (enter.0 <= leave.0).then_some(Crossing { enter, leave })
+    }
+
+    /// Outward.
+    pub(crate) fn surface<N: Number>(&self, part: Part) -> Surface<N> {
+        let outward = if part & 1 == 0 { -N::ONE } else { N::ONE };
+        let mut normal = [N::ZERO; 3];
+        if let Some(component) = normal.get_mut(usize::from(part / 2)) {
+            *component = outward;
+        }
+        let far = |corner: [i32; 3]| extent(corner.map(N::from_lattice));
+        Surface { normal, extent: far(self.lowest).max(far(self.highest)) }
+    }
+}

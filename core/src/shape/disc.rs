@@ -1,0 +1,39 @@
+//! Flat discs: the crossing of their plane, if it lies no farther than the radius from the centre.
+
+use super::{Crossing, Surface, cross_plane, extent};
+use crate::blob::record::Disc;
+use crate::number::Number;
+use crate::ray::Ray;
+
+impl Disc {
+    fn normal<N: Number>(&self) -> [N; 3] {
+        N::direction(self.normal.map(i64::from))
+    }
+
+    /// The crossing, both sides alike; `None` for a ray along the plane.
+    #[inline(always)]
+    pub(crate) fn cross<N: Number>(&self, ray: &Ray<N>) -> Option<Crossing<N>> {
+        let axis = |k: usize| N::from_lattice(self.center[k]) - ray.origin[k];
+        let relative = [axis(0), axis(1), axis(2)];
+        let t = cross_plane(ray, self.normal(), relative)?;
+        let radius = N::from_lattice(self.radius);
+        let axis = |k: usize| t * ray.slope[k] - relative[k];
+        let apart = [axis(0), axis(1), axis(2)];
+        // The box first, so that squares stay in range.
+        let near = |k: usize| apart[k].abs() <= radius;
+        let inside = t.abs() <= N::FAR
+            && near(0)
+            && near(1)
+            && near(2)
+            && N::dot(apart, apart) <= radius.wide(radius);
+        inside.then_some(Crossing::flat(t))
+    }
+
+    /// The front is where the normal points.
+    pub(crate) fn surface<N: Number>(&self) -> Surface<N> {
+        Surface {
+            normal: N::normalize(self.normal()).0,
+            extent: extent(self.center.map(N::from_lattice)) + N::from_lattice(self.radius),
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! Primitives: where a ray crosses them, and how their surface lies there.
+//!
+//! One file a primitive. Each kernel gives the *crossing*: where the line of the ray enters and
+//! leaves the primitive, behind the origin too. What of that is a hit is decided here, once for
+//! all of them, in [`accept`].
+
+pub(crate) mod cone;
+pub(crate) mod cuboid;
+pub(crate) mod disc;
+pub(crate) mod sphere;
+pub(crate) mod triangle;
+
+use crate::accel::Leaf;
+use crate::blob::record::{Cone, Corners, Cuboid, Disc, Sphere, Sphere16, Sphere24, UnitBox};
+use crate::blob::record::{Vertex, Vertex16, Vertex24};
+use crate::number::Number;
+use crate::ray::Ray;
+
+/// The kinds of primitives, in the order of their slots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(u32)]
+pub enum Kind {
+    /// A triangle of an indexed mesh.
+    Triangle,
+    /// A sphere.
+    Sphere,
+    /// An axis-aligned box.
+    Box,
+    /// A flat disc.
+    Disc,
+    /// A capped cylinder, cone or frustum.
+    Cone,
+}
+
+impl Kind {
+    /// All kinds, in order.
+    pub const ALL: [Kind; 5] = [Kind::Triangle, Kind::Sphere, Kind::Box, Kind::Disc, Kind::Cone];
+
+    #[inline(always)]
+    pub(crate) const fn from_number(number: u32) -> Option<Self> {
+        match number {
+            0 => Some(Kind::Triangle),
+            1 => Some(Kind::Sphere),
+            2 => Some(Kind::Box),
+            3 => Some(Kind::Disc),
+            4 => Some(Kind::Cone),
+            _ => None,
+        }
+    }
+
+    /// The name that tables use.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Kind::Triangle => "triangle",
+            Kind::Sphere => "sphere",
+            Kind::Box => "box",
+            Kind::Disc => "disc",
+            Kind::Cone => "cone",
+        }
+    }
+}
+
+/// The part of a primitive's surface that a crossing lies on; each kernel numbers its own.
+pub(crate) type Part = u8;
+
+/// Where a line enters and leaves a primitive; the same place twice for a flat one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crossing<N> {
+    pub(crate) enter: (N, Part),
+    pub(crate) leave: (N, Part),
+}
+
+impl<N: Copy> Crossing<N> {
+    #[inline(always)]
+    pub(crate) fn flat(t: N) -> Self {
+        Self { enter: (t, 0), leave: (t, 0) }
+    }
+}
+
+/// How a surface lies where it was hit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surface<N> {
+    /// Outward, or to the front; of length 1.
+    pub(crate) normal: [N; 3],
+    /// The largest magnitude of a coordinate that the kernel computed with, for the error bound.
+    pub(crate) extent: N,
+}
+
+/// The hit of a crossing in `tmin <= t <= tmax`, if there is one.
+///
+/// `t` is clamped to the interval of the primitive's own box, which holds the true one: that never
+/// adds to an error, and makes culling conservative whatever a kernel rounded. A NaN is no hit.
+#[inline(always)]
+pub(crate) fn accept<N: Number>(
+    ray: &Ray<N>,
+    crossing: Crossing<N>,
+    bounds: UnitBox,
+    tmax: N,
+) -> Option<(N, Part)> {
+    let interval = ray.cull.interval(&bounds);
+    if interval.near > interval.far {
+        return None;
+    }
+    let (near, far) = (N::from_cull(interval.near), N::from_cull(interval.far));
+    let clamp = |t: N| {
+        if t < near {
+            near
+        } else if t > far {
+            far
+        } else {
+            t
+        }
+    };
+    let enter = clamp(crossing.enter.0);
+    if enter >= ray.tmin && enter <= tmax {
+        return Some((enter, crossing.enter.1));
+    }
+    let leave = clamp(crossing.leave.0);
+    (leave >= ray.tmin && leave <= tmax).then_some((leave, crossing.leave.1))
+}
+
+/// The crossing of a plane through `relative` (a point as seen from the ray's origin) with a normal
+/// of any length. `None` where the ray runs along the plane.
+#[inline(always)]
+pub(crate) fn cross_plane<N: Number>(ray: &Ray<N>, normal: [N; 3], relative: [N; 3]) -> Option<N> {
+    let approach = N::dot(normal, ray.slope);
+    if approach == N::Wide::default() {
+        return None;
+    }
+    Some(N::divide(N::dot(normal, relative), approach))
+}
+
+/// The larger of two extents, for error bounds.
+#[inline(always)]
+pub(crate) fn extent<N: Number>(coordinates: [N; 3]) -> N {
+    coordinates[0].abs().max(coordinates[1].abs()).max(coordinates[2].abs())
+}
+
+/// The vertices of all meshes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Vertices<'a> {
+    V16(&'a [Vertex16]),
+    V24(&'a [Vertex24]),
+}
+
+impl Vertices<'_> {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Vertices::V16(vertices) => vertices.len(),
+            Vertices::V24(vertices) => vertices.len(),
+        }
+    }
+
+    /// A vertex in 1/256 unit.
+    pub(crate) fn position(&self, index: usize) -> Option<[i32; 3]> {
+        match self {
+            Vertices::V16(vertices) => vertices.get(index).map(Vertex::position),
+            Vertices::V24(vertices) => vertices.get(index).map(Vertex::position),
+        }
+    }
+}
+
+/// The triangles of all meshes, as vertex indices.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Triangles<'a> {
+    U16(&'a [[u16; 3]]),
+    U32(&'a [[u32; 3]]),
+}
+
+impl Triangles<'_> {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Triangles::U16(triangles) => triangles.len(),
+            Triangles::U32(triangles) => triangles.len(),
+        }
+    }
+
+    pub(crate) fn corners(&self, index: usize) -> Option<[usize; 3]> {
+        match self {
+            Triangles::U16(triangles) => triangles.get(index).map(Corners::corners),
+            Triangles::U32(triangles) => triangles.get(index).map(Corners::corners),
+        }
+    }
+}
+
+/// All spheres.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Spheres<'a> {
+    S16(&'a [Sphere16]),
+    S24(&'a [Sphere24]),
+}
+
+impl Spheres<'_> {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Spheres::S16(spheres) => spheres.len(),
+            Spheres::S24(spheres) => spheres.len(),
+        }
+    }
+
+    pub(crate) fn get(&self, index: usize) -> Option<([i32; 3], i32)> {
+        match self {
+            Spheres::S16(spheres) => spheres.get(index).map(Sphere::lattice),
+            Spheres::S24(spheres) => spheres.get(index).map(Sphere::lattice),
+        }
+    }
+}
+
+/// All primitives of a blob, each kind in an array of its own.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shapes<'a> {
+    pub(crate) vertices: Vertices<'a>,
+    pub(crate) triangles: Triangles<'a>,
+    pub(crate) spheres: Spheres<'a>,
+    pub(crate) boxes: &'a [Cuboid],
+    pub(crate) discs: &'a [Disc],
+    pub(crate) cones: &'a [Cone],
+}
+
+impl Shapes<'_> {
+    /// Number of primitives of a kind.
+    pub(crate) fn count(&self, kind: Kind) -> usize {
+        match kind {
+            Kind::Triangle => self.triangles.len(),
+            Kind::Sphere => self.spheres.len(),
+            Kind::Box => self.boxes.len(),
+            Kind::Disc => self.discs.len(),
+            Kind::Cone => self.cones.len(),
+        }
+    }
+
+    /// Number of primitives.
+    pub(crate) fn total(&self) -> usize {
+        Kind::ALL.iter().map(|&kind| self.count(kind)).sum()
+    }
+
+    /// The slot of a primitive among those of all kinds.
+    pub(crate) fn slot(&self, kind: Kind, index: u32) -> usize {
+        let before = Kind::ALL.iter().take_while(|&&other| other != kind);
+        before.map(|&other| self.count(other)).sum::<usize>() + index as usize
+    }
+
+    /// The corners of a triangle in 1/256 unit.
+    pub(crate) fn triangle(&self, index: usize) -> Option<[[i32; 3]; 3]> {
+        let [a, b, c] = self.triangles.corners(index)?;
+        let position = |corner| self.vertices.position(corner);
+        Some([position(a)?, position(b)?, position(c)?])
+    }
+
+    /// The box of a primitive.
+    pub(crate) fn bounds(&self, kind: Kind, index: usize) -> Option<UnitBox> {
+        Some(match kind {
+            Kind::Triangle => triangle::bounds(self.triangle(index)?),
+            Kind::Sphere => {
+                let (center, radius) = self.spheres.get(index)?;
+                sphere::bounds(center, radius)
+            }
+            Kind::Box => self.boxes.get(index)?.bounds(),
+            Kind::Disc => self.discs.get(index)?.bounds,
+            Kind::Cone => self.cones.get(index)?.bounds,
+        })
+    }
+
+    /// Whether all primitives of a leaf exist and lie in a box.
+    pub(crate) fn leaf_inside(&self, leaf: Leaf, outer: &UnitBox) -> bool {
+        let first = leaf.first as usize;
+        (first..first + leaf.count as usize).all(|index| {
+            self.bounds(leaf.kind, index).is_some_and(|bounds| outer.contains(&bounds))
+        })
+    }
+
+    /// How a primitive's surface lies where a ray hit it.
+    pub(crate) fn surface<N: Number>(
+        &self,
+        kind: Kind,
+        index: usize,
+        part: Part,
+        point: [N; 3],
+    ) -> Option<Surface<N>> {
+        Some(match kind {
+            Kind::Triangle => triangle::surface(self.triangle(index)?),
+            Kind::Sphere => {
+                let (center, radius) = self.spheres.get(index)?;
+                sphere::surface(center, radius, point)
+            }
+            Kind::Box => self.boxes.get(index)?.surface(part),
+            Kind::Disc => self.discs.get(index)?.surface(),
+            Kind::Cone => self.cones.get(index)?.surface(part, point),
+        })
+    }
+}

@@ -1,0 +1,57 @@
+//! Spheres, judged at the point of the line that is closest to the centre.
+//!
+//! The discriminant is formed from the vector between that point and the centre, which loses
+//! nothing to cancellation when the sphere is small or far away (Haines, Günther, Akenine-Möller,
+//! "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019).
+
+use super::{Crossing, Surface, extent};
+use crate::blob::record::UnitBox;
+use crate::number::Number;
+use crate::ray::Ray;
+
+/// The crossing with a sphere. `recip_norm2` is [`Number::recip_norm2`] of the ray's slopes.
+///
+/// Cost: 18 multiplications and additions to reject, and a square root to accept.
+#[inline(always)]
+pub(crate) fn cross<N: Number>(
+    ray: &Ray<N>,
+    recip_norm2: N,
+    center: [i32; 3],
+    radius: i32,
+) -> Option<Crossing<N>> {
+    let axis = |k: usize| N::from_lattice(center[k]) - ray.origin[k];
+    let relative = [axis(0), axis(1), axis(2)];
+    let radius = N::from_lattice(radius);
+    let closest = N::from_wide(N::wide_scale(N::dot(relative, ray.slope), recip_norm2));
+    let axis = |k: usize| relative[k] - closest * ray.slope[k];
+    let apart = [axis(0), axis(1), axis(2)];
+    // The box first, so that squares stay in range.
+    if !(apart[0].abs() <= radius && apart[1].abs() <= radius && apart[2].abs() <= radius) {
+        return None;
+    }
+    let square = radius.wide(radius) - N::dot(apart, apart);
+    if square < N::Wide::default() {
+        return None;
+    }
+    let half = N::root(N::wide_scale(square, recip_norm2));
+    Some(Crossing { enter: (closest - half, 0), leave: (closest + half, 0) })
+}
+
+/// The box of a sphere.
+#[inline(always)]
+pub(crate) fn bounds(center: [i32; 3], radius: i32) -> UnitBox {
+    UnitBox::around(
+        center.map(|x| x.wrapping_sub(radius)),
+        center.map(|x| x.wrapping_add(radius)),
+    )
+}
+
+/// Outward.
+pub(crate) fn surface<N: Number>(center: [i32; 3], radius: i32, point: [N; 3]) -> Surface<N> {
+    let center = center.map(N::from_lattice);
+    let axis = |k: usize| point[k] - center[k];
+    Surface {
+        normal: N::normalize([axis(0), axis(1), axis(2)]).0,
+        extent: extent(center) + N::from_lattice(radius),
+    }
+}

@@ -1,0 +1,264 @@
+//! Builds the bounding volume hierarchy: top down, by the surface area heuristic over bins.
+//!
+//! The heuristic is MacDonald and Booth's ("Heuristics for ray tracing using space subdivision",
+//! 1990); bins are Wald's ("On fast construction of SAH-based bounding volume hierarchies", 2007).
+//! A node with few primitives is swept exactly instead.
+//!
+//! The builder cannot run away: where all centroids are equal, or where the depth that is left
+//! would not do otherwise, a node is cut in two halves of equal count. So the depth never exceeds
+//! [`MAX_STACK_DEPTH`], and time is `O(n log n)` a level at the most.
+
+use gridel_core::accel::{Leaf, MAX_STACK_DEPTH};
+use gridel_core::Kind;
+use gridel_core::blob::record::UnitBox;
+
+/// A primitive as the builder sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Primitive {
+    pub bounds: UnitBox,
+    pub kind: Kind,
+    /// Its place among the compiler's primitives.
+    pub index: u32,
+}
+
+impl Primitive {
+    /// Twice the box's centre.
+    fn centroid(&self, axis: usize) -> i32 {
+        let [low, high] = self.bounds.0[axis];
+        i32::from(low) + i32::from(high)
+    }
+}
+
+/// A node: a leaf's range of the (reordered) primitives, or two children.
+#[derive(Debug)]
+pub enum Node {
+    Leaf { bounds: UnitBox, first: usize, count: usize },
+    Inner { bounds: UnitBox, children: Box<[Node; 2]> },
+}
+
+impl Node {
+    pub fn bounds(&self) -> &UnitBox {
+        match self {
+            Node::Leaf { bounds, .. } | Node::Inner { bounds, .. } => bounds,
+        }
+    }
+}
+
+/// What a step down the hierarchy costs, a primitive's test being 1.
+const STEP_COST: f64 = 1.0;
+/// Most primitives in a leaf, unless they cannot be told apart.
+const LEAF_SIZE: usize = 4;
+/// Nodes with at most this many primitives are swept, others binned.
+const SWEEP_SIZE: usize = 512;
+const BINS: usize = 32;
+/// From this many primitives on, the two halves are built in parallel.
+const PARALLEL_SIZE: usize = 4096;
+
+/// Builds a hierarchy and puts the primitives in the order of its leaves. `None` without primitives.
+pub fn build(primitives: &mut [Primitive]) -> Option<Node> {
+    if primitives.is_empty() {
+        return None;
+    }
+    // A leaf is reached after at most this many pairs.
+    Some(build_node(primitives, 0, MAX_STACK_DEPTH))
+}
+
+/// The surface area heuristic's cost of a hierarchy, the root's area being 1.
+pub fn sah_cost(root: &Node) -> f64 {
+    fn sum(node: &Node) -> f64 {
+        match node {
+            Node::Leaf { bounds, count, .. } => area(bounds) * *count as f64,
+            Node::Inner { bounds, children } => {
+                area(bounds) * STEP_COST + sum(&children[0]) + sum(&children[1])
+            }
+        }
+    }
+    sum(root) / area(root.bounds()).max(1.0)
+}
+
+fn build_node(primitives: &mut [Primitive], first: usize, levels: usize) -> Node {
+    let bounds = union(primitives);
+    let count = primitives.len();
+    let leaf = Node::Leaf { bounds, first, count };
+    if count == 1 {
+        return leaf;
+    }
+    let one_kind = primitives.iter().all(|p| p.kind == primitives[0].kind);
+    // Halving needs as many levels as the count has bits; kinds may have to be told apart below.
+    let halvings = usize::BITS as usize - count.leading_zeros() as usize + Kind::ALL.len();
+    let split = if levels <= halvings { None } else { best_split(primitives, &bounds) };
+    let leaf_cost = count as f64;
+    let worth_it = split.as_ref().is_some_and(|split| split.cost < leaf_cost);
+    if one_kind && count <= LEAF_SIZE && !worth_it {
+        return leaf;
+    }
+    let middle = match split {
+        Some(split) => split.apply(primitives),
+        None if one_kind && same_box(primitives) && count <= Leaf::MAX_COUNT as usize => {
+            return leaf;
+        }
+        None if !one_kind && same_box(primitives) => {
+            // Nothing but their kinds tells them apart.
+            primitives.sort_by_key(|p| p.kind);
+            let kind = primitives[0].kind;
+            primitives.partition_point(|p| p.kind == kind)
+        }
+        None => halve(primitives, &bounds),
+    };
+    let (left, right) = primitives.split_at_mut(middle);
+    let build_left = |left| build_node(left, first, levels - 1);
+    let build_right = |right| build_node(right, first + middle, levels - 1);
+    let children = if count >= PARALLEL_SIZE {
+        rayon::join(|| build_left(left), || build_right(right))
+    } else {
+        (build_left(left), build_right(right))
+    };
+    Node::Inner { bounds, children: Box::new([children.0, children.1]) }
+}
+
+/// A split: the primitives whose key is below a limit go left.
+struct Split {
+    cost: f64,
+    axis: usize,
+    /// Centroids below this (or, for a sweep, the first so many in order) go left.
+    rule: Rule,
+}
+
+enum Rule {
+    Below(i32),
+    First(usize),
+}
+
+impl Split {
+    fn apply(&self, primitives: &mut [Primitive]) -> usize {
+        match self.rule {
+            Rule::First(count) => {
+                sort(primitives, self.axis);
+                count
+            }
+            Rule::Below(limit) => partition(primitives, |p| p.centroid(self.axis) < limit),
+        }
+    }
+}
+
+/// The cheapest split, or `None` where no plane separates the centroids.
+fn best_split(primitives: &mut [Primitive], bounds: &UnitBox) -> Option<Split> {
+    let scale = 1.0 / area(bounds).max(1.0);
+    let splits = (0..3).filter_map(|axis| {
+        let centroids = || primitives.iter().map(|p| p.centroid(axis));
+        let (low, high) = (centroids().min()?, centroids().max()?);
+        if low == high {
+            return None;
+        }
+        if primitives.len() <= SWEEP_SIZE {
+            sweep(primitives, axis, scale)
+        } else {
+            bin(primitives, axis, low, high, scale)
+        }
+    });
+    splits.min_by(|a, b| a.cost.total_cmp(&b.cost))
+}
+
+/// Tries every split of the primitives in order of their centroids.
+fn sweep(primitives: &[Primitive], axis: usize, scale: f64) -> Option<Split> {
+    let mut ordered = primitives.to_vec();
+    sort(&mut ordered, axis);
+    let mut right_costs = vec![0.0; ordered.len()];
+    let mut right: Option<UnitBox> = None;
+    for (place, primitive) in ordered.iter().enumerate().rev() {
+        let bounds = grow(right, &primitive.bounds);
+        right = Some(bounds);
+        right_costs[place] = area(&bounds) * (ordered.len() - place) as f64;
+    }
+    let mut left: Option<UnitBox> = None;
+    let costs = ordered.iter().enumerate().skip(1).map(|(place, _)| {
+        let bounds = grow(left, &ordered[place - 1].bounds);
+        left = Some(bounds);
+        (area(&bounds) * place as f64 + right_costs[place], place)
+    });
+    let (cost, place) = costs.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(Split { cost: STEP_COST + cost * scale, axis, rule: Rule::First(place) })
+}
+
+/// Tries the limits of equal bins.
+fn bin(primitives: &[Primitive], axis: usize, low: i32, high: i32, scale: f64) -> Option<Split> {
+    let width = i64::from(high - low) + 1;
+    let bin_of = |centroid: i32| (i64::from(centroid - low) * BINS as i64 / width) as usize;
+    let mut bins: [Option<UnitBox>; BINS] = [None; BINS];
+    let mut counts = [0_usize; BINS];
+    for primitive in primitives {
+        let bin = bin_of(primitive.centroid(axis));
+        bins[bin] = Some(grow(bins[bin], &primitive.bounds));
+        counts[bin] += 1;
+    }
+    let mut right_costs = [0.0; BINS];
+    let (mut right, mut right_count) = (None, 0);
+    for place in (1..BINS).rev() {
+        right = join(right, bins[place]);
+        right_count += counts[place];
+        right_costs[place] = right.map_or(0.0, |bounds| area(&bounds)) * right_count as f64;
+    }
+    let (mut left, mut left_count, mut best) = (None, 0, None);
+    for place in 1..BINS {
+        left = join(left, bins[place - 1]);
+        left_count += counts[place - 1];
+        if left_count == 0 || left_count == primitives.len() {
+            continue;
+        }
+        let cost = left.map_or(0.0, |bounds| area(&bounds)) * left_count as f64 + right_costs[place];
+        if best.is_none_or(|(least, _)| cost < least) {
+            best = Some((cost, place));
+        }
+    }
+    let (cost, place) = best?;
+    // The least centroid of the bin: ceil(place * width / BINS) from the low end.
+    let limit = low + ((place as i64 * width + BINS as i64 - 1) / BINS as i64) as i32;
+    Some(Split { cost: STEP_COST + cost * scale, axis, rule: Rule::Below(limit) })
+}
+
+/// Cuts in two halves of equal count along the longest side.
+fn halve(primitives: &mut [Primitive], bounds: &UnitBox) -> usize {
+    let side = |axis: usize| i32::from(bounds.0[axis][1]) - i32::from(bounds.0[axis][0]);
+    let axis = (0..3).max_by_key(|&axis| side(axis)).unwrap_or(0);
+    sort(primitives, axis);
+    primitives.len() / 2
+}
+
+/// Sorts by centroid; the index makes the order one and the same on every machine.
+fn sort(primitives: &mut [Primitive], axis: usize) {
+    primitives.sort_unstable_by_key(|p| (p.centroid(axis), p.index));
+}
+
+/// Moves what satisfies a condition to the front, keeping the order, and returns its count.
+fn partition(primitives: &mut [Primitive], condition: impl Fn(&Primitive) -> bool) -> usize {
+    let (front, back): (Vec<_>, Vec<_>) = primitives.iter().partition(|p| condition(p));
+    primitives[..front.len()].copy_from_slice(&front);
+    primitives[front.len()..].copy_from_slice(&back);
+    front.len()
+}
+
+fn same_box(primitives: &[Primitive]) -> bool {
+    primitives.iter().all(|p| p.bounds == primitives[0].bounds)
+}
+
+fn union(primitives: &[Primitive]) -> UnitBox {
+    primitives.iter().fold(primitives[0].bounds, |bounds, p| bounds.union(&p.bounds))
+}
+
+fn grow(bounds: Option<UnitBox>, other: &UnitBox) -> UnitBox {
+    bounds.map_or(*other, |bounds| bounds.union(other))
+}
+
+fn join(a: Option<UnitBox>, b: Option<UnitBox>) -> Option<UnitBox> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(a.union(&b)),
+        (a, b) => a.or(b),
+    }
+}
+
+/// Half the surface area in units.
+fn area(bounds: &UnitBox) -> f64 {
+    let side = |axis: usize| f64::from(i32::from(bounds.0[axis][1]) - i32::from(bounds.0[axis][0]));
+    let (x, y, z) = (side(0), side(1), side(2));
+    x * y + y * z + z * x
+}

@@ -1,0 +1,188 @@
+//! Camera, lights and materials as records, and the effects that they call for.
+
+use super::CompileError;
+use super::lattice::Lattice;
+use crate::scene::{Camera, Color, Diffuse, Light, Material, Scene};
+use glam::DVec3;
+use gridel_core::Effects;
+use gridel_core::blob::record;
+
+/// Everything of a blob that is not geometry.
+#[derive(Debug)]
+pub struct Surroundings {
+    pub view: record::View,
+    pub lights: Vec<record::Light>,
+    /// Materials that an object has.
+    pub materials: Vec<record::Material>,
+    /// For each object, its place in `materials`.
+    pub object_material: Vec<u32>,
+    pub effects: Effects,
+    /// The names of the effects, and of what calls for each.
+    pub called_for: Vec<(String, Vec<String>)>,
+    /// What the scene lacks and was supplied.
+    pub supplied: Vec<String>,
+}
+
+impl Surroundings {
+    pub fn of(
+        scene: &Scene,
+        lattice: &Lattice,
+        (lowest, highest): (DVec3, DVec3),
+    ) -> Result<Self, CompileError> {
+        let mut supplied = Vec::new();
+        let camera = scene.camera.unwrap_or_else(|| {
+            supplied.push(String::from("a camera that shows the whole scene"));
+            framing(lowest, highest)
+        });
+        let mut lights = scene.lights.clone();
+        if lights.is_empty() && scene.ambient == [0.0; 3] {
+            supplied.push(String::from("a directional light from above the camera's left shoulder"));
+            let view = (camera.target - camera.eye).normalize();
+            let right = view.cross(camera.up).normalize();
+            let direction = view + 0.5 * right - 0.7 * camera.up.normalize();
+            lights.push(Light::Directional { direction, color: [1.0; 3] });
+        }
+        let size = (highest - lowest).max_element();
+        let far = |what: String, point: DVec3| -> Result<[i64; 3], CompileError> {
+            let q13 = lattice.to_units(point) * 8192.0;
+            // Comparisons that NaN fails.
+            if !(q13.abs().max_element() <= f64::powi(2.0, 50)) {
+                let distance = (point - lattice.origin).length();
+                return Err(CompileError::FarAway { what, distance, size });
+            }
+            Ok(q13.round().to_array().map(|x| x as i64))
+        };
+
+        let mut numbers: Vec<Option<u32>> = vec![None; scene.materials.len()];
+        let mut materials = Vec::new();
+        let mut called_for: Vec<(Effects, String)> = Vec::new();
+        let mut object_material = Vec::with_capacity(scene.objects.len());
+        for object in &scene.objects {
+            let number = *numbers[object.material].get_or_insert_with(|| {
+                let material = &scene.materials[object.material];
+                let record = material_record(material, lattice);
+                called_for.push((record.effects(), format!("material {}", material.name)));
+                materials.push(record);
+                materials.len() as u32 - 1
+            });
+            object_material.push(number);
+        }
+        if scene.render.shadows && !lights.is_empty() && !scene.objects.is_empty() {
+            called_for.push((Effects::SHADOW, format!("{} lights", lights.len())));
+        }
+        let effects = called_for.iter().fold(Effects::NONE, |all, (effects, _)| all.with(*effects));
+        let called_for = Effects::NAMED
+            .iter()
+            .filter(|(effect, _)| effects.contains(*effect))
+            .map(|(effect, name)| {
+                let callers = called_for.iter().filter(|(effects, _)| effects.contains(*effect));
+                (String::from(*name), callers.map(|(_, caller)| caller.clone()).collect())
+            })
+            .collect();
+
+        let lights = lights
+            .iter()
+            .enumerate()
+            .map(|(number, light)| light_record(light, number, &far))
+            .collect::<Result<_, _>>()?;
+        let view = view_record(scene, &camera, far(String::from("camera"), camera.eye)?);
+        Ok(Self { view, lights, materials, object_material, effects, called_for, supplied })
+    }
+}
+
+/// A camera that shows a box from above its front right corner.
+fn framing(lowest: DVec3, highest: DVec3) -> Camera {
+    let target = (lowest + highest) * 0.5;
+    let radius = (0.5 * (highest - lowest)).length().max(f64::MIN_POSITIVE);
+    let fov_degrees: f64 = 40.0;
+    let distance = radius / (fov_degrees.to_radians() * 0.5).sin();
+    let eye = target + DVec3::new(0.45, 0.35, 1.0).normalize() * distance;
+    Camera { eye, target, up: DVec3::Y, fov_degrees }
+}
+
+/// Vectors of the picture's frame, scaled so that their largest component has 28 bits.
+fn view_record(scene: &Scene, camera: &Camera, eye: [i64; 3]) -> record::View {
+    let forward = (camera.target - camera.eye).normalize();
+    let right = forward.cross(camera.up).normalize();
+    let half = (camera.fov_degrees.to_radians() * 0.5).tan();
+    let frame = [forward, right * half, right.cross(forward) * half];
+    let largest = frame.iter().map(|v| v.abs().max_element()).fold(0.0, f64::max);
+    let scale = f64::from(1 << 28) / largest;
+    let [forward, right, up] = frame.map(|v| (v * scale).round().to_array().map(|x| x as i32));
+    let render = &scene.render;
+    record::View {
+        eye,
+        forward,
+        right,
+        up,
+        background: radiance(scene.background),
+        ambient: radiance(scene.ambient),
+        cutoff: radiance([render.cutoff; 3])[0],
+        width: render.width.clamp(1, u16::MAX.into()) as u16,
+        height: render.height.clamp(1, u16::MAX.into()) as u16,
+        samples: render.samples,
+        depth: render.depth,
+        spare: 0,
+    }
+}
+
+fn light_record(
+    light: &Light,
+    number: usize,
+    far: &impl Fn(String, DVec3) -> Result<[i64; 3], CompileError>,
+) -> Result<record::Light, CompileError> {
+    Ok(match *light {
+        Light::Point { position, color } => record::Light {
+            vector: far(format!("light {number}"), position)?,
+            color: radiance(color),
+            directional: 0,
+        },
+        Light::Directional { direction, color } => {
+            let towards = -(direction / direction.abs().max_element()).normalize();
+            let vector = (towards * f64::from(1 << 30)).round().to_array().map(|x| x as i64);
+            record::Light { vector, color: radiance(color), directional: 1 }
+        }
+    })
+}
+
+fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
+    let (even, odd, checker_size, checker_origin) = match material.diffuse {
+        Diffuse::Plain(color) => (color, color, 0, [0; 3]),
+        Diffuse::Checker { even, odd, size, origin } => {
+            let unit = lattice.unit();
+            // At least one sub-step, at most what a length can hold.
+            let size = (size / unit).clamp(1.0 / 8192.0, 131_071.0);
+            // The pattern repeats after two cells.
+            let origin = lattice.to_units(origin).to_array().map(|x| x.rem_euclid(2.0 * size));
+            let q13 = |units: f64| (units * 8192.0).round() as i32;
+            (even, odd, q13(size), origin.map(|x| q13(x).min(1 << 30)))
+        }
+    };
+    let glass = material.transmit != [0.0; 3];
+    record::Material {
+        diffuse: ratio(even),
+        odd: ratio(odd),
+        checker_size,
+        checker_origin,
+        highlight: ratio(material.highlight),
+        mirror: ratio(material.mirror),
+        transmit: ratio(material.transmit),
+        inverse_ior: ratio([1.0 / material.ior.clamp(1.0, 4.0); 3])[0],
+        // The cast saturates: one unit of such glass lets nothing through anyway.
+        absorption: material.absorption.map(|coefficient| {
+            if glass { (coefficient * lattice.unit() * f64::powi(2.0, 32)).round() as u32 } else { 0 }
+        }),
+        shininess: material.shininess.clamp(1, 1024),
+        spare: 0,
+    }
+}
+
+/// Radiance with 20 fraction bits; saturates.
+fn radiance(color: Color) -> [i32; 3] {
+    color.map(|channel| (channel * f64::from(1 << 20)).round().max(0.0) as i32)
+}
+
+/// Ratios with 30 fraction bits, 0 to 1.
+fn ratio(color: Color) -> [i32; 3] {
+    color.map(|channel| (channel.clamp(0.0, 1.0) * f64::from(1 << 30)).round() as i32)
+}

@@ -1,0 +1,219 @@
+//! Writes the sections of a blob, each in the narrowest form that its values allow.
+
+use super::CompileError;
+use super::lattice::Lattice;
+use super::pairs::Flat;
+use super::primitives::Primitives;
+use super::surroundings::Surroundings;
+use crate::blob::Blob;
+use crate::scene::Scene;
+use gridel_core::accel::Entry;
+use gridel_core::blob::record::{
+    ALIGNMENT, ENDIANNESS, Header, MAGIC, SectionEntry, Sphere16, Sphere24, UnitBox, VERSION,
+    Vertex16, Vertex24,
+};
+use gridel_core::blob::{SectionKind, checksum};
+use gridel_core::{Kind, Structure};
+
+/// What a blob is made of.
+pub struct Parts<'p> {
+    pub scene: &'p Scene,
+    pub lattice: &'p Lattice,
+    pub primitives: &'p Primitives,
+    pub flat: &'p Flat,
+    pub bounds: Option<UnitBox>,
+    pub surroundings: &'p Surroundings,
+    pub structures: &'p [Structure],
+}
+
+/// A section before it has a place.
+struct Section {
+    kind: SectionKind,
+    stride: usize,
+    bytes: Vec<u8>,
+}
+
+fn section<T: bytemuck::NoUninit>(kind: SectionKind, records: &[T]) -> Section {
+    Section { kind, stride: size_of::<T>(), bytes: bytemuck::cast_slice(records).to_vec() }
+}
+
+/// A section of integers, in as few bytes each as the largest needs, but at least `narrowest`.
+fn indices(kind: SectionKind, values: &[u32], narrowest: usize) -> Section {
+    let largest = values.iter().copied().max().unwrap_or(0);
+    if narrowest == 1 && largest <= u8::MAX.into() {
+        section(kind, &values.iter().map(|&value| value as u8).collect::<Vec<_>>())
+    } else if largest <= u16::MAX.into() {
+        section(kind, &values.iter().map(|&value| value as u16).collect::<Vec<_>>())
+    } else {
+        section(kind, values)
+    }
+}
+
+fn counts_up(values: &[u32]) -> bool {
+    values.iter().enumerate().all(|(index, &value)| index as u32 == value)
+}
+
+/// Writes a blob.
+pub fn write(parts: &Parts<'_>) -> Result<Blob, CompileError> {
+    let has = |structure| parts.structures.contains(&structure);
+    let hierarchy = has(Structure::Bvh) || has(Structure::Flagged);
+    let Parts { scene, lattice, primitives, flat, surroundings, .. } = *parts;
+    let objects = scene.objects.len() as u32;
+    let total = primitives.total;
+
+    let mut sections = vec![section(SectionKind::View, &[surroundings.view])];
+    sections.push(section(SectionKind::Lights, &surroundings.lights));
+    sections.push(section(SectionKind::Materials, &surroundings.materials));
+    if objects != total && objects > 1 {
+        sections.push(indices(SectionKind::ObjectFirst, &primitives.object_first, 2));
+    }
+    if surroundings.materials.len() > 1 {
+        sections.push(indices(SectionKind::ObjectMaterial, &surroundings.object_material, 1));
+    }
+    let order: Vec<u32> = Kind::ALL
+        .iter()
+        .flat_map(|&kind| {
+            let numbers = &primitives.numbers[kind as usize];
+            flat.slots[kind as usize].iter().map(|&index| numbers[index as usize])
+        })
+        .collect();
+    if !counts_up(&order) || order.len() as u32 != total {
+        sections.push(indices(SectionKind::Order, &order, 2));
+    }
+    sections.extend(geometry(lattice, primitives, flat));
+    if hierarchy {
+        sections.push(section(SectionKind::Leaves, &flat.leaves));
+    }
+    if has(Structure::Bvh) {
+        sections.push(section(SectionKind::Pairs, &flat.pairs));
+    }
+    if has(Structure::Flagged) {
+        sections.push(section(SectionKind::FlaggedPairs, &flat.flagged));
+    }
+    sections.retain(|section| !section.bytes.is_empty());
+
+    let stack_depth = if hierarchy { flat.depth as u16 } else { 0 };
+    let structures = parts
+        .structures
+        .iter()
+        .chain(&[Structure::List])
+        .fold(0, |bits, structure| bits | structure.bit());
+    let header = Header {
+        magic: MAGIC,
+        endianness: ENDIANNESS,
+        version: VERSION,
+        section_count: sections.len() as u16,
+        blob_bytes: 0,
+        checksum: 0,
+        structures,
+        effects: surroundings.effects.0,
+        stack_depth,
+        longest_leaf: if hierarchy { flat.longest_leaf as u16 } else { 0 },
+        primitives: total,
+        objects,
+        lattice_bits: lattice.bits,
+        storage_bits: if lattice.bits <= 16 { 16 } else { 24 },
+        unit_exponent: lattice.unit_exponent,
+        origin: lattice.origin.to_array(),
+        bounds: parts.bounds.unwrap_or(UnitBox([[0; 2]; 3])),
+        stack_bytes: u32::from(stack_depth) * size_of::<Entry>() as u32,
+        spare: [0; 2],
+    };
+    assemble(header, &sections)
+}
+
+/// The geometry, every kind in the order of its slots.
+fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Section> {
+    fn in_order<T: Copy>(records: &[T], slots: &[u32]) -> Vec<T> {
+        slots.iter().map(|&index| records[index as usize]).collect()
+    }
+    let slots = |kind: Kind| &flat.slots[kind as usize][..];
+    let triangles = in_order(&primitives.triangles, slots(Kind::Triangle));
+    // Vertices in the order in which the leaves need them.
+    let mut number = vec![u32::MAX; primitives.vertices.len()];
+    let mut vertices = Vec::with_capacity(primitives.vertices.len());
+    let triangles: Vec<[u32; 3]> = triangles
+        .iter()
+        .map(|corners| {
+            corners.map(|vertex| {
+                let number = &mut number[vertex as usize];
+                if *number == u32::MAX {
+                    *number = vertices.len() as u32;
+                    vertices.push(primitives.vertices[vertex as usize]);
+                }
+                *number
+            })
+        })
+        .collect();
+    let spheres = in_order(&primitives.spheres, slots(Kind::Sphere));
+
+    let unit = |x: i32| (x >> 8) as i16;
+    let three_bytes = |x: i32| {
+        let [low, middle, high, _] = x.to_le_bytes();
+        [low, middle, high]
+    };
+    let (vertex_section, sphere_section) = if lattice.bits <= 16 {
+        let vertices: Vec<_> = vertices.iter().map(|v| Vertex16(v.map(unit))).collect();
+        let spheres: Vec<_> = spheres
+            .iter()
+            .map(|s| Sphere16 { center: Vertex16(s.center.map(unit)), radius: (s.radius >> 8) as u16 })
+            .collect();
+        (section(SectionKind::Vertices, &vertices), section(SectionKind::Spheres, &spheres))
+    } else {
+        let vertices: Vec<_> = vertices.iter().map(|v| Vertex24(v.map(three_bytes))).collect();
+        let spheres: Vec<_> = spheres
+            .iter()
+            .map(|s| Sphere24 {
+                center: Vertex24(s.center.map(three_bytes)),
+                radius: three_bytes(s.radius),
+            })
+            .collect();
+        (section(SectionKind::Vertices, &vertices), section(SectionKind::Spheres, &spheres))
+    };
+    let triangle_section = if vertices.len() <= usize::from(u16::MAX) + 1 {
+        let narrow: Vec<_> = triangles.iter().map(|t| t.map(|vertex| vertex as u16)).collect();
+        section(SectionKind::Triangles, &narrow)
+    } else {
+        section(SectionKind::Triangles, &triangles)
+    };
+    vec![
+        vertex_section,
+        triangle_section,
+        sphere_section,
+        section(SectionKind::Boxes, &in_order(&primitives.boxes, slots(Kind::Box))),
+        section(SectionKind::Discs, &in_order(&primitives.discs, slots(Kind::Disc))),
+        section(SectionKind::Cones, &in_order(&primitives.cones, slots(Kind::Cone))),
+    ]
+}
+
+/// Puts header, table and sections together.
+fn assemble(mut header: Header, sections: &[Section]) -> Result<Blob, CompileError> {
+    let mut offset = size_of::<Header>() + sections.len() * size_of::<SectionEntry>();
+    let mut entries = Vec::with_capacity(sections.len());
+    for section in sections {
+        offset = offset.next_multiple_of(ALIGNMENT);
+        entries.push(SectionEntry {
+            kind: section.kind as u16,
+            stride: section.stride as u16,
+            count: (section.bytes.len() / section.stride) as u32,
+            offset: offset as u32,
+            spare: 0,
+        });
+        offset += section.bytes.len();
+    }
+    let most = u32::MAX as usize;
+    if offset > most {
+        return Err(CompileError::TooMany { what: "bytes", count: offset, most });
+    }
+    header.blob_bytes = offset as u32;
+    let mut bytes = Vec::with_capacity(offset);
+    bytes.extend_from_slice(bytemuck::bytes_of(&header));
+    bytes.extend_from_slice(bytemuck::cast_slice(&entries));
+    for (section, entry) in sections.iter().zip(&entries) {
+        bytes.resize(entry.offset as usize, 0);
+        bytes.extend_from_slice(&section.bytes);
+    }
+    header.checksum = checksum(&bytes);
+    bytes[..size_of::<Header>()].copy_from_slice(bytemuck::bytes_of(&header));
+    Ok(Blob::new(&bytes))
+}

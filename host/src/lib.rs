@@ -1,0 +1,4 @@
+//! The host side of Gridel: scene files to blobs, blobs to pictures and hits.
+pub mod blob;
+pub mod compile;
+pub mod scene;

@@ -1,0 +1,192 @@
+//! Counts what a scene will hold before anything is placed: groups in groups can grow beyond all
+//! memory in a few lines.
+
+use super::material::Palette;
+use super::object::{Content, Group, Item};
+use super::source::{Name, Source, nearest};
+use crate::scene::{Object, SceneError, Shape};
+use std::collections::{BTreeMap, HashMap};
+
+/// The most primitives that a scene may hold.
+pub(super) const MAX_PRIMITIVES: u64 = 16_777_216;
+/// How deep groups may be nested; placing them takes stack.
+const MAX_NESTING: usize = 64;
+
+/// What placing some objects costs.
+#[derive(Clone, Copy, Default)]
+struct Cost {
+    /// Primitives, or as much memory as they would take.
+    primitives: u64,
+    /// How many groups are nested inside each other.
+    nesting: usize,
+}
+
+/// Proves that the objects and groups of a scene can be placed: names refer to something, no
+/// group contains itself, and limits are kept.
+pub(super) struct Census<'c> {
+    source: &'c Source,
+    groups: &'c BTreeMap<String, Group>,
+    palette: &'c Palette,
+    /// Groups whose cost is known.
+    known: HashMap<&'c str, Cost>,
+    /// Groups being counted, the outermost first.
+    open: Vec<&'c str>,
+}
+
+impl<'c> Census<'c> {
+    pub(super) fn new(
+        source: &'c Source,
+        groups: &'c BTreeMap<String, Group>,
+        palette: &'c Palette,
+    ) -> Self {
+        Self {
+            source,
+            groups,
+            palette,
+            known: HashMap::new(),
+            open: Vec::new(),
+        }
+    }
+
+    /// Proves it for a scene, and returns warnings about groups that it does not use.
+    pub(super) fn take(mut self, items: &'c [Item]) -> Result<Vec<String>, SceneError> {
+        self.items(items, 0)?;
+        let used = |name: &String| self.known.contains_key(name.as_str());
+        let unused: Vec<_> = self.groups.iter().filter(|(name, _)| !used(name)).collect();
+        let mut warnings = Vec::new();
+        for (name, group) in unused {
+            let place = self.source.place(&group.span);
+            warnings.push(format!("{place}: the group {name:?} is placed nowhere"));
+            // What is never placed must still make sense.
+            self.open.push(name);
+            self.items(&group.items, 1)?;
+            self.open.pop();
+        }
+        Ok(warnings)
+    }
+
+    fn items(&mut self, items: &'c [Item], nesting: usize) -> Result<Cost, SceneError> {
+        let mut total = Cost::default();
+        for item in items {
+            if let Some(material) = &item.material {
+                self.palette.find(self.source, material)?;
+            }
+            let cost = match &item.content {
+                Content::Shape(shape) => Cost {
+                    primitives: primitives(shape),
+                    nesting: 0,
+                },
+                // An import is weighed as at least 1, so that nothing can be repeated for free.
+                Content::Import { scene, .. } => Cost {
+                    primitives: imported(&scene.objects).max(1),
+                    nesting: 0,
+                },
+                Content::Group(items) => self.nested(items, nesting, item)?,
+                Content::Instance(name) => self.instance(name, nesting, item)?,
+            };
+            total.primitives = total.primitives.saturating_add(cost.primitives);
+            total.nesting = total.nesting.max(cost.nesting);
+            if total.primitives > MAX_PRIMITIVES {
+                return Err(too_many(self.source, item));
+            }
+        }
+        Ok(total)
+    }
+
+    fn nested(
+        &mut self,
+        items: &'c [Item],
+        nesting: usize,
+        item: &Item,
+    ) -> Result<Cost, SceneError> {
+        self.check_nesting(nesting + 1, item)?;
+        let cost = self.items(items, nesting + 1)?;
+        Ok(Cost {
+            nesting: cost.nesting + 1,
+            ..cost
+        })
+    }
+
+    fn instance(
+        &mut self,
+        name: &'c Name,
+        nesting: usize,
+        item: &Item,
+    ) -> Result<Cost, SceneError> {
+        let group = find(self.groups, self.source, name)?;
+        let text = name.text.as_str();
+        if let Some(&cost) = self.known.get(text) {
+            self.check_nesting(nesting + cost.nesting, item)?;
+            return Ok(cost);
+        }
+        if let Some(first) = self.open.iter().position(|open| *open == text) {
+            let circle = [&self.open[first..], &[text]].concat().join(" -> ");
+            return Err(self.source.error(
+                &name.span,
+                format!("these groups contain each other in a circle: {circle}"),
+                "remove one of these instances",
+            ));
+        }
+        self.open.push(text);
+        let cost = self.nested(&group.items, nesting, item)?;
+        self.open.pop();
+        self.known.insert(text, cost);
+        Ok(cost)
+    }
+
+    fn check_nesting(&self, nesting: usize, item: &Item) -> Result<(), SceneError> {
+        if nesting <= MAX_NESTING {
+            return Ok(());
+        }
+        Err(self.source.error(
+            &item.span,
+            format!("groups are nested deeper than {MAX_NESTING}"),
+            "put the objects of some groups into the groups that contain these",
+        ))
+    }
+}
+
+pub(super) fn too_many(source: &Source, item: &Item) -> SceneError {
+    source.error(
+        &item.span,
+        format!("with this object the scene holds more than {MAX_PRIMITIVES} primitives"),
+        "use fewer instances, or simpler groups and meshes",
+    )
+}
+
+/// The group that a name refers to.
+pub(super) fn find<'g>(
+    groups: &'g BTreeMap<String, Group>,
+    source: &Source,
+    name: &Name,
+) -> Result<&'g Group, SceneError> {
+    groups.get(&name.text).ok_or_else(|| {
+        let remedy = match nearest(&name.text, groups.keys().map(String::as_str)) {
+            Some(near) => format!("did you mean {near:?}? Or define `[group.{}]`", name.text),
+            None => format!(
+                "define it: `[[group.{}.object]]` above each of its objects",
+                name.text
+            ),
+        };
+        source.error(
+            &name.span,
+            format!("there is no group {:?}", name.text),
+            remedy,
+        )
+    })
+}
+
+fn imported(objects: &[Object]) -> u64 {
+    objects.iter().map(|object| primitives(&object.shape)).sum()
+}
+
+/// How many primitives a shape is; vertices that no triangle uses weigh as triangles would.
+pub(super) fn primitives(shape: &Shape) -> u64 {
+    match shape {
+        Shape::Mesh {
+            vertices,
+            triangles,
+        } => triangles.len().max(vertices.len() / 3).max(1) as u64,
+        _ => 1,
+    }
+}

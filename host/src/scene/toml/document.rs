@@ -1,0 +1,139 @@
+//! A scene file from top to bottom.
+
+use super::census::Census;
+use super::import::Imports;
+use super::material::Palette;
+use super::object::{Content, Item, Reader};
+use super::place::Placer;
+use super::source::Source;
+use super::transform::parallel;
+use super::value::Fields;
+use super::view;
+use crate::scene::{Camera, Color, Light, MoleculeOptions, Scene, SceneError};
+use glam::DVec3;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+const KEYS: &[&str] = &[
+    "camera",
+    "render",
+    "background",
+    "ambient",
+    "light",
+    "material",
+    "object",
+    "group",
+];
+
+const BLACK: Color = [0.0; 3];
+
+pub(super) fn read(
+    path: &Path,
+    imports: &mut Imports,
+    molecule: &MoleculeOptions,
+) -> Result<Scene, SceneError> {
+    let source = Source::read(path)?;
+    let document = source.parse()?;
+    let root = Fields::new(
+        &source,
+        document.span(),
+        document.get_ref(),
+        "scene",
+        &[KEYS],
+    )?;
+    let camera = root.or("camera", None, |table| view::camera(table).map(Some))?;
+    let render = root.or("render", None, |table| view::render(table).map(Some))?;
+    let lights = root.or("light", Vec::new(), view::lights)?;
+    let background = root.or("background", None, |value| value.color().map(Some))?;
+    let ambient = root.or("ambient", None, |value| value.color().map(Some))?;
+    let mut palette = root.or("material", Palette::default(), Palette::read)?;
+
+    let mut reader = Reader {
+        source: &source,
+        imports,
+        molecule,
+        palette: &mut palette,
+    };
+    let groups = root.or("group", BTreeMap::new(), |tables| reader.groups(tables))?;
+    let items = root.or("object", Vec::new(), |list| reader.items(list))?;
+
+    let warnings = Census::new(&source, &groups, &palette).take(&items)?;
+    imports.warnings.extend(warnings);
+    let objects = Placer::new(&source, &groups, &mut palette).place(&items)?;
+
+    let mut scene = Scene {
+        camera,
+        background: background.unwrap_or(BLACK),
+        ambient: ambient.unwrap_or(BLACK),
+        lights,
+        materials: palette.into_materials(),
+        objects,
+        render: render.unwrap_or_default(),
+    };
+    let lit = !scene.lights.is_empty();
+    for item in &items {
+        let Content::Import { scene: import, .. } = &item.content else {
+            continue;
+        };
+        if let (None, Some(camera)) = (scene.camera, import.camera) {
+            scene.camera = Some(moved_camera(&source, item, &camera)?);
+            scene.render = render.unwrap_or(import.render);
+        }
+        if !lit {
+            for light in &import.lights {
+                scene.lights.push(moved_light(&source, item, light)?);
+            }
+        }
+        if background.is_none() && scene.background == BLACK {
+            scene.background = import.background;
+        }
+        if ambient.is_none() && scene.ambient == BLACK {
+            scene.ambient = import.ambient;
+        }
+    }
+    Ok(scene)
+}
+
+fn moved_camera(source: &Source, item: &Item, camera: &Camera) -> Result<Camera, SceneError> {
+    let by = &item.transform;
+    let moved = Camera {
+        eye: by.transform_point3(camera.eye),
+        target: by.transform_point3(camera.target),
+        up: by.transform_vector3(camera.up),
+        ..*camera
+    };
+    if parallel(moved.target - moved.eye, moved.up) {
+        return Err(lost(source, item, "camera"));
+    }
+    Ok(moved)
+}
+
+fn moved_light(source: &Source, item: &Item, light: &Light) -> Result<Light, SceneError> {
+    let by = &item.transform;
+    let (moved, sound) = match *light {
+        Light::Point { position, color } => {
+            let position = by.transform_point3(position);
+            (Light::Point { position, color }, position.is_finite())
+        }
+        Light::Directional { direction, color } => {
+            let direction = by.transform_vector3(direction);
+            let sound = direction.is_finite() && direction != DVec3::ZERO;
+            (Light::Directional { direction, color }, sound)
+        }
+    };
+    if sound {
+        Ok(moved)
+    } else {
+        Err(lost(source, item, "light"))
+    }
+}
+
+fn lost(source: &Source, item: &Item, what: &str) -> SceneError {
+    source.error(
+        &item.span,
+        format!("a {what} of this import cannot follow the transform of the import"),
+        format!(
+            "use smaller translations and scales nearer to 1, or give this scene its own {what}"
+        ),
+    )
+}

@@ -1,0 +1,113 @@
+//! Reading other scene files into this one: each once, and none into itself.
+
+use super::document;
+use super::source::{Name, Source};
+use crate::scene::{self, MoleculeOptions, Scene, SceneError};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+/// How many files may be open inside each other; each takes stack.
+const MAX_OPEN: usize = 32;
+
+/// The files that were imported, and those that are being read right now.
+#[derive(Default)]
+pub(super) struct Imports {
+    /// Canonical paths, the outermost file first.
+    open: Vec<PathBuf>,
+    /// A scene may import a file many times, but with few different options.
+    done: HashMap<PathBuf, Vec<(MoleculeOptions, Rc<Scene>)>>,
+    pub(super) warnings: Vec<String>,
+}
+
+impl Imports {
+    /// Reads the scene file from which everything starts.
+    pub(super) fn root(
+        &mut self,
+        path: &Path,
+        options: &MoleculeOptions,
+    ) -> Result<Scene, SceneError> {
+        // A path that cannot be resolved cannot be read either, and reading says why.
+        let canonical = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        self.nested(path, canonical, options)
+    }
+
+    fn nested(
+        &mut self,
+        path: &Path,
+        canonical: PathBuf,
+        options: &MoleculeOptions,
+    ) -> Result<Scene, SceneError> {
+        self.open.push(canonical);
+        let scene = document::read(path, self, options)?;
+        self.open.pop();
+        Ok(scene)
+    }
+
+    /// Reads the scene that `source` imports by `file`, which is relative to its own folder.
+    pub(super) fn import(
+        &mut self,
+        source: &Source,
+        file: &Name,
+        options: &MoleculeOptions,
+    ) -> Result<Rc<Scene>, SceneError> {
+        let folder = source.path.parent().unwrap_or(Path::new(""));
+        let path = folder.join(&file.text);
+        let canonical = std::fs::canonicalize(&path).map_err(|error| {
+            source.error(
+                &file.span,
+                format!("the import {} cannot be read: {error}", path.display()),
+                "check the path; it is relative to the folder of the scene file that imports it",
+            )
+        })?;
+        if let Some(first) = self.open.iter().position(|open| *open == canonical) {
+            return Err(source.error(
+                &file.span,
+                self.circle(first),
+                "remove one of these imports",
+            ));
+        }
+        if self.open.len() >= MAX_OPEN {
+            return Err(source.error(
+                &file.span,
+                format!("imports are nested deeper than {MAX_OPEN} files"),
+                "import the file nearer to the outermost scene",
+            ));
+        }
+        let done = self.done.get(&canonical).into_iter().flatten();
+        if let Some((_, scene)) = done.into_iter().find(|(with, _)| with == options) {
+            return Ok(Rc::clone(scene));
+        }
+        let is_toml = path
+            .extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+        let scene = if is_toml {
+            self.nested(&path, canonical.clone(), options)
+        } else {
+            scene::load(&path, options).map(|imported| {
+                self.warnings.extend(imported.warnings);
+                imported.scene
+            })
+        };
+        let scene = scene.map(Rc::new).map_err(|mut error| {
+            error.cause = format!("{} (imported by {})", error.cause, source.place(&file.span));
+            error
+        })?;
+        self.done
+            .entry(canonical)
+            .or_default()
+            .push((*options, Rc::clone(&scene)));
+        Ok(scene)
+    }
+
+    /// Describes how the open files from `first` on import each other in a circle.
+    fn circle(&self, first: usize) -> String {
+        let around = self.open[first..].iter().chain([&self.open[first]]);
+        let names = around.map(|path| path.file_name().unwrap_or_default().to_string_lossy());
+        let names: Vec<_> = names.collect();
+        format!(
+            "these files import each other in a circle: {}",
+            names.join(" -> ")
+        )
+    }
+}

@@ -1,0 +1,179 @@
+//! The `[[object]]` and `[group.NAME]` tables, read into a tree that is placed later.
+
+use super::import::Imports;
+use super::material::Palette;
+use super::source::{Name, Source, Span};
+use super::value::{Fields, Value};
+use super::{shape, transform};
+use crate::scene::{MoleculeOptions, MoleculeStyle, Scene, SceneError, Shape};
+use glam::DAffine3;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::rc::Rc;
+
+/// The keys of every object.
+const KEYS: &[&str] = &["kind", "name", "material"];
+
+const KINDS: &[&str] = &[
+    "sphere", "box", "disc", "cylinder", "cone", "frustum", "triangle", "mesh", "group",
+    "instance", "import",
+];
+
+/// An object as the file states it.
+pub(super) struct Item {
+    /// The name the file gives it, or one made of its kind and its number in its list.
+    pub(super) name: String,
+    pub(super) material: Option<Name>,
+    pub(super) transform: DAffine3,
+    pub(super) span: Span,
+    pub(super) content: Content,
+}
+
+pub(super) enum Content {
+    Shape(Shape),
+    /// Objects that stand here and nowhere else.
+    Group(Vec<Item>),
+    /// The group of this name.
+    Instance(Name),
+    /// Another scene file, and which of our materials each of its materials is.
+    Import {
+        scene: Rc<Scene>,
+        materials: Vec<usize>,
+    },
+}
+
+/// A `[group.NAME]`.
+pub(super) struct Group {
+    pub(super) span: Span,
+    pub(super) items: Vec<Item>,
+}
+
+/// Reads objects, and the files that they import.
+pub(super) struct Reader<'r> {
+    pub(super) source: &'r Source,
+    pub(super) imports: &'r mut Imports,
+    pub(super) molecule: &'r MoleculeOptions,
+    /// Takes in the materials of imports.
+    pub(super) palette: &'r mut Palette,
+}
+
+impl Reader<'_> {
+    pub(super) fn groups(
+        &mut self,
+        tables: Value<'_>,
+    ) -> Result<BTreeMap<String, Group>, SceneError> {
+        let mut groups = BTreeMap::new();
+        for (name, table) in tables.entries()? {
+            let fields = table.fields("group", &[&["object"]])?;
+            let items = self.members(&fields)?;
+            groups.insert(
+                name.text,
+                Group {
+                    span: name.span,
+                    items,
+                },
+            );
+        }
+        Ok(groups)
+    }
+
+    /// The objects of a group, of which there must be some: groups of nothing could be nested
+    /// without end at no cost in primitives.
+    fn members(&mut self, fields: &Fields<'_>) -> Result<Vec<Item>, SceneError> {
+        let list = fields.require("object")?;
+        let items = self.items(list)?;
+        if items.is_empty() {
+            return Err(list.error(
+                "this group holds no object",
+                "add objects to it, or remove it",
+            ));
+        }
+        Ok(items)
+    }
+
+    pub(super) fn items(&mut self, list: Value<'_>) -> Result<Vec<Item>, SceneError> {
+        let example = "`[[object]]` above the keys of each, or `object = [{ kind = ... }, ...]`";
+        let tables = list.items(example)?;
+        tables
+            .enumerate()
+            .map(|(index, table)| self.item(table, index + 1))
+            .collect()
+    }
+
+    fn item(&mut self, table: Value<'_>, number: usize) -> Result<Item, SceneError> {
+        // The kind decides which keys there are, so it is read before they are checked.
+        let kind = table.member("object", "kind")?.word(KINDS)?;
+        let keys: &[&str] = match kind {
+            "group" => &["object"],
+            "instance" => &["group"],
+            "import" => &["file", "style", "model", "altloc"],
+            _ => shape::keys(kind),
+        };
+        let fields = table.fields(kind, &[KEYS, keys, transform::KEYS])?;
+        let material = fields.or("material", None, |value| value.name().map(Some))?;
+        let name = match fields.get("name") {
+            Some(name) => name.filled()?.to_owned(),
+            None if kind == "import" => stem(fields.require("file")?.filled()?),
+            None => format!("{kind} {number}"),
+        };
+        let content = match kind {
+            "group" => Content::Group(self.members(&fields)?),
+            "instance" => Content::Instance(fields.require("group")?.name()?),
+            "import" => {
+                let scene = self.import(&fields)?;
+                // Objects that all get another material do not need their own.
+                let adopt = |own| self.palette.adopt(own, &name);
+                let materials = match material {
+                    Some(_) => Vec::new(),
+                    None => scene.materials.iter().map(adopt).collect(),
+                };
+                Content::Import { scene, materials }
+            }
+            _ => Content::Shape(shape::read(kind, &fields)?),
+        };
+        let transform = transform::read(&fields)?;
+        Ok(Item {
+            name,
+            material,
+            transform,
+            span: fields.span,
+            content,
+        })
+    }
+
+    fn import(&mut self, fields: &Fields<'_>) -> Result<Rc<Scene>, SceneError> {
+        let file = fields.require("file")?.name()?;
+        let molecule = MoleculeOptions {
+            style: fields.or("style", self.molecule.style, style)?,
+            model: fields.or("model", self.molecule.model, |value| {
+                Ok(value.integer_in(1..=u32::MAX)? as usize)
+            })?,
+            altloc: fields.or("altloc", self.molecule.altloc, altloc)?,
+        };
+        self.imports.import(self.source, &file, &molecule)
+    }
+}
+
+/// The name of a file without folder and extension.
+fn stem(file: &str) -> String {
+    let stem = Path::new(file).file_stem().unwrap_or_default();
+    stem.to_string_lossy().into_owned()
+}
+
+fn style(value: Value<'_>) -> Result<MoleculeStyle, SceneError> {
+    Ok(match value.word(&["space-filling", "ball-and-stick"])? {
+        "space-filling" => MoleculeStyle::SpaceFilling,
+        _ => MoleculeStyle::BallAndStick,
+    })
+}
+
+fn altloc(value: Value<'_>) -> Result<Option<char>, SceneError> {
+    let mut characters = value.text()?.chars();
+    match (characters.next(), characters.next()) {
+        (Some(character), None) => Ok(Some(character)),
+        _ => Err(value.error(
+            "`altloc` is not one character",
+            "write the letter of the alternate location, such as \"A\"",
+        )),
+    }
+}

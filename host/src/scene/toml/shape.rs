@@ -1,0 +1,182 @@
+//! The kinds of objects that are shapes.
+
+use super::polygon::{self, Flaw, MAX_CORNERS};
+use super::value::{Fields, Value};
+use crate::scene::{SceneError, Shape};
+use glam::DVec3;
+
+/// The keys of a kind of shape, apart from those of every object.
+pub(super) fn keys(kind: &str) -> &'static [&'static str] {
+    match kind {
+        "sphere" => &["center", "radius"],
+        "box" => &["min", "max"],
+        "disc" => &["center", "normal", "radius"],
+        "cylinder" => &["base", "top", "radius"],
+        "cone" => &["base", "apex", "radius"],
+        "frustum" => &["base", "top", "base_radius", "top_radius"],
+        "triangle" => &["vertices"],
+        _ => &["vertices", "faces"],
+    }
+}
+
+pub(super) fn read(kind: &str, fields: &Fields<'_>) -> Result<Shape, SceneError> {
+    let vector = |key| fields.require(key)?.vector();
+    let radius = |key| fields.require(key)?.positive();
+    let shape = match kind {
+        "sphere" => Shape::Sphere {
+            center: vector("center")?,
+            radius: radius("radius")?,
+        },
+        "box" => return cuboid(fields),
+        "disc" => Shape::Disc {
+            center: vector("center")?,
+            normal: fields.require("normal")?.direction()?,
+            radius: radius("radius")?,
+        },
+        "cylinder" => {
+            let radius = radius("radius")?;
+            return cone(fields, "top", radius, radius);
+        }
+        "cone" => return cone(fields, "apex", radius("radius")?, 0.0),
+        "frustum" => return cone(fields, "top", radius("base_radius")?, radius("top_radius")?),
+        "triangle" => return triangle(fields),
+        _ => return mesh(fields),
+    };
+    Ok(shape)
+}
+
+/// A box; it may be flat, but not a line or a point, which would have no surface.
+fn cuboid(fields: &Fields<'_>) -> Result<Shape, SceneError> {
+    let (low, high) = (fields.require("min")?, fields.require("max")?);
+    let (min, max) = (low.vector()?, high.vector()?);
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        if min[axis] > max[axis] {
+            return Err(low.error(
+                format!(
+                    "the box is empty: on {name} `min` is {} and `max` is {}",
+                    min[axis], max[axis]
+                ),
+                "write the smaller number of each axis into `min`",
+            ));
+        }
+    }
+    if min.cmpeq(max).bitmask().count_ones() > 1 {
+        return Err(high.error(
+            "the box has no surface: `min` and `max` are equal on more than one axis",
+            "give the box an extent on at least two axes",
+        ));
+    }
+    Ok(Shape::Box { min, max })
+}
+
+fn cone(
+    fields: &Fields<'_>,
+    end: &'static str,
+    base_radius: f64,
+    apex_radius: f64,
+) -> Result<Shape, SceneError> {
+    let end_value = fields.require(end)?;
+    let (base, apex) = (fields.require("base")?.vector()?, end_value.vector()?);
+    if base == apex {
+        return Err(end_value.error(
+            format!("`base` and `{end}` are the same point"),
+            "move them apart, or use a disc",
+        ));
+    }
+    Ok(Shape::Cone {
+        base,
+        base_radius,
+        apex,
+        apex_radius,
+    })
+}
+
+fn triangle(fields: &Fields<'_>) -> Result<Shape, SceneError> {
+    let value = fields.require("vertices")?;
+    let vertices = vertices(value)?;
+    if vertices.len() != 3 {
+        return Err(value.mistyped(
+            "three points",
+            "`vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]`",
+        ));
+    }
+    match polygon::triangulate(&vertices) {
+        Ok(_) => Ok(Shape::Mesh {
+            vertices,
+            triangles: vec![[0, 1, 2]],
+        }),
+        Err(_) => Err(value.error(
+            "the triangle has no area: its vertices lie on one line",
+            "move one of the vertices off that line",
+        )),
+    }
+}
+
+fn mesh(fields: &Fields<'_>) -> Result<Shape, SceneError> {
+    let vertices = vertices(fields.require("vertices")?)?;
+    let faces = fields.require("faces")?;
+    let mut triangles = Vec::new();
+    for face in faces.items("`faces = [[0, 1, 2], [0, 2, 3]]`")? {
+        let corners = corners(face, vertices.len())?;
+        let points: Vec<DVec3> = corners
+            .iter()
+            .map(|&corner| vertices[corner as usize])
+            .collect();
+        let cut = polygon::triangulate(&points).map_err(|flaw| match flaw {
+            Flaw::NoArea => face.error(
+                "this face has no area",
+                "remove the face, or move its vertices off their line",
+            ),
+            Flaw::CrossesItself => face.error(
+                "the outline of this face crosses itself",
+                "list its vertices in the order in which they follow around the face",
+            ),
+        })?;
+        triangles.extend(
+            cut.into_iter()
+                .map(|triangle| triangle.map(|corner| corners[corner])),
+        );
+    }
+    if triangles.is_empty() {
+        return Err(faces.error("this mesh has no face", "add faces, or remove the mesh"));
+    }
+    Ok(Shape::Mesh {
+        vertices,
+        triangles,
+    })
+}
+
+fn vertices(value: Value<'_>) -> Result<Vec<DVec3>, SceneError> {
+    let points = value.items("`vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]`")?;
+    points.map(Value::vector).collect()
+}
+
+/// The indices of a face's vertices: in range, and all different.
+fn corners(face: Value<'_>, vertices: usize) -> Result<Vec<u32>, SceneError> {
+    let indices = face.items("`faces = [[0, 1, 2], [0, 2, 3]]`")?;
+    let count = indices.len();
+    if !(3..=MAX_CORNERS).contains(&count) {
+        return Err(face.error(
+            format!("this face has {count} vertices; it must have from 3 to {MAX_CORNERS}"),
+            "list the indices of its vertices, or divide the face into smaller ones",
+        ));
+    }
+    let mut corners = Vec::with_capacity(count);
+    for value in indices {
+        let index = value.integer_in(0..=u32::MAX)?;
+        if index as usize >= vertices {
+            return Err(value.error(
+                format!("this face uses vertex {index}, but there are only {vertices} vertices"),
+                "count the vertices from 0",
+            ));
+        }
+        if corners.contains(&index) {
+            return Err(value.error(
+                format!("this face uses vertex {index} twice"),
+                "list each vertex of a face once; the last joins the first by itself",
+            ));
+        }
+        corners.push(index);
+    }
+    Ok(corners)
+}

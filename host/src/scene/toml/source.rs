@@ -1,0 +1,98 @@
+//! The text of a scene file, and errors and places in it.
+
+use crate::scene::{Place, SceneError};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use toml::Spanned;
+use toml::de::DeTable;
+
+/// Byte offsets into the text of a scene file.
+pub(super) type Span = Range<usize>;
+
+/// A scene file that was read.
+pub(super) struct Source {
+    pub(super) path: PathBuf,
+    text: String,
+    /// The offset at which each line starts; counting lines anew for every object would make long
+    /// files quadratic.
+    line_starts: Vec<usize>,
+}
+
+/// A name that refers to something else in the file, and where it stands.
+#[derive(Clone, Debug)]
+pub(super) struct Name {
+    pub(super) text: String,
+    pub(super) span: Span,
+}
+
+impl Source {
+    pub(super) fn read(path: &Path) -> Result<Self, SceneError> {
+        let bytes = std::fs::read(path).map_err(|error| {
+            SceneError::new(
+                path,
+                format!("the scene file cannot be read: {error}"),
+                "check the path and the permissions of the file",
+            )
+        })?;
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let good = error.utf8_error().valid_up_to();
+            let line = 1 + error.as_bytes()[..good]
+                .iter()
+                .filter(|&&b| b == b'\n')
+                .count();
+            SceneError::new(
+                path,
+                "the text is not UTF-8",
+                "save the file in the encoding UTF-8",
+            )
+            .at_line(line)
+        })?;
+        let newlines = text.match_indices('\n').map(|(offset, _)| offset + 1);
+        let line_starts = std::iter::once(0).chain(newlines).collect();
+        Ok(Self {
+            path: path.to_owned(),
+            text,
+            line_starts,
+        })
+    }
+
+    pub(super) fn parse(&self) -> Result<Spanned<DeTable<'_>>, SceneError> {
+        DeTable::parse(&self.text).map_err(|error| {
+            self.error(
+                &error.span().unwrap_or(0..0),
+                format!("this is not TOML: {}", error.message().replace('\n', ", ")),
+                "write `key = value` lines below `[table]` headings; text needs quotes, lists need \
+                 brackets and commas",
+            )
+        })
+    }
+
+    pub(super) fn error(
+        &self,
+        span: &Span,
+        cause: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> SceneError {
+        SceneError::new(&self.path, cause, remedy).at_span(
+            &self.text,
+            span.start,
+            span.end.saturating_sub(span.start),
+        )
+    }
+
+    pub(super) fn place(&self, span: &Span) -> Place {
+        let line = self
+            .line_starts
+            .partition_point(|&start| start <= span.start);
+        Place {
+            file: self.path.clone(),
+            line,
+        }
+    }
+}
+
+/// The name among `known` that is most like `wanted`.
+pub(super) fn nearest<'k>(wanted: &str, known: impl Iterator<Item = &'k str>) -> Option<&'k str> {
+    let likeness = |name: &str| strsim::jaro_winkler(wanted, name);
+    known.max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
+}

@@ -1,0 +1,147 @@
+//! Files that are broken at random, or made to cost without end.
+
+use super::{example, load, load_in, refusal};
+use miette::{GraphicalReportHandler, GraphicalTheme};
+use std::fmt::Write;
+
+/// Loads a text and, where it is refused, renders the error as the program would.
+fn survive(folder: &std::path::Path, text: &str) {
+    if let Err(error) = load_in(folder, text) {
+        assert!(!error.cause.is_empty() && !error.remedy.is_empty());
+        let handler = GraphicalReportHandler::new_themed(GraphicalTheme::unicode_nocolor());
+        handler.render_report(&mut String::new(), &error).unwrap();
+    }
+}
+
+#[test]
+fn the_example_cut_off_at_every_byte() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = example();
+    for end in (0..text.len()).filter(|&end| text.is_char_boundary(end)) {
+        survive(folder.path(), &text[..end]);
+    }
+}
+
+#[test]
+fn the_example_with_characters_exchanged() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = example();
+    let replacements = [
+        "", "-", "0", "9e999", "[", "]]", "{", "}", "\"", "=", "\n", ".", ",", "#", "é", "\0",
+        "nan", "-inf",
+    ];
+    let mut choice = 0;
+    for (offset, character) in text.char_indices() {
+        for step in [0, 7, 12] {
+            choice += 1;
+            let with = replacements[(choice + step) % replacements.len()];
+            let rest = &text[offset + character.len_utf8()..];
+            survive(folder.path(), &format!("{}{with}{rest}", &text[..offset]));
+        }
+    }
+}
+
+#[test]
+fn bytes_that_are_no_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, b"background = 0\n# \xff\xfe\n").unwrap();
+    let error = crate::scene::toml::load(&path, &Default::default()).unwrap_err();
+    assert_eq!(
+        (error.cause.as_str(), error.line),
+        ("the text is not UTF-8", Some(2))
+    );
+    let missing = crate::scene::toml::load(&folder.path().join("none.toml"), &Default::default());
+    assert!(
+        missing
+            .unwrap_err()
+            .cause
+            .starts_with("the scene file cannot be read")
+    );
+}
+
+const DOT: &str = "object = [{ kind = \"sphere\", center = [0, 0, 0], radius = 1 }]\n";
+
+/// Groups of which each holds the one before `times` times, and an instance of the last.
+fn tower(floors: usize, times: usize, ground: &str) -> String {
+    let mut text = format!("[group.g0]\n{ground}");
+    for floor in 1..=floors {
+        let below = floor - 1;
+        let instance = format!("{{ kind = \"instance\", group = \"g{below}\" }},");
+        writeln!(
+            text,
+            "[group.g{floor}]\nobject = [{}]",
+            instance.repeat(times)
+        )
+        .unwrap();
+    }
+    write!(
+        text,
+        "[[object]]\nkind = \"instance\"\ngroup = \"g{floors}\"\n"
+    )
+    .unwrap();
+    text
+}
+
+#[test]
+fn groups_that_multiply_beyond_all_memory_are_refused_before() {
+    let error = refusal(&tower(40, 10, DOT));
+    assert!(
+        error.cause.contains("more than 16777216 primitives"),
+        "{error}"
+    );
+    assert!(error.line.is_some());
+    assert_eq!(
+        load(&tower(4, 10, DOT)).unwrap().scene.objects.len(),
+        10_000
+    );
+}
+
+#[test]
+fn vertices_without_faces_do_not_multiply_for_free() {
+    let vertices = "[0, 0, 0], ".repeat(3000);
+    let ground = format!(
+        "object = [{{ kind = \"mesh\", vertices = [{vertices} [1, 0, 0], [0, 1, 0]], faces = [[0, 3000, 3001]] }}]\n"
+    );
+    let error = refusal(&tower(5, 10, &ground));
+    assert!(
+        error.cause.contains("more than 16777216 primitives"),
+        "{error}"
+    );
+}
+
+#[test]
+fn turned_boxes_count_as_their_triangles() {
+    let ground =
+        "object = [{ kind = \"box\", min = [0, 0, 0], max = [1, 1, 1], rotate = [0, 1, 0] }]\n";
+    let scene = load(&tower(2, 10, ground)).unwrap().scene;
+    assert_eq!(scene.objects.len(), 100);
+}
+
+#[test]
+fn towers_of_groups_end_at_a_depth() {
+    assert_eq!(load(&tower(63, 1, DOT)).unwrap().scene.objects.len(), 1);
+    let error = refusal(&tower(64, 1, DOT));
+    assert!(error.cause.contains("nested deeper than 64"), "{error}");
+    assert!(
+        refusal(&tower(20_000, 1, DOT))
+            .cause
+            .contains("nested deeper than 64")
+    );
+}
+
+#[test]
+fn brackets_without_end_are_refused() {
+    for open in ["[", "{a=", "[{a="] {
+        let error = refusal(&format!("object = {}", open.repeat(100_000)));
+        assert!(error.cause.starts_with("this is not TOML"), "{error}");
+    }
+    let dotted = refusal(&format!("{}a = 1", "a.".repeat(100_000)));
+    assert!(dotted.cause.starts_with("this is not TOML"), "{dotted}");
+    let nested = "{ kind = \"group\", object = [".repeat(30) + &"] }".repeat(30);
+    assert!(
+        refusal(&format!("object = [{nested}]"))
+            .cause
+            .contains("holds no object")
+    );
+}

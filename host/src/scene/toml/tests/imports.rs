@@ -1,0 +1,246 @@
+//! Scenes made of several files.
+
+use super::{load_in, material_of, named};
+use crate::scene::{Light, Shape};
+use glam::DVec3;
+use std::path::Path;
+use tempfile::TempDir;
+
+fn folder(files: &[(&str, &str)]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+    folder
+}
+
+const BALL: &str = r#"
+background = "blue"
+[camera]
+eye = [0, 0, 5]
+target = [0, 0, 0]
+[render]
+width = 64
+[[light]]
+kind = "directional"
+direction = [0, 0, -1]
+[material.paint]
+diffuse = 0.5
+[[object]]
+name = "ball"
+kind = "sphere"
+center = [1, 0, 0]
+radius = 1
+material = "paint"
+"#;
+
+fn ball() -> String {
+    BALL.replace("\"blue\"", "[0, 0, 1]")
+}
+
+fn importing(keys: &str) -> String {
+    format!("[[object]]\nkind = \"import\"\nfile = \"parts/ball.toml\"\n{keys}\n")
+}
+
+#[test]
+fn an_import_brings_objects_and_lends_the_view() {
+    let folder = folder(&[("parts/ball.toml", &ball())]);
+    let scene = load_in(
+        folder.path(),
+        &importing("translate = [0, 2, 0]\nscale = 2"),
+    )
+    .unwrap()
+    .scene;
+    let shape = Shape::Sphere {
+        center: DVec3::new(2.0, 2.0, 0.0),
+        radius: 2.0,
+    };
+    let object = named(&scene, "ball/ball");
+    assert_eq!(object.shape, shape);
+    assert!(object.place.file.ends_with("parts/ball.toml") && object.place.line == 13);
+    assert_eq!(scene.camera.unwrap().eye, DVec3::new(0.0, 2.0, 10.0));
+    assert_eq!(scene.render.width, 64);
+    assert_eq!(scene.background, [0.0, 0.0, 1.0]);
+    assert_eq!(
+        scene.lights,
+        [Light::Directional {
+            direction: DVec3::new(0.0, 0.0, -2.0),
+            color: [1.0; 3]
+        }]
+    );
+}
+
+#[test]
+fn what_the_importing_scene_states_counts() {
+    let folder = folder(&[("parts/ball.toml", &ball())]);
+    let own = "background = 0\n[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\n[[light]]\nkind = \"point\"\nposition = [0, 9, 0]\n";
+    let scene = load_in(folder.path(), &format!("{own}{}", importing("")))
+        .unwrap()
+        .scene;
+    assert_eq!(scene.camera.unwrap().eye, DVec3::new(0.0, 0.0, 9.0));
+    assert_eq!(scene.render.width, 320);
+    assert_eq!(scene.background, [0.0; 3]);
+    assert!(matches!(scene.lights[..], [Light::Point { .. }]));
+}
+
+#[test]
+fn an_import_inside_a_group_lends_no_view() {
+    let folder = folder(&[("parts/ball.toml", &ball())]);
+    let text = "[[object]]\nkind = \"group\"\nobject = [{ kind = \"import\", file = \"parts/ball.toml\" }]\n";
+    let scene = load_in(folder.path(), text).unwrap().scene;
+    assert_eq!(scene.objects[0].name, "group 1/ball/ball");
+    assert!(scene.camera.is_none() && scene.lights.is_empty());
+}
+
+#[test]
+fn materials_that_clash_are_named_after_their_import() {
+    let folder = folder(&[("parts/ball.toml", &ball())]);
+    let own = "[material.paint]\ndiffuse = 0.1\n";
+    let text = format!(
+        "{own}{}{}{}",
+        importing("name = \"a\""),
+        importing("name = \"a\""),
+        importing("name = \"b\"\nmaterial = \"paint\"")
+    );
+    let scene = load_in(folder.path(), &text).unwrap().scene;
+    let names: Vec<_> = scene
+        .materials
+        .iter()
+        .map(|material| material.name.as_str())
+        .collect();
+    assert_eq!(names, ["paint", "a/paint"]);
+    assert_eq!(material_of(&scene, "a/ball"), "a/paint");
+    assert_eq!(material_of(&scene, "b/ball"), "paint");
+}
+
+#[test]
+fn materials_of_an_import_can_be_used_by_name() {
+    let folder = folder(&[(
+        "parts/ball.toml",
+        "[material.gold]\ndiffuse = [0.9, 0.7, 0.1]\n",
+    )]);
+    let sphere = "[[object]]\nname = \"s\"\nkind = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"gold\"\n";
+    let scene = load_in(folder.path(), &format!("{sphere}{}", importing("")))
+        .unwrap()
+        .scene;
+    assert_eq!(material_of(&scene, "s"), "gold");
+}
+
+#[test]
+fn a_group_around_an_import_does_not_repaint_it() {
+    let folder = folder(&[("parts/ball.toml", &ball())]);
+    let text = "[material.other]\n[[object]]\nname = \"g\"\nkind = \"group\"\nmaterial = \"other\"\nobject = [{ kind = \"import\", file = \"parts/ball.toml\" }]\n";
+    let scene = load_in(folder.path(), text).unwrap().scene;
+    assert_eq!(material_of(&scene, "g/ball/ball"), "paint");
+}
+
+#[test]
+fn a_missing_import_names_both_places() {
+    let folder = folder(&[]);
+    let error = load_in(folder.path(), &importing("")).unwrap_err();
+    assert_eq!(
+        (error.file.as_path(), error.line),
+        (folder.path().join("scene.toml").as_path(), Some(3))
+    );
+    let missing = Path::new("parts").join("ball.toml");
+    assert!(
+        error.cause.contains(&missing.display().to_string()),
+        "{error}"
+    );
+    assert!(error.remedy.contains("relative to the folder"));
+}
+
+#[test]
+fn an_error_inside_an_import_names_both_places() {
+    let folder = folder(&[("parts/ball.toml", "[material.a]\n\nior = 9\n")]);
+    let error = load_in(folder.path(), &importing("")).unwrap_err();
+    assert!(error.file.ends_with("parts/ball.toml") && error.line == Some(3));
+    assert!(
+        error.cause.contains("`ior` is 9") && error.cause.ends_with("scene.toml:3)"),
+        "{error}"
+    );
+}
+
+#[test]
+fn circles_of_imports_are_refused() {
+    let back = "[[object]]\nkind = \"import\"\nfile = \"../scene.toml\"\n";
+    let around = folder(&[("parts/ball.toml", back)]);
+    let error = load_in(around.path(), &importing("")).unwrap_err();
+    assert!(
+        error
+            .cause
+            .contains("scene.toml -> ball.toml -> scene.toml"),
+        "{error}"
+    );
+    assert!(error.file.ends_with("parts/ball.toml") && error.line == Some(3));
+    let itself = "[[object]]\nkind = \"import\"\nfile = \"./scene.toml\"\n";
+    let error = load_in(folder(&[]).path(), itself).unwrap_err();
+    assert!(error.cause.contains("scene.toml -> scene.toml"), "{error}");
+}
+
+#[test]
+fn long_chains_of_imports_are_refused() {
+    let chain: Vec<_> = (0..40)
+        .map(|index| {
+            let text = format!(
+                "[[object]]\nkind = \"import\"\nfile = \"{}.toml\"\n",
+                index + 1
+            );
+            (format!("{index}.toml"), text)
+        })
+        .collect();
+    let files: Vec<_> = chain
+        .iter()
+        .map(|(name, text)| (name.as_str(), text.as_str()))
+        .collect();
+    let folder = folder(&files);
+    let error = load_in(
+        folder.path(),
+        "[[object]]\nkind = \"import\"\nfile = \"0.toml\"\n",
+    )
+    .unwrap_err();
+    assert!(error.cause.contains("deeper than 32 files"), "{error}");
+}
+
+/// Every file imports the next one twice: 2^20 readings, if files were read again each time.
+#[test]
+fn files_are_read_once() {
+    let mut files: Vec<_> = (0..20)
+        .map(|index| {
+            let object = format!(
+                "[[object]]\nkind = \"import\"\nfile = \"{}.toml\"\n",
+                index + 1
+            );
+            (format!("{index}.toml"), format!("{object}{object}"))
+        })
+        .collect();
+    files.push((String::from("20.toml"), String::from("[material.a]\n")));
+    let files: Vec<_> = files
+        .iter()
+        .map(|(name, text)| (name.as_str(), text.as_str()))
+        .collect();
+    let folder = folder(&files);
+    let scene = load_in(
+        folder.path(),
+        "[[object]]\nkind = \"import\"\nfile = \"0.toml\"\n",
+    )
+    .unwrap()
+    .scene;
+    assert_eq!((scene.objects.len(), scene.materials.len()), (0, 1));
+}
+
+#[test]
+fn other_formats_are_imported_by_their_extension() {
+    let folder = folder(&[("a.xyz", "")]);
+    let error = load_in(
+        folder.path(),
+        "[[object]]\nkind = \"import\"\nfile = \"a.xyz\"\n",
+    )
+    .unwrap_err();
+    assert!(
+        error.cause.contains("names no scene format") && error.cause.contains("scene.toml:3"),
+        "{error}"
+    );
+}

@@ -1,0 +1,356 @@
+//! Typed reads of TOML values whose errors point at the value.
+
+use super::source::{Name, Source, Span, nearest};
+use crate::scene::{Color, SceneError};
+use glam::DVec3;
+use std::ops::RangeInclusive;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A value, and the key under which it stands.
+#[derive(Clone, Copy)]
+pub(super) struct Value<'a> {
+    pub(super) source: &'a Source,
+    pub(super) key: &'a str,
+    node: &'a Spanned<DeValue<'a>>,
+}
+
+/// A table whose keys are known to be valid ones.
+pub(super) struct Fields<'a> {
+    pub(super) source: &'a Source,
+    pub(super) span: Span,
+    /// What the table describes, for messages.
+    what: &'a str,
+    table: &'a DeTable<'a>,
+}
+
+impl<'a> Value<'a> {
+    pub(super) fn span(self) -> Span {
+        self.node.span()
+    }
+
+    pub(super) fn error(self, cause: impl Into<String>, remedy: impl Into<String>) -> SceneError {
+        self.source.error(&self.span(), cause, remedy)
+    }
+
+    /// The error of a value of another type than `expected`, which reads like "three numbers".
+    pub(super) fn mistyped(self, expected: &str, example: &str) -> SceneError {
+        let found = match self.node.get_ref() {
+            DeValue::Array(items) => format!("an array of {}", items.len()),
+            DeValue::Integer(_) => "an integer".into(),
+            other => format!("a {}", other.type_str()),
+        };
+        let key = self.key;
+        self.error(
+            format!("`{key}` holds {found}; expected {expected}"),
+            format!("write it like {example}"),
+        )
+    }
+
+    /// A finite number; an integer will do.
+    pub(super) fn number(self) -> Result<f64, SceneError> {
+        let number = match self.node.get_ref() {
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            DeValue::Integer(integer) => i128::from_str_radix(integer.as_str(), integer.radix())
+                .ok()
+                .map(|integer| integer as f64),
+            _ => return Err(self.mistyped("a number", &format!("`{} = 1.5`", self.key))),
+        };
+        number
+            .filter(|number: &f64| number.is_finite())
+            .ok_or_else(|| {
+                let cause = format!("`{}` is not a finite number", self.key);
+                self.error(
+                    cause,
+                    "write a number within the range of 64-bit floats, without `inf` or `nan`",
+                )
+            })
+    }
+
+    /// A number above 0.
+    pub(super) fn positive(self) -> Result<f64, SceneError> {
+        let number = self.number()?;
+        if number > 0.0 {
+            return Ok(number);
+        }
+        Err(self.error(
+            format!("`{}` is {number}; it must be above 0", self.key),
+            "write a number above 0",
+        ))
+    }
+
+    /// A number within `range`.
+    pub(super) fn number_in(self, range: RangeInclusive<f64>) -> Result<f64, SceneError> {
+        let number = self.number()?;
+        if range.contains(&number) {
+            return Ok(number);
+        }
+        Err(self.out_of_range(number, range.start(), range.end()))
+    }
+
+    /// An integer within `range`.
+    pub(super) fn integer_in(self, range: RangeInclusive<u32>) -> Result<u32, SceneError> {
+        let DeValue::Integer(integer) = self.node.get_ref() else {
+            let example = format!("`{} = {}`", self.key, range.start());
+            return Err(self.mistyped("an integer", &example));
+        };
+        match u32::from_str_radix(integer.as_str(), integer.radix()) {
+            Ok(number) if range.contains(&number) => Ok(number),
+            _ => Err(self.out_of_range(integer, range.start(), range.end())),
+        }
+    }
+
+    fn out_of_range<T: std::fmt::Display>(
+        self,
+        found: impl std::fmt::Display,
+        low: T,
+        high: T,
+    ) -> SceneError {
+        self.error(
+            format!("`{}` is {found}; it must be from {low} to {high}", self.key),
+            format!("write a number from {low} to {high}"),
+        )
+    }
+
+    /// Three numbers.
+    pub(super) fn vector(self) -> Result<DVec3, SceneError> {
+        let mistyped = || self.mistyped("three numbers", &format!("`{} = [0, 1, 0]`", self.key));
+        let DeValue::Array(items) = self.node.get_ref() else {
+            return Err(mistyped());
+        };
+        let [x, y, z] = &items[..] else {
+            return Err(mistyped());
+        };
+        let number = |node| Value { node, ..self }.number();
+        Ok(DVec3::new(number(x)?, number(y)?, number(z)?))
+    }
+
+    /// Three numbers that are not all 0.
+    pub(super) fn direction(self) -> Result<DVec3, SceneError> {
+        let vector = self.vector()?;
+        if vector == DVec3::ZERO {
+            let cause = format!("`{}` is [0, 0, 0], which points nowhere", self.key);
+            return Err(self.error(cause, "write a vector of any length above 0"));
+        }
+        Ok(vector)
+    }
+
+    /// A linear colour: three numbers, one number for grey, or an sRGB string.
+    pub(super) fn color(self) -> Result<Color, SceneError> {
+        match self.node.get_ref() {
+            DeValue::String(text) => srgb(text).ok_or_else(|| {
+                self.error(
+                    format!("`{}` is {text:?}, which is no colour", self.key),
+                    "write \"#rrggbb\" with six hexadecimal digits, or three linear numbers like [0.8, 0.1, 0.1]",
+                )
+            }),
+            _ => self.coefficients(),
+        }
+    }
+
+    /// Three numbers at or above 0, or one for all three channels.
+    pub(super) fn coefficients(self) -> Result<Color, SceneError> {
+        let color = match self.node.get_ref() {
+            DeValue::Array(items) if items.len() == 3 => self.vector()?.to_array(),
+            DeValue::Float(_) | DeValue::Integer(_) => [self.number()?; 3],
+            _ => {
+                let example = format!("`{0} = [0.8, 0.1, 0.1]` or `{0} = 0.5`", self.key);
+                return Err(self.mistyped("three numbers or one", &example));
+            }
+        };
+        if let Some(channel) = color.iter().find(|&&channel| channel < 0.0) {
+            return Err(self.error(
+                format!("`{}` has the negative channel {channel}", self.key),
+                "write numbers at or above 0",
+            ));
+        }
+        Ok(color)
+    }
+
+    pub(super) fn text(self) -> Result<&'a str, SceneError> {
+        match self.node.get_ref() {
+            DeValue::String(text) => Ok(text),
+            _ => Err(self.mistyped("text", &format!("`{} = \"...\"`", self.key))),
+        }
+    }
+
+    /// Text that is not empty.
+    pub(super) fn filled(self) -> Result<&'a str, SceneError> {
+        match self.text()? {
+            "" => Err(self.error(
+                format!("`{}` is empty", self.key),
+                "write something between the quotes",
+            )),
+            text => Ok(text),
+        }
+    }
+
+    pub(super) fn name(self) -> Result<Name, SceneError> {
+        Ok(Name {
+            text: self.filled()?.to_owned(),
+            span: self.span(),
+        })
+    }
+
+    /// One of a few words.
+    pub(super) fn word(self, words: &[&'static str]) -> Result<&'static str, SceneError> {
+        let text = self.text()?;
+        words
+            .iter()
+            .find(|&&word| word == text)
+            .copied()
+            .ok_or_else(|| {
+                let near = nearest(text, words.iter().copied()).unwrap_or_default();
+                self.error(
+                    format!("`{}` is {text:?}, which means nothing here", self.key),
+                    format!("did you mean {near:?}? It may be {}", words.join(", ")),
+                )
+            })
+    }
+
+    /// The values of an array; `example` shows one.
+    pub(super) fn items(
+        self,
+        example: &str,
+    ) -> Result<impl ExactSizeIterator<Item = Value<'a>>, SceneError> {
+        match self.node.get_ref() {
+            DeValue::Array(items) => Ok(items.iter().map(move |node| Value { node, ..self })),
+            _ => Err(self.mistyped("an array", example)),
+        }
+    }
+
+    pub(super) fn is_array(self) -> bool {
+        self.node.get_ref().is_array()
+    }
+
+    pub(super) fn is_table(self) -> bool {
+        self.node.get_ref().is_table()
+    }
+
+    fn table(self) -> Result<&'a DeTable<'a>, SceneError> {
+        match self.node.get_ref() {
+            DeValue::Table(table) => Ok(table),
+            _ => Err(self.mistyped(
+                "a table with keys",
+                "`{ key = value }` or below its own heading",
+            )),
+        }
+    }
+
+    /// The table's fields, all of whose keys must be in one of the lists in `keys`.
+    pub(super) fn fields(self, what: &'a str, keys: &[&[&str]]) -> Result<Fields<'a>, SceneError> {
+        Fields::new(self.source, self.span(), self.table()?, what, keys)
+    }
+
+    /// The value of one key of a table, whatever its other keys are.
+    pub(super) fn member(self, what: &'a str, key: &str) -> Result<Value<'a>, SceneError> {
+        let (source, span, table) = (self.source, self.span(), self.table()?);
+        Fields {
+            source,
+            span,
+            what,
+            table,
+        }
+        .require(key)
+    }
+
+    /// The named tables inside this one, in the order of the file.
+    pub(super) fn entries(self) -> Result<Vec<(Name, Value<'a>)>, SceneError> {
+        let entries = self.table()?.iter().map(|(key, node)| {
+            let name = Name {
+                text: key.get_ref().to_string(),
+                span: key.span(),
+            };
+            (
+                name,
+                Value {
+                    key: key.get_ref(),
+                    node,
+                    ..self
+                },
+            )
+        });
+        let mut entries: Vec<_> = entries.collect();
+        entries.sort_by_key(|(name, _)| name.span.start);
+        Ok(entries)
+    }
+}
+
+impl<'a> Fields<'a> {
+    pub(super) fn new(
+        source: &'a Source,
+        span: Span,
+        table: &'a DeTable<'a>,
+        what: &'a str,
+        keys: &[&[&str]],
+    ) -> Result<Self, SceneError> {
+        let valid = || keys.iter().copied().flatten().copied();
+        let unknown = table
+            .keys()
+            .filter(|key| !valid().any(|valid| valid == key.get_ref()));
+        // The first in the file, not in the alphabet.
+        if let Some(key) = unknown.min_by_key(|key| key.span().start) {
+            let near = nearest(key.get_ref(), valid()).unwrap_or_default();
+            let valid: Vec<_> = valid().collect();
+            return Err(source.error(
+                &key.span(),
+                format!("this {what} has no key `{}`", key.get_ref()),
+                format!("did you mean `{near}`? The keys are {}", valid.join(", ")),
+            ));
+        }
+        Ok(Self {
+            source,
+            span,
+            what,
+            table,
+        })
+    }
+
+    pub(super) fn get(&self, key: &str) -> Option<Value<'a>> {
+        let (key, node) = self.table.get_key_value(key)?;
+        Some(Value {
+            source: self.source,
+            key: key.get_ref(),
+            node,
+        })
+    }
+
+    pub(super) fn require(&self, key: &str) -> Result<Value<'a>, SceneError> {
+        self.get(key).ok_or_else(|| {
+            self.source.error(
+                &self.span,
+                format!("this {} has no `{key}`", self.what),
+                format!("add a line `{key} = ...` to it"),
+            )
+        })
+    }
+
+    /// What `read` makes of the key's value, or `default` without one.
+    pub(super) fn or<T>(
+        &self,
+        key: &str,
+        default: T,
+        read: impl FnOnce(Value<'a>) -> Result<T, SceneError>,
+    ) -> Result<T, SceneError> {
+        self.get(key).map_or(Ok(default), read)
+    }
+}
+
+/// The linear colour of "#rrggbb" (IEC 61966-2-1).
+fn srgb(text: &str) -> Option<Color> {
+    let digits = text.strip_prefix('#')?;
+    if digits.len() != 6 || !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
+        return None;
+    }
+    let code = u32::from_str_radix(digits, 16).ok()?;
+    let [_, channels @ ..] = code.to_be_bytes();
+    Some(channels.map(|channel| {
+        let encoded = f64::from(channel) / 255.0;
+        if encoded <= 0.04045 {
+            encoded / 12.92
+        } else {
+            // libm, because the standard library's powers differ from one machine to another.
+            libm::pow((encoded + 0.055) / 1.055, 2.4)
+        }
+    }))
+}

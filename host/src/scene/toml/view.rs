@@ -1,0 +1,100 @@
+//! The tables that say how a scene is seen: `[camera]`, `[render]` and `[[light]]`.
+
+use super::transform::parallel;
+use super::value::Value;
+use crate::scene::{Camera, Light, RenderSettings, SceneError};
+use glam::DVec3;
+
+/// The largest width and height of a picture.
+const MAX_SIDE: u32 = 65_535;
+
+pub(super) fn camera(table: Value<'_>) -> Result<Camera, SceneError> {
+    let fields = table.fields("camera", &[&["eye", "target", "up", "fov"]])?;
+    let camera = Camera {
+        eye: fields.require("eye")?.vector()?,
+        target: fields.require("target")?.vector()?,
+        up: fields.or("up", DVec3::Y, Value::direction)?,
+        fov_degrees: fields.or("fov", 45.0, field_of_view)?,
+    };
+    let target = fields.require("target")?;
+    let view = camera.target - camera.eye;
+    if view == DVec3::ZERO {
+        return Err(target.error(
+            "the camera's `eye` and `target` are the same point",
+            "move one of them; the camera looks from `eye` to `target`",
+        ));
+    }
+    if !view.is_finite() {
+        return Err(target.error(
+            "the camera's `eye` and `target` are too far apart for 64-bit floats",
+            "move them nearer to each other",
+        ));
+    }
+    if parallel(camera.up, view) {
+        let cause = "the camera looks along `up`, so the picture could be turned any way";
+        let remedy =
+            "set `up` to a direction across the view, such as [0, 0, 1] for a view from above";
+        return Err(fields.get("up").unwrap_or(target).error(cause, remedy));
+    }
+    Ok(camera)
+}
+
+fn field_of_view(value: Value<'_>) -> Result<f64, SceneError> {
+    let degrees = value.number()?;
+    if degrees > 0.0 && degrees < 180.0 {
+        return Ok(degrees);
+    }
+    Err(value.error(
+        format!("`fov` is {degrees} degrees; it must be above 0 and below 180"),
+        "write the full vertical angle of view in degrees, such as 45",
+    ))
+}
+
+pub(super) fn render(table: Value<'_>) -> Result<RenderSettings, SceneError> {
+    let keys = ["width", "height", "samples", "depth", "cutoff"];
+    let fields = table.fields("render table", &[&keys])?;
+    let default = RenderSettings::default();
+    let side = |value: Value<'_>| value.integer_in(1..=MAX_SIDE);
+    Ok(RenderSettings {
+        width: fields.or("width", default.width, side)?,
+        height: fields.or("height", default.height, side)?,
+        samples: fields.or("samples", default.samples, |value| {
+            Ok(value.integer_in(1..=256)? as u16)
+        })?,
+        depth: fields.or("depth", default.depth, |value| {
+            Ok(value.integer_in(0..=16)? as u8)
+        })?,
+        cutoff: fields.or("cutoff", default.cutoff, |value| value.number_in(0.0..=1.0))?,
+    })
+}
+
+pub(super) fn lights(tables: Value<'_>) -> Result<Vec<Light>, SceneError> {
+    tables
+        .items("`[[light]]` above the keys of each")?
+        .map(light)
+        .collect()
+}
+
+fn light(table: Value<'_>) -> Result<Light, SceneError> {
+    let keys = ["kind", "position", "direction", "color"];
+    let fields = table.fields("light", &[&keys])?;
+    let kind = fields.require("kind")?;
+    let color = fields.or("color", [1.0; 3], Value::color)?;
+    let (light, foreign) = match kind.word(&["point", "directional"])? {
+        "point" => {
+            let position = fields.require("position")?.vector()?;
+            (Light::Point { position, color }, "direction")
+        }
+        _ => {
+            let direction = fields.require("direction")?.direction()?;
+            (Light::Directional { direction, color }, "position")
+        }
+    };
+    match fields.get(foreign) {
+        Some(value) => Err(value.error(
+            format!("a light of this kind has no `{foreign}`"),
+            "remove the key, or change the light's `kind`",
+        )),
+        None => Ok(light),
+    }
+}
