@@ -1,4 +1,5 @@
 //! The host side of Gridel: scene files to blobs, blobs to pictures and hits.
 pub mod blob;
 pub mod compile;
+pub mod sample;
 pub mod scene;

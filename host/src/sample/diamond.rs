@@ -18,7 +18,7 @@ pub fn diamond(radius: f64) -> Scene {
     // are even, and on another, shifted by a quarter of the diagonal, where they are odd.
     let quarter = LATTICE_CONSTANT / 4.0;
     let reach = (radius / quarter).floor() as i64;
-    let within = (radius / quarter).powi(2);
+    let within = (radius / quarter) * (radius / quarter);
     let mut atoms = Vec::new();
     for z in -reach..=reach {
         for y in -reach..=reach {

@@ -54,7 +54,7 @@ fn icosahedron() -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let (height, radius) = (1.0 / 5.0_f64.sqrt(), 2.0 / 5.0_f64.sqrt());
     let ring = |height: f64, turn: f64| {
         (0..5).map(move |i| {
-            let (sin, cos) = ((f64::from(i) + turn) * std::f64::consts::TAU / 5.0).sin_cos();
+            let (sin, cos) = libm::sincos((f64::from(i) + turn) * std::f64::consts::TAU / 5.0);
             DVec3::new(radius * cos, radius * sin, height)
         })
     };

@@ -69,7 +69,7 @@ fn lit(scene: Scene, points: &[DVec3], margin: f64) -> Scene {
         + margin;
     let fov_degrees: f64 = 40.0;
     // From here the cone of view touches the sphere around everything.
-    let distance = radius / (fov_degrees.to_radians() / 2.0).sin();
+    let distance = radius / libm::sin(fov_degrees.to_radians() / 2.0);
     let eye = target + distance * DVec3::new(0.5, -1.0, 0.4).normalize();
     Scene {
         camera: Some(Camera {

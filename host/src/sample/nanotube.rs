@@ -50,7 +50,7 @@ pub fn nanotube(n: u32, m: u32, length: f64) -> Scene {
     atoms.sort_unstable_by_key(|&(along, around, _)| (along, around));
     let radius = circumference * lattice / TAU;
     let on_tube = |(_, around, z): (i64, i64, f64)| {
-        let (sin, cos) = (TAU * around as f64 / (6 * square) as f64).sin_cos();
+        let (sin, cos) = libm::sincos(TAU * around as f64 / (6 * square) as f64);
         DVec3::new(radius * cos, radius * sin, z)
     };
     carbon(
