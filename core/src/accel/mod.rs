@@ -57,7 +57,7 @@ impl Structure {
 }
 
 /// A structure, as a type: the code of those that are not named is not in the program.
-pub trait Accel {
+pub trait Accel: Send + Sync {
     /// Its name.
     const STRUCTURE: Structure;
 

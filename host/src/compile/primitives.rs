@@ -212,8 +212,8 @@ impl Primitives {
             }
             NAMED => self.collapsed.push(String::from("and 1 more")),
             _ => {
+                let more = self.total as usize - self.kept() - NAMED;
                 if let Some(rest) = self.collapsed.last_mut() {
-                    let more = self.total as usize - self.kept() - NAMED;
                     *rest = format!("and {more} more");
                 }
             }

@@ -3,14 +3,14 @@
 
 use super::material::Palette;
 use super::object::{Content, Group, Item};
-use super::source::{Name, Source, nearest};
+use super::source::{Name, Source, Span, nearest};
 use crate::scene::{Object, SceneError, Shape};
 use std::collections::{BTreeMap, HashMap};
 
 /// The most primitives that a scene may hold.
 pub(super) const MAX_PRIMITIVES: u64 = 16_777_216;
-/// How deep groups may be nested; placing them takes stack.
-const MAX_NESTING: usize = 64;
+/// How deep groups may be nested; reading and placing them takes stack.
+pub(super) const MAX_NESTING: usize = 64;
 
 /// What placing some objects costs.
 #[derive(Clone, Copy, Default)]
@@ -138,12 +138,16 @@ impl<'c> Census<'c> {
         if nesting <= MAX_NESTING {
             return Ok(());
         }
-        Err(self.source.error(
-            &item.span,
-            format!("groups are nested deeper than {MAX_NESTING}"),
-            "put the objects of some groups into the groups that contain these",
-        ))
+        Err(too_deep(self.source, &item.span))
     }
+}
+
+pub(super) fn too_deep(source: &Source, span: &Span) -> SceneError {
+    source.error(
+        span,
+        format!("groups are nested deeper than {MAX_NESTING}"),
+        "put the objects of some groups into the groups that contain these",
+    )
 }
 
 pub(super) fn too_many(source: &Source, item: &Item) -> SceneError {

@@ -8,13 +8,15 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 /// How many files may be open inside each other; each takes stack.
-const MAX_OPEN: usize = 32;
+const MAX_OPEN: usize = 16;
 
 /// The files that were imported, and those that are being read right now.
 #[derive(Default)]
 pub(super) struct Imports {
     /// Canonical paths, the outermost file first.
     open: Vec<PathBuf>,
+    /// How many groups are open inside each other, in all open files together.
+    pub(super) nesting: usize,
     /// A scene may import a file many times, but with few different options.
     done: HashMap<PathBuf, Vec<(MoleculeOptions, Rc<Scene>)>>,
     pub(super) warnings: Vec<String>,

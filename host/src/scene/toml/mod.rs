@@ -80,10 +80,10 @@
 //!
 //! All radii are above 0. Cylinders, cones and frusta are closed by caps. `[group.NAME]` has the
 //! key `object`, an array of objects like the scene's own: write `[[group.NAME.object]]` or
-//! `object = [{ kind = ... }, ...]`. Groups may hold groups, instances and imports, 64 deep, but
-//! not themselves. An object's own material counts first, then that of the innermost group or
-//! instance around it that has one. A scene may hold 16,777,216 primitives (a mesh's triangles
-//! count one by one).
+//! `object = [{ kind = ... }, ...]`. Groups may hold groups, instances and imports, but not
+//! themselves; 64 groups and 16 files may be nested. An object's own material counts first, then
+//! that of the innermost group or instance around it that has one. A scene may hold 16,777,216
+//! primitives (a mesh's triangles count one by one).
 //!
 //! # Transforms
 //!

@@ -1,5 +1,6 @@
 //! The `[[object]]` and `[group.NAME]` tables, read into a tree that is placed later.
 
+use super::census::{MAX_NESTING, too_deep};
 use super::import::Imports;
 use super::material::Palette;
 use super::source::{Name, Source, Span};
@@ -81,7 +82,12 @@ impl Reader<'_> {
     /// without end at no cost in primitives.
     fn members(&mut self, fields: &Fields<'_>) -> Result<Vec<Item>, SceneError> {
         let list = fields.require("object")?;
+        self.imports.nesting += 1;
+        if self.imports.nesting > MAX_NESTING {
+            return Err(too_deep(self.source, &fields.span));
+        }
         let items = self.items(list)?;
+        self.imports.nesting -= 1;
         if items.is_empty() {
             return Err(list.error(
                 "this group holds no object",

@@ -167,6 +167,13 @@ impl<'a> Value<'a> {
         Ok(color)
     }
 
+    pub(super) fn boolean(self) -> Result<bool, SceneError> {
+        match self.node.get_ref() {
+            DeValue::Boolean(value) => Ok(*value),
+            _ => Err(self.mistyped("true or false", &format!("`{} = true`", self.key))),
+        }
+    }
+
     pub(super) fn text(self) -> Result<&'a str, SceneError> {
         match self.node.get_ref() {
             DeValue::String(text) => Ok(text),

@@ -51,7 +51,7 @@ fn field_of_view(value: Value<'_>) -> Result<f64, SceneError> {
 }
 
 pub(super) fn render(table: Value<'_>) -> Result<RenderSettings, SceneError> {
-    let keys = ["width", "height", "samples", "depth", "cutoff"];
+    let keys = ["width", "height", "samples", "depth", "cutoff", "shadows"];
     let fields = table.fields("render table", &[&keys])?;
     let default = RenderSettings::default();
     let side = |value: Value<'_>| value.integer_in(1..=MAX_SIDE);
@@ -65,6 +65,7 @@ pub(super) fn render(table: Value<'_>) -> Result<RenderSettings, SceneError> {
             Ok(value.integer_in(0..=16)? as u8)
         })?,
         cutoff: fields.or("cutoff", default.cutoff, |value| value.number_in(0.0..=1.0))?,
+        shadows: fields.or("shadows", default.shadows, Value::boolean)?,
     })
 }
 

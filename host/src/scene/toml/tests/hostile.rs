@@ -111,14 +111,6 @@ fn vertices_without_faces_do_not_multiply_for_free() {
 }
 
 #[test]
-fn turned_boxes_count_as_their_triangles() {
-    let ground =
-        "object = [{ kind = \"box\", min = [0, 0, 0], max = [1, 1, 1], rotate = [0, 1, 0] }]\n";
-    let scene = load(&tower(2, 10, ground)).unwrap().scene;
-    assert_eq!(scene.objects.len(), 100);
-}
-
-#[test]
 fn towers_of_groups_end_at_a_depth() {
     assert_eq!(load(&tower(63, 1, DOT)).unwrap().scene.objects.len(), 1);
     let error = refusal(&tower(64, 1, DOT));
@@ -144,4 +136,60 @@ fn brackets_without_end_are_refused() {
             .cause
             .contains("holds no object")
     );
+}
+
+/// Groups nested by headings and then inline around one object.
+fn burrow(headings: usize, inline: usize, object: &str) -> String {
+    let mut text = String::new();
+    for depth in 0..headings {
+        writeln!(
+            text,
+            "[[{}object]]\nkind = \"group\"",
+            "object.".repeat(depth)
+        )
+        .unwrap();
+    }
+    let (open, close) = ("{ kind = \"group\", object = [", "] }");
+    writeln!(
+        text,
+        "object = [{}{object}{}]",
+        open.repeat(inline),
+        close.repeat(inline)
+    )
+    .unwrap();
+    text
+}
+
+/// As deep as TOML allows; reading must not run out of stack before it is refused.
+#[test]
+fn deep_groups_are_refused() {
+    let dot = "{ kind = \"sphere\", center = [0, 0, 0], radius = 1 }";
+    let error = refusal(&burrow(75, 35, dot));
+    assert!(
+        error.cause.contains("groups are nested deeper than 64"),
+        "{error}"
+    );
+    assert_eq!(load(&burrow(40, 24, dot)).unwrap().scene.objects.len(), 1);
+}
+
+#[test]
+fn deep_groups_in_deep_imports_are_refused() {
+    for (depth, cause) in [
+        (5, "groups are nested deeper than 64"),
+        (3, "nested deeper than 16 files"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let text = |file| {
+            burrow(
+                1,
+                depth - 1,
+                &format!("{{ kind = \"import\", file = \"{file}.toml\" }}"),
+            )
+        };
+        for file in 0..20 {
+            std::fs::write(folder.path().join(format!("{file}.toml")), text(file + 1)).unwrap();
+        }
+        let error = load_in(folder.path(), &text(0)).unwrap_err();
+        assert!(error.cause.contains(cause), "{error}");
+    }
 }

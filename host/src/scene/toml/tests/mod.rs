@@ -1,6 +1,7 @@
 //! Tests of the format, and what they share.
 
 mod errors;
+mod fixtures;
 mod hostile;
 mod imports;
 mod objects;

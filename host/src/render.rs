@@ -1,0 +1,144 @@
+//! Renders pictures from a blob on all cores.
+//!
+//! Rows are spread over threads; a pixel depends on nothing but the blob, the number format and the
+//! settings, so a picture is the same bit for bit with any number of threads.
+
+use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::render::{MAX_RAY_DEPTH, RenderError};
+use gridel_core::{
+    Accel, Bvh, Count, Counters, Effects, Fixed, Flagged, Format, List, NoCount, Number, Renderer,
+    Scene, Settings, Structure, Workspace,
+};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Linear pixels of some rows of a picture, and what they cost.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    pub width: u16,
+    /// Rows of the whole picture that these are.
+    pub rows: Range<u16>,
+    /// Row by row, 65535 being white.
+    pub pixels: Vec<[u16; 3]>,
+    /// All work, if it was counted.
+    pub counters: Option<Counters>,
+    /// Boxes and primitives tested for each pixel, if work was counted.
+    pub work: Vec<u32>,
+}
+
+/// What to render, and how.
+#[derive(Clone, Debug)]
+pub struct Job {
+    pub format: Format,
+    pub structure: Structure,
+    pub settings: Settings,
+    pub rows: Range<u16>,
+    pub count: bool,
+}
+
+/// Renders some rows. `progress` is told of every row that is done, from any thread.
+///
+/// # Errors
+/// If the blob lacks the structure or a setting is out of its range.
+pub fn render(
+    scene: &Scene<'_>,
+    job: &Job,
+    progress: &(dyn Fn() + Sync),
+) -> Result<Picture, RenderError> {
+    match job.format {
+        Format::Fixed => with_format::<Fixed>(scene, job, progress),
+        Format::F32 => with_format::<f32>(scene, job, progress),
+        Format::F64 => with_format::<f64>(scene, job, progress),
+    }
+}
+
+fn with_format<N: Number>(
+    scene: &Scene<'_>,
+    job: &Job,
+    progress: &(dyn Fn() + Sync),
+) -> Result<Picture, RenderError> {
+    match job.structure {
+        Structure::List => with_structure::<N, List>(scene, job, progress),
+        Structure::Bvh => with_structure::<N, Bvh>(scene, job, progress),
+        Structure::Flagged => with_structure::<N, Flagged>(scene, job, progress),
+    }
+}
+
+/// Sets of effects that the ray loop is compiled for; a scene gets the first that has all of its.
+const SHADOWED: u32 = Effects::SHADOW.0;
+const GLOSSY: u32 = SHADOWED | Effects::HIGHLIGHT.0 | Effects::CHECKER.0;
+const ALL: u32 = Effects::ALL.0;
+
+fn with_structure<N: Number, A: Accel>(
+    scene: &Scene<'_>,
+    job: &Job,
+    progress: &(dyn Fn() + Sync),
+) -> Result<Picture, RenderError> {
+    let fits = |set| Effects(set).contains(scene.effects());
+    if fits(0) {
+        rows::<N, A, 0>(scene, job, progress)
+    } else if fits(SHADOWED) {
+        rows::<N, A, SHADOWED>(scene, job, progress)
+    } else if fits(GLOSSY) {
+        rows::<N, A, GLOSSY>(scene, job, progress)
+    } else {
+        rows::<N, A, ALL>(scene, job, progress)
+    }
+}
+
+fn rows<N: Number, A: Accel, const EFFECTS: u32>(
+    scene: &Scene<'_>,
+    job: &Job,
+    progress: &(dyn Fn() + Sync),
+) -> Result<Picture, RenderError> {
+    let renderer = Renderer::<N, A, EFFECTS>::new(scene, job.settings)?;
+    let width = job.settings.width;
+    let mut picture = Picture {
+        width,
+        rows: job.rows.clone(),
+        pixels: vec![[0; 3]; usize::from(width) * job.rows.len()],
+        counters: None,
+        work: Vec::new(),
+    };
+    let rows = job.rows.clone().into_par_iter().zip(picture.pixels.par_chunks_mut(width.into()));
+    if job.count {
+        let counted: Vec<(Counters, Vec<u32>)> = rows
+            .map(|(y, pixels)| {
+                let mut work = Vec::with_capacity(width.into());
+                let mut total = Counters::default();
+                render_row(&renderer, y, pixels, || Counters::default(), |counters: Counters| {
+                    work.push((counters.boxes + counters.objects).min(u32::MAX.into()) as u32);
+                    total = total.plus(&counters);
+                });
+                progress();
+                (total, work)
+            })
+            .collect();
+        let total = counted.iter().fold(Counters::default(), |sum, (row, _)| sum.plus(row));
+        picture.counters = Some(total);
+        picture.work = counted.into_iter().flat_map(|(_, work)| work).collect();
+    } else {
+        rows.for_each(|(y, pixels)| {
+            render_row(&renderer, y, pixels, || NoCount, |_| ());
+            progress();
+        });
+    }
+    Ok(picture)
+}
+
+/// One row; every pixel is counted on its own.
+fn render_row<N: Number, A: Accel, C: Count, const EFFECTS: u32>(
+    renderer: &Renderer<'_, '_, N, A, EFFECTS>,
+    y: u16,
+    pixels: &mut [[u16; 3]],
+    counter: impl Fn() -> C,
+    mut counted: impl FnMut(C),
+) {
+    let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let mut space = space.as_view();
+    for (x, pixel) in (0..=u16::MAX).zip(pixels) {
+        let mut count = counter();
+        *pixel = renderer.linear(x, y, &mut space, &mut count);
+        counted(count);
+    }
+}

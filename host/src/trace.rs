@@ -1,0 +1,133 @@
+//! Traces rays of the user's own through a blob.
+
+use glam::DVec3;
+use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::{
+    Accel, Bvh, Count, Fixed, Flagged, Format, List, Number, Ray, Scene, Stack, Structure, any_hit,
+    closest_hit,
+};
+
+/// A ray in scene units; t counts multiples of the direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneRay {
+    pub origin: DVec3,
+    pub tmin: f64,
+    pub direction: DVec3,
+    pub tmax: f64,
+}
+
+/// What a ray met; [`SceneHit::MISS`] for nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneHit {
+    pub t: f64,
+    pub object: u32,
+    pub primitive: u32,
+    pub normal: [f32; 3],
+}
+
+impl SceneHit {
+    /// Nothing was met, or the ray was none: its direction was zero, infinite or NaN, its origin
+    /// infinite or NaN, or its tmin greater than its tmax.
+    pub const MISS: Self =
+        Self { t: f64::INFINITY, object: u32::MAX, primitive: u32::MAX, normal: [0.0; 3] };
+}
+
+/// How to trace.
+#[derive(Clone, Copy, Debug)]
+pub struct Query {
+    pub format: Format,
+    pub structure: Structure,
+    /// Whether any hit will do; it is reported with t 0 and no normal.
+    pub any: bool,
+}
+
+/// Traces rays one after the other on this thread.
+pub fn trace<C: Count>(
+    scene: &Scene<'_>,
+    rays: &[SceneRay],
+    query: Query,
+    hits: &mut [SceneHit],
+    count: &mut C,
+) {
+    match query.format {
+        Format::Fixed => with_format::<Fixed, C>(scene, rays, query, hits, count),
+        Format::F32 => with_format::<f32, C>(scene, rays, query, hits, count),
+        Format::F64 => with_format::<f64, C>(scene, rays, query, hits, count),
+    }
+}
+
+fn with_format<N: Number, C: Count>(
+    scene: &Scene<'_>,
+    rays: &[SceneRay],
+    query: Query,
+    hits: &mut [SceneHit],
+    count: &mut C,
+) {
+    match query.structure {
+        Structure::List => trace_through::<N, List, C>(scene, rays, query.any, hits, count),
+        Structure::Bvh => trace_through::<N, Bvh, C>(scene, rays, query.any, hits, count),
+        Structure::Flagged => trace_through::<N, Flagged, C>(scene, rays, query.any, hits, count),
+    }
+}
+
+fn trace_through<N: Number, A: Accel, C: Count>(
+    scene: &Scene<'_>,
+    rays: &[SceneRay],
+    any: bool,
+    hits: &mut [SceneHit],
+    count: &mut C,
+) {
+    let frame = Frame::of(scene);
+    let mut stack = Stack::<MAX_STACK_DEPTH>::new();
+    for (ray, hit) in rays.iter().zip(hits) {
+        *hit = SceneHit::MISS;
+        let Some((core_ray, scale)) = frame.ray::<N>(scene, ray) else { continue };
+        count.ray(gridel_core::RayKind::Primary);
+        if any {
+            if any_hit::<N, A, C>(scene, &core_ray, stack.as_view(), count) {
+                *hit = SceneHit { t: 0.0, object: 0, primitive: 0, normal: [0.0; 3] };
+            }
+        } else if let Some(found) = closest_hit::<N, A, C>(scene, &core_ray, stack.as_view(), count) {
+            *hit = SceneHit {
+                t: N::far_to_f64(found.t) / scale,
+                object: found.object,
+                primitive: found.primitive,
+                normal: found.normal.map(|x| x.ratio_to_f64() as f32),
+            };
+        }
+    }
+}
+
+/// How a scene's coordinates relate to the core's.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    origin: DVec3,
+    unit: f64,
+}
+
+impl Frame {
+    /// The frame of a blob.
+    pub fn of(scene: &Scene<'_>) -> Self {
+        let header = scene.header();
+        Self {
+            origin: DVec3::from_array(header.origin),
+            unit: f64::powi(2.0, header.unit_exponent.into()),
+        }
+    }
+
+    /// A ray in the core's form, and by how much its t is larger: `None` for what is no ray.
+    pub fn ray<N: Number>(&self, scene: &Scene<'_>, ray: &SceneRay) -> Option<(Ray<N>, f64)> {
+        // Multiples of the direction become lengths along its largest component.
+        let scale = ray.direction.abs().max_element() / self.unit;
+        let along = |t: f64| if t == 0.0 { 0.0 } else { t * scale };
+        let origin = (ray.origin - self.origin) / self.unit;
+        let ray = Ray::from_f64(
+            scene.bounds(),
+            origin.to_array(),
+            ray.direction.to_array(),
+            along(ray.tmin),
+            along(ray.tmax),
+        );
+        Some((ray.ok()?, scale))
+    }
+}
