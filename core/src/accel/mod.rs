@@ -11,6 +11,7 @@
 pub mod bvh;
 pub(crate) mod cull;
 pub mod flagged;
+mod lanes;
 pub mod list;
 mod pairs;
 
@@ -21,8 +22,9 @@ pub(crate) use pairs::check_pairs;
 
 use crate::blob::Scene;
 use crate::count::Count;
+use crate::number::Number;
+use crate::ray::Ray;
 use crate::shape::Kind;
-use cull::Cull;
 use heapless::{Vec, VecView};
 
 /// The name of a structure.
@@ -61,15 +63,15 @@ pub trait Accel: Send + Sync {
     /// Its name.
     const STRUCTURE: Structure;
 
-    /// Calls `leaf` for every leaf whose box the ray can meet at or before `limit`, nearer ones
-    /// first where the structure knows. `leaf` returns the new limit: the step above the best hit,
-    /// or `i32::MIN` to end the walk.
-    fn walk<C: Count>(
+    /// Calls `leaf` for every leaf whose box the ray can meet, nearer ones first where the
+    /// structure knows. `leaf` returns the t beyond which nothing counts any more, or `None` to
+    /// end the walk.
+    fn walk<N: Number, C: Count>(
         scene: &Scene<'_>,
-        cull: &Cull,
+        ray: &Ray<N>,
         stack: &mut StackView,
         count: &mut C,
-        leaf: impl FnMut(Leaf, &mut C) -> i32,
+        leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     );
 }
 

@@ -255,8 +255,8 @@ pub struct Cone {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Pair {
-    /// `[child][axis]`: the box's smallest unit in the low half, its largest in the high half.
-    pub planes: [[u32; 3]; 2],
+    /// `[axis][side][child]`: the lower sides of the left and the right child, then the upper ones.
+    pub planes: [[[i16; 2]; 2]; 3],
     /// What the children are: see [`Link`](crate::accel::Link); its owner bits are 0.
     pub link: u32,
 }

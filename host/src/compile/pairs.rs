@@ -71,7 +71,7 @@ impl Flat {
         let link = Link::new(first_pair, is_leaf(left), is_leaf(right));
         let boxes = [left.bounds(), right.bounds()];
         self.pairs.push(Pair {
-            planes: boxes.map(|b| b.0.map(plane_word)),
+            planes: [0, 1, 2].map(|k| [0, 1].map(|side| boxes.map(|b| b.0[k][side]))),
             link: link.0,
         });
 
