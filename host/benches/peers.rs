@@ -60,8 +60,9 @@ fn compare(name: &str, path: &std::path::Path, lattice_bits: u8) {
     };
     let compiled = compile(&scene, &options).expect("a blob");
     let flagged_only = compile(&scene, &Options { lattice_bits, ..Options::default() }).expect("a blob");
-    let started = Instant::now();
     let blob = compiled.blob.scene().expect("a sound blob");
+    let started = Instant::now();
+    flagged_only.blob.scene().expect("a sound blob");
     let load = started.elapsed();
 
     let triangles: Vec<Triangle> = scene

@@ -2,14 +2,14 @@
 
 use super::cull::Culling;
 use super::pairs::{PairRecord, Walk};
-use super::{Accel, Leaf, Link, StackView, Structure};
+use super::{Accel, Leaf, Node, StackView, Structure};
 use crate::blob::record::{Pair, UnitBox};
 use crate::blob::{Scene, SectionKind};
 use crate::count::Count;
 use crate::number::Number;
 use crate::ray::Ray;
 
-/// The hierarchy with 28 bytes a pair; twelve planes are tested a pair.
+/// The hierarchy with 32 bytes a pair; twelve planes are tested a pair.
 #[derive(Clone, Copy, Debug)]
 pub enum Bvh {}
 
@@ -42,8 +42,8 @@ impl PairRecord for Pair {
     const PLANES: u32 = 12;
 
     #[inline(always)]
-    fn link(&self) -> Link {
-        Link(self.link)
+    fn children(&self, _: u32) -> [Node; 2] {
+        self.children.map(Node)
     }
 
     fn boxes(&self, _: &UnitBox) -> [UnitBox; 2] {

@@ -8,7 +8,7 @@
 
 use super::cull::{Cull, Culling, Interval};
 use super::pairs::{PairRecord, Walk};
-use super::{Accel, Leaf, Link, StackView, Structure};
+use super::{Accel, Leaf, Link, Node, StackView, Structure};
 use crate::blob::record::{FlaggedPair, UnitBox};
 use crate::blob::{Scene, SectionKind};
 use crate::count::Count;
@@ -50,12 +50,12 @@ impl PairRecord for FlaggedPair {
     const PLANES: u32 = 6;
 
     #[inline(always)]
-    fn link(&self) -> Link {
-        Link(self.link)
+    fn children(&self, number: u32) -> [Node; 2] {
+        Link(self.link).children(number)
     }
 
     fn boxes(&self, parent: &UnitBox) -> [UnitBox; 2] {
-        let owners = self.link().owners();
+        let owners = Link(self.link).owners();
         let mut children = [*parent; 2];
         for (axis, &word) in self.planes.iter().enumerate() {
             children[(owners >> axis & 1) as usize].0[axis][0] = word as i16;
@@ -69,7 +69,7 @@ impl PairRecord for FlaggedPair {
 #[inline(always)]
 fn narrow(pair: &FlaggedPair, parent: Interval, cull: &Cull, limit: i32) -> [Interval; 2] {
     // Which child owns each near and each far plane, as seen by this ray.
-    let owners = pair.link().owners();
+    let owners = Link(pair.link).owners();
     let swapped = (owners ^ owners >> 3) & cull.descending();
     let pattern = owners ^ swapped ^ swapped << 3;
     let parent = Interval {

@@ -33,7 +33,7 @@ use heapless::{Vec, VecView};
 pub enum Structure {
     /// Every primitive, one after the other.
     List,
-    /// A bounding volume hierarchy of pairs, 28 bytes each, traversed in the ordinary way.
+    /// A bounding volume hierarchy of pairs, 32 bytes each, traversed in the ordinary way.
     Bvh,
     /// The same hierarchy without the sides that coincide with the parent's, 16 bytes a pair.
     Flagged,
@@ -202,7 +202,6 @@ impl Link {
         let first_pair = self.first_pair();
         let first_leaf = (2 * pair + 1).wrapping_sub(first_pair);
         let (left, right) = (self.left_is_leaf() as u32, self.right_is_leaf() as u32);
-        // Without branches: a leaf's bit goes to the top, and the number is picked by it.
         [
             Node(left << 31 | if left != 0 { first_leaf } else { first_pair }),
             Node(
@@ -219,7 +218,7 @@ impl Link {
 
 /// A pair or a leaf, by number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Node(u32);
+pub(crate) struct Node(u32);
 
 impl Node {
     const fn pair(number: u32) -> Self {

@@ -1,7 +1,7 @@
 //! What the ordinary and the flagged hierarchy share: the walk, and the proof that it is sound.
 
 use super::cull::Interval;
-use super::{Entry, Leaf, Link, MAX_STACK_DEPTH, Node, StackView};
+use super::{Entry, Leaf, MAX_STACK_DEPTH, Node, StackView};
 use crate::blob::record::UnitBox;
 use crate::blob::{BlobError, Scene, SectionKind};
 use crate::count::Count;
@@ -16,8 +16,8 @@ pub(crate) trait PairRecord: Copy {
     /// Planes that are tested for a record.
     const PLANES: u32;
 
-    /// What the children are.
-    fn link(&self) -> Link;
+    /// The children of this record, whose number is given.
+    fn children(&self, number: u32) -> [Node; 2];
 
     /// The children's boxes, given their parent's.
     fn boxes(&self, parent: &UnitBox) -> [UnitBox; 2];
@@ -76,7 +76,7 @@ where
                 let [left, right] = (self.narrow)(pair, interval, limit);
                 count.planes(P::PLANES);
                 count.boxes(2);
-                let [left_node, right_node] = pair.link().children(node.number());
+                let [left_node, right_node] = pair.children(node.number());
                 let meets_left = left.near <= left.far;
                 let meets_right = right.near <= right.far;
                 if meets_left && meets_right {
@@ -191,7 +191,7 @@ pub(crate) fn check_pairs<P: PairRecord>(
                     });
                 }
             }
-            let [left_node, right_node] = pair.link().children(node.number());
+            let [left_node, right_node] = pair.children(node.number());
             // The depth was proved to fit.
             let _ = waiting.push((right_node, right));
             current = (left_node, left);
@@ -207,30 +207,37 @@ pub(crate) fn check_pairs<P: PairRecord>(
 /// Proves breadth-first order and returns the number of levels of pairs.
 fn check_order<P: PairRecord>(pairs: &[P]) -> Result<usize, BlobError> {
     let section = P::SECTION;
-    let (mut levels, mut level_end, mut next) = (0, 0, 1);
+    let (mut levels, mut level_end) = (0, 0);
+    let (mut next_pair, mut next_leaf) = (1, 0);
     for (index, pair) in pairs.iter().enumerate() {
         if index == level_end {
             levels += 1;
-            level_end = next;
+            level_end = next_pair;
         }
-        let link = pair.link();
-        if link.first_pair() as usize != next {
-            return Err(BlobError::Record {
-                section,
-                index,
-                what: "first child, which must follow breadth first,",
-                found: link.first_pair().into(),
-                expected: next as i64,
-            });
+        for child in pair.children(index as u32) {
+            let next = if child.is_leaf() {
+                &mut next_leaf
+            } else {
+                &mut next_pair
+            };
+            if child.number() as usize != *next {
+                return Err(BlobError::Record {
+                    section,
+                    index,
+                    what: "number of a child, which must follow breadth first,",
+                    found: child.number().into(),
+                    expected: *next as i64,
+                });
+            }
+            *next += 1;
         }
-        next += usize::from(!link.left_is_leaf()) + usize::from(!link.right_is_leaf());
         // A pair that nothing leads to, or a child beyond the last pair.
-        if next <= index + 1 && index + 1 < pairs.len() || next > pairs.len() {
+        if next_pair <= index + 1 && index + 1 < pairs.len() || next_pair > pairs.len() {
             return Err(BlobError::Record {
                 section,
                 index,
                 what: "number of pairs that are reached up to here",
-                found: next as i64,
+                found: next_pair as i64,
                 expected: pairs.len() as i64,
             });
         }

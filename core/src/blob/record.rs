@@ -257,8 +257,8 @@ pub struct Cone {
 pub struct Pair {
     /// `[axis][side][child]`: the lower sides of the left and the right child, then the upper ones.
     pub planes: [[[i16; 2]; 2]; 3],
-    /// What the children are: see [`Link`](crate::accel::Link); its owner bits are 0.
-    pub link: u32,
+    /// The children: the number of a pair, or that of a leaf with bit 31 set.
+    pub children: [u32; 2],
 }
 
 /// A pair of children without the sides that coincide with their parent's.
@@ -382,5 +382,5 @@ const _: () = {
     assert!(size_of::<Cuboid>() == 24 && size_of::<Disc>() == 40 && size_of::<Cone>() == 44);
     assert!(offset_of!(Disc, radius) == 24 && offset_of!(Disc, bounds) == 28);
     assert!(offset_of!(Cone, base_radius) == 24 && offset_of!(Cone, bounds) == 32);
-    assert!(size_of::<Pair>() == 28 && size_of::<FlaggedPair>() == 16);
+    assert!(size_of::<Pair>() == 32 && size_of::<FlaggedPair>() == 16);
 };
