@@ -77,7 +77,7 @@ impl<N: Number> Ray<N> {
             return Err(RayError::Origin);
         }
 
-        let [first, last] = bounds.0[major];
+        let &[first, last] = bounds.0.get(major).ok_or(RayError::Direction)?;
         let forward = slope[major] > N::ZERO;
         let (entry, exit) = if forward {
             (first, last)

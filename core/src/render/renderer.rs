@@ -255,7 +255,8 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         let mean = if samples == 1 {
             sum
         } else {
-            sum.scaled(N::ratio((1 << 30) / i32::from(samples)))
+            // `new` refuses 0 samples.
+            sum.scaled(N::ratio((1 << 30) / i32::from(samples.max(1))))
         };
         let linear: Linear = mean.0.map(N::to_linear16);
         linear

@@ -38,7 +38,8 @@ pub(crate) fn cross<const MAJOR: usize, N: Number, V: Vertex>(
             vertex.length::<N>(y) - ray.origin[y] - depth * shear_y,
         ]
     };
-    let [a, b, c] = corners.map(project);
+    // Not by `map`, which is not inlined on all targets and then checks indices.
+    let (a, b, c) = (project(corners[0]), project(corners[1]), project(corners[2]));
     let zero = N::Wide::default();
     let (u, v) = (N::cross2(b, c), N::cross2(c, a));
     if u < zero && v > zero || u > zero && v < zero {

@@ -24,25 +24,14 @@ impl Cost {
 }
 
 /// Measures phases. Nothing may be printed inside one: that costs by the number of digits.
+#[derive(Default)]
 pub struct Meter {
     counter: Counter,
 }
 
-impl Default for Meter {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Meter {
-    /// The board's only meter.
-    pub fn new() -> Self {
-        let counter = Counter::take().expect("a program makes one meter");
-        Self { counter }
-    }
-
     /// Runs a phase.
-    pub fn run<T>(&mut self, phase: impl FnOnce() -> T) -> (T, Cost) {
+    pub fn run<T>(&self, phase: impl FnOnce() -> T) -> (T, Cost) {
         let mut result = None;
         let painted = paint();
         let instructions = self.counter.instructions(|| result = Some(phase()));

@@ -2,6 +2,7 @@
 #![no_std]
 #![no_main]
 
+use core::panic::PanicInfo;
 use cortex_m_rt::entry;
 use gridel_core::{NoCount, Rgb888, Scene, Settings};
 use gridel_firmware::measure::{Cost, Meter};
@@ -14,7 +15,7 @@ use semihosting::println;
 fn main() -> ! {
     static mut SPACE: Space = Space::new();
     static mut ROW: [Rgb888; WIDTH] = [Rgb888([0; 3]); WIDTH];
-    let mut meter = Meter::new();
+    let meter = Meter::default();
     let mut file = File::create(c"picture.rgb").expect("the host's file can be written to");
     let (scene, load) = meter.run(|| Scene::from_bytes(BLOB));
     let scene = scene.expect("the build script checked the blob");
@@ -42,4 +43,9 @@ fn main() -> ! {
     println!("workspace-bytes {}", size_of::<Space>());
     println!("row-bytes {}", size_of_val(ROW));
     semihosting::process::exit(0)
+}
+
+#[panic_handler]
+fn panic(info: &PanicInfo<'_>) -> ! {
+    gridel_firmware::give_up(info)
 }

@@ -2,17 +2,17 @@
 #![no_std]
 #![no_main]
 
+use core::panic::PanicInfo;
 use cortex_m_rt::entry;
 use gridel_core::{NoCount, Scene, Settings, Stack, closest_hit};
 use gridel_firmware::measure::Meter;
 use gridel_firmware::scene::{Accel, BLOB, Number, STACK_DEPTH, SceneRenderer};
-use semihosting as _;
 use semihosting::println;
 
 #[entry]
 fn main() -> ! {
     static mut STACK: Stack<STACK_DEPTH> = Stack::new();
-    let mut meter = Meter::new();
+    let meter = Meter::default();
     let (scene, load) = meter.run(|| Scene::from_bytes(BLOB));
     let scene = scene.expect("the build script checked the blob");
     let ((rays, hits), trace) = meter.run(|| trace(&scene, STACK));
@@ -43,4 +43,9 @@ fn trace(scene: &Scene<'static>, stack: &mut Stack<STACK_DEPTH>) -> (u32, u32) {
         }
     }
     (rays, hits)
+}
+
+#[panic_handler]
+fn panic(info: &PanicInfo<'_>) -> ! {
+    gridel_firmware::give_up(info)
 }
