@@ -39,7 +39,11 @@ pub(crate) fn cross<const MAJOR: usize, N: Number, V: Vertex>(
         ]
     };
     // Not by `map`, which is not inlined on all targets and then checks indices.
-    let (a, b, c) = (project(corners[0]), project(corners[1]), project(corners[2]));
+    let (a, b, c) = (
+        project(corners[0]),
+        project(corners[1]),
+        project(corners[2]),
+    );
     let zero = N::Wide::default();
     let (u, v) = (N::cross2(b, c), N::cross2(c, a));
     if u < zero && v > zero || u > zero && v < zero {
