@@ -1,6 +1,6 @@
 //! Rays, in the one form that every kernel uses.
 
-use crate::accel::cull::Cull;
+use crate::accel::cull::Culling;
 use crate::blob::record::UnitBox;
 use crate::number::Number;
 use core::fmt;
@@ -25,7 +25,7 @@ pub struct Ray<N: Number> {
     pub(crate) moved: N::Wide,
     pub(crate) tmin: N,
     pub(crate) tmax: N,
-    pub(crate) cull: Cull,
+    pub(crate) cull: N::Cull,
 }
 
 /// Why something is not a ray.
@@ -60,6 +60,7 @@ impl<N: Number> Ray<N> {
     /// # Errors
     /// If the direction is zero, or anything is NaN, or the origin or direction infinite, or
     /// `tmin > tmax`. Queries for which no ray can be made have no hit.
+    #[inline]
     pub fn new(
         bounds: &UnitBox,
         origin: [N::Wide; 3],
@@ -109,7 +110,7 @@ impl<N: Number> Ray<N> {
                 N::ZERO
             },
             tmax: if tmax < far { N::narrow(tmax) } else { N::FAR },
-            cull: Cull::default(),
+            cull: N::Cull::default(),
         };
         let mut misses = tmax < zero || ahead(exit) < zero;
         // A ray rises by at most 2^16 units on its way through the box.
@@ -126,7 +127,7 @@ impl<N: Number> Ray<N> {
         if misses {
             ray.tmax = -N::ONE;
         }
-        ray.cull = Cull::new(&ray);
+        ray.cull = N::Cull::new(&ray);
         Ok(ray)
     }
 
@@ -150,9 +151,9 @@ impl<N: Number> Ray<N> {
             moved: N::far_from_f64(exact.moved),
             tmin: N::length_from_f64(exact.tmin),
             tmax: N::length_from_f64(exact.tmax),
-            cull: Cull::default(),
+            cull: N::Cull::default(),
         };
-        ray.cull = Cull::new(&ray);
+        ray.cull = N::Cull::new(&ray);
         Ok(ray)
     }
 

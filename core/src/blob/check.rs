@@ -2,7 +2,7 @@
 
 use super::record::{
     ALIGNMENT, Cone, Cuboid, Disc, ENDIANNESS, FlaggedPair, Header, Light, MAGIC, Material, Pair,
-    UnitBox, VERSION, View, plane_word,
+    UnitBox, VERSION, View,
 };
 use super::section::Sections;
 use super::{BlobError, Indices, Scene, SectionKind, checksum};
@@ -34,7 +34,6 @@ pub(super) fn check(blob: &[u8]) -> Result<Scene<'_>, BlobError> {
         leaves: sections.records(SectionKind::Leaves)?,
         pairs: sections.records::<Pair>(SectionKind::Pairs)?,
         flagged: sections.records::<FlaggedPair>(SectionKind::FlaggedPairs)?,
-        bounds_words: header.bounds.0.map(plane_word),
         needs_norm: shapes.spheres.len() + shapes.cones.len() > 0,
     };
     check_objects(&scene)?;

@@ -4,6 +4,7 @@
 //! `max` of the standard library (they differ on signed zeros), square roots by libm.
 
 use super::{Format, Number};
+use crate::accel::cull::FloatCulling;
 
 /// The sign of `a b - c d`, exactly, for `f32` factors: their products fit `f64`.
 #[cold]
@@ -52,6 +53,7 @@ macro_rules! float_number {
      $product_difference:path, $direction:expr) => {
         impl Number for $float {
             type Wide = $float;
+            type Cull = FloatCulling;
 
             const FORMAT: Format = $format;
             const ZERO: Self = 0.0;
@@ -113,6 +115,11 @@ macro_rules! float_number {
 
             fn far_to_f64(wide: Self) -> f64 {
                 wide as f64
+            }
+
+            #[inline(always)]
+            fn to_f32(self) -> f32 {
+                self as f32
             }
 
             fn length_to_f64(self) -> f64 {
@@ -246,18 +253,19 @@ macro_rules! float_number {
                     2
                 };
                 let largest = v[axis].abs();
-                if !(largest > 0.0 && (x + y + z).is_finite()) {
+                let numbers = x == x && y == y && z == z;
+                if !(numbers && largest > 0.0 && largest.is_finite()) {
                     return None;
                 }
-                let mut slopes = v.map(|component| {
-                    let slope = component / largest;
+                let inverse = 1.0 / largest;
+                // One division will do unless the inverse is no ordinary number.
+                let ordinary = largest >= $flush && inverse >= $flush;
+                let scaled = |component: $float| {
+                    let slope = if ordinary { component * inverse } else { component / largest };
                     // Adding zero turns -0.0 into 0.0.
-                    if slope.abs() < $flush {
-                        0.0
-                    } else {
-                        slope + 0.0
-                    }
-                });
+                    if slope.abs() < $flush { 0.0 } else { slope + 0.0 }
+                };
+                let mut slopes = [scaled(v[0]), scaled(v[1]), scaled(v[2])];
                 slopes[axis] = if v[axis] < 0.0 { -1.0 } else { 1.0 };
                 Some((slopes, axis))
             }
