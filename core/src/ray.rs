@@ -106,7 +106,8 @@ impl<N: Number> Ray<N> {
         let start = |axis: usize| origin[axis] + N::wide_scale(moved, slope[axis]);
         let start = [start(0), start(1), start(2)];
         let within = |axis: usize| start[axis] <= reach && -start[axis] <= reach;
-        let meets = tmax >= zero && ahead(exit) >= zero && within(0) && within(1) && within(2);
+        let meets =
+            tmax >= zero && ahead(exit) - moved >= zero && within(0) && within(1) && within(2);
         let coordinate = |axis: usize| N::settle(N::narrow(start[axis]));
         let mut ray = Self {
             origin: [coordinate(0), coordinate(1), coordinate(2)],

@@ -348,7 +348,8 @@ impl Number for Fixed {
         }
         // The divisor's upper 32 bits are enough: t is a length of at most 31 bits.
         let shift = b.leading_zeros();
-        let divisor = (b << shift) >> 32;
+        // Its uppermost bit is set; saying so proves that it is not 0.
+        let divisor = (b << shift) >> 32 | 1 << 31;
         let dividend = match shift.checked_sub(32 - RATIO_BITS) {
             Some(up) if up > a.leading_zeros() => return with_sign(u64::MAX, sign),
             Some(up) => a << up,
