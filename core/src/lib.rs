@@ -30,6 +30,8 @@ pub mod number;
 mod query;
 pub mod ray;
 pub mod render;
+#[cfg(feature = "selftest")]
+pub mod selftest;
 pub mod shade;
 mod shape;
 

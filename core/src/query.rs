@@ -1,14 +1,14 @@
 //! Queries: what does a ray meet first, does it meet anything at all?
 
-use crate::accel::cull::step_above;
 use crate::accel::{Accel, Leaf, StackView};
 use crate::blob::Scene;
-use crate::blob::record::{Corners, Sphere, Vertex};
+use crate::blob::record::{Corners, Cuboid, Sphere, UnitBox, Vertex};
 use crate::count::Count;
 use crate::number::Number;
 use crate::ray::Ray;
+use crate::shape::sphere;
+use crate::shape::triangle::{self, Projection};
 use crate::shape::{Crossing, Kind, Part, Spheres, Triangles, Vertices, accept, extent};
-use crate::shape::{sphere, triangle};
 
 /// What a ray met.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +46,7 @@ struct Search<'s, 'a, N: Number> {
     scene: &'s Scene<'a>,
     ray: &'s Ray<N>,
     recip_norm2: N,
+    projection: Projection<N>,
     /// No hit beyond this counts.
     tmax: N,
     best: Option<Best<N>>,
@@ -62,17 +63,17 @@ impl<'s, 'a, N: Number> Search<'s, 'a, N> {
             } else {
                 N::ZERO
             },
+            projection: Projection::of(ray),
             tmax: ray.tmax,
             best: None,
         }
     }
 
     /// Takes a crossing that beats the best hit: a smaller t, or the same t of an earlier primitive.
-    #[inline(always)]
-    fn consider(&mut self, crossing: Crossing<N>, kind: Kind, index: u32) {
-        let Some(bounds) = self.scene.shapes.bounds(kind, index as usize) else {
-            return;
-        };
+    ///
+    /// Out of line, because few of the primitives that are tested come this far.
+    #[inline(never)]
+    fn consider(&mut self, crossing: Crossing<N>, bounds: UnitBox, kind: Kind, index: u32) {
         let Some((t, part)) = accept(self.ray, crossing, bounds, self.tmax) else {
             return;
         };
@@ -108,43 +109,54 @@ impl<'s, 'a, N: Number> Search<'s, 'a, N> {
                 Spheres::S16(spheres) => self.spheres(spheres.get(first..end), leaf),
                 Spheres::S24(spheres) => self.spheres(spheres.get(first..end), leaf),
             },
-            Kind::Box => {
-                self.solids(shapes.boxes.get(first..end), leaf, |search, cuboid| {
-                    cuboid.cross(search.ray)
-                });
-            }
-            Kind::Disc => {
-                self.solids(shapes.discs.get(first..end), leaf, |search, disc| {
-                    disc.cross(search.ray)
-                });
-            }
-            Kind::Cone => self.solids(shapes.cones.get(first..end), leaf, |search, cone| {
-                cone.cross(search.ray, search.recip_norm2)
-            }),
+            Kind::Box => self.solids(
+                shapes.boxes.get(first..end),
+                leaf,
+                |search, cuboid| cuboid.cross(search.ray),
+                Cuboid::bounds,
+            ),
+            Kind::Disc => self.solids(
+                shapes.discs.get(first..end),
+                leaf,
+                |search, disc| disc.cross(search.ray),
+                |disc| disc.bounds,
+            ),
+            Kind::Cone => self.solids(
+                shapes.cones.get(first..end),
+                leaf,
+                |search, cone| cone.cross(search.ray, search.recip_norm2),
+                |cone| cone.bounds,
+            ),
         }
     }
 
-    /// Tests records one after the other.
+    /// Tests records one after the other; `bounds` is asked for the boxes of those that are met.
     #[inline(always)]
     fn solids<T>(
         &mut self,
         records: Option<&[T]>,
         leaf: Leaf,
         cross: impl Fn(&Self, &T) -> Option<Crossing<N>>,
+        bounds: impl Fn(&T) -> UnitBox,
     ) {
         for (index, record) in (leaf.first..).zip(records.unwrap_or_default()) {
             if let Some(crossing) = cross(self, record) {
-                self.consider(crossing, leaf.kind, index);
+                self.consider(crossing, bounds(record), leaf.kind, index);
             }
         }
     }
 
     #[inline(always)]
     fn spheres<S: Sphere>(&mut self, spheres: Option<&[S]>, leaf: Leaf) {
-        self.solids(spheres, leaf, |search, record| {
+        let cross = |search: &Self, record: &S| {
             let (center, radius) = record.lattice();
             sphere::cross(search.ray, search.recip_norm2, center, radius)
-        });
+        };
+        let bounds = |record: &S| {
+            let (center, radius) = record.lattice();
+            sphere::bounds(center, radius)
+        };
+        self.solids(spheres, leaf, cross, bounds);
     }
 
     /// Chooses the copy of the triangle test for the ray's major axis.
@@ -168,11 +180,26 @@ impl<'s, 'a, N: Number> Search<'s, 'a, N> {
         triangles: Option<&[I]>,
         leaf: Leaf,
     ) {
-        self.solids(triangles, leaf, |search, record| {
+        let projection = self.projection;
+        for (index, record) in (leaf.first..).zip(triangles.unwrap_or_default()) {
             let [a, b, c] = record.corners();
-            let corners = [vertices.get(a)?, vertices.get(b)?, vertices.get(c)?];
-            triangle::cross::<MAJOR, N, V>(search.ray, corners)
-        });
+            let corners = (vertices.get(a), vertices.get(b), vertices.get(c));
+            let (Some(a), Some(b), Some(c)) = corners else {
+                continue;
+            };
+            if projection.meets::<MAJOR, V>(a, b, c) {
+                self.triangle([a.position(), b.position(), c.position()], index);
+            }
+        }
+    }
+
+    /// Takes a triangle that the ray meets somewhere on its line.
+    #[inline(never)]
+    fn triangle(&mut self, corners: [[i32; 3]; 3], index: u32) {
+        if let Some(crossing) = triangle::cross(self.ray, corners) {
+            let bounds = triangle::bounds(corners);
+            self.consider(crossing, bounds, Kind::Triangle, index);
+        }
     }
 }
 
@@ -187,10 +214,10 @@ pub fn closest_hit<N: Number, A: Accel, C: Count>(
     count: &mut C,
 ) -> Option<Hit<N>> {
     let mut search = Search::new(scene, ray);
-    A::walk(scene, &ray.cull, stack, count, |leaf, count| {
+    A::walk(scene, ray, stack, count, |leaf, count| {
         count.objects(leaf.count);
         search.leaf(leaf);
-        step_above(search.tmax)
+        Some(search.tmax)
     });
     let best = search.best?;
     let point = ray.at(best.t);
@@ -217,14 +244,10 @@ pub fn any_hit<N: Number, A: Accel, C: Count>(
     count: &mut C,
 ) -> bool {
     let mut search = Search::new(scene, ray);
-    A::walk(scene, &ray.cull, stack, count, |leaf, count| {
+    A::walk(scene, ray, stack, count, |leaf, count| {
         count.objects(leaf.count);
         search.leaf(leaf);
-        if search.best.is_some() {
-            i32::MIN
-        } else {
-            step_above(search.tmax)
-        }
+        search.best.is_none().then_some(search.tmax)
     });
     search.best.is_some()
 }

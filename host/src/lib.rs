@@ -2,5 +2,6 @@
 pub mod blob;
 pub mod compile;
 pub mod render;
+pub mod sample;
 pub mod scene;
 pub mod trace;

@@ -1,13 +1,15 @@
 //! The bounding volume hierarchy with ordinary traversal: all planes of both children are tested.
 
-use super::cull::{Cull, Interval};
-use super::pairs::{PairRecord, walk};
-use super::{Accel, Leaf, Link, StackView, Structure};
+use super::cull::Culling;
+use super::pairs::{PairRecord, Walk};
+use super::{Accel, Leaf, Node, StackView, Structure};
 use crate::blob::record::{Pair, UnitBox};
 use crate::blob::{Scene, SectionKind};
 use crate::count::Count;
+use crate::number::Number;
+use crate::ray::Ray;
 
-/// The hierarchy with 28 bytes a pair; twelve planes are tested a pair.
+/// The hierarchy with 32 bytes a pair; twelve planes are tested a pair.
 #[derive(Clone, Copy, Debug)]
 pub enum Bvh {}
 
@@ -15,14 +17,23 @@ impl Accel for Bvh {
     const STRUCTURE: Structure = Structure::Bvh;
 
     #[inline]
-    fn walk<C: Count>(
+    fn walk<N: Number, C: Count>(
         scene: &Scene<'_>,
-        cull: &Cull,
+        ray: &Ray<N>,
         stack: &mut StackView,
         count: &mut C,
-        leaf: impl FnMut(Leaf, &mut C) -> i32,
+        leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        walk(scene, scene.pairs, cull, stack, count, leaf);
+        let root = ray.cull.root(ray, scene.bounds());
+        let narrow = |pair: &Pair, _, limit| ray.cull.children(pair, limit);
+        let walk = Walk {
+            scene,
+            pairs: scene.pairs,
+            root,
+            narrow,
+            limit: N::Cull::limit,
+        };
+        walk.run(ray.tmax, stack, count, leaf);
     }
 }
 
@@ -31,20 +42,13 @@ impl PairRecord for Pair {
     const PLANES: u32 = 12;
 
     #[inline(always)]
-    fn link(&self) -> Link {
-        Link(self.link)
+    fn children(&self, _: u32) -> [Node; 2] {
+        self.children.map(Node)
     }
 
     fn boxes(&self, _: &UnitBox) -> [UnitBox; 2] {
-        self.planes
-            .map(|words| UnitBox(words.map(|word| [word as i16, (word >> 16) as i16])))
-    }
-
-    #[inline(always)]
-    fn narrow(&self, _: Interval, cull: &Cull, limit: i32) -> [Interval; 2] {
-        [
-            cull.clip(&self.planes[0], cull.start, limit),
-            cull.clip(&self.planes[1], cull.start, limit),
-        ]
+        let child =
+            |child: usize| UnitBox(self.planes.map(|[low, high]| [low[child], high[child]]));
+        [child(0), child(1)]
     }
 }

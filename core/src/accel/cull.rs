@@ -21,11 +21,35 @@
 //!
 //! Values are monotone in `p`, so a child's interval lies in its parent's, whatever was rounded.
 
-use crate::blob::record::UnitBox;
+use super::lanes::Lanes;
+use crate::blob::record::{Pair, UnitBox, plane_word};
 use crate::number::Number;
 use crate::ray::Ray;
 
-/// The culling form of a ray: 52 bytes.
+/// The steps at which a ray enters and leaves something; it misses where `near > far`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Interval {
+    /// The first step.
+    pub near: i32,
+    /// The last step.
+    pub far: i32,
+}
+
+/// A form of a ray that culls boxes: [`Cull`] in integers, [`Lanes`] in SIMD.
+pub trait Culling<N: Number>: Copy + core::fmt::Debug + Default + Send + Sync {
+    /// Sets up a ray.
+    fn new(ray: &Ray<N>) -> Self;
+    /// The integer form, whose intervals hits are clamped to.
+    fn exact(&self, ray: &Ray<N>) -> Cull;
+    /// The ray's own interval, and that of a box in it.
+    fn root(&self, ray: &Ray<N>, bounds: &UnitBox) -> Interval;
+    /// The limit for hits at or before a length.
+    fn limit(t: N) -> i32;
+    /// The intervals of a pair's children, from the ray's start up to a limit.
+    fn children(&self, pair: &Pair, limit: i32) -> [Interval; 2];
+}
+
+/// The culling form of a ray in integers: 52 bytes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cull {
     /// Steps a unit with 16 fraction bits, a value an axis, with the slope's sign.
@@ -37,32 +61,15 @@ pub struct Cull {
     /// 16 where the ray runs down the axis and the planes of a word change roles, else 0.
     rotation: [u32; 3],
     /// The step at or below the ray's tmin.
-    pub(crate) start: i32,
-    /// The step above the ray's tmax.
-    pub(crate) end: i32,
+    start: i32,
 }
 
-/// The steps at which a ray enters and leaves something; it misses where `near > far`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Interval {
-    /// The first step.
-    pub(crate) near: i32,
-    /// The last step.
-    pub(crate) far: i32,
-}
-
-/// The step above a length: anything that lies at most at `t` is entered at or before it.
-#[inline(always)]
-pub(crate) fn step_above<N: Number>(t: N) -> i32 {
-    t.to_cull_floor().saturating_add(1)
-}
-
-impl Cull {
-    /// Sets up a ray. Costs two divisions and some twenty operations.
-    pub(crate) fn new<N: Number>(ray: &Ray<N>) -> Self {
+impl<N: Number> Culling<N> for Cull {
+    /// Costs two divisions and some twenty operations.
+    #[inline(always)]
+    fn new(ray: &Ray<N>) -> Self {
         let mut cull = Self {
             start: ray.tmin.to_cull_floor(),
-            end: step_above(ray.tmax),
             ..Self::default()
         };
         for axis in 0..3 {
@@ -78,22 +85,65 @@ impl Cull {
         cull
     }
 
-    /// The near and the far plane of a word of two.
     #[inline(always)]
-    fn order(&self, axis: usize, planes: u32) -> (i16, i16) {
-        let ordered = planes.rotate_right(self.rotation[axis]);
-        (ordered as i16, (ordered >> 16) as i16)
+    fn exact(&self, _: &Ray<N>) -> Cull {
+        *self
+    }
+
+    #[inline(always)]
+    fn root(&self, ray: &Ray<N>, bounds: &UnitBox) -> Interval {
+        let whole = self.interval(bounds);
+        Interval {
+            near: whole.near.max(self.start),
+            far: whole.far.min(<Self as Culling<N>>::limit(ray.tmax)),
+        }
+    }
+
+    #[inline(always)]
+    fn limit(t: N) -> i32 {
+        t.to_cull_floor().saturating_add(1)
+    }
+
+    #[inline(always)]
+    fn children(&self, pair: &Pair, limit: i32) -> [Interval; 2] {
+        let mut children = [Interval {
+            near: self.start,
+            far: limit,
+        }; 2];
+        for axis in 0..3 {
+            let [lower, upper] = pair.planes[axis];
+            let descending = self.rotation[axis] != 0;
+            let (near, far) = if descending {
+                (upper, lower)
+            } else {
+                (lower, upper)
+            };
+            for (child, interval) in children.iter_mut().enumerate() {
+                let near = self.step(axis, near[child]).wrapping_add(self.near[axis]);
+                let far = self.step(axis, far[child]).wrapping_add(self.far[axis]);
+                interval.near = interval.near.max(near);
+                interval.far = interval.far.min(far);
+            }
+        }
+        children
+    }
+}
+
+impl Cull {
+    /// A plane's product.
+    #[inline(always)]
+    fn step(&self, axis: usize, plane: i16) -> i32 {
+        ((self.inverse[axis] as i64 * plane as i64) >> 16) as i32
     }
 
     /// The steps at which the ray reaches the near and the far plane of a word of two.
     #[inline(always)]
     pub(crate) fn planes(&self, axis: usize, planes: u32) -> (i32, i32) {
-        let (near, far) = self.order(axis, planes);
-        let inverse = self.inverse[axis] as i64;
-        let step = |plane: i16| ((inverse * plane as i64) >> 16) as i32;
+        let ordered = planes.rotate_right(self.rotation[axis]);
+        let (near, far) = (ordered as i16, (ordered >> 16) as i16);
         (
-            step(near).wrapping_add(self.near[axis]),
-            step(far).wrapping_add(self.far[axis]),
+            self.step(axis, near).wrapping_add(self.near[axis]),
+            self.step(axis, far).wrapping_add(self.far[axis]),
         )
     }
 
@@ -103,25 +153,36 @@ impl Cull {
         (self.rotation[0] | self.rotation[1] << 1 | self.rotation[2] << 2) >> 4
     }
 
-    /// The interval of a box, within the ray's own from `start` to `limit`.
-    #[inline(always)]
-    pub(crate) fn clip(&self, planes: &[u32; 3], start: i32, limit: i32) -> Interval {
-        let (near_x, far_x) = self.planes(0, planes[0]);
-        let (near_y, far_y) = self.planes(1, planes[1]);
-        let (near_z, far_z) = self.planes(2, planes[2]);
-        Interval {
-            near: near_x.max(near_y).max(near_z.max(start)),
-            far: far_x.min(far_y).min(far_z.min(limit)),
-        }
-    }
-
-    /// The interval of a primitive's own box, tmin and tmax aside.
+    /// The interval of a box, the ray's own aside.
     #[inline(always)]
     pub(crate) fn interval(&self, bounds: &UnitBox) -> Interval {
-        let words = bounds.0.map(crate::blob::record::plane_word);
-        self.clip(&words, i32::MIN, i32::MAX)
+        let (near_x, far_x) = self.planes(0, plane_word(bounds.0[0]));
+        let (near_y, far_y) = self.planes(1, plane_word(bounds.0[1]));
+        let (near_z, far_z) = self.planes(2, plane_word(bounds.0[2]));
+        Interval {
+            near: near_x.max(near_y).max(near_z),
+            far: far_x.min(far_y).min(far_z),
+        }
     }
 }
+
+/// The form in which rays of a float format cull on this machine.
+///
+/// Cores with SIMD registers take four planes at a time, the others integers. Neither can change
+/// an answer; only how many boxes are visited for nothing may differ, by the width of a margin.
+#[cfg(any(
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+))]
+pub(crate) type FloatCulling = Lanes;
+/// The form in which rays of a float format cull on this machine.
+#[cfg(not(any(
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+)))]
+pub(crate) type FloatCulling = Cull;
 
 #[cfg(test)]
 mod tests;

@@ -6,12 +6,14 @@
 //! the child that does *not* touch it, and one bit that says which child that is (its owner). A ray
 //! brings its interval in the parent and narrows it by six planes instead of twelve.
 
-use super::cull::{Cull, Interval};
-use super::pairs::{PairRecord, walk};
-use super::{Accel, Leaf, Link, StackView, Structure};
+use super::cull::{Cull, Culling, Interval};
+use super::pairs::{PairRecord, Walk};
+use super::{Accel, Leaf, Link, Node, StackView, Structure};
 use crate::blob::record::{FlaggedPair, UnitBox};
 use crate::blob::{Scene, SectionKind};
 use crate::count::Count;
+use crate::number::Number;
+use crate::ray::Ray;
 
 /// The hierarchy with 16 bytes a pair; six planes are tested a pair.
 #[derive(Clone, Copy, Debug)]
@@ -21,14 +23,25 @@ impl Accel for Flagged {
     const STRUCTURE: Structure = Structure::Flagged;
 
     #[inline]
-    fn walk<C: Count>(
+    fn walk<N: Number, C: Count>(
         scene: &Scene<'_>,
-        cull: &Cull,
+        ray: &Ray<N>,
         stack: &mut StackView,
         count: &mut C,
-        leaf: impl FnMut(Leaf, &mut C) -> i32,
+        leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        walk(scene, scene.flagged, cull, stack, count, leaf);
+        let cull = ray.cull.exact(ray);
+        let root = Culling::<N>::root(&cull, ray, scene.bounds());
+        let narrow = |pair: &FlaggedPair, parent, limit| narrow(pair, parent, &cull, limit);
+        let limit = <Cull as Culling<N>>::limit;
+        let walk = Walk {
+            scene,
+            pairs: scene.flagged,
+            root,
+            narrow,
+            limit,
+        };
+        walk.run(ray.tmax, stack, count, leaf);
     }
 }
 
@@ -37,12 +50,12 @@ impl PairRecord for FlaggedPair {
     const PLANES: u32 = 6;
 
     #[inline(always)]
-    fn link(&self) -> Link {
-        Link(self.link)
+    fn children(&self, number: u32) -> [Node; 2] {
+        Link(self.link).children(number)
     }
 
     fn boxes(&self, parent: &UnitBox) -> [UnitBox; 2] {
-        let owners = self.link().owners();
+        let owners = Link(self.link).owners();
         let mut children = [*parent; 2];
         for (axis, &word) in self.planes.iter().enumerate() {
             children[(owners >> axis & 1) as usize].0[axis][0] = word as i16;
@@ -50,22 +63,23 @@ impl PairRecord for FlaggedPair {
         }
         children
     }
+}
 
-    #[inline(always)]
-    fn narrow(&self, parent: Interval, cull: &Cull, limit: i32) -> [Interval; 2] {
-        // Which child owns each near and each far plane, as seen by this ray.
-        let owners = self.link().owners();
-        let swapped = (owners ^ owners >> 3) & cull.descending();
-        let pattern = owners ^ swapped ^ swapped << 3;
-        let parent = Interval {
-            near: parent.near,
-            far: parent.far.min(limit),
-        };
-        if JUMPS {
-            jump(self, pattern, parent, cull)
-        } else {
-            select(self, pattern, parent, cull)
-        }
+/// The children's intervals, given their parent's.
+#[inline(always)]
+fn narrow(pair: &FlaggedPair, parent: Interval, cull: &Cull, limit: i32) -> [Interval; 2] {
+    // Which child owns each near and each far plane, as seen by this ray.
+    let owners = Link(pair.link).owners();
+    let swapped = (owners ^ owners >> 3) & cull.descending();
+    let pattern = owners ^ swapped ^ swapped << 3;
+    let parent = Interval {
+        near: parent.near,
+        far: parent.far.min(limit),
+    };
+    if JUMPS {
+        jump(pair, pattern, parent, cull)
+    } else {
+        select(pair, pattern, parent, cull)
     }
 }
 
@@ -130,7 +144,6 @@ fn narrow_by<const PATTERN: u32>(
 mod tests {
     use super::*;
     use crate::number::Fixed;
-    use crate::ray::Ray;
 
     /// Both ways to narrow are the same function.
     #[test]

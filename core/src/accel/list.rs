@@ -1,9 +1,10 @@
 //! The plain list: every primitive is tested. What all structures are measured against.
 
-use super::cull::Cull;
 use super::{Accel, Leaf, StackView, Structure};
 use crate::blob::Scene;
 use crate::count::Count;
+use crate::number::Number;
+use crate::ray::Ray;
 use crate::shape::Kind;
 
 /// Tests every primitive; needs no stack.
@@ -13,27 +14,24 @@ pub enum List {}
 impl Accel for List {
     const STRUCTURE: Structure = Structure::List;
 
-    fn walk<C: Count>(
+    fn walk<N: Number, C: Count>(
         scene: &Scene<'_>,
-        _: &Cull,
+        _: &Ray<N>,
         _: &mut StackView,
         count: &mut C,
-        mut leaf: impl FnMut(Leaf, &mut C) -> i32,
+        mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
         for kind in Kind::ALL {
             let mut first = 0;
             let end = scene.shapes.count(kind) as u32;
             while first < end {
                 let size = (end - first).min(Leaf::MAX_COUNT);
-                if leaf(
-                    Leaf {
-                        kind,
-                        first,
-                        count: size,
-                    },
-                    count,
-                ) == i32::MIN
-                {
+                let range = Leaf {
+                    kind,
+                    first,
+                    count: size,
+                };
+                if leaf(range, count).is_none() {
                     return;
                 }
                 first += size;

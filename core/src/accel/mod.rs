@@ -11,6 +11,7 @@
 pub mod bvh;
 pub(crate) mod cull;
 pub mod flagged;
+mod lanes;
 pub mod list;
 mod pairs;
 
@@ -21,8 +22,9 @@ pub(crate) use pairs::check_pairs;
 
 use crate::blob::Scene;
 use crate::count::Count;
+use crate::number::Number;
+use crate::ray::Ray;
 use crate::shape::Kind;
-use cull::Cull;
 use heapless::{Vec, VecView};
 
 /// The name of a structure.
@@ -31,7 +33,7 @@ use heapless::{Vec, VecView};
 pub enum Structure {
     /// Every primitive, one after the other.
     List,
-    /// A bounding volume hierarchy of pairs, 28 bytes each, traversed in the ordinary way.
+    /// A bounding volume hierarchy of pairs, 32 bytes each, traversed in the ordinary way.
     Bvh,
     /// The same hierarchy without the sides that coincide with the parent's, 16 bytes a pair.
     Flagged,
@@ -61,15 +63,15 @@ pub trait Accel: Send + Sync {
     /// Its name.
     const STRUCTURE: Structure;
 
-    /// Calls `leaf` for every leaf whose box the ray can meet at or before `limit`, nearer ones
-    /// first where the structure knows. `leaf` returns the new limit: the step above the best hit,
-    /// or `i32::MIN` to end the walk.
-    fn walk<C: Count>(
+    /// Calls `leaf` for every leaf whose box the ray can meet, nearer ones first where the
+    /// structure knows. `leaf` returns the t beyond which nothing counts any more, or `None` to
+    /// end the walk.
+    fn walk<N: Number, C: Count>(
         scene: &Scene<'_>,
-        cull: &Cull,
+        ray: &Ray<N>,
         stack: &mut StackView,
         count: &mut C,
-        leaf: impl FnMut(Leaf, &mut C) -> i32,
+        leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     );
 }
 
@@ -200,7 +202,6 @@ impl Link {
         let first_pair = self.first_pair();
         let first_leaf = (2 * pair + 1).wrapping_sub(first_pair);
         let (left, right) = (self.left_is_leaf() as u32, self.right_is_leaf() as u32);
-        // Without branches: a leaf's bit goes to the top, and the number is picked by it.
         [
             Node(left << 31 | if left != 0 { first_leaf } else { first_pair }),
             Node(
@@ -217,7 +218,7 @@ impl Link {
 
 /// A pair or a leaf, by number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Node(u32);
+pub(crate) struct Node(u32);
 
 impl Node {
     const fn pair(number: u32) -> Self {

@@ -1,10 +1,11 @@
 //! What the ordinary and the flagged hierarchy share: the walk, and the proof that it is sound.
 
-use super::cull::{Cull, Interval};
-use super::{Entry, Leaf, Link, MAX_STACK_DEPTH, Node, StackView};
+use super::cull::Interval;
+use super::{Entry, Leaf, MAX_STACK_DEPTH, Node, StackView};
 use crate::blob::record::UnitBox;
 use crate::blob::{BlobError, Scene, SectionKind};
 use crate::count::Count;
+use crate::number::Number;
 use crate::shape::Shapes;
 use heapless::Vec;
 
@@ -12,94 +13,119 @@ use heapless::Vec;
 pub(crate) trait PairRecord: Copy {
     /// The section that holds these records.
     const SECTION: SectionKind;
-    /// Planes that [`narrow`](Self::narrow) tests.
+    /// Planes that are tested for a record.
     const PLANES: u32;
 
-    /// What the children are.
-    fn link(&self) -> Link;
+    /// The children of this record, whose number is given.
+    fn children(&self, number: u32) -> [Node; 2];
 
     /// The children's boxes, given their parent's.
     fn boxes(&self, parent: &UnitBox) -> [UnitBox; 2];
-
-    /// The children's intervals on a ray, given their parent's, up to `limit`.
-    fn narrow(&self, parent: Interval, cull: &Cull, limit: i32) -> [Interval; 2];
 }
 
-/// Visits the leaves of a hierarchy whose boxes the ray can meet, the nearer child first.
-#[inline(always)]
-pub(super) fn walk<P: PairRecord, C: Count>(
-    scene: &Scene<'_>,
-    pairs: &[P],
-    cull: &Cull,
-    stack: &mut StackView,
-    count: &mut C,
-    mut leaf: impl FnMut(Leaf, &mut C) -> i32,
-) {
-    let mut limit = cull.end;
-    let mut interval = cull.clip(&scene.bounds_words, cull.start, limit);
-    count.planes(6);
-    count.boxes(1);
-    let mut node = if pairs.is_empty() {
+/// A walk through a hierarchy: what the ray brings to it.
+pub(super) struct Walk<'w, 'a, P, F, L> {
+    pub(super) scene: &'w Scene<'a>,
+    pub(super) pairs: &'a [P],
+    /// The ray's interval in the scene's box.
+    pub(super) root: Interval,
+    /// The children's intervals, given the pair, their parent's and the limit.
+    pub(super) narrow: F,
+    /// The limit of an interval for a t.
+    pub(super) limit: L,
+}
+
+impl<P, F, L> Walk<'_, '_, P, F, L>
+where
+    P: PairRecord,
+    F: Fn(&P, Interval, i32) -> [Interval; 2],
+{
+    /// Visits the leaves whose boxes the ray can meet, the nearer child first.
+    #[inline(always)]
+    pub(super) fn run<N: Number, C: Count>(
+        &self,
+        tmax: N,
+        stack: &mut StackView,
+        count: &mut C,
+        mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+    ) where
+        L: Fn(N) -> i32,
+    {
+        count.planes(6);
+        count.boxes(1);
+        let mut interval = self.root;
+        if interval.near > interval.far {
+            return;
+        }
+        let mut limit = (self.limit)(tmax);
+        let mut node = root(self.pairs);
+        stack.clear();
+        loop {
+            if node.is_leaf() {
+                let Some(range) = self.scene.leaf(node.number()) else {
+                    return;
+                };
+                let Some(tmax) = leaf(range, count) else {
+                    return;
+                };
+                limit = (self.limit)(tmax);
+            } else {
+                let Some(pair) = self.pairs.get(node.number() as usize) else {
+                    return;
+                };
+                let [left, right] = (self.narrow)(pair, interval, limit);
+                count.planes(P::PLANES);
+                count.boxes(2);
+                let [left_node, right_node] = pair.children(node.number());
+                let meets_left = left.near <= left.far;
+                let meets_right = right.near <= right.far;
+                if meets_left && meets_right {
+                    let (far, far_node);
+                    if right.near < left.near {
+                        (interval, node, far, far_node) = (right, right_node, left, left_node);
+                    } else {
+                        (interval, node, far, far_node) = (left, left_node, right, right_node);
+                    }
+                    if stack
+                        .push(Entry {
+                            node: far_node.0,
+                            near: far.near,
+                            far: far.far,
+                        })
+                        .is_err()
+                    {
+                        return;
+                    }
+                    continue;
+                } else if meets_left {
+                    (interval, node) = (left, left_node);
+                    continue;
+                } else if meets_right {
+                    (interval, node) = (right, right_node);
+                    continue;
+                }
+            }
+            loop {
+                let Some(entry) = stack.pop() else { return };
+                if entry.near <= limit {
+                    node = Node(entry.node);
+                    interval = Interval {
+                        near: entry.near,
+                        far: entry.far,
+                    };
+                    break;
+                }
+            }
+        }
+    }
+}
+
+/// The root of a hierarchy: its first pair, or its only leaf.
+fn root<P>(pairs: &[P]) -> Node {
+    if pairs.is_empty() {
         Node::leaf(0)
     } else {
         Node::pair(0)
-    };
-    if interval.near > interval.far {
-        return;
-    }
-    stack.clear();
-    loop {
-        if node.is_leaf() {
-            let Some(range) = scene.leaf(node.number()) else {
-                return;
-            };
-            limit = leaf(range, count);
-        } else {
-            let Some(pair) = pairs.get(node.number() as usize) else {
-                return;
-            };
-            let [left, right] = pair.narrow(interval, cull, limit);
-            count.planes(P::PLANES);
-            count.boxes(2);
-            let [left_node, right_node] = pair.link().children(node.number());
-            let meets_left = left.near <= left.far;
-            let meets_right = right.near <= right.far;
-            if meets_left && meets_right {
-                let (near, far, far_node);
-                if right.near < left.near {
-                    (near, node, far, far_node) = (right, right_node, left, left_node);
-                } else {
-                    (near, node, far, far_node) = (left, left_node, right, right_node);
-                }
-                interval = near;
-                let entry = Entry {
-                    node: far_node.0,
-                    near: far.near,
-                    far: far.far,
-                };
-                if stack.push(entry).is_err() {
-                    return;
-                }
-                continue;
-            } else if meets_left {
-                (interval, node) = (left, left_node);
-                continue;
-            } else if meets_right {
-                (interval, node) = (right, right_node);
-                continue;
-            }
-        }
-        loop {
-            let Some(entry) = stack.pop() else { return };
-            if entry.near <= limit {
-                node = Node(entry.node);
-                interval = Interval {
-                    near: entry.near,
-                    far: if entry.far < limit { entry.far } else { limit },
-                };
-                break;
-            }
-        }
     }
 }
 
@@ -165,7 +191,7 @@ pub(crate) fn check_pairs<P: PairRecord>(
                     });
                 }
             }
-            let [left_node, right_node] = pair.link().children(node.number());
+            let [left_node, right_node] = pair.children(node.number());
             // The depth was proved to fit.
             let _ = waiting.push((right_node, right));
             current = (left_node, left);
@@ -181,30 +207,37 @@ pub(crate) fn check_pairs<P: PairRecord>(
 /// Proves breadth-first order and returns the number of levels of pairs.
 fn check_order<P: PairRecord>(pairs: &[P]) -> Result<usize, BlobError> {
     let section = P::SECTION;
-    let (mut levels, mut level_end, mut next) = (0, 0, 1);
+    let (mut levels, mut level_end) = (0, 0);
+    let (mut next_pair, mut next_leaf) = (1, 0);
     for (index, pair) in pairs.iter().enumerate() {
         if index == level_end {
             levels += 1;
-            level_end = next;
+            level_end = next_pair;
         }
-        let link = pair.link();
-        if link.first_pair() as usize != next {
-            return Err(BlobError::Record {
-                section,
-                index,
-                what: "first child, which must follow breadth first,",
-                found: link.first_pair().into(),
-                expected: next as i64,
-            });
+        for child in pair.children(index as u32) {
+            let next = if child.is_leaf() {
+                &mut next_leaf
+            } else {
+                &mut next_pair
+            };
+            if child.number() as usize != *next {
+                return Err(BlobError::Record {
+                    section,
+                    index,
+                    what: "number of a child, which must follow breadth first,",
+                    found: child.number().into(),
+                    expected: *next as i64,
+                });
+            }
+            *next += 1;
         }
-        next += usize::from(!link.left_is_leaf()) + usize::from(!link.right_is_leaf());
         // A pair that nothing leads to, or a child beyond the last pair.
-        if next <= index + 1 && index + 1 < pairs.len() || next > pairs.len() {
+        if next_pair <= index + 1 && index + 1 < pairs.len() || next_pair > pairs.len() {
             return Err(BlobError::Record {
                 section,
                 index,
                 what: "number of pairs that are reached up to here",
-                found: next as i64,
+                found: next_pair as i64,
                 expected: pairs.len() as i64,
             });
         }

@@ -2,7 +2,7 @@
 
 use super::record::{
     ALIGNMENT, Cone, Cuboid, Disc, ENDIANNESS, FlaggedPair, Header, Light, MAGIC, Material, Pair,
-    UnitBox, VERSION, View, plane_word,
+    UnitBox, VERSION, View,
 };
 use super::section::Sections;
 use super::{BlobError, Indices, Scene, SectionKind, checksum};
@@ -34,7 +34,6 @@ pub(super) fn check(blob: &[u8]) -> Result<Scene<'_>, BlobError> {
         leaves: sections.records(SectionKind::Leaves)?,
         pairs: sections.records::<Pair>(SectionKind::Pairs)?,
         flagged: sections.records::<FlaggedPair>(SectionKind::FlaggedPairs)?,
-        bounds_words: header.bounds.0.map(plane_word),
         needs_norm: shapes.spheres.len() + shapes.cones.len() > 0,
     };
     check_objects(&scene)?;
@@ -346,10 +345,14 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
     let bounds = &header.bounds;
     // A point of the scene, in 1/256 unit.
     let point = |at: At, what, point: [i32; 3]| {
-        (0..3).try_for_each(|axis| {
-            let [low, high] = bounds.0[axis].map(|unit| i64::from(unit) << 8);
-            at.within(what, point[axis].into(), low, high)
-        })
+        bounds
+            .0
+            .iter()
+            .zip(point)
+            .try_for_each(|(sides, coordinate)| {
+                let [low, high] = sides.map(|unit| i64::from(unit) << 8);
+                at.within(what, coordinate.into(), low, high)
+            })
     };
     let inside =
         |at: At, what, inner: &UnitBox| at.within(what, (!bounds.contains(inner)).into(), 0, 0);

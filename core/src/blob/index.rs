@@ -3,7 +3,7 @@
 use super::error::BlobError;
 use super::section::{SectionKind, Sections};
 
-/// A read-only array of integers in one, two or four bytes each, or none at all.
+/// A read-only array of integers in one to four bytes each, or none at all.
 #[derive(Clone, Copy, Debug)]
 pub enum Indices<'a> {
     /// No array: the caller's rule says what an index means.
@@ -12,6 +12,8 @@ pub enum Indices<'a> {
     U8(&'a [u8]),
     /// Two bytes each.
     U16(&'a [u16]),
+    /// Three bytes each, little-endian.
+    U24(&'a [[u8; 3]]),
     /// Four bytes each.
     U32(&'a [u32]),
 }
@@ -23,6 +25,7 @@ impl<'a> Indices<'a> {
             (true, _) => Indices::Absent,
             (_, 1) => Indices::U8(section.bytes),
             (_, 2) => Indices::U16(sections.records(kind)?),
+            (_, 3) => Indices::U24(sections.records(kind)?),
             (_, 4) => Indices::U32(sections.records(kind)?),
             (_, found) => {
                 return Err(BlobError::Stride {
@@ -40,6 +43,7 @@ impl<'a> Indices<'a> {
             Indices::Absent => 0,
             Indices::U8(array) => array.len(),
             Indices::U16(array) => array.len(),
+            Indices::U24(array) => array.len(),
             Indices::U32(array) => array.len(),
         }
     }
@@ -56,6 +60,9 @@ impl<'a> Indices<'a> {
             Indices::Absent => None,
             Indices::U8(array) => array.get(index).map(|&value| value.into()),
             Indices::U16(array) => array.get(index).map(|&value| value.into()),
+            Indices::U24(array) => array
+                .get(index)
+                .map(|&[low, middle, high]| u32::from_le_bytes([low, middle, high, 0])),
             Indices::U32(array) => array.get(index).copied(),
         }
     }

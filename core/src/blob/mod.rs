@@ -34,8 +34,6 @@ pub struct Scene<'a> {
     leaves: &'a [u32],
     pub(crate) pairs: &'a [Pair],
     pub(crate) flagged: &'a [FlaggedPair],
-    /// The scene's box as words of two planes.
-    pub(crate) bounds_words: [u32; 3],
     /// Whether any primitive's test needs the norm of the ray's direction.
     pub(crate) needs_norm: bool,
 }

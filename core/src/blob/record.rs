@@ -255,10 +255,10 @@ pub struct Cone {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Pair {
-    /// `[child][axis]`: the box's smallest unit in the low half, its largest in the high half.
-    pub planes: [[u32; 3]; 2],
-    /// What the children are: see [`Link`](crate::accel::Link); its owner bits are 0.
-    pub link: u32,
+    /// `[axis][side][child]`: the lower sides of the left and the right child, then the upper ones.
+    pub planes: [[[i16; 2]; 2]; 3],
+    /// The children: the number of a pair, or that of a leaf with bit 31 set.
+    pub children: [u32; 2],
 }
 
 /// A pair of children without the sides that coincide with their parent's.
@@ -382,5 +382,5 @@ const _: () = {
     assert!(size_of::<Cuboid>() == 24 && size_of::<Disc>() == 40 && size_of::<Cone>() == 44);
     assert!(offset_of!(Disc, radius) == 24 && offset_of!(Disc, bounds) == 28);
     assert!(offset_of!(Cone, base_radius) == 24 && offset_of!(Cone, bounds) == 32);
-    assert!(size_of::<Pair>() == 28 && size_of::<FlaggedPair>() == 16);
+    assert!(size_of::<Pair>() == 32 && size_of::<FlaggedPair>() == 16);
 };

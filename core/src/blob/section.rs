@@ -14,12 +14,12 @@ pub enum SectionKind {
     Lights,
     /// [`Material`](super::record::Material)s.
     Materials,
-    /// For each object, the number of its first primitive (`u16` or `u32`). Absent where every
+    /// For each object, the number of its first primitive (2 to 4 bytes). Absent where every
     /// object is one primitive, or all primitives are one object.
     ObjectFirst,
-    /// For each object, its material (`u8` or `u16`). Absent where there is one material.
+    /// For each object, its material (1 to 4 bytes). Absent where there is one material.
     ObjectMaterial,
-    /// For each slot, the primitive that lies in it, counted in scene-file order (`u16` or `u32`).
+    /// For each slot, the primitive that lies in it, counted in scene-file order (2 to 4 bytes).
     /// Absent where slots and primitives agree.
     Order,
     /// [`Vertex16`](super::record::Vertex16) or [`Vertex24`](super::record::Vertex24).

@@ -1,6 +1,7 @@
 //! Fixed point in 32 bits, products in 64: for cores without a floating-point unit.
 
 use super::{Format, Number};
+use crate::accel::cull::Cull;
 use core::ops::{Add, Mul, Neg, Sub};
 
 /// A number in fixed point. Where its binary point lies depends on what it stands for: a length
@@ -148,6 +149,7 @@ impl Neg for Product {
 
 impl Number for Fixed {
     type Wide = Product;
+    type Cull = Cull;
 
     const FORMAT: Format = Format::Fixed;
     const ZERO: Self = Fixed(0);
@@ -210,6 +212,10 @@ impl Number for Fixed {
 
     fn far_to_f64(wide: Product) -> f64 {
         wide.0 as f64 / f64::from(1 << LENGTH_BITS)
+    }
+
+    fn to_f32(self) -> f32 {
+        self.0 as f32 / (1 << LENGTH_BITS) as f32
     }
 
     fn length_to_f64(self) -> f64 {
@@ -343,7 +349,8 @@ impl Number for Fixed {
         }
         // The divisor's upper 32 bits are enough: t is a length of at most 31 bits.
         let shift = b.leading_zeros();
-        let divisor = (b << shift) >> 32;
+        // Its uppermost bit is set; saying so proves that it is not 0.
+        let divisor = (b << shift) >> 32 | 1 << 31;
         let dividend = match shift.checked_sub(32 - RATIO_BITS) {
             Some(up) if up > a.leading_zeros() => return with_sign(u64::MAX, sign),
             Some(up) => a << up,

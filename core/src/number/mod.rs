@@ -23,6 +23,7 @@ mod float;
 
 pub use fixed::Fixed;
 
+use crate::accel::cull::Culling;
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Sub};
 
@@ -48,6 +49,16 @@ impl Format {
             Format::F32 => "f32",
             Format::F64 => "f64",
         }
+    }
+}
+
+/// A component by number. Unlike an index it keeps the vector in registers.
+#[inline(always)]
+pub(crate) fn pick<T: Copy>(v: [T; 3], axis: usize) -> T {
+    match axis {
+        0 => v[0],
+        1 => v[1],
+        _ => v[2],
     }
 }
 
@@ -91,6 +102,8 @@ pub trait Number:
 
     /// The name of this format.
     const FORMAT: Format;
+    /// How rays of this format cull boxes on this machine.
+    type Cull: Culling<Self>;
     /// Zero of every quantity.
     const ZERO: Self;
     /// The ratio 1.
@@ -127,6 +140,8 @@ pub trait Number:
     fn far_to_f64(wide: Self::Wide) -> f64;
     /// A ratio in -2 to 2 from double precision: rounded, saturating, NaN to 0.
     fn ratio_from_f64(value: f64) -> Self;
+    /// A length or a ratio in single precision, for culling on machines with SIMD registers.
+    fn to_f32(self) -> f32;
     /// A length in units in double precision, for reports.
     fn length_to_f64(self) -> f64;
     /// A ratio in double precision, for reports.

@@ -9,7 +9,7 @@ use crate::accel::{Accel, Structure};
 use crate::blob::Scene;
 use crate::count::Count;
 use crate::number::Number;
-use crate::ray::Ray;
+use crate::ray::{Ray, RayError};
 use crate::shade::{Color, Effects};
 use core::fmt;
 use core::marker::PhantomData;
@@ -208,6 +208,24 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         EFFECTS & Effects::MIRROR.with(Effects::GLASS).0 != 0
     }
 
+    /// The ray from the eye through the middle of a pixel, for queries of the caller's own.
+    ///
+    /// # Errors
+    /// If the blob's camera vectors make no direction.
+    #[inline]
+    pub fn primary_ray(&self, x: u16, y: u16) -> Result<Ray<N>, RayError> {
+        let middle = |pixel: u16| i32::from(pixel) * SUBPIXELS + SUBPIXELS / 2;
+        self.ray_through(middle(x), middle(y))
+    }
+
+    /// The ray from the eye through a point given in subpixels from the upper left corner.
+    #[inline(always)]
+    fn ray_through(&self, x: i32, y: i32) -> Result<Ray<N>, RayError> {
+        let direction = self.camera.direction(&self.camera.row(y), x);
+        let (eye, zero, far) = (self.camera.eye(), N::Wide::default(), N::far(1 << 60));
+        Ray::new(self.scene.bounds(), eye, direction, zero, far)
+    }
+
     /// One pixel, linear, 65535 being white. Outside of the picture pixels go on.
     pub fn linear<C: Count>(
         &self,
@@ -224,11 +242,8 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         let mut sum = Color::BLACK;
         for index in 0..samples {
             let [dx, dy] = place(index, samples);
-            let row = self.camera.row(i32::from(y) * SUBPIXELS + dy);
-            let direction = self.camera.direction(&row, i32::from(x) * SUBPIXELS + dx);
-            let (eye, zero) = (self.camera.eye(), N::Wide::default());
-            let far = N::far(1 << 60);
-            let Ok(ray) = Ray::new(self.scene.bounds(), eye, direction, zero, far) else {
+            let (x, y) = (i32::from(x) * SUBPIXELS + dx, i32::from(y) * SUBPIXELS + dy);
+            let Ok(ray) = self.ray_through(x, y) else {
                 continue;
             };
             let radiance = tracing.radiance::<N, A, C, EFFECTS>(&ray, space, count);
@@ -240,7 +255,8 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         let mean = if samples == 1 {
             sum
         } else {
-            sum.scaled(N::ratio((1 << 30) / i32::from(samples)))
+            // `new` refuses 0 samples.
+            sum.scaled(N::ratio((1 << 30) / i32::from(samples.max(1))))
         };
         let linear: Linear = mean.0.map(N::to_linear16);
         linear

@@ -11,6 +11,7 @@ pub(crate) mod sphere;
 pub(crate) mod triangle;
 
 use crate::accel::Leaf;
+use crate::accel::cull::Culling;
 use crate::blob::record::{Cone, Corners, Cuboid, Disc, Sphere, Sphere16, Sphere24, UnitBox};
 use crate::blob::record::{Vertex, Vertex16, Vertex24};
 use crate::number::Number;
@@ -106,7 +107,7 @@ pub(crate) fn accept<N: Number>(
     bounds: UnitBox,
     tmax: N,
 ) -> Option<(N, Part)> {
-    let interval = ray.cull.interval(&bounds);
+    let interval = ray.cull.exact(ray).interval(&bounds);
     if interval.near > interval.far {
         return None;
     }

@@ -52,7 +52,7 @@ impl Node {
 }
 
 /// What a step down the hierarchy costs, a primitive's test being 1.
-const STEP_COST: f64 = 1.0;
+const STEP_COST: f64 = 1.5;
 /// Most primitives in a leaf, unless they cannot be told apart.
 const LEAF_SIZE: usize = 4;
 /// Nodes with at most this many primitives are swept, others binned.

@@ -70,9 +70,20 @@ impl Flat {
         let [left, right] = children;
         let link = Link::new(first_pair, is_leaf(left), is_leaf(right));
         let boxes = [left.bounds(), right.bounds()];
+        // Of the nodes that were numbered before, all that are not pairs are leaves.
+        let mut next_pair = first_pair;
+        let mut next_leaf = 2 * self.pairs.len() as u32 + 1 - first_pair;
         self.pairs.push(Pair {
-            planes: boxes.map(|b| b.0.map(plane_word)),
-            link: link.0,
+            planes: [0, 1, 2].map(|k| [0, 1].map(|side| boxes.map(|b| b.0[k][side]))),
+            children: [left, right].map(|node| {
+                if is_leaf(node) {
+                    next_leaf += 1;
+                    1 << 31 | (next_leaf - 1)
+                } else {
+                    next_pair += 1;
+                    next_pair - 1
+                }
+            }),
         });
 
         // On each side of the parent, the plane of the child that does not touch it.

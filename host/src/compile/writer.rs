@@ -50,13 +50,20 @@ fn indices(kind: SectionKind, values: &[u32], narrowest: usize) -> Section {
             &values.iter().map(|&value| value as u8).collect::<Vec<_>>(),
         )
     } else if largest <= u16::MAX.into() {
-        section(
-            kind,
-            &values.iter().map(|&value| value as u16).collect::<Vec<_>>(),
-        )
+        let narrow: Vec<_> = values.iter().map(|&value| value as u16).collect();
+        section(kind, &narrow)
+    } else if largest < 1 << 24 {
+        let narrow: Vec<_> = values.iter().map(|&value| three_bytes(value)).collect();
+        section(kind, &narrow)
     } else {
         section(kind, values)
     }
+}
+
+/// The low three bytes.
+fn three_bytes(value: u32) -> [u8; 3] {
+    let [low, middle, high, _] = value.to_le_bytes();
+    [low, middle, high]
 }
 
 fn counts_up(values: &[u32]) -> bool {
@@ -182,10 +189,7 @@ fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Sect
     let spheres = in_order(&primitives.spheres, slots(Kind::Sphere));
 
     let unit = |x: i32| (x >> 8) as i16;
-    let three_bytes = |x: i32| {
-        let [low, middle, high, _] = x.to_le_bytes();
-        [low, middle, high]
-    };
+    let three_bytes = |x: i32| three_bytes(x as u32);
     let (vertex_section, sphere_section) = if lattice.bits <= 16 {
         let vertices: Vec<_> = vertices.iter().map(|v| Vertex16(v.map(unit))).collect();
         let spheres: Vec<_> = spheres

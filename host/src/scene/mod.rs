@@ -4,8 +4,10 @@
 //! transforms of groups and instances into the geometry, so that nothing downstream knows of
 //! them. Colours are linear RGB, 1.0 being full display white.
 
+#[cfg(test)]
+mod damaged;
 mod error;
-mod molecule;
+pub(crate) mod molecule;
 mod nff;
 mod obj;
 mod polygon;

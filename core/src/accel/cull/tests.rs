@@ -1,3 +1,4 @@
+use super::{Cull, Culling};
 use crate::blob::record::UnitBox;
 use crate::number::{Fixed, Number};
 use crate::ray::Ray;
@@ -69,7 +70,7 @@ fn holds_the_true_interval<N: Number>(
     let direction = slopes.map(|slope| f64::from(slope) / f64::from(one));
     let ray = Ray::<N>::from_f64(&world, origin, direction, 0.0, 1e9).expect("a ray");
     prop_assert_eq!(ray.slope().map(N::ratio_to_f64), direction);
-    let interval = ray.cull.interval(&UnitBox(bounds));
+    let interval = ray.cull.exact(&ray).interval(&UnitBox(bounds));
     prop_assert!(interval.near <= interval.far);
     for k in 0..3 {
         if slopes[k] == 0 {
@@ -163,7 +164,7 @@ proptest! {
         let intervals = |outer, inner| {
             let ray = Ray::<Fixed>::from_f64(&world, origin, direction, 0.0, 1e9).expect("a ray");
             let other = Ray::<f32>::from_f64(&world, origin, direction, 0.0, 1e9).expect("a ray");
-            [ray.cull, other.cull].map(|cull| (cull.interval(outer), cull.interval(inner)))
+            [ray.cull.exact(&ray), other.cull.exact(&other)].map(|cull: Cull| (cull.interval(outer), cull.interval(inner)))
         };
         for (outer, inner) in intervals(&outer, &inner) {
             prop_assert!(outer.near <= inner.near && inner.far <= outer.far);

@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::test_scenes;
+use crate::scene::{Shape, test_scenes};
 use std::collections::BTreeMap;
 
 fn read(text: &str) -> Result<Imported, SceneError> {

@@ -234,7 +234,7 @@ fn real_meshes_have_the_triangles_box_and_area_that_trimesh_finds() {
             continue;
         };
         let (count, bounds, area) = measure(&load(&path).unwrap().scene);
-        assert_eq!(count, fields[7].parse().unwrap(), "{name}");
+        assert_eq!(count, fields[7].parse::<usize>().unwrap(), "{name}");
         let expected: Vec<f64> = fields[8]
             .split(' ')
             .map(|word| word.parse().unwrap())

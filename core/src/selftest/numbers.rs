@@ -1,0 +1,247 @@
+//! Arithmetic against wider integers, in which it is exact.
+
+use super::{Checks, FNV_START, Random, hash, name};
+use crate::number::{Fixed, Number};
+
+type Product = <Fixed as Number>::Wide;
+
+const ROUNDS: usize = 2_000;
+
+/// A quotient rounded to nearest, ties away from zero.
+fn nearest(numerator: i128, denominator: i128) -> i128 {
+    let magnitude = (2 * numerator.abs() + denominator.abs()) / (2 * denominator.abs()).max(1);
+    if (numerator < 0) == (denominator < 0) {
+        magnitude
+    } else {
+        -magnitude
+    }
+}
+
+fn saturated(value: i128) -> i128 {
+    value.clamp(-i128::from(i32::MAX), i128::from(i32::MAX))
+}
+
+pub(super) fn products(checks: &mut Checks<'_>) {
+    let mut random = Random(1);
+    for round in 0..ROUNDS {
+        let (a, b) = (random.integer(31) as i32, random.integer(30) as i32);
+        let (x, y) = (Fixed(a), Fixed(b));
+        let (a, b) = (i128::from(a), i128::from(b));
+        let one = 1_i128 << 30;
+        checks.equal(
+            format_args!("{a} * {b} ({round})"),
+            (x * y).0.into(),
+            nearest(a * b, one),
+        );
+        if b != 0 {
+            checks.equal(
+                format_args!("{a} over {b}"),
+                x.over(y).0.into(),
+                saturated(nearest(a * one, b)),
+            );
+        }
+        let wide = random.integer(62);
+        let scaled = Fixed::wide_scale(Product::far_of(wide), y).value();
+        let exact = i128::from(wide) * b / one;
+        checks.that(
+            format_args!("{wide} scaled by {b}"),
+            (i128::from(scaled) - exact).abs() <= 2,
+            format_args!("is {scaled} and should be {exact}"),
+        );
+        let denominator = random.integer(62);
+        if denominator != 0 {
+            let quotient = Fixed::divide(Product::far_of(wide), Product::far_of(denominator));
+            let exact = saturated(nearest(i128::from(wide) * one, denominator.into()));
+            // The divisor has 32 bits, so the quotient has an error of 2^-31 and a rounding.
+            checks.that(
+                format_args!("{wide} / {denominator}"),
+                (i128::from(quotient.0) - exact).abs() <= 1 + (exact.abs() >> 30),
+                format_args!("is {} and should be {exact}", quotient.0),
+            );
+        }
+    }
+    let largest = Fixed(i32::MAX);
+    checks.equal(format_args!("1 over 0"), Fixed::ONE.over(Fixed(0)), largest);
+    checks.equal(format_args!("0 over 0"), Fixed(0).over(Fixed(0)), Fixed(0));
+}
+
+/// Names for what `Fixed` calls its products.
+trait Exact {
+    fn far_of(value: i64) -> Self;
+    fn value(self) -> i64;
+}
+
+impl Exact for Product {
+    fn far_of(value: i64) -> Self {
+        Fixed::far(value)
+    }
+
+    fn value(self) -> i64 {
+        self.0
+    }
+}
+
+pub(super) fn roots(checks: &mut Checks<'_>) {
+    let mut random = Random(2);
+    let edges = [
+        0,
+        1,
+        2,
+        3,
+        4,
+        (1 << 31) - 1,
+        1 << 31,
+        1 << 32,
+        (1 << 62) - 1,
+    ];
+    let squares = (1..31).flat_map(|bits| {
+        let square = (1_i64 << bits) * (1_i64 << bits);
+        [square - 1, square, square + 1]
+    });
+    let drawn = core::iter::repeat_with(|| random.integer(61).abs()).take(ROUNDS);
+    for square in edges.into_iter().chain(squares).chain(drawn) {
+        let root = i128::from(Fixed::root(Fixed::far(square)).0);
+        let four = 4 * i128::from(square);
+        checks.that(
+            format_args!("root of {square}"),
+            (2 * root - 1).max(0).pow(2) <= four && four <= (2 * root + 1).pow(2)
+                || root == i128::from(i32::MAX),
+            format_args!("is {root}"),
+        );
+    }
+    for (ratio, root) in [(0, 0), (1 << 30, 1 << 30), (1 << 28, 1 << 29), (-5, 0)] {
+        checks.equal(
+            format_args!("root of {ratio}"),
+            Fixed(ratio).sqrt(),
+            Fixed(root),
+        );
+    }
+}
+
+/// Two plane vectors that are nearly, or exactly, parallel.
+fn nearly_parallel(random: &mut Random, bits: u32) -> ([i64; 2], [i64; 2]) {
+    let half = bits / 2;
+    let (x, y) = (random.integer(half), random.integer(half));
+    let (p, q) = (random.integer(half - 1), random.integer(half - 1));
+    let jitter = [random.integer(2) / 2, random.integer(2) / 2];
+    ([x * p + jitter[0], y * p], [x * q, y * q + jitter[1]])
+}
+
+fn exact_sign(a: [i64; 2], b: [i64; 2]) -> i128 {
+    let [ax, ay] = a.map(i128::from);
+    let [bx, by] = b.map(i128::from);
+    (ax * by - ay * bx).signum()
+}
+
+pub(super) fn fixed_signs(checks: &mut Checks<'_>) {
+    let mut random = Random(3);
+    for _ in 0..ROUNDS {
+        let (a, b) = nearly_parallel(&mut random, 31);
+        let vector = |v: [i64; 2]| v.map(|x| Fixed(x as i32));
+        let sign = Fixed::cross2(vector(a), vector(b)).value().signum();
+        checks.equal(format_args!("{a:?} x {b:?}"), sign.into(), exact_sign(a, b));
+    }
+}
+
+pub(super) fn float_signs(checks: &mut Checks<'_>) {
+    let mut random = Random(4);
+    for _ in 0..ROUNDS {
+        let (a, b) = nearly_parallel(&mut random, 24);
+        let vector = |v: [i64; 2]| v.map(|x| x as f32 / 256.0);
+        let sign = sign_of(f32::cross2(vector(a), vector(b)).into());
+        checks.equal(format_args!("f32 {a:?} x {b:?}"), sign, exact_sign(a, b));
+        let (a, b) = nearly_parallel(&mut random, 52);
+        let vector = |v: [i64; 2]| v.map(|x| x as f64 / 256.0);
+        let sign = sign_of(f64::cross2(vector(a), vector(b)));
+        checks.equal(format_args!("f64 {a:?} x {b:?}"), sign, exact_sign(a, b));
+    }
+}
+
+fn sign_of(x: f64) -> i128 {
+    i128::from(x > 0.0) - i128::from(x < 0.0)
+}
+
+pub(super) fn vectors(checks: &mut Checks<'_>) {
+    vectors_in::<Fixed>(checks, 1e-8);
+    vectors_in::<f32>(checks, 1e-6);
+    vectors_in::<f64>(checks, 1e-15);
+}
+
+fn vectors_in<N: Number>(checks: &mut Checks<'_>, tolerance: f64) {
+    let mut random = Random(5);
+    for _ in 0..ROUNDS / 4 {
+        let v = [0; 3].map(|_: i32| random.integer(40));
+        if v == [0; 3] {
+            continue;
+        }
+        let what = name::<N>();
+        let exact = v.map(|x| x as f64);
+        let largest = exact.iter().fold(0.0, |most, x: &f64| x.abs().max(most));
+        let Some((slopes, axis)) = N::slopes(v.map(N::far)) else {
+            checks.equal(format_args!("{what} slopes of {v:?}"), "refused", "made");
+            continue;
+        };
+        checks.near(
+            format_args!("{what} major slope of {v:?}"),
+            slopes[axis].ratio_to_f64().abs(),
+            1.0,
+            0.0,
+        );
+        let (unit, _) = N::normalize(slopes);
+        let square = unit.iter().fold(0.0, |sum, x| {
+            let x = x.ratio_to_f64();
+            sum + x * x
+        });
+        checks.near(
+            format_args!("{what} unit length of {v:?}"),
+            square,
+            1.0,
+            tolerance,
+        );
+        for axis in 0..3 {
+            checks.near(
+                format_args!("{what} slope {axis} of {v:?}"),
+                slopes[axis].ratio_to_f64(),
+                exact[axis] / largest,
+                tolerance,
+            );
+        }
+    }
+    let zero = N::slopes([N::Wide::default(); 3]).is_none();
+    checks.equal(format_args!("zero vector has no slopes"), zero, true);
+}
+
+/// Long chains of every operation: one other bit anywhere, and the hash is another.
+pub(super) fn bits(checks: &mut Checks<'_>) {
+    checks.equal(format_args!("f32"), chain::<f32>(), 1_029_389_503);
+    checks.equal(format_args!("f64"), chain::<f64>(), 2_651_187_688);
+    checks.equal(format_args!("fixed"), chain::<Fixed>(), 1_535_635_864);
+}
+
+fn chain<N: Number>() -> u32 {
+    let mut random = Random(6);
+    let results = core::iter::repeat_with(|| {
+        let ratio = |random: &mut Random| N::ratio(random.integer(30) as i32);
+        let (a, b, c) = (ratio(&mut random), ratio(&mut random), ratio(&mut random));
+        let length = N::from_lattice(random.integer(24) as i32);
+        let (unit, norm) = N::normalize([a, b, c]);
+        let sum = (a * b - c.half()).abs().sqrt() + unit[0] * unit[1] + norm.half();
+        let faded = length
+            .abs()
+            .exp_neg(random.integer(20).unsigned_abs() as u32);
+        let quotient = N::divide(length.wide(a), N::dot(unit, unit));
+        let cell = length.cell(N::from_unit(3));
+        [
+            sum.ratio_to_f64(),
+            faded.ratio_to_f64(),
+            quotient.length_to_f64(),
+            cell.into(),
+        ]
+    });
+    let values = results.take(ROUNDS / 4).flatten();
+    // Zeros may differ in their sign, which nothing depends on.
+    hash(
+        FNV_START,
+        values.flat_map(|value| (value + 0.0).to_bits().to_le_bytes()),
+    )
+}

@@ -1,0 +1,331 @@
+//! The categories of mmCIF that say where atoms are (`atom_site`) and which of them are bonded
+//! beyond what distances tell (`struct_conn`).
+//!
+//! The author's chain and residue names (`auth_`) come before the archive's (`label_`), as in PDB
+//! files of the same structure.
+
+use super::cif::{Token, Tokens};
+use super::{Atom, Element, End, Parsed, Site};
+use crate::scene::SceneError;
+use crate::scene::text::{Source, Warnings};
+use glam::DVec3;
+use std::collections::HashMap;
+
+/// Reads the first data block that has atoms.
+///
+/// # Errors
+/// If the syntax is broken, a table is incomplete, or coordinates are no finite numbers.
+pub(super) fn parse<'a>(
+    source: &'a Source,
+    warnings: &mut Warnings,
+) -> Result<Parsed<'a>, SceneError> {
+    let mut parser = Parser {
+        source,
+        warnings,
+        parsed: Parsed::default(),
+        model_index: HashMap::new(),
+    };
+    let mut tokens = Tokens::new(source);
+    // Items outside of loops: a table of one row, which ends where another category begins.
+    let mut single = Table::default();
+    let mut token = tokens.next()?;
+    while let Some(current) = token {
+        match current {
+            Token::Tag(tag) => {
+                let (category, line) = (category(tag), tokens.line);
+                if !single.is_of(category) {
+                    parser.row(&single)?;
+                    single = Table {
+                        line,
+                        ..Table::default()
+                    };
+                }
+                let value = tokens.next()?;
+                let Some(Token::Value(value)) = value else {
+                    return Err(source
+                        .error(
+                            format!("the item _{tag} has no value"),
+                            "write its value after it, or a question mark",
+                        )
+                        .at_line(line));
+                };
+                single.tags.push(tag);
+                single.row.push(value);
+                token = tokens.next()?;
+            }
+            Token::Loop => {
+                parser.row(&single)?;
+                single = Table::default();
+                token = parser.table(&mut tokens)?;
+            }
+            Token::Block(name) => {
+                parser.row(&single)?;
+                single = Table::default();
+                if !parser.parsed.atoms.is_empty() {
+                    let sentence =
+                        format!("the data block {name:?} and what follows is passed over");
+                    parser.warnings.add(source, tokens.line, sentence);
+                    return Ok(parser.parsed);
+                }
+                token = tokens.next()?;
+            }
+            Token::Value(_) | Token::Reserved => token = tokens.next()?,
+        }
+    }
+    parser.row(&single)?;
+    if parser.parsed.atoms.is_empty() && source.text.contains("_atom_site_fract_x") {
+        return Err(source.error(
+            "the atoms have no Cartesian coordinates, as in CIF files of small molecules",
+            "convert the file to mmCIF or PDB",
+        ));
+    }
+    Ok(parser.parsed)
+}
+
+fn category(tag: &str) -> &str {
+    tag.split('.').next().unwrap_or("")
+}
+
+/// A row of a table and the names of its columns.
+#[derive(Default)]
+struct Table<'a> {
+    tags: Vec<&'a str>,
+    row: Vec<&'a str>,
+    line: usize,
+}
+
+impl<'a> Table<'a> {
+    fn is_of(&self, wanted: &str) -> bool {
+        self.tags
+            .first()
+            .is_some_and(|tag| category(tag).eq_ignore_ascii_case(wanted))
+    }
+
+    /// Where a column is.
+    fn column(&self, name: &str) -> Option<usize> {
+        self.tags.iter().position(|tag| {
+            tag.split_once('.')
+                .is_some_and(|(_, item)| item.eq_ignore_ascii_case(name))
+        })
+    }
+
+    /// The first value of these columns that is there and not left open, or else an empty one.
+    fn value<const N: usize>(&self, columns: [Option<usize>; N]) -> &'a str {
+        let values = columns
+            .into_iter()
+            .flatten()
+            .filter_map(|column| self.row.get(column).copied());
+        values
+            .into_iter()
+            .find(|value| !value.is_empty())
+            .unwrap_or("")
+    }
+}
+
+struct Parser<'a, 'w> {
+    source: &'a Source,
+    warnings: &'w mut Warnings,
+    parsed: Parsed<'a>,
+    /// Index of a model by its number; nothing forbids that the atoms of models alternate.
+    model_index: HashMap<&'a str, usize>,
+}
+
+impl<'a> Parser<'a, '_> {
+    /// Reads a loop and returns the token after it.
+    fn table(&mut self, tokens: &mut Tokens<'a>) -> Result<Option<Token<'a>>, SceneError> {
+        let mut table = Table::default();
+        let mut token = tokens.next()?;
+        while let Some(Token::Tag(tag)) = token {
+            table.tags.push(tag);
+            token = tokens.next()?;
+        }
+        let atoms = table.is_of("atom_site").then(|| AtomColumns::of(&table));
+        let bonds = table.is_of("struct_conn").then(|| BondColumns::of(&table));
+        if atoms.is_none() && bonds.is_none() {
+            while let Some(Token::Value(_)) = token {
+                token = tokens.next()?;
+            }
+            return Ok(token);
+        }
+        while let Some(Token::Value(value)) = token {
+            if table.row.is_empty() {
+                table.line = tokens.line;
+            }
+            table.row.push(value);
+            if table.row.len() == table.tags.len() {
+                if let Some(columns) = &atoms {
+                    self.atom(&table, columns)?;
+                } else if let Some(columns) = &bonds {
+                    self.bond(&table, columns);
+                }
+                table.row.clear();
+            }
+            token = tokens.next()?;
+        }
+        if table.row.is_empty() {
+            return Ok(token);
+        }
+        let category = table.tags.first().map_or("", |tag| category(tag));
+        Err(self
+            .source
+            .error(
+                format!(
+                    "a row of _{category} has {} of {} values",
+                    table.row.len(),
+                    table.tags.len()
+                ),
+                "complete the row, or check that the file is complete",
+            )
+            .at_line(table.line))
+    }
+
+    /// Reads a table of one row.
+    fn row(&mut self, table: &Table<'a>) -> Result<(), SceneError> {
+        if table.is_of("atom_site") {
+            self.atom(table, &AtomColumns::of(table))?;
+        } else if table.is_of("struct_conn") {
+            self.bond(table, &BondColumns::of(table));
+        }
+        Ok(())
+    }
+
+    fn atom(&mut self, table: &Table<'a>, columns: &AtomColumns) -> Result<(), SceneError> {
+        let mut position = [0.0; 3];
+        for (axis, value) in position.iter_mut().enumerate() {
+            let name = ["Cartn_x", "Cartn_y", "Cartn_z"][axis];
+            let word = table.value([columns.position[axis]]);
+            if word.is_empty() {
+                return Err(self
+                    .source
+                    .error(
+                        format!("an atom has no {name}"),
+                        "give every atom Cartesian coordinates in angstroms",
+                    )
+                    .at_line(table.line));
+            }
+            // A standard uncertainty may follow in parentheses.
+            let number = word.split('(').next().unwrap_or(word);
+            *value = self.source.number(number, name)?;
+        }
+        let name = table.value(columns.name);
+        let symbol = table.value([columns.symbol]);
+        let element = Element::from_symbol(symbol).unwrap_or_else(|| {
+            let sentence = format!("the element {symbol:?} is unknown; it is drawn in pink");
+            self.warnings.add(self.source, table.line, sentence);
+            Element::UNKNOWN
+        });
+        let number = match table.value([columns.model]) {
+            "" => "1",
+            number => number,
+        };
+        let models = &mut self.parsed.models;
+        let model = *self.model_index.entry(number).or_insert_with(|| {
+            models.push(number);
+            models.len() - 1
+        });
+        self.parsed.atoms.push(Atom {
+            site: Site {
+                element,
+                position: DVec3::from_array(position),
+            },
+            line: table.line,
+            model,
+            serial: table.value([columns.serial]),
+            name,
+            altloc: table.value([columns.altloc]),
+            chain: table.value(columns.chain),
+            residue: table.value(columns.residue),
+            number: table.value(columns.number),
+            insertion: table.value([columns.insertion]),
+        });
+        Ok(())
+    }
+
+    fn bond(&mut self, table: &Table<'a>, columns: &BondColumns) {
+        // Hydrogen bonds are none, and a partner that symmetry moves is not where its atom is.
+        let kind = table.value([columns.kind]);
+        let is_bond = ["covale", "disulf", "metalc"].iter().any(|bond| {
+            kind.get(..bond.len())
+                .is_some_and(|start| start.eq_ignore_ascii_case(bond))
+        });
+        let [first, second] = columns.symmetry.map(|column| table.value([column]));
+        if is_bond && first == second {
+            let end = |end: &EndColumns| {
+                End::Name([
+                    table.value(end.chain),
+                    table.value(end.number),
+                    table.value([end.insertion]),
+                    table.value(end.name),
+                ])
+            };
+            self.parsed
+                .bonds
+                .push([end(&columns.ends[0]), end(&columns.ends[1])]);
+        }
+    }
+}
+
+type Column = Option<usize>;
+
+struct AtomColumns {
+    serial: Column,
+    symbol: Column,
+    name: [Column; 2],
+    altloc: Column,
+    residue: [Column; 2],
+    chain: [Column; 2],
+    number: [Column; 2],
+    insertion: Column,
+    position: [Column; 3],
+    model: Column,
+}
+
+impl AtomColumns {
+    fn of(table: &Table<'_>) -> Self {
+        let column = |name: &str| table.column(name);
+        Self {
+            serial: column("id"),
+            symbol: column("type_symbol"),
+            name: [column("label_atom_id"), column("auth_atom_id")],
+            altloc: column("label_alt_id"),
+            residue: [column("auth_comp_id"), column("label_comp_id")],
+            chain: [column("auth_asym_id"), column("label_asym_id")],
+            number: [column("auth_seq_id"), column("label_seq_id")],
+            insertion: column("pdbx_PDB_ins_code"),
+            position: ["Cartn_x", "Cartn_y", "Cartn_z"].map(column),
+            model: column("pdbx_PDB_model_num"),
+        }
+    }
+}
+
+struct EndColumns {
+    chain: [Column; 2],
+    number: [Column; 2],
+    insertion: Column,
+    name: [Column; 2],
+}
+
+struct BondColumns {
+    kind: Column,
+    symmetry: [Column; 2],
+    ends: [EndColumns; 2],
+}
+
+impl BondColumns {
+    fn of(table: &Table<'_>) -> Self {
+        let end = |n: usize| {
+            let column = |name: &str| table.column(&format!("ptnr{n}_{name}"));
+            EndColumns {
+                chain: [column("auth_asym_id"), column("label_asym_id")],
+                number: [column("auth_seq_id"), column("label_seq_id")],
+                insertion: table.column(&format!("pdbx_ptnr{n}_PDB_ins_code")),
+                name: [column("label_atom_id"), column("auth_atom_id")],
+            }
+        };
+        Self {
+            kind: table.column("conn_type_id"),
+            symmetry: ["ptnr1_symmetry", "ptnr2_symmetry"].map(|name| table.column(name)),
+            ends: [end(1), end(2)],
+        }
+    }
+}

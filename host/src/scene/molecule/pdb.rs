@@ -1,0 +1,144 @@
+//! The columns of a PDB file (format 3.3): ATOM, HETATM, MODEL, ENDMDL and CONECT.
+//!
+//! Columns are those of the format's description, counted from 1. What drawing does not need is
+//! not read, so that files that leave it out or bend its rules are welcome: serial numbers may be
+//! `*****` or hexadecimal, and everything after the coordinates may be missing.
+
+use super::{Atom, Element, End, Parsed, Site};
+use crate::scene::SceneError;
+use crate::scene::text::{Source, Warnings};
+use glam::DVec3;
+
+/// Reads all models.
+///
+/// # Errors
+/// If a line of an atom is too short, or its coordinates are no finite numbers.
+pub(super) fn parse<'a>(
+    source: &'a Source,
+    warnings: &mut Warnings,
+) -> Result<Parsed<'a>, SceneError> {
+    let mut parsed = Parsed::default();
+    // Whether the next atom starts a model, and what number the file gives that.
+    let mut next_model = Some("1");
+    for (number, line) in source.lines() {
+        match columns(line, 1, 6).trim_end() {
+            "ATOM" | "HETATM" => {
+                parsed.models.extend(next_model.take());
+                let model = parsed.models.len() - 1;
+                parsed
+                    .atoms
+                    .push(atom(source, number, line, model, warnings)?);
+            }
+            // Some programs leave ENDMDL out, or let atoms without a MODEL follow it.
+            "MODEL" => next_model = Some(columns(line, 7, 80).trim()),
+            "ENDMDL" => next_model = next_model.or(Some("without a number")),
+            "CONECT" => {
+                let from = columns(line, 7, 11).trim();
+                for first in [12, 17, 22, 27] {
+                    let to = columns(line, first, first + 4).trim();
+                    if !from.is_empty() && !to.is_empty() {
+                        parsed.bonds.push([End::Serial(from), End::Serial(to)]);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(parsed)
+}
+
+fn atom<'a>(
+    source: &Source,
+    number: usize,
+    line: &'a str,
+    model: usize,
+    warnings: &mut Warnings,
+) -> Result<Atom<'a>, SceneError> {
+    let mut position = [0.0; 3];
+    for (axis, value) in position.iter_mut().enumerate() {
+        let name = ["x", "y", "z"][axis];
+        let first = 31 + 8 * axis;
+        let field = columns(line, first, first + 7);
+        // A number that is cut off would still read as a number.
+        if field.chars().count() < 8 {
+            return Err(source.error_at(
+                line,
+                format!("the line ends before the {name} coordinate of its atom does"),
+                format!(
+                    "complete the line: {name} stands in columns {first} to {}",
+                    first + 7
+                ),
+            ));
+        }
+        *value = source.number(
+            field.trim(),
+            &format!("the {name} coordinate (columns {first} to {})", first + 7),
+        )?;
+    }
+    let field = columns(line, 13, 16);
+    // Column 21 is blank in the format and the fourth letter of a name in its extensions.
+    let residue = columns(line, 18, 21).trim();
+    let element = Element::from_symbol(columns(line, 77, 78).trim())
+        .or_else(|| element_of_name(field, columns(line, 1, 6) == "HETATM"))
+        .unwrap_or_else(|| {
+            let sentence = format!(
+                "the element of the atom {:?} is unknown; it is drawn in pink",
+                field.trim()
+            );
+            warnings.add(source, number, sentence);
+            Element::UNKNOWN
+        });
+    Ok(Atom {
+        site: Site {
+            element,
+            position: DVec3::from_array(position),
+        },
+        line: number,
+        model,
+        serial: columns(line, 7, 11).trim(),
+        name: field.trim(),
+        altloc: columns(line, 17, 17).trim(),
+        chain: columns(line, 22, 22).trim(),
+        residue,
+        number: columns(line, 23, 26).trim(),
+        insertion: columns(line, 27, 27).trim(),
+    })
+}
+
+/// Tells the element from the four columns of an atom's name, whose first two are the symbol,
+/// right-justified: ` CA ` is a carbon, `CA  ` is calcium.
+fn element_of_name(field: &str, hetero: bool) -> Option<Element> {
+    let letters = field.trim_start_matches(|c: char| c.is_whitespace() || c.is_ascii_digit());
+    let (one, two, rest) = (
+        columns(letters, 1, 1),
+        columns(letters, 1, 2),
+        columns(letters, 3, 4),
+    );
+    let is_symbol =
+        |symbol: &str| symbol.len() == 2 && symbol.ends_with(|c: char| c.is_ascii_alphabetic());
+    // Many programs start all names in the first column. So two letters are a symbol only where
+    // the second is written small, or where no more letters follow and the atom is not part of a
+    // biopolymer, whose elements have one letter.
+    let written_small = two.ends_with(|c: char| c.is_ascii_lowercase());
+    let no_biopolymer = hetero || !one.starts_with(['H', 'C', 'N', 'O', 'P', 'S']);
+    let alone = letters.len() == field.len() && !rest.contains(|c: char| c.is_ascii_alphabetic());
+    if is_symbol(two) && (written_small || (alone && no_biopolymer)) {
+        Element::from_symbol(two).or_else(|| Element::from_symbol(one))
+    } else {
+        Element::from_symbol(one)
+    }
+}
+
+/// The columns `first` to `last` of a line, counted from 1; fewer where the line is shorter.
+fn columns(line: &str, first: usize, last: usize) -> &str {
+    let offset = |column: usize| {
+        if line.is_ascii() {
+            column.min(line.len())
+        } else {
+            line.char_indices()
+                .nth(column)
+                .map_or(line.len(), |(offset, _)| offset)
+        }
+    };
+    &line[offset(first - 1)..offset(last)]
+}

@@ -1,0 +1,70 @@
+//! Chooses one model and one alternate location of each residue.
+
+use super::{Atom, Parsed};
+use crate::scene::text::Source;
+use crate::scene::{MoleculeOptions, SceneError};
+use std::collections::{BTreeSet, HashMap};
+
+/// The atoms of the model asked for, in file order. Of a residue with alternate locations those
+/// of the one asked for remain, or of the first one where it has not that one or none is asked
+/// for; atoms without an alternate location always remain.
+pub(super) fn select<'p, 'a>(
+    source: &Source,
+    parsed: &'p Parsed<'a>,
+    options: &MoleculeOptions,
+) -> Result<Vec<&'p Atom<'a>>, SceneError> {
+    let count = parsed.models.len();
+    if parsed.atoms.is_empty() {
+        return Err(source.error(
+            "the file has no atoms",
+            "check that the file is complete, and that its extension names its format",
+        ));
+    }
+    if !(1..=count).contains(&options.model) {
+        let numbers = if count <= 20 {
+            parsed.models.join(", ")
+        } else {
+            format!("{} ...", parsed.models[..20].join(", "))
+        };
+        return Err(source.error(
+            format!("there is no model {}, since the file has {count}", options.model),
+            format!("choose a model from 1 to {count}, counted in file order (the file itself numbers them {numbers})"),
+        ));
+    }
+    let of_model = || {
+        parsed
+            .atoms
+            .iter()
+            .filter(|atom| atom.model + 1 == options.model)
+    };
+
+    let wanted = options.altloc.map(String::from);
+    let mut chosen: HashMap<[&str; 3], &str> = HashMap::new();
+    let mut present = BTreeSet::new();
+    for atom in of_model().filter(|atom| !atom.altloc.is_empty()) {
+        present.insert(atom.altloc);
+        let choice = chosen.entry(atom.residue_key()).or_insert(atom.altloc);
+        if wanted.as_deref() == Some(atom.altloc) {
+            *choice = atom.altloc;
+        }
+    }
+    if let Some(wanted) = &wanted
+        && !present.contains(wanted.as_str())
+    {
+        let remedy = if present.is_empty() {
+            "leave the option out, since the model has no alternate locations".to_owned()
+        } else {
+            format!(
+                "choose one of {}",
+                present.into_iter().collect::<Vec<_>>().join(", ")
+            )
+        };
+        let cause = format!("model {} has no alternate location {wanted}", options.model);
+        return Err(source.error(cause, remedy));
+    }
+    Ok(of_model()
+        .filter(|atom| {
+            atom.altloc.is_empty() || chosen.get(&atom.residue_key()) == Some(&atom.altloc)
+        })
+        .collect())
+}

@@ -1,0 +1,324 @@
+mod real;
+
+use super::*;
+use crate::scene::Shape;
+
+fn read(file: &str, text: &str, options: &MoleculeOptions) -> Result<Imported, SceneError> {
+    import(
+        &Source::from_bytes(Path::new(file), text.as_bytes()),
+        options,
+    )
+}
+
+fn pdb(text: &str) -> Result<Imported, SceneError> {
+    read("t.pdb", text, &MoleculeOptions::default())
+}
+
+fn cif(text: &str) -> Result<Imported, SceneError> {
+    read("t.cif", text, &MoleculeOptions::default())
+}
+
+fn names(imported: &Imported) -> Vec<&str> {
+    imported
+        .scene
+        .objects
+        .iter()
+        .map(|object| object.name.as_str())
+        .collect()
+}
+
+/// The symbol of each atom's element.
+fn symbols(imported: &Imported) -> Vec<&str> {
+    imported
+        .scene
+        .objects
+        .iter()
+        .map(|object| imported.scene.materials[object.material].name.as_str())
+        .collect()
+}
+
+const CYSTEINE: &str = "\
+ATOM      1  N   CYS A   3      11.000   2.000   3.000  1.00  0.00           N
+ATOM      2  CA ACYS A   3      12.400   2.000   3.000  0.50  0.00           C
+ATOM      3  CA BCYS A   3      12.500   2.000   3.000  0.50  0.00           C
+HETATM    4 FE   HEM B  10A     -1.000  20.000-300.000  1.00  0.00          FE3+
+";
+
+#[test]
+fn pdb_columns() {
+    let imported = pdb(CYSTEINE).unwrap();
+    assert_eq!(
+        names(&imported),
+        ["A/CYS 3/N", "A/CYS 3/CA", "B/HEM 10A/FE"]
+    );
+    assert_eq!(symbols(&imported), ["N", "C", "Fe"]);
+    assert_eq!(imported.warnings, [] as [&str; 0]);
+    let iron = &imported.scene.objects[2];
+    assert_eq!(iron.place.line, 4);
+    assert_eq!(
+        iron.shape,
+        Shape::Sphere {
+            center: DVec3::new(-1.0, 20.0, -300.0),
+            radius: 2.44
+        }
+    );
+    assert!(imported.scene.camera.is_none() && imported.scene.lights.is_empty());
+}
+
+#[test]
+fn alternate_locations() {
+    let with = |altloc| {
+        read(
+            "t.pdb",
+            CYSTEINE,
+            &MoleculeOptions {
+                altloc,
+                ..MoleculeOptions::default()
+            },
+        )
+    };
+    let carbon = |altloc| match with(altloc).unwrap().scene.objects[1].shape {
+        Shape::Sphere { center, .. } => center.x,
+        _ => f64::NAN,
+    };
+    assert_eq!(
+        (carbon(None), carbon(Some('A')), carbon(Some('B'))),
+        (12.4, 12.4, 12.5)
+    );
+    let error = with(Some('C')).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "t.pdb: model 1 has no alternate location C"
+    );
+    assert_eq!(error.remedy, "choose one of A, B");
+}
+
+#[test]
+fn models() {
+    let atom = |x: f64| format!("ATOM      1  C   UNK A   1    {x:8.3}   0.000   0.000\n");
+    let text = format!(
+        "MODEL 7\n{}ENDMDL\nMODEL 9\n{}MODEL 9\n{}ENDMDL\n{}END\n",
+        atom(1.0),
+        atom(2.0),
+        atom(3.0),
+        atom(4.0)
+    );
+    for model in 1..=4 {
+        let scene = read(
+            "t.pdb",
+            &text,
+            &MoleculeOptions {
+                model,
+                ..MoleculeOptions::default()
+            },
+        )
+        .unwrap()
+        .scene;
+        assert_eq!(scene.objects.len(), 1);
+        let Shape::Sphere { center, .. } = scene.objects[0].shape else {
+            panic!()
+        };
+        assert_eq!(center.x, model as f64);
+    }
+    for model in [0, 5] {
+        let error = read(
+            "t.pdb",
+            &text,
+            &MoleculeOptions {
+                model,
+                ..MoleculeOptions::default()
+            },
+        )
+        .unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            format!("t.pdb: there is no model {model}, since the file has 4")
+        );
+        assert!(
+            error
+                .remedy
+                .ends_with("numbers them 7, 9, 9, without a number)"),
+            "{}",
+            error.remedy
+        );
+    }
+}
+
+#[test]
+fn elements_from_names() {
+    let symbol = |record: &str, name: &str| {
+        let text = format!("{record:<6}    1 {name} UNK A   1       0.000   0.000   0.000\n");
+        symbols(&pdb(&text).unwrap())[0].to_owned()
+    };
+    let expected = [
+        ("ATOM", " CA ", "C"),
+        ("ATOM", "CA  ", "C"),
+        ("HETATM", "CA  ", "Ca"),
+        ("HETATM", "CAA ", "C"),
+        ("HETATM", " CAA", "C"),
+        ("ATOM", "HG11", "H"),
+        ("ATOM", "1HB ", "H"),
+        ("ATOM", "Xe  ", "Xe"),
+        ("ATOM", "Na  ", "Na"),
+        ("HETATM", "CL1 ", "Cl"),
+        ("ATOM", " OH2", "O"),
+        ("HETATM", "FE  ", "Fe"),
+        ("ATOM", " Q1 ", "X"),
+    ];
+    for (record, name, element) in expected {
+        assert_eq!(symbol(record, name), element, "{record} {name}");
+    }
+}
+
+#[test]
+fn pdb_faults_name_line_and_cause() {
+    let fault = |text: &str| pdb(text).unwrap_err().to_string();
+    assert_eq!(fault(""), "t.pdb: the file has no atoms");
+    assert_eq!(
+        fault("REMARK\nATOM\n"),
+        "t.pdb:2: the line ends before the x coordinate of its atom does"
+    );
+    let line = CYSTEINE.lines().next().unwrap();
+    assert_eq!(
+        fault(&line[..53]),
+        "t.pdb:1: the line ends before the z coordinate of its atom does"
+    );
+    assert_eq!(
+        fault(&line.replace("  2.000", "  2.0x0")),
+        "t.pdb:1: the y coordinate (columns 39 to 46) is \"2.0x0\", which is not a number"
+    );
+    assert_eq!(
+        fault(&line.replace("  2.000", "    nan")),
+        "t.pdb:1: the y coordinate (columns 39 to 46) is \"nan\", which is not a finite number"
+    );
+}
+
+#[test]
+fn bonds_are_stated_or_perceived() {
+    let text =
+        format!("{CYSTEINE}CONECT    1    2    4\nCONECT    2    1\nCONECT    1   99    3\n");
+    let options = MoleculeOptions {
+        style: MoleculeStyle::BallAndStick,
+        ..MoleculeOptions::default()
+    };
+    let imported = read("t.pdb", &text, &options).unwrap();
+    assert_eq!(
+        names(&imported)[3..],
+        [
+            "A/CYS 3/N to A/CYS 3/CA",
+            "A/CYS 3/CA to A/CYS 3/N",
+            "A/CYS 3/N to B/HEM 10A/FE",
+            "B/HEM 10A/FE to A/CYS 3/N"
+        ]
+    );
+    assert_eq!(symbols(&imported)[3..], ["N", "C", "N", "Fe"]);
+    let Shape::Cone {
+        base,
+        apex,
+        base_radius,
+        apex_radius,
+    } = imported.scene.objects[4].shape
+    else {
+        panic!()
+    };
+    assert_eq!((base, apex.x), (DVec3::new(12.4, 2.0, 3.0), 11.7));
+    assert_eq!(base_radius, apex_radius);
+}
+
+const ATOM_SITE: &str = "\
+data_t
+loop_
+_atom_site.group_PDB
+_atom_site.id
+_atom_site.type_symbol
+_atom_site.label_atom_id
+_atom_site.label_alt_id
+_atom_site.label_comp_id
+_atom_site.label_asym_id
+_atom_site.auth_asym_id
+_atom_site.auth_seq_id
+_atom_site.pdbx_PDB_ins_code
+_atom_site.Cartn_x
+_atom_site.Cartn_y
+_atom_site.Cartn_z
+_atom_site.pdbx_PDB_model_num
+ATOM 1 C \"C1'\" . A A X 001 ? 1.5 2 3e0 1
+HETATM 2 FE FE . HEM B Y 7 A -1.25(3) 0 .5 1
+ATOM 3 C 1E5 . A A X 1 ? 0 0 0 2
+";
+
+#[test]
+fn mmcif_atoms() {
+    let imported = cif(ATOM_SITE).unwrap();
+    assert_eq!(names(&imported), ["X/A 001/C1'", "Y/HEM 7A/FE"]);
+    assert_eq!(symbols(&imported), ["C", "Fe"]);
+    let Shape::Sphere { center, .. } = imported.scene.objects[1].shape else {
+        panic!()
+    };
+    assert_eq!(center, DVec3::new(-1.25, 0.0, 0.5));
+    assert_eq!(imported.scene.objects[1].place.line, 18);
+    let second = MoleculeOptions {
+        model: 2,
+        ..MoleculeOptions::default()
+    };
+    assert_eq!(
+        names(&read("t.cif", ATOM_SITE, &second).unwrap()),
+        ["X/A 1/1E5"]
+    );
+}
+
+#[test]
+fn mmcif_without_a_loop() {
+    let text = "data_x\n_cell.length_a 1\n_atom_site.type_symbol C\n_atom_site.Cartn_x 1\n_atom_site.Cartn_y 2\n\
+                _atom_site.Cartn_z 3\n_atom_site.label_atom_id CA\n_exptl.method X\n";
+    let imported = cif(text).unwrap();
+    assert_eq!(
+        (names(&imported), imported.scene.objects[0].place.line),
+        (vec!["CA"], 3)
+    );
+}
+
+#[test]
+fn mmcif_bonds() {
+    let text = format!(
+        "{ATOM_SITE}loop_\n_struct_conn.conn_type_id\n_struct_conn.ptnr1_auth_asym_id\n\
+         _struct_conn.ptnr1_auth_seq_id\n_struct_conn.ptnr1_label_atom_id\n_struct_conn.ptnr2_auth_asym_id\n\
+         _struct_conn.ptnr2_auth_seq_id\n_struct_conn.pdbx_ptnr2_PDB_ins_code\n_struct_conn.ptnr2_label_atom_id\n\
+         _struct_conn.ptnr1_symmetry\n_struct_conn.ptnr2_symmetry\n\
+         metalc X 001 \"C1'\" Y 7 A FE 1_555 1_555\n"
+    );
+    let options = MoleculeOptions {
+        style: MoleculeStyle::BallAndStick,
+        ..MoleculeOptions::default()
+    };
+    let count = |text: &str| read("t.cif", text, &options).unwrap().scene.objects.len();
+    assert_eq!(count(&text), 4);
+    assert_eq!(count(&text.replace("metalc X", "hydrog X")), 2);
+    assert_eq!(count(&text.replace("1_555 1_555", "1_555 2_655")), 2);
+}
+
+#[test]
+fn mmcif_faults_name_line_and_cause() {
+    let fault = |text: &str| cif(text).unwrap_err().to_string();
+    assert_eq!(fault("data_x\n"), "t.cif: the file has no atoms");
+    assert_eq!(
+        fault(&ATOM_SITE.replace(" 3e0 1", " 3x0 1")),
+        "t.cif:17: Cartn_z is \"3x0\", which is not a number"
+    );
+    assert_eq!(
+        fault(&ATOM_SITE.replace("1.5 2 3e0", "? 2 3")),
+        "t.cif:17: an atom has no Cartn_x"
+    );
+    assert_eq!(
+        fault(ATOM_SITE.trim_end_matches(" 0 2\n")),
+        "t.cif:19: a row of _atom_site has 12 of 14 values"
+    );
+    assert_eq!(
+        fault("data_x\n_cell.a\n"),
+        "t.cif:2: the item _cell.a has no value"
+    );
+    assert_eq!(
+        fault("data_x\nloop_\n_atom_site_label\n_atom_site_fract_x\nC1 0.5\n"),
+        "t.cif: the atoms have no Cartesian coordinates, as in CIF files of small molecules"
+    );
+}

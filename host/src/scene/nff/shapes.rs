@@ -1,0 +1,203 @@
+//! The objects of an NFF file.
+
+use super::Importer;
+use super::reader::{Line, Lines};
+use crate::scene::polygon::{self, MAX_CONCAVE};
+use crate::scene::{Material, Object, SceneError, Shape};
+use glam::DVec3;
+
+impl<'a> Importer<'a> {
+    pub(super) fn sphere(&mut self, line: &Line<'a>) -> Result<(), SceneError> {
+        let [x, y, z, radius] =
+            line.numbers::<4>(self.source, &mut self.warnings, 1, "s x y z radius")?;
+        if radius == 0.0 {
+            return Err(self.source.error_at(
+                line.text,
+                "the radius of a sphere is 0",
+                "write a radius above 0",
+            ));
+        }
+        self.add(
+            "sphere",
+            line,
+            Shape::Sphere {
+                center: DVec3::new(x, y, z),
+                radius: radius.abs(),
+            },
+        );
+        Ok(())
+    }
+
+    pub(super) fn cone(
+        &mut self,
+        line: &Line<'a>,
+        lines: &mut Lines<'a>,
+    ) -> Result<(), SceneError> {
+        // The text of the format shows three lines; the programs of the databases write one.
+        let [bx, by, bz, base_radius, ax, ay, az, apex_radius] = if line.words.len() > 1 {
+            line.numbers::<8>(
+                self.source,
+                &mut self.warnings,
+                1,
+                "c x y z radius x y z radius",
+            )?
+        } else {
+            let mut numbers = [0.0; 8];
+            for (end, name) in numbers.chunks_exact_mut(4).zip(["base", "apex"]) {
+                let given = lines.next().ok_or_else(|| {
+                    self.source.error_at(
+                        line.text,
+                        format!("the file ends before the {name} of this cone"),
+                        "write two lines `x y z radius` after `c`",
+                    )
+                })?;
+                end.copy_from_slice(&given.numbers::<4>(
+                    self.source,
+                    &mut self.warnings,
+                    0,
+                    "x y z radius",
+                )?);
+            }
+            numbers
+        };
+        let (base, apex) = (DVec3::new(bx, by, bz), DVec3::new(ax, ay, az));
+        let fault = if base == apex {
+            Some((
+                "the base and the apex of a cone are the same point",
+                "move them apart",
+            ))
+        } else if base_radius == 0.0 && apex_radius == 0.0 {
+            Some((
+                "both radii of a cone are 0",
+                "write at least one radius above 0",
+            ))
+        } else if base_radius * apex_radius < 0.0 {
+            Some((
+                "one radius of a cone is negative and one is not",
+                "give both radii the same sign",
+            ))
+        } else {
+            None
+        };
+        if let Some((cause, remedy)) = fault {
+            return Err(self.source.error_at(line.text, cause, remedy));
+        }
+        let (base_radius, apex_radius) = (base_radius.abs(), apex_radius.abs());
+        self.add(
+            "cone",
+            line,
+            Shape::Cone {
+                base,
+                base_radius,
+                apex,
+                apex_radius,
+            },
+        );
+        Ok(())
+    }
+
+    /// Reads `p` (three numbers a vertex) and `pp` (six).
+    pub(super) fn polygon(
+        &mut self,
+        line: &Line<'a>,
+        lines: &mut Lines<'a>,
+        numbers: usize,
+    ) -> Result<(), SceneError> {
+        let count = line.word(1);
+        let count: usize = count.parse().map_err(|_| {
+            self.source.error_at(
+                if count.is_empty() { line.text } else { count },
+                format!("the vertex count of a polygon is {count:?}"),
+                "write a whole number from 3 up",
+            )
+        })?;
+        if count < 3 {
+            let cause = format!("a polygon of {count} vertices has no surface");
+            return Err(self
+                .source
+                .error_at(line.text, cause, "give it at least 3 vertices"));
+        }
+        // Nothing is reserved for the count before its lines are there: it may be a lie.
+        let mut vertices = Vec::new();
+        while vertices.len() < count {
+            let Some(given) = lines.next() else {
+                return Err(self.source.error_at(
+                    line.text,
+                    format!(
+                        "the file ends after {} of the {count} vertices of this polygon",
+                        vertices.len()
+                    ),
+                    "add the missing vertices or correct the count",
+                ));
+            };
+            if given.numbers_from(0) == 0 {
+                return Err(self.source.error_at(
+                    given.text,
+                    format!(
+                        "{:?} stands where vertex {} of {count} is due",
+                        given.word(0),
+                        vertices.len() + 1
+                    ),
+                    "add the missing vertices or correct the count",
+                ));
+            }
+            let [x, y, z] = if numbers == 6 && given.numbers_from(0) >= 6 {
+                let [x, y, z, ..] =
+                    given.numbers::<6>(self.source, &mut self.warnings, 0, "x y z nx ny nz")?;
+                [x, y, z]
+            } else {
+                given.numbers::<3>(self.source, &mut self.warnings, 0, "x y z")?
+            };
+            vertices.push(DVec3::new(x, y, z));
+        }
+        let Some(result) = polygon::triangulate(&vertices) else {
+            return Err(self.source.error_at(
+                line.text,
+                format!("a concave polygon of {count} vertices is too large"),
+                format!("split it into polygons of at most {MAX_CONCAVE} vertices"),
+            ));
+        };
+        if !result.exact {
+            self.warnings.add(
+                self.source,
+                line.number,
+                "a polygon crosses itself; its triangles cover more than it encloses",
+            );
+        }
+        self.add(
+            "polygon",
+            line,
+            Shape::Mesh {
+                vertices,
+                triangles: result.triangles,
+            },
+        );
+        Ok(())
+    }
+
+    fn add(&mut self, kind: &str, line: &Line<'a>, shape: Shape) {
+        let material = self.material.unwrap_or_else(|| {
+            self.warnings.add(
+                self.source,
+                line.number,
+                "an object before the first `f` line has the default material",
+            );
+            self.scene.materials.push(Material::default());
+            self.scene.materials.len() - 1
+        });
+        self.material = Some(material);
+        let count = match shape {
+            Shape::Sphere { .. } => &mut self.counts[0],
+            Shape::Cone { .. } => &mut self.counts[1],
+            _ => &mut self.counts[2],
+        };
+        *count += 1;
+        let name = format!("{kind} {count}");
+        self.scene.objects.push(Object {
+            name,
+            material,
+            shape,
+            place: self.source.place(line.number),
+        });
+    }
+}

@@ -1,0 +1,43 @@
+//! Puts the blob that `GRIDEL_BLOB` names into flash, and what it needs into constants.
+
+use gridel_core::Scene;
+use gridel_core::render::work_depth;
+use std::path::PathBuf;
+use std::{env, fs};
+
+fn main() {
+    println!("cargo::rerun-if-env-changed=GRIDEL_BLOB");
+    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
+    let blob = env::var("GRIDEL_BLOB")
+        .expect("set GRIDEL_BLOB to the absolute path of the blob that goes into flash");
+    println!("cargo::rerun-if-changed={blob}");
+    let bytes = fs::read(&blob).unwrap_or_else(|error| panic!("{blob}: {error}"));
+
+    // Checked here as the board will check it, so that a bad blob fails to compile.
+    let mut aligned = vec![0_u128; bytes.len().div_ceil(size_of::<u128>())];
+    let aligned: &mut [u8] = bytemuck::cast_slice_mut(&mut aligned);
+    aligned[..bytes.len()].copy_from_slice(&bytes);
+    let scene = Scene::from_bytes(&aligned[..bytes.len()])
+        .unwrap_or_else(|error| panic!("{blob}: {error}"));
+    let constants = format!(
+        "/// Entries of the traversal stack.\n\
+         pub const STACK_DEPTH: usize = {};\n\
+         /// Places for rays that wait.\n\
+         pub const WORK_DEPTH: usize = {};\n\
+         /// The effects that the scene calls for.\n\
+         pub const EFFECTS: u32 = {};\n\
+         /// Pixels of a row.\n\
+         pub const WIDTH: usize = {};\n",
+        scene.stack_depth(),
+        work_depth(scene.view().depth),
+        scene.effects().0,
+        scene.view().width,
+    );
+    fs::write(out.join("limits.rs"), constants).expect("OUT_DIR can be written to");
+    fs::write(out.join("scene.gridel"), &bytes).expect("OUT_DIR can be written to");
+
+    let memory = "src/board/mps2.x";
+    println!("cargo::rerun-if-changed={memory}");
+    fs::copy(memory, out.join("memory.x")).expect("OUT_DIR can be written to");
+    println!("cargo::rustc-link-search={}", out.display());
+}

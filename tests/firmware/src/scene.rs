@@ -1,0 +1,23 @@
+//! The scene in flash, and the memory, number format and structure to trace it with.
+
+use gridel_core::{Renderer, Workspace};
+
+include!(concat!(env!("OUT_DIR"), "/limits.rs"));
+
+/// The scene blob.
+pub static BLOB: &[u8] = gridel_core::include_blob!(concat!(env!("OUT_DIR"), "/scene.gridel"));
+
+#[cfg(feature = "f32")]
+pub type Number = f32;
+#[cfg(feature = "fixed")]
+pub type Number = gridel_core::Fixed;
+
+#[cfg(feature = "bvh")]
+pub type Accel = gridel_core::Bvh;
+#[cfg(feature = "flagged")]
+pub type Accel = gridel_core::Flagged;
+
+/// A workspace that is exactly large enough.
+pub type Space = Workspace<Number, STACK_DEPTH, WORK_DEPTH>;
+/// The renderer for the scene.
+pub type SceneRenderer<'s> = Renderer<'s, 'static, Number, Accel, EFFECTS>;
