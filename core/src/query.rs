@@ -1,5 +1,6 @@
 //! Queries: what does a ray meet first, does it meet anything at all?
 
+use crate::accel::cull::Culling;
 use crate::accel::{Accel, Leaf, StackView};
 use crate::blob::Scene;
 use crate::blob::record::{Corners, Cuboid, Sphere, UnitBox, Vertex};
@@ -42,9 +43,10 @@ struct Best<N> {
 }
 
 /// The search for hits, one leaf at a time.
-struct Search<'s, 'a, N: Number> {
+struct Search<'s, 'a, N: Number, K> {
     scene: &'s Scene<'a>,
     ray: &'s Ray<N>,
+    cull: &'s K,
     recip_norm2: N,
     projection: Projection<N>,
     /// No hit beyond this counts.
@@ -52,12 +54,13 @@ struct Search<'s, 'a, N: Number> {
     best: Option<Best<N>>,
 }
 
-impl<'s, 'a, N: Number> Search<'s, 'a, N> {
+impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     #[inline(always)]
-    fn new(scene: &'s Scene<'a>, ray: &'s Ray<N>) -> Self {
+    fn new(scene: &'s Scene<'a>, ray: &'s Ray<N>, cull: &'s K) -> Self {
         Self {
             scene,
             ray,
+            cull,
             recip_norm2: if scene.needs_norm {
                 N::recip_norm2(ray.slope)
             } else {
@@ -74,7 +77,7 @@ impl<'s, 'a, N: Number> Search<'s, 'a, N> {
     /// Out of line, because few of the primitives that are tested come this far.
     #[inline(never)]
     fn consider(&mut self, crossing: Crossing<N>, bounds: UnitBox, kind: Kind, index: u32) {
-        let Some((t, part)) = accept(self.ray, crossing, bounds, self.tmax) else {
+        let Some((t, part)) = accept(self.ray, self.cull, crossing, bounds, self.tmax) else {
             return;
         };
         let primitive = self.scene.primitive(kind, index);
@@ -213,8 +216,9 @@ pub fn closest_hit<N: Number, A: Accel, C: Count>(
     stack: &mut StackView,
     count: &mut C,
 ) -> Option<Hit<N>> {
-    let mut search = Search::new(scene, ray);
-    A::walk(scene, ray, stack, count, |leaf, count| {
+    let cull = A::Cull::<N>::new(ray);
+    let mut search = Search::new(scene, ray, &cull);
+    A::walk(scene, ray, &cull, stack, count, |leaf, count| {
         count.objects(leaf.count);
         search.leaf(leaf);
         Some(search.tmax)
@@ -243,8 +247,9 @@ pub fn any_hit<N: Number, A: Accel, C: Count>(
     stack: &mut StackView,
     count: &mut C,
 ) -> bool {
-    let mut search = Search::new(scene, ray);
-    A::walk(scene, ray, stack, count, |leaf, count| {
+    let cull = A::Cull::<N>::new(ray);
+    let mut search = Search::new(scene, ray, &cull);
+    A::walk(scene, ray, &cull, stack, count, |leaf, count| {
         count.objects(leaf.count);
         search.leaf(leaf);
         search.best.is_none().then_some(search.tmax)

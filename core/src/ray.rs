@@ -1,6 +1,5 @@
 //! Rays, in the one form that every kernel uses.
 
-use crate::accel::cull::Culling;
 use crate::blob::record::UnitBox;
 use crate::number::{Number, pick};
 use core::fmt;
@@ -25,7 +24,6 @@ pub struct Ray<N: Number> {
     pub(crate) moved: N::Wide,
     pub(crate) tmin: N,
     pub(crate) tmax: N,
-    pub(crate) cull: N::Cull,
 }
 
 /// Why something is not a ray.
@@ -74,23 +72,19 @@ impl<N: Number> Ray<N> {
         }
         let zero = N::Wide::default();
         // Anything minus itself is zero, unless it is infinite or NaN.
-        if origin.iter().any(|&o| o - o != zero) {
+        let sum = origin[0] + origin[1] + origin[2];
+        if sum - sum != zero {
             return Err(RayError::Origin);
         }
 
         let [first, last] = pick(bounds.0, major);
         let forward = pick(slope, major) > N::ZERO;
         let origin_major = pick(origin, major);
-        let (entry, exit) = if forward {
-            (first, last)
+        let to_box = if forward {
+            N::from_unit(first).widen() - origin_major
         } else {
-            (last, first)
+            origin_major - N::from_unit(last).widen()
         };
-        let ahead = |unit: i16| {
-            let distance = N::from_unit(unit).widen() - origin_major;
-            if forward { distance } else { -distance }
-        };
-        let to_box = ahead(entry);
         let moved = if to_box > zero {
             to_box
         } else if tmin < zero {
@@ -106,10 +100,9 @@ impl<N: Number> Ray<N> {
         let start = |axis: usize| origin[axis] + N::wide_scale(moved, slope[axis]);
         let start = [start(0), start(1), start(2)];
         let within = |axis: usize| start[axis] <= reach && -start[axis] <= reach;
-        let meets =
-            tmax >= zero && ahead(exit) - moved >= zero && within(0) && within(1) && within(2);
+        let meets = tmax >= zero && within(0) && within(1) && within(2);
         let coordinate = |axis: usize| N::settle(N::narrow(start[axis]));
-        let mut ray = Self {
+        Ok(Self {
             origin: [coordinate(0), coordinate(1), coordinate(2)],
             slope,
             major,
@@ -127,10 +120,7 @@ impl<N: Number> Ray<N> {
             } else {
                 N::FAR
             },
-            cull: N::Cull::default(),
-        };
-        ray.cull = N::Cull::new(&ray);
-        Ok(ray)
+        })
     }
 
     /// A ray given in double precision, rounded to this format only after its origin was moved to
@@ -146,17 +136,14 @@ impl<N: Number> Ray<N> {
         tmax: f64,
     ) -> Result<Self, RayError> {
         let exact = Ray::<f64>::new(bounds, origin, direction, tmin, tmax)?;
-        let mut ray = Self {
+        Ok(Self {
             origin: exact.origin.map(|x| N::settle(N::length_from_f64(x))),
             slope: exact.slope.map(N::ratio_from_f64),
             major: exact.major,
             moved: N::far_from_f64(exact.moved),
             tmin: N::length_from_f64(exact.tmin),
             tmax: N::length_from_f64(exact.tmax),
-            cull: N::Cull::default(),
-        };
-        ray.cull = N::Cull::new(&ray);
-        Ok(ray)
+        })
     }
 
     /// The axis along which `t` is measured: 0, 1 or 2.

@@ -1,7 +1,24 @@
 //! The host side of Gridel: scene files to blobs, blobs to pictures and hits.
+//!
+//! | to do | look in |
+//! |---|---|
+//! | read a scene file, of any format | [`scene`] |
+//! | make a sample scene | [`sample`] |
+//! | compile a scene into a blob | [`compile`] |
+//! | hold a blob and check it | [`blob`] |
+//! | render a blob on all cores | [`render`], then [`picture`] to encode what comes out |
+//! | trace rays of one's own | [`trace`], and [`npy`] for NumPy's files |
+//! | tell where bytes and work go | [`report`] |
+//! | write a file whole or not at all | [`output`] |
+//!
+//! The program `gridel` is a thin layer over this library: what it does can be done from here.
 pub mod blob;
 pub mod compile;
+pub mod npy;
+pub mod output;
+pub mod picture;
 pub mod render;
+pub mod report;
 pub mod sample;
 pub mod scene;
 pub mod trace;

@@ -15,17 +15,19 @@ pub enum Bvh {}
 
 impl Accel for Bvh {
     const STRUCTURE: Structure = Structure::Bvh;
+    type Cull<N: Number> = N::Cull;
 
     #[inline]
     fn walk<N: Number, C: Count>(
         scene: &Scene<'_>,
         ray: &Ray<N>,
+        cull: &N::Cull,
         stack: &mut StackView,
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let root = ray.cull.root(ray, scene.bounds());
-        let narrow = |pair: &Pair, _, limit| ray.cull.children(pair, limit);
+        let root = |limit| cull.root(scene.bounds(), limit);
+        let narrow = |pair: &Pair, _, limit| cull.children(pair, limit);
         let walk = Walk {
             scene,
             pairs: scene.pairs,
@@ -42,8 +44,8 @@ impl PairRecord for Pair {
     const PLANES: u32 = 12;
 
     #[inline(always)]
-    fn children(&self, _: u32) -> [Node; 2] {
-        self.children.map(Node)
+    fn child(&self, _: u32, side: u32) -> Node {
+        Node(self.children[(side & 1) as usize])
     }
 
     fn boxes(&self, _: &UnitBox) -> [UnitBox; 2] {

@@ -21,7 +21,6 @@
 //!
 //! Values are monotone in `p`, so a child's interval lies in its parent's, whatever was rounded.
 
-use super::lanes::Lanes;
 use crate::blob::record::{Pair, UnitBox, plane_word};
 use crate::number::Number;
 use crate::ray::Ray;
@@ -41,8 +40,8 @@ pub trait Culling<N: Number>: Copy + core::fmt::Debug + Default + Send + Sync {
     fn new(ray: &Ray<N>) -> Self;
     /// The integer form, whose intervals hits are clamped to.
     fn exact(&self, ray: &Ray<N>) -> Cull;
-    /// The ray's own interval, and that of a box in it.
-    fn root(&self, ray: &Ray<N>, bounds: &UnitBox) -> Interval;
+    /// The interval of a box, from the ray's start up to a limit.
+    fn root(&self, bounds: &UnitBox, limit: i32) -> Interval;
     /// The limit for hits at or before a length.
     fn limit(t: N) -> i32;
     /// The intervals of a pair's children, from the ray's start up to a limit.
@@ -69,18 +68,15 @@ impl<N: Number> Culling<N> for Cull {
     #[inline(always)]
     fn new(ray: &Ray<N>) -> Self {
         let mut cull = Self {
-            start: ray.tmin.to_cull_floor(),
+            start: ray.tmin.to_cull(),
             ..Self::default()
         };
         for axis in 0..3 {
-            let slope = ray.slope[axis];
-            let (inverse, offset) = N::cull_axis(slope, ray.origin[axis]);
-            let margin = (inverse.abs() >> 18) + 3;
-            let parallel = if inverse.abs() == 1 << 29 { 1 << 17 } else { 0 };
-            cull.inverse[axis] = inverse;
-            cull.near[axis] = -offset - margin;
-            cull.far[axis] = -offset + margin + parallel;
-            cull.rotation[axis] = if inverse < 0 { 16 } else { 0 };
+            let form = N::cull_axis(ray.slope[axis], ray.origin[axis]);
+            cull.inverse[axis] = form.inverse;
+            cull.near[axis] = form.near;
+            cull.far[axis] = form.far;
+            cull.rotation[axis] = (form.inverse >> 31) as u32 & 16;
         }
         cull
     }
@@ -91,17 +87,17 @@ impl<N: Number> Culling<N> for Cull {
     }
 
     #[inline(always)]
-    fn root(&self, ray: &Ray<N>, bounds: &UnitBox) -> Interval {
+    fn root(&self, bounds: &UnitBox, limit: i32) -> Interval {
         let whole = self.interval(bounds);
         Interval {
             near: whole.near.max(self.start),
-            far: whole.far.min(<Self as Culling<N>>::limit(ray.tmax)),
+            far: whole.far.min(limit),
         }
     }
 
     #[inline(always)]
     fn limit(t: N) -> i32 {
-        t.to_cull_floor().saturating_add(1)
+        t.to_cull().saturating_add(1)
     }
 
     #[inline(always)]
@@ -150,7 +146,7 @@ impl Cull {
     /// One bit an axis, set where the ray runs down it.
     #[inline(always)]
     pub(crate) fn descending(&self) -> u32 {
-        (self.rotation[0] | self.rotation[1] << 1 | self.rotation[2] << 2) >> 4
+        (self.rotation[0] | self.rotation[1] << 1 | self.rotation[2] << 2) >> 4 & 7
     }
 
     /// The interval of a box, the ray's own aside.
@@ -175,7 +171,7 @@ impl Cull {
     target_arch = "aarch64",
     all(target_arch = "wasm32", target_feature = "simd128")
 ))]
-pub(crate) type FloatCulling = Lanes;
+pub(crate) type FloatCulling = super::lanes::Lanes;
 /// The form in which rays of a float format cull on this machine.
 #[cfg(not(any(
     target_arch = "x86_64",

@@ -21,18 +21,19 @@ pub enum Flagged {}
 
 impl Accel for Flagged {
     const STRUCTURE: Structure = Structure::Flagged;
+    type Cull<N: Number> = Cull;
 
     #[inline]
     fn walk<N: Number, C: Count>(
         scene: &Scene<'_>,
         ray: &Ray<N>,
+        cull: &Cull,
         stack: &mut StackView,
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let cull = ray.cull.exact(ray);
-        let root = Culling::<N>::root(&cull, ray, scene.bounds());
-        let narrow = |pair: &FlaggedPair, parent, limit| narrow(pair, parent, &cull, limit);
+        let root = |limit| Culling::<N>::root(cull, scene.bounds(), limit);
+        let narrow = |pair: &FlaggedPair, parent, _| narrow(pair, parent, cull);
         let limit = <Cull as Culling<N>>::limit;
         let walk = Walk {
             scene,
@@ -50,8 +51,8 @@ impl PairRecord for FlaggedPair {
     const PLANES: u32 = 6;
 
     #[inline(always)]
-    fn children(&self, number: u32) -> [Node; 2] {
-        Link(self.link).children(number)
+    fn child(&self, number: u32, side: u32) -> Node {
+        Link(self.link).child(number, side)
     }
 
     fn boxes(&self, parent: &UnitBox) -> [UnitBox; 2] {
@@ -67,15 +68,11 @@ impl PairRecord for FlaggedPair {
 
 /// The children's intervals, given their parent's.
 #[inline(always)]
-fn narrow(pair: &FlaggedPair, parent: Interval, cull: &Cull, limit: i32) -> [Interval; 2] {
+fn narrow(pair: &FlaggedPair, parent: Interval, cull: &Cull) -> [Interval; 2] {
     // Which child owns each near and each far plane, as seen by this ray.
     let owners = Link(pair.link).owners();
     let swapped = (owners ^ owners >> 3) & cull.descending();
     let pattern = owners ^ swapped ^ swapped << 3;
-    let parent = Interval {
-        near: parent.near,
-        far: parent.far.min(limit),
-    };
     if JUMPS {
         jump(pair, pattern, parent, cull)
     } else {
@@ -154,7 +151,7 @@ mod tests {
                 |axis: u32| f64::from(axis + 1) * if signs >> axis & 1 == 0 { 1.0 } else { -1.0 };
             let direction = [component(0), component(1), component(2)];
             let ray = Ray::<Fixed>::from_f64(&bounds, [3.0, -7.0, 11.0], direction, 0.0, 1e9);
-            let cull = ray.expect("a ray").cull;
+            let cull = Cull::new(&ray.expect("a ray"));
             let pair = FlaggedPair {
                 planes: [0x0123_ff00, 0x0040_ffc0, 0x0300_0100],
                 link: 0,

@@ -83,9 +83,8 @@ impl<N: Number> Culling<N> for Lanes {
     }
 
     #[inline(always)]
-    fn root(&self, ray: &Ray<N>, bounds: &UnitBox) -> Interval {
+    fn root(&self, bounds: &UnitBox, limit: i32) -> Interval {
         let planes = bounds.0.map(|[low, high]| [[low, low], [high, high]]);
-        let limit = <Self as Culling<N>>::limit(ray.tmax);
         let (near, far) = self.intervals(&planes, self.start, f32::from_bits(limit as u32));
         Interval {
             near: in_order(near.x),

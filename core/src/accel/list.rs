@@ -1,5 +1,6 @@
 //! The plain list: every primitive is tested. What all structures are measured against.
 
+use super::cull::Cull;
 use super::{Accel, Leaf, StackView, Structure};
 use crate::blob::Scene;
 use crate::count::Count;
@@ -13,10 +14,12 @@ pub enum List {}
 
 impl Accel for List {
     const STRUCTURE: Structure = Structure::List;
+    type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Count>(
         scene: &Scene<'_>,
         _: &Ray<N>,
+        _: &Cull,
         _: &mut StackView,
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,

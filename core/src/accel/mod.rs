@@ -11,6 +11,11 @@
 pub mod bvh;
 pub(crate) mod cull;
 pub mod flagged;
+#[cfg(any(
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+))]
 mod lanes;
 pub mod list;
 mod pairs;
@@ -25,6 +30,7 @@ use crate::count::Count;
 use crate::number::Number;
 use crate::ray::Ray;
 use crate::shape::Kind;
+use cull::Culling;
 use heapless::{Vec, VecView};
 
 /// The name of a structure.
@@ -62,6 +68,8 @@ impl Structure {
 pub trait Accel: Send + Sync {
     /// Its name.
     const STRUCTURE: Structure;
+    /// The form in which its rays cull.
+    type Cull<N: Number>: Culling<N>;
 
     /// Calls `leaf` for every leaf whose box the ray can meet, nearer ones first where the
     /// structure knows. `leaf` returns the t beyond which nothing counts any more, or `None` to
@@ -69,6 +77,7 @@ pub trait Accel: Send + Sync {
     fn walk<N: Number, C: Count>(
         scene: &Scene<'_>,
         ray: &Ray<N>,
+        cull: &Self::Cull<N>,
         stack: &mut StackView,
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
@@ -178,41 +187,22 @@ impl Link {
         self.0 & 0xff_ffff
     }
 
-    /// Whether the left child is a leaf.
-    #[inline(always)]
-    pub const fn left_is_leaf(self) -> bool {
-        self.0 & 1 << 24 != 0
-    }
-
-    /// Whether the right child is a leaf.
-    #[inline(always)]
-    pub const fn right_is_leaf(self) -> bool {
-        self.0 & 1 << 25 != 0
-    }
-
     /// The owners of the planes.
     #[inline(always)]
     pub const fn owners(self) -> u32 {
         self.0 >> 26
     }
 
-    /// The children of pair `pair` as nodes.
+    /// The left (0) or right (1) child of pair `pair` as a node.
     #[inline(always)]
-    const fn children(self, pair: u32) -> [Node; 2] {
-        let first_pair = self.first_pair();
-        let first_leaf = (2 * pair + 1).wrapping_sub(first_pair);
-        let (left, right) = (self.left_is_leaf() as u32, self.right_is_leaf() as u32);
-        [
-            Node(left << 31 | if left != 0 { first_leaf } else { first_pair }),
-            Node(
-                right << 31
-                    | if right != 0 {
-                        first_leaf + left
-                    } else {
-                        first_pair + 1 - left
-                    },
-            ),
-        ]
+    const fn child(self, pair: u32, side: u32) -> Node {
+        // Pairs or leaves among the children before this one.
+        let left_leaf = self.0 >> 24 & side;
+        if self.0 & 1 << (24 + side) != 0 {
+            Node::leaf((2 * pair + 1 + left_leaf).wrapping_sub(self.first_pair()))
+        } else {
+            Node::pair(self.first_pair() + side - left_leaf)
+        }
     }
 }
 

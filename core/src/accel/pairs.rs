@@ -16,28 +16,29 @@ pub(crate) trait PairRecord: Copy {
     /// Planes that are tested for a record.
     const PLANES: u32;
 
-    /// The children of this record, whose number is given.
-    fn children(&self, number: u32) -> [Node; 2];
+    /// The left (0) or right (1) child of this record, whose number is given.
+    fn child(&self, number: u32, side: u32) -> Node;
 
     /// The children's boxes, given their parent's.
     fn boxes(&self, parent: &UnitBox) -> [UnitBox; 2];
 }
 
 /// A walk through a hierarchy: what the ray brings to it.
-pub(super) struct Walk<'w, 'a, P, F, L> {
+pub(super) struct Walk<'w, 'a, P, R, F, L> {
     pub(super) scene: &'w Scene<'a>,
     pub(super) pairs: &'a [P],
-    /// The ray's interval in the scene's box.
-    pub(super) root: Interval,
+    /// The scene's interval, given the limit.
+    pub(super) root: R,
     /// The children's intervals, given the pair, their parent's and the limit.
     pub(super) narrow: F,
     /// The limit of an interval for a t.
     pub(super) limit: L,
 }
 
-impl<P, F, L> Walk<'_, '_, P, F, L>
+impl<P, R, F, L> Walk<'_, '_, P, R, F, L>
 where
     P: PairRecord,
+    R: Fn(i32) -> Interval,
     F: Fn(&P, Interval, i32) -> [Interval; 2],
 {
     /// Visits the leaves whose boxes the ray can meet, the nearer child first.
@@ -53,11 +54,11 @@ where
     {
         count.planes(6);
         count.boxes(1);
-        let mut interval = self.root;
+        let mut limit = (self.limit)(tmax);
+        let mut interval = (self.root)(limit);
         if interval.near > interval.far {
             return;
         }
-        let mut limit = (self.limit)(tmax);
         let mut node = root(self.pairs);
         stack.clear();
         loop {
@@ -76,32 +77,32 @@ where
                 let [left, right] = (self.narrow)(pair, interval, limit);
                 count.planes(P::PLANES);
                 count.boxes(2);
-                let [left_node, right_node] = pair.children(node.number());
+                let number = node.number();
                 let meets_left = left.near <= left.far;
                 let meets_right = right.near <= right.far;
                 if meets_left && meets_right {
-                    let (far, far_node);
-                    if right.near < left.near {
-                        (interval, node, far, far_node) = (right, right_node, left, left_node);
+                    let right_first = right.near < left.near;
+                    let (first, second) = if right_first {
+                        (right, left)
                     } else {
-                        (interval, node, far, far_node) = (left, left_node, right, right_node);
-                    }
-                    if stack
-                        .push(Entry {
-                            node: far_node.0,
-                            near: far.near,
-                            far: far.far,
-                        })
-                        .is_err()
-                    {
+                        (left, right)
+                    };
+                    let later = Entry {
+                        node: pair.child(number, u32::from(!right_first)).0,
+                        near: second.near,
+                        far: second.far,
+                    };
+                    if stack.push(later).is_err() {
                         return;
                     }
+                    node = pair.child(number, u32::from(right_first));
+                    interval = first;
                     continue;
                 } else if meets_left {
-                    (interval, node) = (left, left_node);
+                    (interval, node) = (left, pair.child(number, 0));
                     continue;
                 } else if meets_right {
-                    (interval, node) = (right, right_node);
+                    (interval, node) = (right, pair.child(number, 1));
                     continue;
                 }
             }
@@ -111,7 +112,7 @@ where
                     node = Node(entry.node);
                     interval = Interval {
                         near: entry.near,
-                        far: entry.far,
+                        far: entry.far.min(limit),
                     };
                     break;
                 }
@@ -191,10 +192,10 @@ pub(crate) fn check_pairs<P: PairRecord>(
                     });
                 }
             }
-            let [left_node, right_node] = pair.children(node.number());
+            let child = |side| pair.child(node.number(), side);
             // The depth was proved to fit.
-            let _ = waiting.push((right_node, right));
-            current = (left_node, left);
+            let _ = waiting.push((child(1), right));
+            current = (child(0), left);
             continue;
         }
         match waiting.pop() {
@@ -214,7 +215,8 @@ fn check_order<P: PairRecord>(pairs: &[P]) -> Result<usize, BlobError> {
             levels += 1;
             level_end = next_pair;
         }
-        for child in pair.children(index as u32) {
+        for side in 0..2 {
+            let child = pair.child(index as u32, side);
             let next = if child.is_leaf() {
                 &mut next_leaf
             } else {

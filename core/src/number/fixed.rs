@@ -1,6 +1,6 @@
 //! Fixed point in 32 bits, products in 64: for cores without a floating-point unit.
 
-use super::{Format, Number};
+use super::{CullAxis, Format, Number};
 use crate::accel::cull::Cull;
 use core::ops::{Add, Mul, Neg, Sub};
 
@@ -84,6 +84,16 @@ const fn shift_magnitude(v: i64, bits: i32) -> i32 {
 fn excess_bits(v: [i64; 3], bits: i32) -> i32 {
     let all = v[0].unsigned_abs() | v[1].unsigned_abs() | v[2].unsigned_abs();
     64 - all.leading_zeros() as i32 - bits
+}
+
+/// 2^61 / `d` for `d` in \[2^30, 2^31), to a part in 2^29: a division in 32 bits, which small cores
+/// have or emulate cheaply, and one step of Newton's iteration.
+#[inline(always)]
+fn reciprocal(d: u32) -> u32 {
+    let coarse = u32::MAX / (d.wrapping_add(1 << 14) >> 15).max(1) << 14;
+    // d * coarse is 2^61 but for a part in 2^15.
+    let excess = ((d as u64 * coarse as u64) >> 29) as u32 as i32;
+    coarse.wrapping_sub(((coarse as i64 * excess as i64) >> 32) as u32)
 }
 
 impl Add for Fixed {
@@ -192,7 +202,7 @@ impl Number for Fixed {
     }
 
     #[inline(always)]
-    fn to_cull_floor(self) -> i32 {
+    fn to_cull(self) -> i32 {
         self.0 >> (LENGTH_BITS - 1)
     }
 
@@ -410,12 +420,12 @@ impl Number for Fixed {
             2
         };
         let bits = excess_bits(v, 31);
-        let scaled = v.map(|component| shift_magnitude(component, bits));
-        let divisor = (shift_magnitude(largest as i64, bits).unsigned_abs() as u64).max(1 << 30);
-        let reciprocal = ((1 << 62) / divisor).min(u32::MAX as u64) as i64;
-        let mut slopes = scaled.map(|component| {
-            let magnitude = (component.unsigned_abs() as i64 * reciprocal) as u64 >> 32;
-            with_sign(magnitude, component as i64)
+        let inverse = reciprocal(shift_magnitude(largest as i64, bits).unsigned_abs());
+        let mut slopes = v.map(|component| {
+            let scaled = shift_magnitude(component, bits);
+            let magnitude = (scaled.unsigned_abs() as u64 * inverse as u64 >> 31) as u32;
+            let magnitude = magnitude.min(1 << RATIO_BITS) as i32;
+            Fixed(if scaled < 0 { -magnitude } else { magnitude })
         });
         slopes[axis] = Fixed(if v[axis] < 0 {
             -Self::ONE.0
@@ -427,8 +437,10 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn recip_norm2(d: [Self; 3]) -> Self {
-        let norm2 = (Self::dot(d, d).0 >> RATIO_BITS) as u64;
-        Fixed(((1u64 << 60) / norm2.max(1 << 30)) as i32)
+        // d . d has 60 fraction bits: as 29, 1 to 3 lies in [2^29, 2^31).
+        let norm2 = (Self::dot(d, d).0 >> 31) as u32;
+        let up = norm2.leading_zeros().saturating_sub(1);
+        Fixed((reciprocal(norm2 << (up & 1)) >> (1 - (up & 1))) as i32)
     }
 
     fn normalize(v: [Self; 3]) -> ([Self; 3], Self) {
@@ -475,14 +487,26 @@ impl Number for Fixed {
     }
 
     #[inline(always)]
-    fn cull_axis(slope: Self, x: Self) -> (i32, i32) {
-        let magnitude = slope.0.unsigned_abs().max(1 << 18);
-        let inverse = ((1u64 << 47) / magnitude as u64) as i32;
-        let inverse = if slope.0 < 0 { -inverse } else { inverse };
-        (
+    fn cull_axis(slope: Self, origin: Self) -> CullAxis {
+        let magnitude = slope.0.unsigned_abs();
+        let (steepness, parallel) = if magnitude == 1 << RATIO_BITS {
+            (1 << 17, 0)
+        } else if magnitude > 1 << 18 {
+            // 2^47 / magnitude; at most 11 bits to shift up.
+            let up = magnitude.leading_zeros().saturating_sub(1) & 15;
+            let inverse = reciprocal(magnitude << up) >> (14 - up.min(14));
+            (inverse as i32, 0)
+        } else {
+            (1 << 29, 1 << 17)
+        };
+        let inverse = if slope.0 < 0 { -steepness } else { steepness };
+        let offset = ((origin.0 as i64 * inverse as i64) >> (16 + LENGTH_BITS)) as i32;
+        let margin = (steepness >> 18) + 3;
+        CullAxis {
             inverse,
-            ((x.0 as i64 * inverse as i64) >> (16 + LENGTH_BITS)) as i32,
-        )
+            near: -offset - margin,
+            far: -offset + margin + parallel,
+        }
     }
 }
 

@@ -3,8 +3,9 @@
 //! Only operations whose result is the same on every machine: no fused multiply-add, no `min` and
 //! `max` of the standard library (they differ on signed zeros), square roots by libm.
 
-use super::{Format, Number, pick};
+use super::{CullAxis, Format, Number};
 use crate::accel::cull::FloatCulling;
+use crate::shape::extent;
 
 /// The sign of `a b - c d`, exactly, for `f32` factors: their products fit `f64`.
 #[cold]
@@ -48,11 +49,38 @@ fn product_error(a: f64, b: f64) -> f64 {
     ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
 }
 
-/// 2^-100.
+/// 2^-60 and 2^-100: smaller numbers need care.
+const SMALLEST_F32: f32 = 1.0 / (1u64 << 60) as f32;
 const SMALLEST_F64: f64 = 1.0 / (1u64 << 50) as f64 / (1u64 << 50) as f64;
 
+/// [`Number::slopes`] of a direction whose length is far from 1, by way of one that is not:
+/// magnitudes of \[2^-149, 2^128\] or \[2^-1074, 2^1024\] are halved or doubled until they fit.
+#[cold]
+fn slopes_of_extremes<N: Number<Wide = N>>(v: [N; 3]) -> Option<([N; 3], usize)> {
+    let [x, y, z] = v.map(N::abs);
+    let largest = x.max(y).max(z);
+    // NaN compares as neither, and infinity stays itself.
+    let ordinary = v.iter().all(|&component| component - component == N::ZERO);
+    if !ordinary || largest == N::ZERO {
+        return None;
+    }
+    let mut scaled = v;
+    let double = N::ONE + N::ONE;
+    for _ in 0..1100 {
+        let largest = extent(scaled);
+        if largest < N::ONE {
+            scaled = scaled.map(|component| component * double);
+        } else if largest > double {
+            scaled = scaled.map(N::half);
+        } else {
+            break;
+        }
+    }
+    N::slopes(scaled)
+}
+
 macro_rules! float_number {
-    ($float:ident, $format:expr, $precision:expr, $flush:expr, $sqrt:path, $exp:path, $floor:path,
+    ($float:ident, $format:expr, $precision:expr, $smallest:expr, $sqrt:path, $exp:path, $floor:path,
      $product_difference:path, $settle:expr, $direction:expr) => {
         impl Number for $float {
             type Wide = $float;
@@ -65,7 +93,7 @@ macro_rules! float_number {
             // Sixteen roundings of coordinates: the point's product and sum, t's three products,
             // sums and quotient, the plane's normal, and the next test of the same surface.
             const RELATIVE_ERROR: Self = 16.0 * $precision;
-            const ABSOLUTE_ERROR: Self = $flush;
+            const ABSOLUTE_ERROR: Self = $smallest;
 
             #[inline(always)]
             fn from_lattice(steps: i32) -> Self {
@@ -98,10 +126,8 @@ macro_rules! float_number {
             }
 
             #[inline(always)]
-            fn to_cull_floor(self) -> i32 {
-                let steps = self * 2.0;
-                let truncated = steps as i32;
-                truncated.saturating_sub((truncated as $float > steps) as i32)
+            fn to_cull(self) -> i32 {
+                (self * 2.0) as i32
             }
 
             fn length_from_f64(units: f64) -> Self {
@@ -145,11 +171,7 @@ macro_rules! float_number {
 
             #[inline(always)]
             fn settle(self) -> Self {
-                if $float::abs(self) < $flush {
-                    0.0
-                } else {
-                    self
-                }
+                $settle(self)
             }
 
             #[inline(always)]
@@ -248,39 +270,28 @@ macro_rules! float_number {
             #[inline(always)]
             fn slopes(v: [Self; 3]) -> Option<([Self; 3], usize)> {
                 let [x, y, z] = v.map($float::abs);
-                let axis = if x >= y && x >= z {
-                    0
-                } else if y >= z {
-                    1
-                } else {
-                    2
-                };
-                let largest = pick([x, y, z], axis);
-                let numbers = x == x && y == y && z == z;
-                if !(numbers && largest > 0.0 && largest.is_finite()) {
-                    return None;
+                // NaN and infinities fail the comparisons too.
+                let sum = x + y + z;
+                if !(sum >= $smallest && sum <= 1.0 / $smallest) {
+                    return slopes_of_extremes(v);
                 }
+                let (largest, axis) = if x >= y && x >= z {
+                    (x, 0)
+                } else if y >= z {
+                    (y, 1)
+                } else {
+                    (z, 2)
+                };
                 let inverse = 1.0 / largest;
-                // One division will do unless the inverse is no ordinary number.
-                let ordinary = largest >= $flush && inverse >= $flush;
                 let slope = |k: usize| {
                     if k == axis {
-                        return if v[k] < 0.0 { -1.0 } else { 1.0 };
-                    }
-                    let slope = if ordinary {
-                        v[k] * inverse
+                        if v[k] < 0.0 { -1.0 } else { 1.0 }
                     } else {
-                        v[k] / largest
-                    };
-                    // Adding zero turns -0.0 into 0.0.
-                    if slope.abs() < $flush {
-                        0.0
-                    } else {
-                        slope + 0.0
+                        // Adding zero turns -0.0 into 0.0.
+                        $settle(v[k] * inverse + 0.0)
                     }
                 };
-                let slopes = [slope(0), slope(1), slope(2)];
-                Some((slopes, axis))
+                Some(([slope(0), slope(1), slope(2)], axis))
             }
 
             #[inline(always)]
@@ -315,17 +326,22 @@ macro_rules! float_number {
             }
 
             #[inline(always)]
-            fn cull_axis(slope: Self, x: Self) -> (i32, i32) {
+            fn cull_axis(slope: Self, origin: Self) -> CullAxis {
                 const LIMIT: $float = 536_870_912.0;
                 let inverse = 131_072.0 / slope;
-                let inverse = if inverse.abs() < LIMIT {
-                    inverse
-                } else if slope < 0.0 {
-                    -LIMIT
+                let steepness = inverse.abs();
+                let (inverse, steepness, parallel) = if steepness < LIMIT {
+                    (inverse, steepness, 0.0)
                 } else {
-                    LIMIT
+                    (LIMIT.copysign(slope), LIMIT, 131_072.0)
                 };
-                (inverse as i32, (x * inverse * (1.0 / 65_536.0)) as i32)
+                let offset = -(origin * inverse * (1.0 / 65_536.0));
+                let margin = steepness * (1.0 / 262_144.0) + 3.0;
+                CullAxis {
+                    inverse: inverse as i32,
+                    near: (offset - margin) as i32,
+                    far: (offset + margin + parallel) as i32,
+                }
             }
         }
     };
@@ -335,7 +351,7 @@ float_number!(
     f32,
     Format::F32,
     1.0 / 16_777_216.0,
-    1.0 / (1u64 << 60) as f32,
+    SMALLEST_F32,
     libm::sqrtf,
     libm::expf,
     libm::floorf,

@@ -130,8 +130,8 @@ pub trait Number:
     fn to_linear16(self) -> u16;
     /// A length from culling steps, which are half units (see [`crate::accel::cull`]); exact.
     fn from_cull(steps: i32) -> Self;
-    /// The culling step at or below a length; saturates.
-    fn to_cull_floor(self) -> i32;
+    /// A length in culling steps, rounded towards zero or down; saturates.
+    fn to_cull(self) -> i32;
     /// A length from scene data in double precision: rounded, saturating, NaN to 0.
     fn length_from_f64(units: f64) -> Self;
     /// A far coordinate in units from double precision: rounded, saturating, NaN to 0.
@@ -236,8 +236,20 @@ pub trait Number:
     fn scale_up(self, bits: u32) -> Self;
     /// Undoes [`scale_up`](Self::scale_up), rounding to nearest.
     fn scale_down(self, bits: u32) -> Self;
-    /// The culling form of one axis: `1 / slope` in culling steps a unit with 16 fraction bits,
-    /// limited to 2^29, with the sign of the slope; and `x * that`, for a length `x` of at most
-    /// 2^17 units, in culling steps.
-    fn cull_axis(slope: Self, x: Self) -> (i32, i32);
+    /// The culling form of one axis (see [`cull`](crate::accel)): for a slope and the origin's
+    /// coordinate, of at most 2^17 units, the inverse slope in culling steps a unit with 16 fraction
+    /// bits, limited to 2^29, with the sign of the slope; and what that times a plane lacks to the
+    /// step of entry and to that of exit, the margins included.
+    fn cull_axis(slope: Self, origin: Self) -> CullAxis;
+}
+
+/// The culling form of one axis: see [`Number::cull_axis`].
+#[derive(Clone, Copy, Debug)]
+pub struct CullAxis {
+    /// The inverse slope.
+    pub inverse: i32,
+    /// What a near plane's product lacks.
+    pub near: i32,
+    /// What a far plane's product lacks.
+    pub far: i32,
 }

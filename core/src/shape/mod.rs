@@ -103,11 +103,12 @@ pub(crate) struct Surface<N> {
 #[inline(always)]
 pub(crate) fn accept<N: Number>(
     ray: &Ray<N>,
+    cull: &impl Culling<N>,
     crossing: Crossing<N>,
     bounds: UnitBox,
     tmax: N,
 ) -> Option<(N, Part)> {
-    let interval = ray.cull.exact(ray).interval(&bounds);
+    let interval = cull.exact(ray).interval(&bounds);
     if interval.near > interval.far {
         return None;
     }

@@ -56,7 +56,7 @@ const STEP_COST: f64 = 1.5;
 /// Most primitives in a leaf, unless they cannot be told apart.
 const LEAF_SIZE: usize = 4;
 /// Nodes with at most this many primitives are swept, others binned.
-const SWEEP_SIZE: usize = 512;
+const SWEEP_SIZE: usize = 4096;
 const BINS: usize = 32;
 /// From this many primitives on, the two halves are built in parallel.
 const PARALLEL_SIZE: usize = 4096;

@@ -77,7 +77,8 @@ impl Surroundings {
             object_material.push(number);
         }
         if scene.render.shadows && !lights.is_empty() && !scene.objects.is_empty() {
-            called_for.push((Effects::SHADOW, format!("{} lights", lights.len())));
+            let numbers = 0..lights.len();
+            called_for.extend(numbers.map(|number| (Effects::SHADOW, format!("light {number}"))));
         }
         let effects = called_for
             .iter()

@@ -70,8 +70,12 @@ fn holds_the_true_interval<N: Number>(
     let direction = slopes.map(|slope| f64::from(slope) / f64::from(one));
     let ray = Ray::<N>::from_f64(&world, origin, direction, 0.0, 1e9).expect("a ray");
     prop_assert_eq!(ray.slope().map(N::ratio_to_f64), direction);
-    let interval = ray.cull.exact(&ray).interval(&UnitBox(bounds));
+    let around = UnitBox(bounds);
+    let interval = <Cull as Culling<N>>::new(&ray).interval(&around);
     prop_assert!(interval.near <= interval.far);
+    // The form that this machine culls with takes the box, too.
+    let taken = N::Cull::new(&ray).root(&ray, &around);
+    prop_assert!(taken.near <= taken.far);
     for k in 0..3 {
         if slopes[k] == 0 {
             continue;
@@ -164,7 +168,8 @@ proptest! {
         let intervals = |outer, inner| {
             let ray = Ray::<Fixed>::from_f64(&world, origin, direction, 0.0, 1e9).expect("a ray");
             let other = Ray::<f32>::from_f64(&world, origin, direction, 0.0, 1e9).expect("a ray");
-            [ray.cull.exact(&ray), other.cull.exact(&other)].map(|cull: Cull| (cull.interval(outer), cull.interval(inner)))
+            let culls = [<Cull as Culling<Fixed>>::new(&ray), <Cull as Culling<f32>>::new(&other)];
+            culls.map(|cull| (cull.interval(outer), cull.interval(inner)))
         };
         for (outer, inner) in intervals(&outer, &inner) {
             prop_assert!(outer.near <= inner.near && inner.far <= outer.far);

@@ -1,0 +1,186 @@
+//! Options that several verbs have, and how their values are written.
+
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use gridel_core::{Format, Structure};
+use gridel_host::scene::{MoleculeOptions, MoleculeStyle};
+use std::num::NonZeroUsize;
+use std::ops::Range;
+
+/// How a scene file is read and compiled.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Options for scene files")]
+pub struct SceneOptions {
+    /// Bits of the lattice that coordinates are snapped to, 10 to 24; 16 or fewer make the blob
+    /// smaller [default: 24]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(10..=24))]
+    pub lattice_bits: Option<u8>,
+
+    /// How molecules look [default: space-filling]
+    #[arg(long, value_parser = style())]
+    style: Option<MoleculeStyle>,
+
+    /// Which model of a molecule file, counted from 1 [default: 1]
+    #[arg(long, value_name = "N")]
+    model: Option<NonZeroUsize>,
+
+    /// Which alternate location of atoms [default: the first of each residue]
+    #[arg(long, value_name = "C")]
+    altloc: Option<char>,
+}
+
+impl SceneOptions {
+    /// The name of an option that was given, if one was.
+    pub fn given(&self) -> Option<&'static str> {
+        [
+            (self.lattice_bits.is_some(), "--lattice-bits"),
+            (self.style.is_some(), "--style"),
+            (self.model.is_some(), "--model"),
+            (self.altloc.is_some(), "--altloc"),
+        ]
+        .into_iter()
+        .find_map(|(given, name)| given.then_some(name))
+    }
+
+    /// The options for importers of molecules.
+    pub fn molecule(&self) -> MoleculeOptions {
+        let default = MoleculeOptions::default();
+        MoleculeOptions {
+            style: self.style.unwrap_or(default.style),
+            model: self.model.map_or(default.model, NonZeroUsize::get),
+            altloc: self.altloc,
+        }
+    }
+}
+
+fn style() -> impl TypedValueParser<Value = MoleculeStyle> {
+    PossibleValuesParser::new(["space-filling", "ball-and-stick"]).map(|name| match name.as_str() {
+        "ball-and-stick" => MoleculeStyle::BallAndStick,
+        _ => MoleculeStyle::SpaceFilling,
+    })
+}
+
+/// The name of an acceleration structure.
+pub fn structure() -> impl TypedValueParser<Value = Structure> {
+    PossibleValuesParser::new(Structure::ALL.map(Structure::name)).try_map(|name| {
+        let mut all = Structure::ALL.into_iter();
+        all.find(|structure| structure.name() == name)
+            .ok_or("no such structure")
+    })
+}
+
+/// The name of a number format.
+pub fn format() -> impl TypedValueParser<Value = Format> {
+    PossibleValuesParser::new(Format::ALL.map(Format::name)).try_map(|name| {
+        let mut all = Format::ALL.into_iter();
+        all.find(|format| format.name() == name)
+            .ok_or("no such number format")
+    })
+}
+
+/// A number of threads: beyond some hundreds none helps, and far beyond they cannot be started.
+pub fn threads() -> impl TypedValueParser<Value = usize> {
+    clap::value_parser!(u16).range(1..=1024).map(usize::from)
+}
+
+/// Reads a number of bytes, such as `65536`, `64K` or `1M`.
+pub fn bytes(text: &str) -> Result<u64, String> {
+    let (digits, unit) = match text.char_indices().last() {
+        Some((end, 'k' | 'K')) => (&text[..end], 1 << 10),
+        Some((end, 'm' | 'M')) => (&text[..end], 1 << 20),
+        Some((end, 'g' | 'G')) => (&text[..end], 1 << 30),
+        _ => (text, 1),
+    };
+    digits
+        .parse::<u64>()
+        .ok()
+        .filter(|_| digits.bytes().all(|byte| byte.is_ascii_digit()))
+        .and_then(|number| number.checked_mul(unit))
+        .ok_or_else(|| String::from("write a number of bytes, such as 65536, 64K or 1M"))
+}
+
+/// Reads the size of a picture, such as `640x480`.
+pub fn size(text: &str) -> Result<[u16; 2], String> {
+    let sides = text
+        .split_once(['x', 'X'])
+        .map(|(width, height)| [width, height].map(|side| side.parse::<u32>()));
+    let Some([Ok(width), Ok(height)]) = sides else {
+        return Err(String::from("write width and height, such as 640x480"));
+    };
+    if width == 0 || height == 0 {
+        return Err(String::from("a picture has at least one pixel each way"));
+    }
+    let (Ok(width), Ok(height)) = (u16::try_from(width), u16::try_from(height)) else {
+        return Err(String::from(
+            "neither width nor height can be more than 65535",
+        ));
+    };
+    if u32::from(width) > 64 * u32::from(height) {
+        return Err(String::from("the width can be at most 64 times the height"));
+    }
+    Ok([width, height])
+}
+
+/// Reads a range of rows, such as `100..200`, whose end is not part of it.
+pub fn rows(text: &str) -> Result<Range<u16>, String> {
+    let ends = text
+        .split_once("..")
+        .map(|(first, end)| [first, end].map(|row| row.parse::<u16>()));
+    match ends {
+        Some([Ok(first), Ok(end)]) if first < end => Ok(first..end),
+        Some([Ok(first), Ok(end)]) => Err(format!(
+            "the range from {first} to {end} (not included) is empty"
+        )),
+        _ => Err(String::from(
+            "write the first row and the one behind the last, such as 100..200; rows count from 0",
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_have_units_of_1024() {
+        assert_eq!(bytes("0"), Ok(0));
+        assert_eq!(bytes("1000"), Ok(1000));
+        assert_eq!(bytes("64K"), Ok(65536));
+        assert_eq!(bytes("2m"), Ok(2 << 20));
+        assert_eq!(bytes("3G"), Ok(3 << 30));
+        for wrong in ["", "K", "-1", "+1", "1.5M", "64KB", "20000000000G", "1é"] {
+            assert!(bytes(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn sizes_have_two_sides() {
+        assert_eq!(size("640x480"), Ok([640, 480]));
+        assert_eq!(size("64X1"), Ok([64, 1]));
+        let wrongs = [
+            "",
+            "x",
+            "640",
+            "0x0",
+            "1x0",
+            "0x1",
+            "65x1",
+            "65536x1",
+            "70000x70000",
+            "-1x5",
+            "99999999999x1",
+        ];
+        for wrong in wrongs {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn rows_are_a_range() {
+        assert_eq!(rows("0..1"), Ok(0..1));
+        assert_eq!(rows("5..480"), Ok(5..480));
+        for wrong in ["", "5..3", "5..5", "5", "..", "5..", "-1..2", "0..70000"] {
+            assert!(rows(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! `gridel build`: a scene file becomes a blob.
+
+use super::arguments::{self, SceneOptions};
+use super::effects::CalledFor;
+use super::failure::Failure;
+use super::output::{print, print_json, refuse_same, write_file};
+use super::source::Source;
+use clap::Args;
+use gridel_core::{Scene, Structure};
+use gridel_host::compile::{self, Report};
+use gridel_host::report::{Align, Table, grouped, power_of_two};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Compile a scene file into a blob
+///
+/// The scene is snapped to a lattice, an acceleration structure is built over it, and the effects
+/// that it calls for are found. The blob is checked as a device would check it, and written whole
+/// or not at all.
+#[derive(Args)]
+#[command(after_help = super::EXIT_CODES)]
+pub struct Arguments {
+    /// Scene file: .toml, .obj, .nff, .pdb, .ent, .cif or .mmcif
+    scene: PathBuf,
+
+    /// The blob to write
+    #[arg(short, long, value_name = "BLOB")]
+    output: PathBuf,
+
+    /// Acceleration structure, once for each that the blob shall hold; the list is always there
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_parser = arguments::structure(),
+        default_value = Structure::Flagged.name()
+    )]
+    accel: Vec<Structure>,
+
+    /// Refuse to write a blob of more bytes, and say what to change; 64K and 1M are understood
+    #[arg(long, value_name = "N", value_parser = arguments::bytes)]
+    max_bytes: Option<u64>,
+
+    /// Print the report as JSON
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    scene_options: SceneOptions,
+}
+
+/// What was built.
+#[derive(Serialize)]
+struct Built<'r> {
+    blob: &'r str,
+    bytes: usize,
+    /// `None` without primitives.
+    bytes_per_primitive: Option<f64>,
+    objects: u32,
+    primitives: u32,
+    structures: Vec<&'static str>,
+    stack_depth: usize,
+    longest_leaf: u16,
+    lattice_bits: u8,
+    /// Scene units.
+    step: f64,
+    /// Scene units.
+    largest_displacement: f64,
+    collapsed: &'r [String],
+    sah_cost: f64,
+    effects: Vec<CalledFor>,
+    supplied: &'r [String],
+    warnings: &'r [String],
+}
+
+/// Builds a blob and reports on it.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    refuse_same(&arguments.scene, &arguments.output)?;
+    let compiling = compile::Options {
+        structures: arguments.accel.clone(),
+        max_bytes: arguments.max_bytes,
+        ..compile::Options::default()
+    };
+    let source = Source::compile(&arguments.scene, &arguments.scene_options, compiling)?;
+    let scene = source.scene()?;
+    write_file(&arguments.output, |out| out.write_all(source.blob.bytes()))?;
+
+    let Some(report) = &source.report else {
+        return Ok(());
+    };
+    let name = arguments.output.display().to_string();
+    let built = Built::new(&name, &scene, report, &source.warnings);
+    if arguments.json {
+        print_json(&built)
+    } else {
+        print(built.text())
+    }
+}
+
+impl<'r> Built<'r> {
+    fn new(blob: &'r str, scene: &Scene<'_>, report: &'r Report, warnings: &'r [String]) -> Self {
+        let header = scene.header();
+        Self {
+            blob,
+            bytes: report.bytes,
+            bytes_per_primitive: (header.primitives > 0)
+                .then(|| report.bytes as f64 / f64::from(header.primitives)),
+            objects: header.objects,
+            primitives: header.primitives,
+            structures: Structure::ALL
+                .into_iter()
+                .filter(|&structure| scene.holds(structure))
+                .map(Structure::name)
+                .collect(),
+            stack_depth: scene.stack_depth(),
+            longest_leaf: header.longest_leaf,
+            lattice_bits: header.lattice_bits,
+            step: report.step,
+            largest_displacement: report.largest_displacement,
+            collapsed: &report.collapsed,
+            sah_cost: report.sah_cost,
+            effects: CalledFor::in_report(report),
+            supplied: &report.supplied,
+            warnings,
+        }
+    }
+
+    fn text(&self) -> String {
+        let mut table = Table::untitled([Align::Left, Align::Left]);
+        let mut line = |what: &str, value: String| table.row([what.to_owned(), value]);
+        line("blob", self.blob.to_owned());
+        let each = self.bytes_per_primitive;
+        line(
+            "bytes",
+            match each {
+                Some(each) => format!("{}, {each:.1} a primitive", grouped(self.bytes)),
+                None => grouped(self.bytes),
+            },
+        );
+        line(
+            "holds",
+            format!(
+                "{} primitives of {} objects",
+                grouped(self.primitives),
+                grouped(self.objects)
+            ),
+        );
+        line("structures", self.structures.join(", "));
+        line(
+            "limits",
+            format!(
+                "stack depth {}, longest leaf {}",
+                self.stack_depth, self.longest_leaf
+            ),
+        );
+        line("SAH cost", format!("{:.2}", self.sah_cost));
+        line(
+            "lattice",
+            format!(
+                "{} bits, step {}, largest displacement {:.3e} scene units",
+                self.lattice_bits,
+                power_of_two(self.step),
+                self.largest_displacement
+            ),
+        );
+        for (what, names) in [("supplied", self.supplied), ("collapsed", self.collapsed)] {
+            for name in names {
+                line(what, name.clone());
+            }
+        }
+        if self.effects.is_empty() {
+            line("effects", String::from("none"));
+        }
+        for effect in &self.effects {
+            line("effect", effect.to_string());
+        }
+        table.to_string()
+    }
+}

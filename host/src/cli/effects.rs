@@ -1,0 +1,56 @@
+//! The effects of a scene, and what calls for each.
+
+use gridel_core::{Effects, Scene};
+use gridel_host::compile::Report;
+use serde::Serialize;
+use std::fmt;
+
+/// An effect, and the names of what calls for it.
+#[derive(Serialize)]
+pub struct CalledFor {
+    effect: String,
+    by: Vec<String>,
+}
+
+impl CalledFor {
+    /// The effects of a scene file, whose lights and materials have names.
+    pub fn in_report(report: &Report) -> Vec<Self> {
+        let effects = report.effects.iter().cloned();
+        effects.map(|(effect, by)| Self { effect, by }).collect()
+    }
+
+    /// The effects of a blob, whose lights and materials have numbers.
+    pub fn in_blob(scene: &Scene<'_>) -> Vec<Self> {
+        let callers = |effect: Effects| -> Vec<String> {
+            if effect == Effects::SHADOW {
+                let lights = 0..scene.lights().len();
+                return lights.map(|number| format!("light {number}")).collect();
+            }
+            let materials = scene.materials().iter().enumerate();
+            materials
+                .filter(|(_, material)| material.effects().contains(effect))
+                .map(|(number, _)| format!("material {number}"))
+                .collect()
+        };
+        Effects::NAMED
+            .into_iter()
+            .filter(|&(effect, _)| scene.effects().contains(effect))
+            .map(|(effect, name)| Self {
+                effect: name.to_owned(),
+                by: callers(effect),
+            })
+            .collect()
+    }
+}
+
+impl fmt::Display for CalledFor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const SHOWN: usize = 5;
+        let shown: Vec<_> = self.by.iter().take(SHOWN).map(String::as_str).collect();
+        write!(f, "{}, for {}", self.effect, shown.join(", "))?;
+        if self.by.len() > SHOWN {
+            write!(f, " and {} more", self.by.len() - SHOWN)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,101 @@
+//! Why a verb ends before its work is done, and the exit code that says so.
+
+use gridel_host::compile::CompileError;
+use miette::{Diagnostic, Report};
+use std::io;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Why a verb ended early.
+#[derive(Debug)]
+pub enum Failure {
+    /// An input is broken, or a file cannot be read or written.
+    Failed(Report),
+    /// The command line does not fit the input.
+    Usage(Report),
+    /// A budget would be exceeded.
+    Refused(Report),
+    /// Nobody reads standard output any more, which is nobody's fault.
+    ClosedPipe,
+}
+
+/// What went wrong and what to do about it.
+#[derive(Debug, thiserror::Error, Diagnostic)]
+#[error("{cause}")]
+#[diagnostic(help("{remedy}"))]
+struct Fault {
+    cause: String,
+    remedy: String,
+}
+
+fn fault(cause: impl Into<String>, remedy: impl Into<String>) -> Report {
+    let (cause, remedy) = (cause.into(), remedy.into());
+    Report::new(Fault { cause, remedy })
+}
+
+impl Failure {
+    /// A failure with its cause and remedy, sentences without capital and full stop.
+    pub fn failed(cause: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self::Failed(fault(cause, remedy))
+    }
+
+    /// A wrong command line.
+    pub fn usage(cause: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self::Usage(fault(cause, remedy))
+    }
+
+    /// A file that cannot be read.
+    pub fn reading(path: &Path, error: &io::Error) -> Self {
+        Self::failed(
+            format!("{} cannot be read: {error}", path.display()),
+            "check that the path names a file you may read",
+        )
+    }
+
+    /// A file that cannot be written.
+    pub fn writing(path: &Path, error: &io::Error) -> Self {
+        let remedy = match error.kind() {
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+                "make room, or write to another device"
+            }
+            io::ErrorKind::NotFound => "create the folder first",
+            _ => "check that the path names a file in a folder you may write to",
+        };
+        Self::failed(
+            format!("{} cannot be written: {error}", path.display()),
+            format!("{remedy}; nothing was written"),
+        )
+    }
+
+    /// An error about the content of a file, which its own text does not name.
+    pub fn in_file<E>(path: &Path, error: E) -> Self
+    where
+        E: Diagnostic + Send + Sync + 'static,
+    {
+        Self::Failed(Report::new(error).wrap_err(format!("{} cannot be used", path.display())))
+    }
+
+    /// A scene that cannot be compiled.
+    pub fn compiling(path: &Path, error: CompileError) -> Self {
+        let too_large = matches!(error, CompileError::TooLarge { .. });
+        let report = Report::new(error).wrap_err(format!("{} cannot be compiled", path.display()));
+        if too_large {
+            Self::Refused(report)
+        } else {
+            Self::Failed(report)
+        }
+    }
+
+    /// Prints what happened on standard error and returns the exit code.
+    pub fn report(self) -> ExitCode {
+        let (report, code) = match self {
+            Self::ClosedPipe => return ExitCode::SUCCESS,
+            Self::Failed(report) => (report, 1),
+            Self::Usage(report) => (report, 2),
+            Self::Refused(report) => (report, 3),
+        };
+        // Standard error may be closed; the exit code still tells.
+        let _ = io::Write::write_fmt(&mut io::stderr(), format_args!("{report:?}\n"));
+        ExitCode::from(code)
+    }
+}

@@ -1,0 +1,245 @@
+//! `gridel inspect`: what is in a blob, and what it takes to work with it.
+
+use super::arguments::SceneOptions;
+use super::effects::CalledFor;
+use super::failure::Failure;
+use super::output::{print, print_json};
+use super::source::Source;
+use clap::Args;
+use glam::DVec3;
+use gridel_core::{Kind, Scene, Structure};
+use gridel_host::report::{
+    Align, MemoryMap, Table, WorkingMemory, grouped, power_of_two, working_memory,
+};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// Show the memory map of a blob, its limits and the RAM that it needs
+///
+/// A scene file is compiled first, as `gridel build` would by default, and not written anywhere.
+/// Working memory is what the caller provides beside the call stack; it is exact for 32-bit boards,
+/// on which an f64 is aligned to 8 bytes, and for this machine.
+#[derive(Args)]
+#[command(after_help = super::EXIT_CODES)]
+pub struct Arguments {
+    /// Blob or scene file
+    #[arg(value_name = "BLOB|SCENE")]
+    input: PathBuf,
+
+    /// Print everything as JSON
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    scene_options: SceneOptions,
+}
+
+#[derive(Serialize)]
+struct Inspection {
+    memory_map: MemoryMap,
+    limits: Limits,
+    contents: Contents,
+    working_memory: Vec<WorkingMemory>,
+    effects: Vec<CalledFor>,
+}
+
+#[derive(Serialize)]
+struct Limits {
+    stack_depth: usize,
+    longest_leaf: u16,
+    lattice_bits: u8,
+    /// Bits of a stored coordinate.
+    storage_bits: u8,
+    /// Scene units of a unit, a step of the 16-bit box lattice.
+    unit: f64,
+    /// Scene units of a step of the lattice.
+    step: f64,
+    /// The scene's box in scene units, lowest and highest corner.
+    bounds: [[f64; 3]; 2],
+}
+
+#[derive(Serialize)]
+struct Contents {
+    structures: Vec<&'static str>,
+    objects: u32,
+    /// Those that collapsed on the lattice included.
+    primitives: u32,
+    collapsed: usize,
+    kinds: BTreeMap<&'static str, usize>,
+    lights: usize,
+    materials: usize,
+}
+
+/// Shows what is in a blob.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let source = Source::open(&arguments.input, &arguments.scene_options, None)?;
+    let scene = source.scene()?;
+    let inspection = Inspection {
+        memory_map: MemoryMap::of(&scene, source.blob.bytes()),
+        limits: limits(&scene),
+        contents: contents(&scene),
+        working_memory: working_memory(&scene),
+        effects: match &source.report {
+            Some(report) => CalledFor::in_report(report),
+            None => CalledFor::in_blob(&scene),
+        },
+    };
+    if arguments.json {
+        print_json(&inspection)
+    } else {
+        print(inspection.text())
+    }
+}
+
+fn limits(scene: &Scene<'_>) -> Limits {
+    let header = scene.header();
+    let unit = f64::powi(2.0, header.unit_exponent.into());
+    let corner = |side: usize| {
+        let units = header.bounds.0.map(|planes| f64::from(planes[side]));
+        (DVec3::from_array(header.origin) + unit * DVec3::from_array(units)).to_array()
+    };
+    Limits {
+        stack_depth: scene.stack_depth(),
+        longest_leaf: header.longest_leaf,
+        lattice_bits: header.lattice_bits,
+        storage_bits: header.storage_bits,
+        unit,
+        step: unit * f64::powi(2.0, 16 - i32::from(header.lattice_bits)),
+        bounds: [corner(0), corner(1)],
+    }
+}
+
+fn contents(scene: &Scene<'_>) -> Contents {
+    let header = scene.header();
+    let kinds = Kind::ALL.map(|kind| (kind.name(), scene.count(kind)));
+    let kept: usize = kinds.iter().map(|(_, count)| count).sum();
+    Contents {
+        structures: Structure::ALL
+            .into_iter()
+            .filter(|&structure| scene.holds(structure))
+            .map(Structure::name)
+            .collect(),
+        objects: header.objects,
+        primitives: header.primitives,
+        collapsed: header.primitives as usize - kept,
+        kinds: kinds.into_iter().filter(|&(_, count)| count > 0).collect(),
+        lights: scene.lights().len(),
+        materials: scene.materials().len(),
+    }
+}
+
+impl Inspection {
+    fn text(&self) -> String {
+        let each = |bytes: Option<f64>| bytes.map_or(String::from("-"), |b| format!("{b:.2}"));
+        let mut map = Table::new([
+            ("section", Align::Left),
+            ("offset", Align::Right),
+            ("records", Align::Right),
+            ("stride", Align::Right),
+            ("bytes", Align::Right),
+            ("share", Align::Right),
+            ("bytes a primitive", Align::Right),
+        ]);
+        for part in &self.memory_map.parts {
+            map.row([
+                part.kind.to_owned(),
+                part.offset.map_or(String::from("-"), grouped),
+                grouped(part.count),
+                part.stride.to_string(),
+                grouped(part.bytes),
+                format!("{:.1} %", 100.0 * part.share),
+                each(part.bytes_per_primitive),
+            ]);
+        }
+        map.row([
+            String::from("total"),
+            String::new(),
+            String::new(),
+            String::new(),
+            grouped(self.memory_map.bytes),
+            String::from("100.0 %"),
+            each(self.memory_map.bytes_per_primitive),
+        ]);
+        format!(
+            "{map}\n{}\n{}",
+            self.facts(),
+            working_memory_table(&self.working_memory)
+        )
+    }
+
+    fn facts(&self) -> Table {
+        let Self {
+            limits, contents, ..
+        } = self;
+        let mut table = Table::untitled([Align::Left, Align::Left]);
+        let mut line = |what: &str, value: String| table.row([what.to_owned(), value]);
+        line("structures", contents.structures.join(", "));
+        line("objects", grouped(contents.objects));
+        let kinds: Vec<_> = contents
+            .kinds
+            .iter()
+            .map(|(kind, count)| format!("{kind} {}", grouped(count)))
+            .collect();
+        line(
+            "primitives",
+            match (kinds.is_empty(), contents.collapsed) {
+                (true, 0) => String::from("0"),
+                (_, 0) => format!("{}: {}", grouped(contents.primitives), kinds.join(", ")),
+                (_, collapsed) => format!(
+                    "{}: {}, and {collapsed} that collapsed on the lattice",
+                    grouped(contents.primitives),
+                    kinds.join(", ")
+                ),
+            },
+        );
+        line("materials", contents.materials.to_string());
+        line("lights", contents.lights.to_string());
+        line("stack depth", limits.stack_depth.to_string());
+        line("longest leaf", limits.longest_leaf.to_string());
+        line(
+            "lattice",
+            format!(
+                "{} bits, stored in {}; step {} and unit {} scene units",
+                limits.lattice_bits,
+                limits.storage_bits,
+                power_of_two(limits.step),
+                power_of_two(limits.unit)
+            ),
+        );
+        let [low, high] = limits.bounds;
+        let corner = |[x, y, z]: [f64; 3]| format!("({x}, {y}, {z})");
+        line(
+            "bounds",
+            format!("{} to {} scene units", corner(low), corner(high)),
+        );
+        if self.effects.is_empty() {
+            line("effects", String::from("none"));
+        }
+        for effect in &self.effects {
+            line("effect", effect.to_string());
+        }
+        table
+    }
+}
+
+fn working_memory_table(needs: &[WorkingMemory]) -> Table {
+    let mut table = Table::new([
+        ("working memory, bytes", Align::Left),
+        ("format", Align::Left),
+        ("rays (stack)", Align::Right),
+        ("pictures (workspace)", Align::Right),
+    ]);
+    for need in needs {
+        table.row([
+            match need.word_bits {
+                32 => String::from("32-bit board"),
+                bits => format!("this machine, {bits} bits"),
+            },
+            need.format.to_owned(),
+            grouped(need.stack),
+            grouped(need.workspace),
+        ]);
+    }
+    table
+}

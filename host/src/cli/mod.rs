@@ -1,0 +1,81 @@
+//! The command line: one file a verb, and what the verbs share.
+//!
+//! | file | what is in it |
+//! |---|---|
+//! | `failure.rs` | why a verb ends, and the exit code that says so |
+//! | `arguments.rs` | options that several verbs have |
+//! | `source.rs` | the blob or scene file that a verb works on |
+//! | `effects.rs` | what calls for the effects of a scene |
+//! | `output.rs` | files and standard output |
+//! | `progress.rs` | the sign of life of long work |
+
+mod arguments;
+mod effects;
+mod failure;
+mod output;
+mod progress;
+mod source;
+
+mod build;
+mod inspect;
+mod render;
+mod sample;
+mod trace;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Compiles scenes into blobs that are ray traced in place, on a microcontroller or on a host
+#[derive(Parser)]
+#[command(name = "gridel", version, after_help = EXIT_CODES, arg_required_else_help = true)]
+struct Program {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    Build(build::Arguments),
+    Inspect(inspect::Arguments),
+    Render(render::Arguments),
+    Trace(trace::Arguments),
+    Sample(sample::Arguments),
+}
+
+/// What scripts can rely on; every verb's help shows it.
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  done
+  1  failed: an input is broken, or a file cannot be read or written
+  2  the command line is wrong, by itself or for this input
+  3  refused: the blob would be larger than --max-bytes
+  130  interrupted; no output is left half written";
+
+/// Runs the program.
+pub fn run() -> ExitCode {
+    let program = Program::parse();
+    // Without a handler an interrupt would only leave a temporary file behind.
+    let _ = ctrlc::set_handler(|| gridel_host::output::abandon(130));
+    let done = match program.verb {
+        Verb::Build(arguments) => build::run(&arguments),
+        Verb::Inspect(arguments) => inspect::run(&arguments),
+        Verb::Render(arguments) => render::run(&arguments),
+        Verb::Trace(arguments) => trace::run(&arguments),
+        Verb::Sample(arguments) => sample::run(&arguments),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Program::command().debug_assert();
+    }
+}

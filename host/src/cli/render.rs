@@ -1,0 +1,352 @@
+//! `gridel render`: a picture of a scene.
+
+use super::arguments::{self, SceneOptions};
+use super::failure::Failure;
+use super::output::{print, print_json, refuse_same, write_file};
+use super::progress::Progress;
+use super::source::Source;
+use clap::Args;
+use gridel_core::render::{MAX_RAY_DEPTH, MAX_SAMPLES};
+use gridel_core::{Counters, Format, Scene, Settings, Structure};
+use gridel_host::picture::PictureFormat;
+use gridel_host::render::{Job, Picture, render};
+use gridel_host::report::{Align, HeatMap, Table, counted, grouped};
+use serde::Serialize;
+use std::ops::Range;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// Render a picture from a blob or a scene file
+///
+/// What is not given comes from the scene file. The picture is the same, bit for bit, with any
+/// number of threads, on every machine, and through every acceleration structure.
+#[derive(Args)]
+#[command(after_help = super::EXIT_CODES)]
+pub struct Arguments {
+    /// Blob or scene file
+    #[arg(value_name = "BLOB|SCENE")]
+    input: PathBuf,
+
+    /// The picture to write; the extension says how: .png, .ppm, or .rgb565 (two bytes a pixel,
+    /// little-endian, without a header)
+    #[arg(short, long, value_name = "PICTURE")]
+    output: PathBuf,
+
+    /// Arithmetic to render in
+    #[arg(long, value_name = "NAME", value_parser = arguments::format(), default_value = "f32")]
+    format: Format,
+
+    /// Acceleration structure [default: the best that the blob holds]
+    #[arg(long, value_name = "NAME", value_parser = arguments::structure())]
+    accel: Option<Structure>,
+
+    /// Size of the whole picture, such as 640x480
+    #[arg(long, value_name = "WxH", value_parser = arguments::size)]
+    size: Option<[u16; 2]>,
+
+    /// Samples a pixel, 1 to 256
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u16).range(1..=i64::from(MAX_SAMPLES))
+    )]
+    samples: Option<u16>,
+
+    /// How often a ray may be reflected or refracted, 0 to 16
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u8).range(0..=MAX_RAY_DEPTH as i64)
+    )]
+    depth: Option<u8>,
+
+    /// Threads, 1 to 1024 [default: one a core]
+    #[arg(long, value_name = "N", value_parser = arguments::threads())]
+    threads: Option<usize>,
+
+    /// Render these rows only: from row A to the one before B, counted from 0 at the top
+    #[arg(long, value_name = "A..B", value_parser = arguments::rows)]
+    rows: Option<Range<u16>>,
+
+    /// Dither, which hides the steps between the colours of a display
+    #[arg(long)]
+    dither: bool,
+
+    /// Count rays and tests; the time that is told includes the counting
+    #[arg(long)]
+    stats: bool,
+
+    /// Also write the work for each pixel as a PNG: boxes and primitives tested, by their square
+    /// root, from black for none over blue, red and yellow to white for the maximum, which is told
+    /// and named in the file
+    #[arg(long, value_name = "FILE")]
+    heat_map: Option<PathBuf>,
+
+    /// Print what was done as JSON
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    scene_options: SceneOptions,
+}
+
+/// Pixels that are held at once.
+const MOST_PIXELS: usize = 1 << 26;
+
+/// What was rendered.
+#[derive(Serialize)]
+struct Rendered {
+    picture: String,
+    width: u16,
+    height: u16,
+    rows: [u16; 2],
+    format: &'static str,
+    accel: &'static str,
+    samples: u16,
+    depth: u8,
+    threads: usize,
+    seconds: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stats: Option<Stats>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    heat_map: Option<HeatMapFile>,
+}
+
+#[derive(Serialize)]
+struct Stats {
+    rays: u64,
+    primary: u64,
+    shadow: u64,
+    reflected: u64,
+    refracted: u64,
+    planes: u64,
+    boxes: u64,
+    objects: u64,
+    rays_per_second: f64,
+}
+
+#[derive(Serialize)]
+struct HeatMapFile {
+    file: String,
+    /// Boxes and primitives tested for the pixel with the most.
+    maximum: u32,
+}
+
+/// Renders a picture and writes it.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let format = check_outputs(arguments)?;
+    let source = Source::open(&arguments.input, &arguments.scene_options, arguments.accel)?;
+    let scene = source.scene()?;
+    source.warn_of_collapsed(&scene);
+    let job = job(arguments, &source, &scene)?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.threads.unwrap_or(0))
+        .build()
+        .map_err(|error| {
+            Failure::failed(
+                format!("the threads cannot be started: {error}"),
+                "ask for fewer with `--threads N`",
+            )
+        })?;
+
+    let progress = Progress::steps("rendering", job.rows.len() as u64);
+    let begun = Instant::now();
+    let rendered = pool.install(|| render(&scene, &job, &|| progress.step()));
+    let time = begun.elapsed();
+    drop(progress);
+    let picture = rendered.map_err(|error| {
+        Failure::usage(
+            error.to_string(),
+            "change the option, or the scene file's `[render]`",
+        )
+    })?;
+
+    write_file(&arguments.output, |out| {
+        format.write(out, &picture, arguments.dither)
+    })?;
+    let heat_map = match &arguments.heat_map {
+        Some(path) => {
+            let map = HeatMap::of(&picture);
+            write_file(path, |out| map.write(out))?;
+            Some(HeatMapFile {
+                file: path.display().to_string(),
+                maximum: map.maximum,
+            })
+        }
+        None => None,
+    };
+    let rendered = Rendered {
+        picture: arguments.output.display().to_string(),
+        width: job.settings.width,
+        height: job.settings.height,
+        rows: [job.rows.start, job.rows.end],
+        format: job.format.name(),
+        accel: job.structure.name(),
+        samples: job.settings.samples,
+        depth: job.settings.depth,
+        threads: pool.current_num_threads(),
+        seconds: time.as_secs_f64(),
+        stats: stats(arguments, &picture, time),
+        heat_map,
+    };
+    if arguments.json {
+        print_json(&rendered)
+    } else {
+        print(rendered.text())
+    }
+}
+
+/// The picture's format; an error for names that cannot be written to.
+fn check_outputs(arguments: &Arguments) -> Result<PictureFormat, Failure> {
+    let output = &arguments.output;
+    let format = PictureFormat::of(output).ok_or_else(|| {
+        Failure::usage(
+            format!("{} does not end as a picture's name does", output.display()),
+            "use .png, .ppm or .rgb565",
+        )
+    })?;
+    refuse_same(&arguments.input, output)?;
+    if let Some(heat_map) = &arguments.heat_map {
+        if PictureFormat::of(heat_map) != Some(PictureFormat::Png) {
+            return Err(Failure::usage(
+                format!("{} does not end with .png", heat_map.display()),
+                "heat maps are PNG files: give it such a name",
+            ));
+        }
+        refuse_same(&arguments.input, heat_map)?;
+        if heat_map == output {
+            return Err(Failure::usage(
+                format!("picture and heat map are both {}", output.display()),
+                "give the heat map another name",
+            ));
+        }
+    }
+    Ok(format)
+}
+
+fn job(arguments: &Arguments, source: &Source, scene: &Scene<'_>) -> Result<Job, Failure> {
+    let stated = Settings::of(scene);
+    let [width, height] = arguments.size.unwrap_or([stated.width, stated.height]);
+    let settings = Settings {
+        width,
+        height,
+        samples: arguments.samples.unwrap_or(stated.samples),
+        depth: arguments.depth.unwrap_or(stated.depth),
+        dither: arguments.dither,
+    };
+    let rows = arguments.rows.clone().unwrap_or(0..height);
+    if rows.end > height {
+        return Err(Failure::usage(
+            format!(
+                "rows {}..{} end behind the picture, which has {height}",
+                rows.start, rows.end
+            ),
+            format!("rows count from 0; ask for a range within 0..{height}"),
+        ));
+    }
+    let pixels = usize::from(width) * rows.len();
+    if pixels > MOST_PIXELS {
+        let most = MOST_PIXELS / usize::from(width);
+        return Err(Failure::usage(
+            format!(
+                "{} pixels are more than the {} that are held at once",
+                grouped(pixels),
+                grouped(MOST_PIXELS)
+            ),
+            format!("render at most {most} rows at a time, with `--rows 0..{most}` and so on"),
+        ));
+    }
+    Ok(Job {
+        format: arguments.format,
+        structure: source.structure(scene, arguments.accel)?,
+        settings,
+        rows,
+        count: arguments.stats || arguments.heat_map.is_some(),
+    })
+}
+
+fn stats(arguments: &Arguments, picture: &Picture, time: Duration) -> Option<Stats> {
+    let counters = picture.counters.filter(|_| arguments.stats)?;
+    let Counters {
+        planes,
+        boxes,
+        objects,
+        primary,
+        shadow,
+        reflected,
+        refracted,
+    } = counters;
+    Some(Stats {
+        rays: counters.rays(),
+        primary,
+        shadow,
+        reflected,
+        refracted,
+        planes,
+        boxes,
+        objects,
+        rays_per_second: counters.rays() as f64 / time.as_secs_f64(),
+    })
+}
+
+impl Rendered {
+    fn text(&self) -> String {
+        let [first, end] = self.rows;
+        let rows = if (first, end) == (0, self.height) {
+            String::new()
+        } else {
+            format!(", rows {first}..{end}")
+        };
+        let mut text = format!(
+            "{}: {} x {}{rows}, {}, {}, {} a pixel, {:.3} s with {}\n",
+            self.picture,
+            self.width,
+            self.height,
+            self.format,
+            self.accel,
+            counted(self.samples.into(), "sample"),
+            self.seconds,
+            counted(self.threads, "thread")
+        );
+        if let Some(map) = &self.heat_map {
+            text.push_str(&format!(
+                "{}: white is {} boxes and primitives tested\n",
+                map.file,
+                grouped(map.maximum)
+            ));
+        }
+        if let Some(stats) = &self.stats {
+            text.push_str(&format!("\n{}", stats.table()));
+        }
+        text
+    }
+}
+
+impl Stats {
+    fn table(&self) -> Table {
+        let mut table = Table::new([
+            ("counted", Align::Left),
+            ("number", Align::Right),
+            ("a ray", Align::Right),
+        ]);
+        let a_ray = |count: u64| format!("{:.2}", count as f64 / self.rays.max(1) as f64);
+        for (what, count) in [
+            ("rays", self.rays),
+            ("  primary", self.primary),
+            ("  shadow", self.shadow),
+            ("  reflected", self.reflected),
+            ("  refracted", self.refracted),
+            ("planes tested", self.planes),
+            ("boxes tested", self.boxes),
+            ("primitives tested", self.objects),
+        ] {
+            table.row([what.to_owned(), grouped(count), a_ray(count)]);
+        }
+        table.row([
+            String::from("rays a second"),
+            grouped(self.rays_per_second.round()),
+            String::new(),
+        ]);
+        table
+    }
+}

@@ -1,0 +1,243 @@
+//! `gridel trace`: rays of the user's own, as NumPy arrays.
+
+use super::arguments::{self, SceneOptions};
+use super::failure::Failure;
+use super::output::{print, print_json, refuse_same, write_file};
+use super::progress::Progress;
+use super::source::Source;
+use clap::Args;
+use gridel_core::{Count, Counters, Format, NoCount, Scene, Structure};
+use gridel_host::npy::{read_rays, write_hits};
+use gridel_host::report::grouped;
+use gridel_host::trace::{Frame, Query, SceneHit, SceneRay, trace};
+use rayon::ThreadPool;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Trace rays from a NumPy file through a blob or a scene file
+///
+/// Rays are a float32 or float64 array of shape (N, 8): origin x y z, tmin, direction x y z, tmax,
+/// in scene units. The direction may have any length, and t counts multiples of it.
+///
+/// Hits are a structured array with the fields t (f8, inf on a miss), object and primitive (u4,
+/// 0xffffffff on a miss; counted in scene-file order) and normal (3 f4, of length 1, pointing
+/// outward; 0 on a miss).
+///
+/// A ray whose direction is zero, or that holds a NaN or an infinite origin or direction, or whose
+/// tmin is greater than its tmax, is none: it misses, and is counted as invalid.
+#[derive(Args)]
+#[command(after_help = super::EXIT_CODES)]
+pub struct Arguments {
+    /// Blob or scene file
+    #[arg(value_name = "BLOB|SCENE")]
+    input: PathBuf,
+
+    /// The rays to trace
+    #[arg(long, value_name = "RAYS.npy")]
+    rays: PathBuf,
+
+    /// Where to write the hits
+    #[arg(short, long, value_name = "HITS.npy")]
+    output: PathBuf,
+
+    /// Arithmetic to trace in
+    #[arg(long, value_name = "NAME", value_parser = arguments::format(), default_value = "f32")]
+    format: Format,
+
+    /// Acceleration structure [default: the best that the blob holds]
+    #[arg(long, value_name = "NAME", value_parser = arguments::structure())]
+    accel: Option<Structure>,
+
+    /// Only find out whether each ray meets anything; what it meets is not told, so t, object,
+    /// primitive and normal are 0 for each that does
+    #[arg(long)]
+    any: bool,
+
+    /// Trace all rays so many times, to measure
+    #[arg(long, value_name = "N", default_value_t = 1,
+        value_parser = clap::value_parser!(u32).range(1..))]
+    repeat: u32,
+
+    /// Threads, 1 to 1024
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = arguments::threads())]
+    threads: usize,
+
+    /// Print counts and times as JSON; counters come from one more pass, before those that are timed
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    scene_options: SceneOptions,
+}
+
+/// Rays that a thread takes at once.
+const CHUNK: usize = 4096;
+
+/// What was traced.
+#[derive(Serialize)]
+struct Traced {
+    rays: usize,
+    hits: usize,
+    misses: usize,
+    /// Rays that are none; they are among the misses.
+    invalid: usize,
+    format: &'static str,
+    accel: &'static str,
+    any: bool,
+    threads: usize,
+    /// Of each repeat, tracing alone.
+    seconds: Vec<f64>,
+    /// Of the fastest repeat.
+    rays_per_second: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    counters: Option<Tests>,
+}
+
+/// What was tested for all rays.
+#[derive(Serialize)]
+struct Tests {
+    planes: u64,
+    boxes: u64,
+    objects: u64,
+}
+
+/// Traces rays and writes what they hit.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    refuse_same(&arguments.input, &arguments.output)?;
+    refuse_same(&arguments.rays, &arguments.output)?;
+    let source = Source::open(&arguments.input, &arguments.scene_options, arguments.accel)?;
+    let scene = source.scene()?;
+    source.warn_of_collapsed(&scene);
+    let query = Query {
+        format: arguments.format,
+        structure: source.structure(&scene, arguments.accel)?,
+        any: arguments.any,
+    };
+    let rays = read(&arguments.rays)?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.threads)
+        .build()
+        .map_err(|error| {
+            Failure::failed(
+                format!("the threads cannot be started: {error}"),
+                "ask for fewer with `--threads N`",
+            )
+        })?;
+
+    let progress = Progress::unknown("tracing");
+    let mut hits = vec![SceneHit::MISS; rays.len()];
+    let pass = Pass {
+        scene: &scene,
+        rays: &rays,
+        query,
+        pool: &pool,
+    };
+    let counters = arguments.json.then(|| {
+        let counted: Vec<Counters> = pass.run(&mut hits);
+        counted
+            .iter()
+            .fold(Counters::default(), |sum, part| sum.plus(part))
+    });
+    let seconds: Vec<f64> = (0..arguments.repeat)
+        .map(|_| {
+            let begun = Instant::now();
+            let _: Vec<NoCount> = pass.run(&mut hits);
+            begun.elapsed().as_secs_f64()
+        })
+        .collect();
+    drop(progress);
+    write_file(&arguments.output, |out| write_hits(out, &hits))?;
+
+    let misses = hits.iter().filter(|hit| hit.primitive == u32::MAX).count();
+    let frame = Frame::of(&scene);
+    let is_none = |ray: &&SceneRay| frame.ray::<f64>(&scene, ray).is_none();
+    let fastest = seconds.iter().copied().fold(f64::INFINITY, f64::min);
+    let traced = Traced {
+        rays: rays.len(),
+        hits: rays.len() - misses,
+        misses,
+        invalid: rays.iter().filter(is_none).count(),
+        format: query.format.name(),
+        accel: query.structure.name(),
+        any: query.any,
+        threads: arguments.threads,
+        rays_per_second: rays.len() as f64 / fastest.max(f64::MIN_POSITIVE),
+        seconds,
+        counters: counters.map(|counters| Tests {
+            planes: counters.planes,
+            boxes: counters.boxes,
+            objects: counters.objects,
+        }),
+    };
+    if arguments.json {
+        print_json(&traced)
+    } else {
+        print(traced.text(&arguments.output))
+    }
+}
+
+fn read(path: &Path) -> Result<Vec<SceneRay>, Failure> {
+    let bytes = std::fs::metadata(path)
+        .and_then(|metadata| match metadata.is_file() {
+            true => std::fs::read(path),
+            false => Err(io::Error::other("it is not a file")),
+        })
+        .map_err(|error| Failure::reading(path, &error))?;
+    read_rays(&bytes).map_err(|error| Failure::in_file(path, error))
+}
+
+/// All rays, once.
+struct Pass<'p> {
+    scene: &'p Scene<'p>,
+    rays: &'p [SceneRay],
+    query: Query,
+    pool: &'p ThreadPool,
+}
+
+impl Pass<'_> {
+    /// Traces the rays; a counter for each part of the work.
+    fn run<C: Count + Default + Send>(&self, hits: &mut [SceneHit]) -> Vec<C> {
+        let one = |(rays, hits): (&[SceneRay], &mut [SceneHit])| {
+            let mut count = C::default();
+            trace(self.scene, rays, self.query, hits, &mut count);
+            count
+        };
+        if self.pool.current_num_threads() == 1 {
+            return vec![one((self.rays, hits))];
+        }
+        self.pool.install(|| {
+            let rays = self.rays.par_chunks(CHUNK);
+            rays.zip(hits.par_chunks_mut(CHUNK)).map(one).collect()
+        })
+    }
+}
+
+impl Traced {
+    fn text(&self, output: &Path) -> String {
+        let mut text = format!(
+            "{}: {} rays, {} hits, {} misses, {}, {}\n",
+            output.display(),
+            grouped(self.rays),
+            grouped(self.hits),
+            grouped(self.misses),
+            self.format,
+            self.accel
+        );
+        if self.invalid > 0 {
+            text.push_str(&format!(
+                "{} of the misses are no rays: a direction of zero, a NaN, or tmin above tmax\n",
+                grouped(self.invalid)
+            ));
+        }
+        for seconds in &self.seconds {
+            text.push_str(&format!(
+                "{seconds:.6} s, {} rays a second\n",
+                grouped((self.rays as f64 / seconds.max(f64::MIN_POSITIVE)).round())
+            ));
+        }
+        text
+    }
+}

@@ -1,0 +1,318 @@
+//! Rays and hits as NumPy's array files.
+//!
+//! Rays are an array of shape (N, 8), float32 or float64: origin x y z, tmin, direction x y z,
+//! tmax, in scene units. Either byte order and either memory order is read. Hits are a packed
+//! structured array, little-endian, with the fields of [`HIT_FIELDS`].
+
+use crate::trace::{SceneHit, SceneRay};
+use glam::DVec3;
+use npyz::{DType, NpyHeader, Order, WriterBuilder};
+use std::io::{self, Write};
+
+/// The fields of a hit, with NumPy's names for their types.
+pub const HIT_FIELDS: &str = "t f8, object u4, primitive u4, normal 3 f4";
+
+/// Why a file holds no rays.
+#[derive(Debug, PartialEq, thiserror::Error, miette::Diagnostic)]
+pub enum RaysError {
+    #[error("it is not a NumPy array file: it does not begin with \\x93NUMPY")]
+    #[diagnostic(help("write the rays with `numpy.save`"))]
+    Magic,
+    #[error("its header is broken: {cause}")]
+    #[diagnostic(help("write the rays again with `numpy.save`"))]
+    Header { cause: String },
+    #[error("its elements are of type {found}, not float32 or float64")]
+    #[diagnostic(help("convert the array with `.astype('float64')` before saving it"))]
+    Type { found: String },
+    #[error("its shape is {found}, not (N, 8)")]
+    #[diagnostic(help(
+        "give each ray a row of 8: origin x y z, tmin, direction x y z, tmax, in scene units"
+    ))]
+    Shape { found: String },
+    #[error("it has {found} bytes of rays where its header promises {expected}")]
+    #[diagnostic(help("was it cut off, or was something added to it? Write it again"))]
+    Length { found: usize, expected: u64 },
+}
+
+/// Numbers of a ray.
+const COLUMNS: usize = 8;
+
+/// Reads the rays of a whole file.
+///
+/// # Errors
+/// If it is no NumPy file of such an array, is cut off, or has anything behind the array.
+pub fn read_rays(file: &[u8]) -> Result<Vec<SceneRay>, RaysError> {
+    check_header(file)?;
+    let mut data = file;
+    let header = NpyHeader::from_reader(&mut data).map_err(|error| RaysError::Header {
+        cause: error.to_string(),
+    })?;
+    let DType::Plain(element) = header.dtype() else {
+        let found = header.dtype().descr();
+        return Err(RaysError::Type { found });
+    };
+    let (size, read): (usize, fn(&[u8]) -> f64) = match element.to_string().as_str() {
+        "<f4" => (4, |bytes| f32::from_le_bytes(array(bytes)).into()),
+        ">f4" => (4, |bytes| f32::from_be_bytes(array(bytes)).into()),
+        "<f8" => (8, |bytes| f64::from_le_bytes(array(bytes))),
+        ">f8" => (8, |bytes| f64::from_be_bytes(array(bytes))),
+        found => {
+            let found = String::from(found);
+            return Err(RaysError::Type { found });
+        }
+    };
+    let &[rays, 8] = header.shape() else {
+        let extents: Vec<String> = header.shape().iter().map(u64::to_string).collect();
+        let found = format!("({})", extents.join(", "));
+        return Err(RaysError::Shape { found });
+    };
+    let length = |rays: u64| rays.checked_mul((COLUMNS * size) as u64);
+    if length(rays) != Some(data.len() as u64) {
+        return Err(RaysError::Length {
+            found: data.len(),
+            expected: length(rays).unwrap_or(u64::MAX),
+        });
+    }
+    let rays = rays as usize;
+    let number = |ray: usize, column: usize| {
+        let index = match header.order() {
+            Order::C => ray * COLUMNS + column,
+            Order::Fortran => column * rays + ray,
+        };
+        read(&data[index * size..][..size])
+    };
+    let vector = |ray, first| DVec3::from_array([0, 1, 2].map(|k: usize| number(ray, first + k)));
+    Ok((0..rays)
+        .map(|ray| SceneRay {
+            origin: vector(ray, 0),
+            tmin: number(ray, 3),
+            direction: vector(ray, 4),
+            tmax: number(ray, 7),
+        })
+        .collect())
+}
+
+/// `bytes` must have `N` bytes.
+fn array<const N: usize>(bytes: &[u8]) -> [u8; N] {
+    let mut array = [0; N];
+    array.copy_from_slice(bytes);
+    array
+}
+
+/// Refuses a header that could make the parser recurse deeply, overflow or allocate much: it
+/// nests without a bound and multiplies the shape unchecked. None of an array of numbers can.
+fn check_header(file: &[u8]) -> Result<(), RaysError> {
+    let broken = |cause: &str| {
+        let cause = String::from(cause);
+        Err(RaysError::Header { cause })
+    };
+    let Some(rest) = file.strip_prefix(b"\x93NUMPY") else {
+        return Err(RaysError::Magic);
+    };
+    let text = match *rest {
+        [1, 0, a, b, ref text @ ..] => text.get(..u16::from_le_bytes([a, b]).into()),
+        [2 | 3, 0, a, b, c, d, ref text @ ..] => {
+            text.get(..u32::from_le_bytes([a, b, c, d]) as usize)
+        }
+        [1..=3, 0, ..] => None,
+        [major, minor, ..] => {
+            return broken(&format!("version {major}.{minor} of the format is unknown"));
+        }
+        _ => None,
+    };
+    let Some(text) = text else {
+        return broken("it is cut off");
+    };
+    let count = |is: fn(&u8) -> bool| text.iter().filter(|byte| is(byte)).count();
+    let brackets = count(|byte| b"([{}])".contains(byte));
+    // 19 digits cannot make a product above 2^64.
+    let digits = count(u8::is_ascii_digit);
+    if text.len() > 10_000
+        || brackets > 4
+        || digits > 19
+        || text.windows(2).any(|pair| pair.eq_ignore_ascii_case(b"0x"))
+    {
+        let text = String::from_utf8_lossy(text);
+        let start: String = text.trim_end().chars().take(100).collect();
+        return broken(&format!(
+            "it describes no array of plain numbers, but {start:?}"
+        ));
+    }
+    Ok(())
+}
+
+/// A hit as it lies in the file.
+#[derive(npyz::Serialize, npyz::AutoSerialize)]
+struct Record {
+    t: f64,
+    object: u32,
+    primitive: u32,
+    normal: [f32; 3],
+}
+
+/// Writes hits, as an array of shape (N,).
+///
+/// # Errors
+/// If `out` has one.
+pub fn write_hits(out: &mut dyn Write, hits: &[SceneHit]) -> io::Result<()> {
+    let mut writer = npyz::WriteOptions::new()
+        .default_dtype()
+        .shape(&[hits.len() as u64])
+        .writer(out)
+        .begin_nd()?;
+    writer.extend(hits.iter().map(|hit| Record {
+        t: hit.t,
+        object: hit.object,
+        primitive: hit.primitive,
+        normal: hit.normal,
+    }))?;
+    writer.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A file as `numpy.save` writes it.
+    fn file(header: &str, data: &[u8]) -> Vec<u8> {
+        let mut file = b"\x93NUMPY\x01\x00".to_vec();
+        let text = format!("{header:<117}\n");
+        file.extend((text.len() as u16).to_le_bytes());
+        file.extend(text.as_bytes());
+        file.extend(data);
+        file
+    }
+
+    fn header(element: &str, fortran: &str, shape: &str) -> String {
+        format!("{{'descr': {element}, 'fortran_order': {fortran}, 'shape': {shape}, }}")
+    }
+
+    fn expected() -> Vec<SceneRay> {
+        let ray = |first: f64| SceneRay {
+            origin: DVec3::new(first, first + 1.0, first + 2.0),
+            tmin: first + 3.0,
+            direction: DVec3::new(first + 4.0, first + 5.0, first + 6.0),
+            tmax: first + 7.0,
+        };
+        vec![ray(0.0), ray(8.0)]
+    }
+
+    #[test]
+    fn all_orders_and_types_read_alike() {
+        let c_order: Vec<f64> = (0..16).map(f64::from).collect();
+        let fortran: Vec<f64> = (0..16).map(|k| f64::from(8 * (k % 2) + k / 2)).collect();
+        let bytes = |values: &[f64], to: fn(f64) -> Vec<u8>| -> Vec<u8> {
+            values.iter().flat_map(|&value| to(value)).collect()
+        };
+        type ToBytes = fn(f64) -> Vec<u8>;
+        let types: [(&str, ToBytes); 4] = [
+            ("'<f8'", |x| x.to_le_bytes().to_vec()),
+            ("'>f8'", |x| x.to_be_bytes().to_vec()),
+            ("'<f4'", |x| (x as f32).to_le_bytes().to_vec()),
+            ("'>f4'", |x| (x as f32).to_be_bytes().to_vec()),
+        ];
+        for (element, to) in types {
+            for (order, values) in [("False", &c_order), ("True", &fortran)] {
+                let file = file(&header(element, order, "(2, 8)"), &bytes(values, to));
+                assert_eq!(read_rays(&file).unwrap(), expected(), "{element} {order}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_rays_are_an_array_too() {
+        let file = file(&header("'<f4'", "False", "(0, 8)"), &[]);
+        assert_eq!(read_rays(&file).unwrap(), []);
+    }
+
+    #[test]
+    fn foreign_arrays_are_named() {
+        let read = |element: &str, shape: &str| {
+            let file = file(&header(element, "False", shape), &[0; 128]);
+            read_rays(&file).unwrap_err().to_string()
+        };
+        let types = ["'<i8'", "'<f2'", "'<c16'", "'|O'", "'<f16'"];
+        for element in types {
+            let message = read(element, "(2, 8)");
+            let name = element.trim_matches('\'');
+            assert_eq!(
+                message,
+                format!("its elements are of type {name}, not float32 or float64")
+            );
+        }
+        for shape in ["(16,)", "(8, 2)", "(2, 8, 1)", "()"] {
+            assert!(read("'<f8'", shape).contains("not (N, 8)"), "{shape}");
+        }
+        assert!(read("[('a', '<f8')]", "(16,)").contains("no array of plain numbers"));
+        assert_eq!(
+            read("'<f8'", "(3, 8)"),
+            "it has 128 bytes of rays where its header promises 192"
+        );
+        assert!(read("'<f8'", "(1, 8)").contains("promises 64"));
+    }
+
+    #[test]
+    fn hostile_headers_are_refused() {
+        let nested = format!("{}1{}", "(".repeat(5000), ")".repeat(5000));
+        for shape in [
+            nested.as_str(),
+            "(4294967296, 4294967296)",
+            "(0xffffffffffff, 0xffffffffffff, 8)",
+            "(99999999999999999999999, 8)",
+            "(-1, 8)",
+            "(None, 8)",
+            "8",
+        ] {
+            let file = file(&header("'<f8'", "False", shape), &[]);
+            let error = read_rays(&file).unwrap_err();
+            assert!(matches!(error, RaysError::Header { .. }), "{error}");
+        }
+        // 2^60 rays would be 2^66 bytes.
+        let file = file(&header("'<f8'", "False", "(1152921504606846976, 8)"), &[]);
+        assert!(read_rays(&file).is_err());
+    }
+
+    #[test]
+    fn every_truncation_is_an_error() {
+        let whole = file(&header("'<f8'", "False", "(2, 8)"), &[0; 128]);
+        assert!(read_rays(&whole).is_ok());
+        for length in 0..whole.len() {
+            assert!(read_rays(&whole[..length]).is_err(), "{length} bytes");
+        }
+        for version in [0_u8, 4, 9, 255] {
+            let mut other = whole.clone();
+            other[6] = version;
+            assert!(read_rays(&other).is_err(), "version {version}");
+        }
+        // Lengths of 32 bits that promise gigabytes.
+        let mut long = b"\x93NUMPY\x02\x00\xff\xff\xff\xff".to_vec();
+        long.extend(&whole[10..]);
+        assert!(read_rays(&long).is_err());
+    }
+
+    #[test]
+    fn hits_are_packed() {
+        let hit = SceneHit {
+            t: 1.5,
+            object: 2,
+            primitive: 3,
+            normal: [0.0, -1.0, 0.5],
+        };
+        let mut file = Vec::new();
+        write_hits(&mut file, &[hit, SceneHit::MISS]).unwrap();
+        let data = &file[file.len() - 56..];
+        assert_eq!(data[..8], 1.5_f64.to_le_bytes());
+        assert_eq!(data[8..12], 2_u32.to_le_bytes());
+        assert_eq!(data[12..16], 3_u32.to_le_bytes());
+        assert_eq!(data[20..24], (-1.0_f32).to_le_bytes());
+        assert_eq!(data[28..36], f64::INFINITY.to_le_bytes());
+        assert_eq!(data[36..44], [0xff; 8]);
+        let header = String::from_utf8_lossy(&file[10..file.len() - 56]);
+        for field in ["'t', '<f8'", "'object', '<u4'", "'primitive', '<u4'"] {
+            assert!(header.contains(field), "{header}");
+        }
+        assert!(header.contains("'normal', '<f4', (3,)"), "{header}");
+        assert!(header.contains("'shape': (2, )"), "{header}");
+        assert_eq!((file.len() - 56) % 16, 0);
+    }
+}

@@ -1,0 +1,143 @@
+//! Output files that are written whole or not at all.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use tempfile::NamedTempFile;
+
+/// Files that are being written, under the names they have until they are complete.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    // A list of paths is whole even if the thread that held it panicked.
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Writes a file whole or not at all: what was there stays until the new content is complete.
+///
+/// The content goes to a new file in the same folder, which then takes the name. A symbolic link
+/// stays one, and what it leads to is replaced; a file that may not be written is not replaced
+/// either. Devices and pipes cannot be replaced: they are written to.
+///
+/// # Errors
+/// If the file cannot be created, written or replaced, or `write` fails. Then nothing is left
+/// behind.
+pub fn write_whole(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let target = match fs::metadata(path) {
+        Ok(old) if old.is_file() => {
+            OpenOptions::new().write(true).open(path)?;
+            path.canonicalize()?
+        }
+        Ok(_) => return fill(&OpenOptions::new().write(true).open(path)?, write),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => path.to_owned(),
+        Err(error) => return Err(error),
+    };
+    let file = create_beside(&target)?;
+    let written = fill(file.as_file(), write)
+        .and_then(|()| inherit_permissions(&target, file.as_file()))
+        .and_then(|()| file.as_file().sync_all());
+    let mut unfinished = unfinished();
+    unfinished.retain(|path| path != file.path());
+    // A file that is not kept removes itself here, before anybody else can see the list.
+    written.and_then(|()| match file.persist(&target) {
+        Ok(_) => Ok(()),
+        Err(error) => Err(error.error),
+    })
+}
+
+/// Removes what writing has left so far, and ends the program: for whoever handles an interrupt.
+pub fn abandon(exit_code: i32) -> ! {
+    let unfinished = unfinished();
+    for path in unfinished.iter() {
+        // There is nobody left to tell of a failure.
+        let _ = fs::remove_file(path);
+    }
+    // The list stays locked, so that no other thread starts or completes a file meanwhile.
+    std::process::exit(exit_code)
+}
+
+fn create_beside(target: &Path) -> io::Result<NamedTempFile> {
+    let folder = target.parent().filter(|path| !path.as_os_str().is_empty());
+    let mut unfinished = unfinished();
+    let file = tempfile::Builder::new()
+        .prefix(".gridel-")
+        // Created as any new file, and not for its owner alone as other temporary files.
+        .make_in(folder.unwrap_or(Path::new(".")), |path| {
+            OpenOptions::new().write(true).create_new(true).open(path)
+        })?;
+    unfinished.push(file.path().to_owned());
+    Ok(file)
+}
+
+fn fill(file: &File, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut buffered = BufWriter::new(file);
+    write(&mut buffered)?;
+    buffered.flush()
+}
+
+fn inherit_permissions(target: &Path, file: &File) -> io::Result<()> {
+    match fs::metadata(target) {
+        Ok(old) => file.set_permissions(old.permissions()),
+        Err(_) => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap();
+        let mut names: Vec<_> = entries
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_failed_write_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out");
+        write_whole(&path, |out| out.write_all(b"old")).unwrap();
+        let failed = write_whole(&path, |out| {
+            out.write_all(b"new")?;
+            Err(io::Error::other("no more"))
+        });
+        assert_eq!(failed.unwrap_err().to_string(), "no more");
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(names(folder.path()), ["out"]);
+        assert!(
+            unfinished()
+                .iter()
+                .all(|path| !path.starts_with(folder.path()))
+        );
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_stay_links_and_permissions_stay() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let (target, link) = (folder.path().join("target"), folder.path().join("link"));
+        fs::write(&target, "old").unwrap();
+        fs::set_permissions(&target, PermissionsExt::from_mode(0o640)).unwrap();
+        symlink(&target, &link).unwrap();
+        write_whole(&link, |out| out.write_all(b"new")).unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read(&target).unwrap(), b"new");
+        let mode = fs::metadata(&target).unwrap().permissions().mode();
+        assert_eq!(mode & 0o777, 0o640);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_device_is_an_error() {
+        let written = write_whole(Path::new("/dev/full"), |out| out.write_all(b"x"));
+        assert_eq!(written.unwrap_err().kind(), io::ErrorKind::StorageFull);
+    }
+}

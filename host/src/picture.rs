@@ -1,0 +1,157 @@
+//! Picture files: from linear pixels to PNG, PPM or the raw 16-bit pixels of small displays.
+
+use crate::render::Picture;
+use gridel_core::render::Pixel;
+use gridel_core::{Rgb565, Rgb888};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// How a picture is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureFormat {
+    /// PNG, 8 bits a channel, sRGB.
+    Png,
+    /// The binary portable pixmap `P6`, 8 bits a channel, sRGB.
+    Ppm,
+    /// Two bytes a pixel, little-endian, without a header: 5 bits of red (the uppermost), 6 of
+    /// green, 5 of blue, sRGB.
+    Rgb565,
+}
+
+impl PictureFormat {
+    /// The format that a file's extension names: `png`, `ppm` or `rgb565`.
+    pub fn of(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+        match extension.as_str() {
+            "png" => Some(Self::Png),
+            "ppm" => Some(Self::Ppm),
+            "rgb565" => Some(Self::Rgb565),
+            _ => None,
+        }
+    }
+
+    /// Writes a picture. Dithering goes by a pixel's place in the whole picture, so rows that are
+    /// rendered on their own match.
+    ///
+    /// # Errors
+    /// If `out` has one.
+    pub fn write(self, out: &mut dyn Write, picture: &Picture, dither: bool) -> io::Result<()> {
+        let size = [picture.width.into(), picture.rows.len() as u32];
+        match self {
+            Self::Png => {
+                let pixels: Vec<Rgb888> = encoded(picture, dither);
+                write_png(out, size, bytemuck::cast_slice(&pixels), None)
+            }
+            Self::Ppm => {
+                let pixels: Vec<Rgb888> = encoded(picture, dither);
+                write!(out, "P6\n{} {}\n255\n", size[0], size[1])?;
+                out.write_all(bytemuck::cast_slice(&pixels))
+            }
+            Self::Rgb565 => {
+                let pixels: Vec<Rgb565> = encoded(picture, dither);
+                let bytes: Vec<u8> = pixels.iter().flat_map(|p| p.0.to_le_bytes()).collect();
+                out.write_all(&bytes)
+            }
+        }
+    }
+}
+
+fn encoded<P: Pixel>(picture: &Picture, dither: bool) -> Vec<P> {
+    let rows = picture.pixels.chunks(picture.width.into());
+    let places = picture
+        .rows
+        .clone()
+        .zip(rows)
+        .flat_map(|(y, row)| (0..).zip(row).map(move |(x, &linear)| ([x, y], linear)));
+    places
+        .map(|(place, linear)| P::encode(linear, dither.then_some(place)))
+        .collect()
+}
+
+/// Writes sRGB pixels, three bytes each, as PNG; with a sentence on what they show if there is one.
+pub(crate) fn write_png(
+    out: &mut dyn Write,
+    [width, height]: [u32; 2],
+    pixels: &[u8],
+    description: Option<String>,
+) -> io::Result<()> {
+    let mut encoder = png::Encoder::new(out, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
+    let write = || {
+        if let Some(text) = description {
+            encoder.add_text_chunk(String::from("Description"), text)?;
+        }
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(pixels)?;
+        writer.finish()
+    };
+    write().map_err(|error| match error {
+        // As it is, so that a full disk is still known as one.
+        png::EncodingError::IoError(error) => error,
+        error => error.into(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ramp(rows: std::ops::Range<u16>) -> Picture {
+        let pixels = rows
+            .clone()
+            .flat_map(|y| (0..16).map(move |x| [4096 * x, 7000 + 100 * y, 60_000 - 3000 * x]))
+            .collect();
+        Picture {
+            width: 16,
+            rows,
+            pixels,
+            counters: None,
+            work: Vec::new(),
+        }
+    }
+
+    fn written(format: PictureFormat, picture: &Picture, dither: bool) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        format.write(&mut bytes, picture, dither).unwrap();
+        bytes
+    }
+
+    #[test]
+    fn png_and_ppm_hold_the_same_pixels() {
+        let picture = ramp(0..5);
+        let ppm = written(PictureFormat::Ppm, &picture, false);
+        let pixels = ppm.strip_prefix(b"P6\n16 5\n255\n").unwrap();
+        let png = written(PictureFormat::Png, &picture, false);
+        let mut reader = png::Decoder::new(io::Cursor::new(png)).read_info().unwrap();
+        assert!(reader.info().srgb.is_some());
+        let mut decoded = vec![0; 16 * 5 * 3];
+        reader.next_frame(&mut decoded).unwrap();
+        assert_eq!(decoded, pixels);
+    }
+
+    #[test]
+    fn dithered_rows_match_the_whole() {
+        for format in [PictureFormat::Ppm, PictureFormat::Rgb565] {
+            let whole = written(format, &ramp(0..9), true);
+            let part = written(format, &ramp(3..6), true);
+            let row = match format {
+                PictureFormat::Rgb565 => 32,
+                _ => 48,
+            };
+            let header = whole.len() - 9 * row;
+            assert_eq!(part[header..], whole[header + 3 * row..][..3 * row]);
+            assert_ne!(whole, written(format, &ramp(0..9), false));
+        }
+    }
+
+    #[test]
+    fn pixels_of_displays_are_little_endian() {
+        let mut picture = ramp(0..1);
+        picture.pixels = vec![[65535, 0, 0]; 16];
+        assert_eq!(
+            written(PictureFormat::Rgb565, &picture, false),
+            [0x00, 0xf8].repeat(16)
+        );
+    }
+}

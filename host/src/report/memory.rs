@@ -1,0 +1,187 @@
+//! The memory map of a blob, and what must be writable beside it.
+
+use gridel_core::accel::Entry;
+use gridel_core::blob::SectionKind;
+use gridel_core::blob::record::{Header, SectionEntry};
+use gridel_core::render::work_depth;
+use gridel_core::{Effects, Fixed, Format, Number, Scene, Workspace};
+use serde::Serialize;
+
+/// What the bytes of a blob hold; the parts add up to the blob.
+#[derive(Clone, Debug, Serialize)]
+pub struct MemoryMap {
+    /// Length of the blob.
+    pub bytes: usize,
+    /// `None` without primitives.
+    pub bytes_per_primitive: Option<f64>,
+    pub parts: Vec<Part>,
+}
+
+/// Header, section table, a section, or all padding.
+#[derive(Clone, Debug, Serialize)]
+pub struct Part {
+    pub kind: &'static str,
+    /// From the blob's first byte; `None` for padding, which lies between all others.
+    pub offset: Option<usize>,
+    /// Number of records.
+    pub count: usize,
+    /// Bytes of a record.
+    pub stride: usize,
+    pub bytes: usize,
+    /// Of the blob, 0 to 1.
+    pub share: f64,
+    /// `None` without primitives.
+    pub bytes_per_primitive: Option<f64>,
+}
+
+impl MemoryMap {
+    /// The map of a blob that `scene` is the checked view of.
+    pub fn of(scene: &Scene<'_>, blob: &[u8]) -> Self {
+        let header = scene.header();
+        let primitives = f64::from(header.primitives);
+        let each = |bytes: usize| (primitives > 0.0).then(|| bytes as f64 / primitives);
+        let part = |kind, offset, count, stride| Part {
+            kind,
+            offset,
+            count,
+            stride,
+            bytes: count * stride,
+            share: (count * stride) as f64 / blob.len() as f64,
+            bytes_per_primitive: each(count * stride),
+        };
+        let table_bytes = usize::from(header.section_count) * size_of::<SectionEntry>();
+        let table = &blob[size_of::<Header>()..][..table_bytes];
+        let entries: &[SectionEntry] = bytemuck::cast_slice(table);
+        let mut parts = vec![
+            part("header", Some(0), 1, size_of::<Header>()),
+            part(
+                "section table",
+                Some(size_of::<Header>()),
+                entries.len(),
+                size_of::<SectionEntry>(),
+            ),
+        ];
+        parts.extend(entries.iter().map(|entry| {
+            part(
+                SectionKind::ALL[usize::from(entry.kind) - 1].name(),
+                Some(entry.offset as usize),
+                entry.count as usize,
+                entry.stride.into(),
+            )
+        }));
+        let used: usize = parts.iter().map(|part| part.bytes).sum();
+        parts.push(part("padding", None, blob.len() - used, 1));
+        Self {
+            bytes: blob.len(),
+            bytes_per_primitive: each(blob.len()),
+            parts,
+        }
+    }
+}
+
+/// What the caller must provide to work in one number format, in bytes, beside the call stack.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct WorkingMemory {
+    /// Name of the number format.
+    pub format: &'static str,
+    /// Bits of a machine word: 32 as on boards, or what this machine has.
+    pub word_bits: usize,
+    /// For rays of one's own: a [`Stack`](gridel_core::Stack) as deep as the blob needs.
+    pub stack: usize,
+    /// For pictures: a [`Workspace`] for the blob's stack and the scene's ray depth, the stack
+    /// included.
+    pub workspace: usize,
+}
+
+/// The working memory of every format, on machines of 32 bits and on this one.
+///
+/// For 32 bits an `f64` is taken to be aligned to 8 bytes, as on Arm and RISC-V.
+pub fn working_memory(scene: &Scene<'_>) -> Vec<WorkingMemory> {
+    let bits = [4, size_of::<usize>()];
+    let words = if bits[0] == bits[1] {
+        &bits[..1]
+    } else {
+        &bits[..]
+    };
+    let secondary = Effects::MIRROR.with(Effects::GLASS);
+    let depth = scene.view().depth;
+    // Where no ray causes another none has to wait.
+    let places = if scene.effects().0 & secondary.0 == 0 || depth == 0 {
+        0
+    } else {
+        work_depth(depth)
+    };
+    let depth = scene.stack_depth();
+    words
+        .iter()
+        .flat_map(|&word| {
+            Format::ALL.map(|format| {
+                let (stack, workspace) = match format {
+                    Format::Fixed => bytes::<Fixed>(word, depth, places),
+                    Format::F32 => bytes::<f32>(word, depth, places),
+                    Format::F64 => bytes::<f64>(word, depth, places),
+                };
+                WorkingMemory {
+                    format: format.name(),
+                    word_bits: 8 * word,
+                    stack,
+                    workspace,
+                }
+            })
+        })
+        .collect()
+}
+
+/// Sizes of a stack and of a workspace where a machine word has `word` bytes: both are arrays with
+/// a length, a word, behind each.
+fn bytes<N: Number>(word: usize, depth: usize, places: usize) -> (usize, usize) {
+    let array = |count: usize, record: usize, alignment: usize| {
+        (count * record + word).next_multiple_of(alignment.max(word))
+    };
+    let place = size_of::<Workspace<N, 0, 2>>() - size_of::<Workspace<N, 0, 1>>();
+    let stack = array(depth, size_of::<Entry>(), align_of::<Entry>());
+    let work = array(places, place, align_of::<N>());
+    let workspace = (stack + work).next_multiple_of(align_of::<N>().max(word));
+    (stack, workspace)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gridel_core::Stack;
+
+    /// For the machine of the test the compiler knows the sizes.
+    #[test]
+    fn sizes_are_the_compilers() {
+        let word = size_of::<usize>();
+        fn workspaces<N: Number>(word: usize) {
+            assert_eq!(
+                bytes::<N>(word, 0, 0),
+                (size_of::<Stack<0>>(), size_of::<Workspace<N, 0, 0>>())
+            );
+            assert_eq!(
+                bytes::<N>(word, 7, 6),
+                (size_of::<Stack<7>>(), size_of::<Workspace<N, 7, 6>>())
+            );
+            assert_eq!(
+                bytes::<N>(word, 12, 1),
+                (size_of::<Stack<12>>(), size_of::<Workspace<N, 12, 1>>())
+            );
+            assert_eq!(
+                bytes::<N>(word, 48, 17),
+                (size_of::<Stack<48>>(), size_of::<Workspace<N, 48, 17>>())
+            );
+        }
+        workspaces::<Fixed>(word);
+        workspaces::<f32>(word);
+        workspaces::<f64>(word);
+    }
+
+    /// The figures that the core's documentation states.
+    #[test]
+    fn boards_need_12_bytes_an_entry_and_40_a_ray() {
+        assert_eq!(bytes::<f32>(4, 10, 6), (124, 124 + 244));
+        assert_eq!(bytes::<Fixed>(4, 10, 6), (124, 124 + 244));
+        assert_eq!(bytes::<f64>(4, 10, 6), (124, 128 + 488));
+    }
+}

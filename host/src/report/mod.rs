@@ -1,0 +1,9 @@
+//! Where bytes and work go, as data and as tables and pictures for people.
+
+mod heat_map;
+mod memory;
+mod table;
+
+pub use heat_map::HeatMap;
+pub use memory::{MemoryMap, Part, WorkingMemory, working_memory};
+pub use table::{Align, Table, counted, grouped, power_of_two};

@@ -1,0 +1,123 @@
+//! Plain text tables.
+
+use std::fmt;
+
+/// On which side a column's cells line up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Align {
+    Left,
+    Right,
+}
+
+/// A table whose columns are as wide as their widest cells, with two spaces between them.
+#[derive(Clone, Debug)]
+pub struct Table {
+    columns: Vec<Align>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table with a line of titles.
+    pub fn new<const N: usize>(columns: [(&str, Align); N]) -> Self {
+        let mut table = Self::untitled(columns.map(|(_, align)| align));
+        table.row(columns.map(|(title, _)| title.to_owned()));
+        table
+    }
+
+    /// A table of nothing but rows.
+    pub fn untitled<const N: usize>(columns: [Align; N]) -> Self {
+        Self {
+            columns: columns.to_vec(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// Adds a row; cells beyond the columns line up on the left.
+    pub fn row<const N: usize>(&mut self, cells: [String; N]) {
+        self.rows.push(cells.to_vec());
+    }
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut widths = vec![0; self.columns.len()];
+        for row in &self.rows {
+            for (width, cell) in widths.iter_mut().zip(row) {
+                *width = cell.chars().count().max(*width);
+            }
+        }
+        for row in &self.rows {
+            let mut line = String::new();
+            for ((cell, align), &width) in row.iter().zip(&self.columns).zip(&widths) {
+                match align {
+                    Align::Left => line.push_str(&format!("{cell:<width$}  ")),
+                    Align::Right => line.push_str(&format!("{cell:>width$}  ")),
+                }
+            }
+            writeln!(f, "{}", line.trim_end())?;
+        }
+        Ok(())
+    }
+}
+
+/// A whole number, not negative, with a comma before every third digit from its end.
+pub fn grouped(number: impl ToString) -> String {
+    let digits = number.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A number of things: `1 thread`, `2 threads`.
+pub fn counted(number: usize, thing: &str) -> String {
+    let plural = if number == 1 { "" } else { "s" };
+    format!("{} {thing}{plural}", grouped(number))
+}
+
+/// A power of two, so that it can be recognised, and its size: `2^-20 = 9.537e-7`.
+pub fn power_of_two(power: f64) -> String {
+    format!("2^{} = {power:.3e}", power.log2().round())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_line_up() {
+        let mut table = Table::new([("what", Align::Left), ("bytes", Align::Right)]);
+        table.row(["header".to_owned(), "96".to_owned()]);
+        table.row(["a".to_owned(), "1,234".to_owned()]);
+        assert_eq!(
+            table.to_string(),
+            "what    bytes\nheader     96\na       1,234\n"
+        );
+    }
+
+    #[test]
+    fn digits_are_grouped() {
+        let numbers = [0_u64, 999, 1000, 123_456, 1_234_567];
+        assert_eq!(
+            numbers.map(grouped),
+            ["0", "999", "1,000", "123,456", "1,234,567"]
+        );
+    }
+
+    #[test]
+    fn one_thing_is_no_plural() {
+        assert_eq!(counted(1, "ray"), "1 ray");
+        assert_eq!(counted(0, "ray"), "0 rays");
+        assert_eq!(counted(4096, "ray"), "4,096 rays");
+    }
+
+    #[test]
+    fn powers_of_two_are_recognised() {
+        assert_eq!(power_of_two(1.0), "2^0 = 1.000e0");
+        assert_eq!(power_of_two(f64::powi(2.0, -20)), "2^-20 = 9.537e-7");
+    }
+}

@@ -1,0 +1,212 @@
+//! `gridel build`.
+
+use crate::program::{Folder, fixture};
+use gridel_core::Structure;
+use gridel_host::blob::Blob;
+use serde_json::json;
+
+#[test]
+fn the_report_is_that_of_the_blob() {
+    let folder = Folder::new();
+    folder.write("quick.toml", &fixture("quick"));
+    let report = folder.json(&["build", "quick.toml", "-o", "quick.gridel"]);
+    let blob = Blob::new(&folder.read("quick.gridel"));
+    let scene = blob.scene().unwrap();
+    assert_eq!(report["blob"], "quick.gridel");
+    assert_eq!(report["bytes"], blob.bytes().len());
+    assert_eq!(report["primitives"], scene.header().primitives);
+    assert_eq!(report["objects"], 10);
+    assert_eq!(report["structures"], json!(["list", "flagged"]));
+    assert_eq!(report["stack_depth"], scene.stack_depth());
+    assert_eq!(report["collapsed"], json!([]));
+    let effects = report["effects"].as_array().unwrap();
+    let glass = effects.iter().find(|e| e["effect"] == "glass").unwrap();
+    assert_eq!(glass["by"], json!(["material glass"]));
+
+    let text = folder.done(&["build", "quick.toml", "-o", "again.gridel"]);
+    assert!(text.contains("glass, for material glass"), "{text}");
+    assert_eq!(folder.read("again.gridel"), blob.bytes());
+    assert_eq!(
+        folder.names(),
+        ["again.gridel", "quick.gridel", "quick.toml"]
+    );
+}
+
+#[test]
+fn structures_are_those_asked_for() {
+    let folder = Folder::new();
+    folder.write("quick.toml", &fixture("quick"));
+    for (asked, held) in [
+        (&["--accel", "list"][..], &[Structure::List][..]),
+        (&["--accel", "bvh"], &[Structure::List, Structure::Bvh]),
+        (&["--accel", "bvh", "--accel", "flagged"], &Structure::ALL),
+    ] {
+        folder.done(&[&["build", "quick.toml", "-o", "b"], asked].concat());
+        let blob = Blob::new(&folder.read("b"));
+        let scene = blob.scene().unwrap();
+        for structure in Structure::ALL {
+            assert_eq!(scene.holds(structure), held.contains(&structure));
+        }
+    }
+    for unknown in ["octree", "BVH", ""] {
+        folder.fails(
+            2,
+            &["build", "quick.toml", "-o", "new", "--accel", unknown],
+            &["list, bvh, flagged"],
+        );
+    }
+}
+
+#[test]
+fn a_budget_refuses_before_writing() {
+    let folder = Folder::with_quick();
+    let most = folder.read("quick.gridel").len();
+    let build = |bytes: &str| {
+        let accels = ["--accel", "bvh", "--accel", "flagged", "--max-bytes"];
+        let mut arguments = vec!["build", "quick.toml", "-o", "quick.gridel"];
+        arguments.extend(accels);
+        arguments.push(bytes);
+        arguments.into_iter().map(String::from).collect::<Vec<_>>()
+    };
+    let run = |bytes: &str, check: &dyn Fn(&[&str])| {
+        let arguments = build(bytes);
+        check(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+    };
+    let advice = ["--max-bytes", "leaving out `--accel bvh` saves"];
+    run("1K", &|arguments| folder.fails(3, arguments, &advice));
+    run(&(most - 1).to_string(), &|arguments| {
+        folder.fails(3, arguments, &advice);
+    });
+    run(&most.to_string(), &|arguments| {
+        folder.done(arguments);
+    });
+    run("1M", &|arguments| {
+        folder.done(arguments);
+    });
+    run("some", &|arguments| folder.fails(2, arguments, &["64K"]));
+}
+
+#[test]
+fn the_lattice_is_that_asked_for_and_its_losses_are_named() {
+    let folder = Folder::new();
+    folder.write(
+        "dust.toml",
+        br#"
+        [[object]]
+        name = "wall"
+        kind = "box"
+        min = [0, 0, 0]
+        max = [1000, 1000, 1000]
+        [[object]]
+        name = "speck"
+        kind = "sphere"
+        center = [5, 5, 5]
+        radius = 0.1
+        "#,
+    );
+    let build = ["build", "dust.toml", "-o", "dust.gridel"];
+    let fine = folder.json(&build);
+    assert_eq!(fine["collapsed"], json!([]));
+    assert_eq!(fine["lattice_bits"], 24);
+    assert_eq!(fine["supplied"].as_array().unwrap().len(), 2);
+
+    let coarse = [&build[..], &["--lattice-bits", "10"]].concat();
+    let report = folder.json(&coarse);
+    assert_eq!(report["collapsed"], json!(["speck (dust.toml:7)"]));
+    assert!(report["step"].as_f64() > fine["step"].as_f64());
+    let text = folder.done(&coarse);
+    assert!(text.contains("collapsed   speck"), "{text}");
+    let picture = ["render", "dust.toml", "-o", "dust.png"];
+    let run = folder.run(&[&picture[..], &["--lattice-bits", "10"]].concat());
+    assert!(run.stderr.contains("warning: dust.toml"), "{}", run.stderr);
+
+    for bits in ["9", "25", "-1", "x"] {
+        folder.fails(2, &[&build[..], &["--lattice-bits", bits]].concat(), &[]);
+    }
+}
+
+#[test]
+fn the_input_is_never_overwritten() {
+    let folder = Folder::with_quick();
+    std::fs::create_dir(folder.path("sub")).unwrap();
+    for output in ["quick.toml", "./quick.toml", "sub/../quick.toml"] {
+        folder.fails(
+            2,
+            &["build", "quick.toml", "-o", output],
+            &["is the input", "give the output another name"],
+        );
+    }
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(folder.path("quick.toml"), folder.path("link")).unwrap();
+        folder.fails(2, &["build", "quick.toml", "-o", "link"], &["is the input"]);
+    }
+}
+
+#[test]
+fn what_is_no_scene_is_told() {
+    let folder = Folder::with_quick();
+    let fails = |scene: &str, words: &[&str]| {
+        folder.fails(1, &["build", scene, "-o", "new.gridel"], words);
+    };
+    fails("quick.gridel", &["quick.gridel is a blob already"]);
+    // The content counts, and not the name.
+    folder.write("blob.toml", &folder.read("quick.gridel"));
+    fails("blob.toml", &["is a blob already"]);
+    fails("absent.toml", &["absent.toml cannot be read"]);
+    fails(".", &["not a file"]);
+    folder.write("scene.xyz", b"");
+    fails("scene.xyz", &["xyz", ".toml, .obj"]);
+    folder.write(
+        "wrong.toml",
+        b"[camera]\neye = [0, 0, 5]\ntraget = [0, 0, 0]\n",
+    );
+    fails("wrong.toml", &["wrong.toml:3", "target"]);
+    folder.write("bent.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+    fails("bent.obj", &["bent.obj:4"]);
+}
+
+#[test]
+fn molecules_have_a_style_a_model_and_alternates() {
+    let folder = Folder::new();
+    folder.done(&["sample", "c60"]);
+    let build = ["build", "c60.pdb", "-o", "c60.gridel"];
+    let primitives = |options: &[&str]| {
+        let report = folder.json(&[&build[..], options].concat());
+        report["primitives"].as_u64().unwrap()
+    };
+    assert_eq!(primitives(&[]), 60);
+    assert_eq!(primitives(&["--style", "space-filling"]), 60);
+    assert!(primitives(&["--style", "ball-and-stick"]) >= 60 + 90);
+    folder.fails(
+        1,
+        &[&build[..], &["--model", "2"]].concat(),
+        &["c60.pdb", "model"],
+    );
+    folder.fails(2, &[&build[..], &["--model", "0"]].concat(), &[]);
+    folder.fails(
+        2,
+        &[&build[..], &["--style", "cartoon"]].concat(),
+        &["space-filling"],
+    );
+    folder.fails(2, &[&build[..], &["--altloc", "AB"]].concat(), &[]);
+}
+
+#[test]
+fn unwritable_places_are_errors_that_leave_nothing() {
+    let folder = Folder::with_quick();
+    let fails = |output: &str, words: &[&str]| {
+        folder.fails(1, &["build", "quick.toml", "-o", output], words);
+    };
+    fails(
+        "absent/quick.gridel",
+        &["cannot be written", "create the folder"],
+    );
+    fails(".", &["cannot be written"]);
+    #[cfg(target_os = "linux")]
+    {
+        fails("/dev/full", &["/dev/full cannot be written", "make room"]);
+        std::os::unix::fs::symlink("/dev/full", folder.path("full")).unwrap();
+        fails("full", &["full cannot be written"]);
+    }
+}

@@ -1,0 +1,97 @@
+//! How the program ends: exit codes, closed pipes, full devices, interrupts.
+
+use crate::program::Folder;
+use std::process::Stdio;
+
+const VERBS: [&str; 5] = ["build", "inspect", "render", "trace", "sample"];
+
+#[test]
+fn help_tells_the_exit_codes() {
+    let folder = Folder::new();
+    let help = folder.done(&["--help"]);
+    for verb in VERBS {
+        assert!(help.contains(&format!("\n  {verb}")), "{help}");
+        let help = folder.done(&[verb, "--help"]);
+        assert!(help.contains("3  refused"), "{help}");
+    }
+    assert!(folder.done(&["--version"]).starts_with("gridel "));
+}
+
+#[test]
+fn a_wrong_command_line_is_2() {
+    let folder = Folder::new();
+    folder.fails(2, &[], &["Usage: gridel"]);
+    folder.fails(2, &["bild"], &["build"]);
+    for verb in &VERBS[..4] {
+        folder.fails(2, &[verb], &["required"]);
+        folder.fails(2, &[verb, "--nonsense"], &["--nonsense"]);
+    }
+}
+
+/// A reader that has seen enough is no error, and nothing is said about it.
+#[test]
+fn a_closed_pipe_is_quiet() {
+    let folder = Folder::with_quick();
+    for arguments in [
+        &["inspect", "quick.gridel"][..],
+        &["inspect", "quick.gridel", "--json"],
+        &["build", "quick.toml", "-o", "a.gridel"],
+        &["sample"],
+    ] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = folder.command(arguments).stdout(writer).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}");
+        assert!(output.stderr.is_empty(), "{output:?}");
+    }
+    assert!(folder.path("a.gridel").is_file());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_report_that_cannot_be_written_is_an_error() {
+    let folder = Folder::with_quick();
+    let full = std::fs::OpenOptions::new()
+        .write(true)
+        .open("/dev/full")
+        .unwrap();
+    let mut command = folder.command(&["build", "quick.toml", "-o", "a.gridel"]);
+    let output = command.stdout(full).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(!output.stderr.is_empty());
+    assert!(folder.path("a.gridel").is_file());
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_the_old_file_and_nothing_else() {
+    let folder = Folder::with_quick();
+    folder.write("a.png", b"old");
+    let names = folder.names();
+    // More than a minute's work.
+    let slow = [
+        "render",
+        "quick.toml",
+        "-o",
+        "a.png",
+        "--size",
+        "8000x8000",
+        "--samples",
+        "64",
+    ];
+    let mut command = folder.command(&slow);
+    let mut child = command
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(std::time::Duration::from_secs(1));
+    let kill = format!("kill -INT {}", child.id());
+    let sent = std::process::Command::new("sh")
+        .args(["-c", &kill])
+        .status();
+    assert!(sent.unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(folder.read("a.png"), b"old");
+    assert_eq!(folder.names(), names);
+}

@@ -1,0 +1,152 @@
+//! `gridel inspect`.
+
+use crate::program::{Folder, fixture};
+use gridel_core::{Fixed, Stack, Workspace};
+use serde_json::{Value, json};
+
+#[test]
+fn the_memory_map_adds_up_to_the_file() {
+    let folder = Folder::with_quick();
+    let bytes = folder.read("quick.gridel").len() as u64;
+    let inspection = folder.json(&["inspect", "quick.gridel"]);
+    let map = &inspection["memory_map"];
+    assert_eq!(map["bytes"], bytes);
+    let parts = map["parts"].as_array().unwrap();
+    let sum: u64 = parts.iter().map(|p| p["bytes"].as_u64().unwrap()).sum();
+    assert_eq!(sum, bytes);
+    let share: f64 = parts.iter().map(|p| p["share"].as_f64().unwrap()).sum();
+    assert!((share - 1.0).abs() < 1e-9);
+    // Parts lie behind each other, with less than an alignment in between.
+    let mut end = 0;
+    for part in parts.iter().filter(|part| part["offset"].is_u64()) {
+        let offset = part["offset"].as_u64().unwrap();
+        assert!((end..end + 16).contains(&offset), "{part}");
+        assert_eq!(
+            part["bytes"].as_u64(),
+            Some(part["count"].as_u64().unwrap() * part["stride"].as_u64().unwrap())
+        );
+        end = offset + part["bytes"].as_u64().unwrap();
+    }
+    assert_eq!(end, bytes);
+    let kinds: Vec<_> = parts.iter().map(|p| p["kind"].as_str().unwrap()).collect();
+    for kind in [
+        "header",
+        "section table",
+        "spheres",
+        "flagged-pairs",
+        "padding",
+    ] {
+        assert!(kinds.contains(&kind), "{kinds:?}");
+    }
+
+    let text = folder.done(&["inspect", "quick.gridel"]);
+    let total = text.lines().find(|line| line.starts_with("total")).unwrap();
+    assert!(total.contains("100.0 %"), "{total}");
+}
+
+#[test]
+fn limits_and_contents_are_in_scene_units() {
+    let folder = Folder::with_quick();
+    let inspection = folder.json(&["inspect", "quick.gridel"]);
+    let limits = &inspection["limits"];
+    assert_eq!(
+        limits["bounds"],
+        json!([[-6.0, -0.25, -5.0], [6.0, 3.5, 5.0]])
+    );
+    assert_eq!(
+        limits["step"].as_f64(),
+        limits["unit"].as_f64().map(|u| u / 256.0)
+    );
+    let contents = &inspection["contents"];
+    assert_eq!(contents["structures"], json!(["list", "bvh", "flagged"]));
+    assert_eq!(
+        contents["kinds"],
+        json!({"triangle": 9, "sphere": 2, "box": 2, "disc": 1, "cone": 3})
+    );
+    assert_eq!(contents["primitives"], 17);
+    assert_eq!(contents["collapsed"], 0);
+}
+
+#[test]
+fn a_scene_file_is_inspected_as_the_blob_it_would_be() {
+    let folder = Folder::new();
+    folder.write("quick.toml", &fixture("quick"));
+    folder.done(&["build", "quick.toml", "-o", "quick.gridel"]);
+    let blob = folder.json(&["inspect", "quick.gridel"]);
+    let scene = folder.json(&["inspect", "quick.toml"]);
+    for key in ["memory_map", "limits", "contents", "working_memory"] {
+        assert_eq!(blob[key], scene[key], "{key}");
+    }
+    let by = |inspection: &Value, effect: &str| {
+        let effects = inspection["effects"].as_array().unwrap().clone();
+        let found = effects.into_iter().find(|e| e["effect"] == effect);
+        found.unwrap()["by"].clone()
+    };
+    assert_eq!(by(&scene, "mirror"), json!(["material mirror"]));
+    assert_eq!(by(&blob, "mirror"), json!(["material 2"]));
+    for inspection in [&scene, &blob] {
+        assert_eq!(by(inspection, "shadow"), json!(["light 0", "light 1"]));
+    }
+    let coarse = folder.json(&["inspect", "quick.toml", "--lattice-bits", "16"]);
+    assert_eq!(coarse["limits"]["storage_bits"], 16);
+    folder.fails(
+        2,
+        &["inspect", "quick.gridel", "--lattice-bits", "16"],
+        &["--lattice-bits is for scene files"],
+    );
+}
+
+#[test]
+fn working_memory_is_what_the_compiler_says() {
+    let folder = Folder::with_quick();
+    let inspection = folder.json(&["inspect", "quick.gridel"]);
+    // The figures below are for this stack, and for the scene's ray depth of 6.
+    assert_eq!(inspection["limits"]["stack_depth"], 5);
+    let needs = inspection["working_memory"].as_array().unwrap();
+    let here = usize::BITS;
+    let expected = [
+        ("fixed", size_of::<Workspace<Fixed, 5, 7>>()),
+        ("f32", size_of::<Workspace<f32, 5, 7>>()),
+        ("f64", size_of::<Workspace<f64, 5, 7>>()),
+    ];
+    for (format, workspace) in expected {
+        let found = needs
+            .iter()
+            .find(|n| n["word_bits"] == here && n["format"] == format);
+        let found = found.unwrap();
+        assert_eq!(found["stack"], size_of::<Stack<5>>());
+        assert_eq!(found["workspace"], workspace);
+    }
+    let board = needs
+        .iter()
+        .find(|n| n["word_bits"] == 32 && n["format"] == "f32");
+    assert_eq!(board.unwrap()["workspace"], 12 * 5 + 4 + 40 * 7 + 4);
+}
+
+#[test]
+fn broken_blobs_are_told() {
+    let folder = Folder::with_quick();
+    let blob = folder.read("quick.gridel");
+    let fails = |content: &[u8], words: &[&str]| {
+        folder.write("broken.gridel", content);
+        folder.fails(1, &["inspect", "broken.gridel"], words);
+    };
+    let mut flipped = blob.clone();
+    flipped[900] ^= 1;
+    fails(&flipped, &["broken.gridel", "checksum"]);
+    for length in [0, 5, 8, 95, 500, blob.len() - 1] {
+        fails(&blob[..length], &["broken.gridel"]);
+    }
+    fails(&[&blob[..], b"x"].concat(), &["something added"]);
+    fails(&fixture("quick"), &["not a Gridel blob"]);
+    // As a transfer in text mode leaves it.
+    let text: Vec<u8> = String::from_utf8_lossy(&blob).replace('\n', "\r\n").into();
+    fails(&text, &["not a Gridel blob"]);
+    folder.write("broken.toml", &blob[..500]);
+    folder.fails(1, &["inspect", "broken.toml"], &["was it cut off"]);
+    folder.fails(
+        1,
+        &["inspect", "absent.gridel"],
+        &["absent.gridel cannot be read"],
+    );
+}

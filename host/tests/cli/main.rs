@@ -1,0 +1,10 @@
+//! The program as its users see it: verbs, files, exit codes.
+
+mod program;
+
+mod build;
+mod ending;
+mod inspect;
+mod render;
+mod sample;
+mod trace;

@@ -1,0 +1,203 @@
+//! `gridel render`.
+
+use crate::program::{Folder, fixture};
+use serde_json::json;
+
+const SMALL: [&str; 2] = ["--size", "48x36"];
+
+fn render(folder: &Folder, output: &str, options: &[&str]) -> Vec<u8> {
+    let verb = ["render", "quick.gridel", "-o", output];
+    folder.done(&[&verb[..], &SMALL, options].concat());
+    folder.read(output)
+}
+
+#[test]
+fn threads_and_structures_change_no_byte() {
+    let folder = Folder::with_quick();
+    for output in ["a.png", "a.ppm", "a.rgb565"] {
+        let expected = render(&folder, output, &["--threads", "1"]);
+        for options in [
+            &["--threads", "2"][..],
+            &["--threads", "5"],
+            &[],
+            &["--accel", "list"],
+            &["--accel", "bvh"],
+            &["--accel", "flagged"],
+            &["--stats"],
+        ] {
+            assert!(render(&folder, output, options) == expected, "{options:?}");
+        }
+    }
+}
+
+#[test]
+fn a_scene_file_renders_as_its_blob() {
+    let folder = Folder::with_quick();
+    let expected = render(&folder, "a.png", &[]);
+    let verb = ["render", "quick.toml", "-o", "b.png"];
+    for options in [&[][..], &["--accel", "list"], &["--accel", "bvh"]] {
+        folder.done(&[&verb[..], &SMALL, options].concat());
+        assert!(folder.read("b.png") == expected, "{options:?}");
+    }
+    folder.done(&[&verb[..], &SMALL, &["--lattice-bits", "10"]].concat());
+    assert!(folder.read("b.png") != expected);
+}
+
+#[test]
+fn number_formats_show_the_same_scene() {
+    let folder = Folder::with_quick();
+    let pictures =
+        ["fixed", "f32", "f64"].map(|format| render(&folder, "a.ppm", &["--format", format]));
+    for picture in &pictures[1..] {
+        let apart = picture
+            .iter()
+            .zip(&pictures[0])
+            .filter(|(a, b)| a.abs_diff(**b) > 8)
+            .count();
+        assert!(apart * 50 < picture.len(), "{apart} of {}", picture.len());
+    }
+}
+
+#[test]
+fn rows_are_those_of_the_whole_picture() {
+    let folder = Folder::with_quick();
+    let header = |rows: usize| format!("P6\n48 {rows}\n255\n").len();
+    for options in [&[][..], &["--dither", "--samples", "2"]] {
+        let whole = render(&folder, "whole.ppm", options);
+        let mut joined = whole[..header(36)].to_vec();
+        for (rows, count) in [("0..7", 7), ("7..8", 1), ("8..36", 28)] {
+            let part = render(&folder, "part.ppm", &[options, &["--rows", rows]].concat());
+            assert!(part.starts_with(format!("P6\n48 {count}\n").as_bytes()));
+            joined.extend(&part[header(count)..]);
+        }
+        assert!(joined == whole, "{options:?}");
+    }
+    let raw = render(&folder, "a.rgb565", &["--rows", "10..20"]);
+    assert_eq!(raw.len(), 48 * 10 * 2);
+}
+
+#[test]
+fn stats_count_every_ray() {
+    let folder = Folder::with_quick();
+    let verb = [
+        "render",
+        "quick.gridel",
+        "-o",
+        "a.png",
+        "--size",
+        "32x24",
+        "--samples",
+        "2",
+    ];
+    let report = folder.json(&[&verb[..], &["--stats", "--heat-map", "heat.png"]].concat());
+    let stats = &report["stats"];
+    assert_eq!(stats["primary"], 32 * 24 * 2);
+    let number = |key: &str| stats[key].as_u64().unwrap();
+    let kinds = ["primary", "shadow", "reflected", "refracted"].map(number);
+    assert!(kinds.iter().all(|&count| count > 0), "{kinds:?}");
+    assert_eq!(number("rays"), kinds.iter().sum::<u64>());
+    assert!(report["heat_map"]["maximum"].as_u64().unwrap() > 0);
+    assert!(folder.read("heat.png").starts_with(b"\x89PNG"));
+    let shallow = folder.json(&[&verb[..], &["--stats", "--depth", "0"]].concat());
+    assert_eq!(shallow["stats"]["reflected"], 0);
+    assert_eq!(shallow["stats"]["refracted"], 0);
+
+    let plain = folder.json(&verb);
+    assert!(plain.get("stats").is_none() && plain.get("heat_map").is_none());
+    assert_eq!(plain["samples"], 2);
+    assert_eq!(plain["rows"], json!([0, 24]));
+    let text = folder.done(&[&verb[..], &["--stats", "--heat-map", "heat.png"]].concat());
+    for word in ["a.png: 32 x 24", "heat.png: white is", "rays a second"] {
+        assert!(text.contains(word), "{text}");
+    }
+}
+
+/// What a scene does not call for, it does not pay for.
+#[test]
+fn a_plain_scene_casts_no_secondary_ray() {
+    let folder = Folder::new();
+    folder.write(
+        "plain.toml",
+        b"ambient = 1\n[render]\nshadows = false\n[[object]]\nkind = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n",
+    );
+    let report = folder.json(&["render", "plain.toml", "-o", "a.png", "--stats"]);
+    assert_eq!(report["stats"]["rays"], report["stats"]["primary"]);
+}
+
+#[test]
+fn wrong_numbers_are_usage_errors() {
+    let folder = Folder::with_quick();
+    let fails = |options: &[&str], words: &[&str]| {
+        let verb = ["render", "quick.gridel", "-o", "a.png"];
+        folder.fails(2, &[&verb[..], options].concat(), words);
+    };
+    fails(&["--size", "0x0"], &["at least one pixel"]);
+    fails(&["--size", "640"], &["640x480"]);
+    fails(&["--size", "70000x70000"], &["65535"]);
+    fails(&["--size", "65535x65535"], &["--rows 0..1024"]);
+    fails(&["--size", "6500x100"], &["64 times"]);
+    for rows in ["5..3", "5..5", "x", "-1..4"] {
+        fails(&["--rows", rows], &[]);
+    }
+    fails(&["--rows", "200..300"], &["which has 240", "0..240"]);
+    for samples in ["0", "257", "many"] {
+        fails(&["--samples", samples], &["--samples"]);
+    }
+    for threads in ["0", "2000", "99999999999"] {
+        fails(&["--threads", threads], &["--threads"]);
+    }
+    fails(&["--depth", "17"], &["--depth"]);
+    fails(&["--format", "f16"], &["fixed, f32, f64"]);
+    fails(&["--accel", "grid"], &["list, bvh, flagged"]);
+    fails(&["--heat-map", "a.png"], &["another name"]);
+    fails(&["--heat-map", "heat.ppm"], &[".png"]);
+    fails(
+        &["--style", "ball-and-stick"],
+        &["--style is for scene files"],
+    );
+    for output in ["a.jpg", "a", "png"] {
+        folder.fails(
+            2,
+            &["render", "quick.gridel", "-o", output],
+            &[".png, .ppm or .rgb565"],
+        );
+    }
+}
+
+#[test]
+fn a_structure_that_the_blob_lacks_is_told() {
+    let folder = Folder::new();
+    folder.write("quick.toml", &fixture("quick"));
+    folder.done(&["build", "quick.toml", "-o", "quick.gridel"]);
+    folder.fails(
+        2,
+        &["render", "quick.gridel", "-o", "a.png", "--accel", "bvh"],
+        &["holds no structure bvh, only: flagged, list", "--accel bvh"],
+    );
+}
+
+#[test]
+fn an_old_picture_survives_what_fails() {
+    let folder = Folder::with_quick();
+    folder.write("a.png", b"old");
+    folder.write("broken.gridel", &folder.read("quick.gridel")[..700]);
+    folder.fails(1, &["render", "broken.gridel", "-o", "a.png"], &[]);
+    folder.fails(
+        2,
+        &[
+            "render",
+            "quick.gridel",
+            "-o",
+            "a.png",
+            "--rows",
+            "900..901",
+        ],
+        &[],
+    );
+    #[cfg(target_os = "linux")]
+    {
+        std::os::unix::fs::symlink("/dev/full", folder.path("full.png")).unwrap();
+        let full = ["render", "quick.gridel", "-o", "full.png", "--size", "8x8"];
+        folder.fails(1, &full, &["make room"]);
+    }
+}
