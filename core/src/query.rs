@@ -6,9 +6,9 @@ use crate::blob::record::{Corners, Cuboid, Sphere, UnitBox, Vertex};
 use crate::count::Count;
 use crate::number::Number;
 use crate::ray::Ray;
-use crate::shape::{Crossing, Kind, Part, Spheres, Triangles, Vertices, accept, extent};
 use crate::shape::sphere;
 use crate::shape::triangle::{self, Projection};
+use crate::shape::{Crossing, Kind, Part, Spheres, Triangles, Vertices, accept, extent};
 
 /// What a ray met.
 #[derive(Clone, Copy, Debug, PartialEq)]

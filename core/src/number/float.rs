@@ -261,9 +261,17 @@ macro_rules! float_number {
                 // One division will do unless the inverse is no ordinary number.
                 let ordinary = largest >= $flush && inverse >= $flush;
                 let scaled = |component: $float| {
-                    let slope = if ordinary { component * inverse } else { component / largest };
+                    let slope = if ordinary {
+                        component * inverse
+                    } else {
+                        component / largest
+                    };
                     // Adding zero turns -0.0 into 0.0.
-                    if slope.abs() < $flush { 0.0 } else { slope + 0.0 }
+                    if slope.abs() < $flush {
+                        0.0
+                    } else {
+                        slope + 0.0
+                    }
                 };
                 let mut slopes = [scaled(v[0]), scaled(v[1]), scaled(v[2])];
                 slopes[axis] = if v[axis] < 0.0 { -1.0 } else { 1.0 };
