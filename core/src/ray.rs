@@ -2,7 +2,7 @@
 
 use crate::accel::cull::Culling;
 use crate::blob::record::UnitBox;
-use crate::number::Number;
+use crate::number::{Number, pick};
 use core::fmt;
 
 /// A half-line with an interval, ready to be traced through one scene.
@@ -78,15 +78,16 @@ impl<N: Number> Ray<N> {
             return Err(RayError::Origin);
         }
 
-        let &[first, last] = bounds.0.get(major).ok_or(RayError::Direction)?;
-        let forward = slope[major] > N::ZERO;
+        let [first, last] = pick(bounds.0, major);
+        let forward = pick(slope, major) > N::ZERO;
+        let origin_major = pick(origin, major);
         let (entry, exit) = if forward {
             (first, last)
         } else {
             (last, first)
         };
         let ahead = |unit: i16| {
-            let distance = N::from_unit(unit).widen() - origin[major];
+            let distance = N::from_unit(unit).widen() - origin_major;
             if forward { distance } else { -distance }
         };
         let to_box = ahead(entry);
@@ -99,8 +100,17 @@ impl<N: Number> Ray<N> {
         };
         let (tmin, tmax) = (tmin - moved, tmax - moved);
         let far = N::FAR.widen();
+        // A ray rises by at most 2^16 units on its way through the box.
+        let reach = N::from_unit(i16::MAX).widen();
+        let reach = reach + reach + reach;
+        let start = |axis: usize| origin[axis] + N::wide_scale(moved, slope[axis]);
+        let start = [start(0), start(1), start(2)];
+        let within = |axis: usize| start[axis] <= reach && -start[axis] <= reach;
+        let meets =
+            tmax >= zero && ahead(exit) - moved >= zero && within(0) && within(1) && within(2);
+        let coordinate = |axis: usize| N::settle(N::narrow(start[axis]));
         let mut ray = Self {
-            origin: [N::ZERO; 3],
+            origin: [coordinate(0), coordinate(1), coordinate(2)],
             slope,
             major,
             moved,
@@ -109,24 +119,16 @@ impl<N: Number> Ray<N> {
             } else {
                 N::ZERO
             },
-            tmax: if tmax < far { N::narrow(tmax) } else { N::FAR },
+            // An interval that ends before it starts holds no hit.
+            tmax: if !meets {
+                -N::ONE
+            } else if tmax < far {
+                N::narrow(tmax)
+            } else {
+                N::FAR
+            },
             cull: N::Cull::default(),
         };
-        let mut misses = tmax < zero || ahead(exit) < zero;
-        // A ray rises by at most 2^16 units on its way through the box.
-        let reach = N::from_unit(i16::MAX).widen();
-        let reach = reach + reach + reach;
-        for (axis, coordinate) in ray.origin.iter_mut().enumerate() {
-            let moved = origin[axis] + N::wide_scale(moved, slope[axis]);
-            if moved <= reach && -moved <= reach {
-                *coordinate = N::settle(N::narrow(moved));
-            } else {
-                misses = true;
-            }
-        }
-        if misses {
-            ray.tmax = -N::ONE;
-        }
         ray.cull = N::Cull::new(&ray);
         Ok(ray)
     }

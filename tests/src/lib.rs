@@ -1,1 +1,21 @@
-//! Whole-program tests.
+//! What the whole-program tests share: scenes, rays, and answers that owe nothing to the core.
+
+pub mod agreement;
+pub mod bounds;
+pub mod cases;
+pub mod exact;
+pub mod query;
+pub mod random;
+pub mod rays;
+pub mod scenes;
+pub mod solid;
+
+/// Calls a function that is generic over the number format for each of them.
+#[macro_export]
+macro_rules! every_format {
+    ($function:ident($($argument:expr),* $(,)?)) => {{
+        $function::<gridel_core::Fixed>($($argument),*);
+        $function::<f32>($($argument),*);
+        $function::<f64>($($argument),*);
+    }};
+}

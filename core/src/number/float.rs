@@ -3,7 +3,7 @@
 //! Only operations whose result is the same on every machine: no fused multiply-add, no `min` and
 //! `max` of the standard library (they differ on signed zeros), square roots by libm.
 
-use super::{Format, Number};
+use super::{Format, Number, pick};
 use crate::accel::cull::FloatCulling;
 
 /// The sign of `a b - c d`, exactly, for `f32` factors: their products fit `f64`.
@@ -48,9 +48,12 @@ fn product_error(a: f64, b: f64) -> f64 {
     ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
 }
 
+/// 2^-100.
+const SMALLEST_F64: f64 = 1.0 / (1u64 << 50) as f64 / (1u64 << 50) as f64;
+
 macro_rules! float_number {
     ($float:ident, $format:expr, $precision:expr, $flush:expr, $sqrt:path, $exp:path, $floor:path,
-     $product_difference:path, $direction:expr) => {
+     $product_difference:path, $settle:expr, $direction:expr) => {
         impl Number for $float {
             type Wide = $float;
             type Cull = FloatCulling;
@@ -252,7 +255,7 @@ macro_rules! float_number {
                 } else {
                     2
                 };
-                let largest = v[axis].abs();
+                let largest = pick([x, y, z], axis);
                 let numbers = x == x && y == y && z == z;
                 if !(numbers && largest > 0.0 && largest.is_finite()) {
                     return None;
@@ -260,11 +263,14 @@ macro_rules! float_number {
                 let inverse = 1.0 / largest;
                 // One division will do unless the inverse is no ordinary number.
                 let ordinary = largest >= $flush && inverse >= $flush;
-                let scaled = |component: $float| {
+                let slope = |k: usize| {
+                    if k == axis {
+                        return if v[k] < 0.0 { -1.0 } else { 1.0 };
+                    }
                     let slope = if ordinary {
-                        component * inverse
+                        v[k] * inverse
                     } else {
-                        component / largest
+                        v[k] / largest
                     };
                     // Adding zero turns -0.0 into 0.0.
                     if slope.abs() < $flush {
@@ -273,8 +279,7 @@ macro_rules! float_number {
                         slope + 0.0
                     }
                 };
-                let mut slopes = [scaled(v[0]), scaled(v[1]), scaled(v[2])];
-                slopes[axis] = if v[axis] < 0.0 { -1.0 } else { 1.0 };
+                let slopes = [slope(0), slope(1), slope(2)];
                 Some((slopes, axis))
             }
 
@@ -335,6 +340,8 @@ float_number!(
     libm::expf,
     libm::floorf,
     product_difference_f32,
+    // No product of two coordinates in single precision underflows in double precision.
+    |x: f32| x,
     |v: [i64; 3]| {
         // Through 31 bits: cores with a single-precision unit convert those in one instruction.
         let all = v[0].unsigned_abs() | v[1].unsigned_abs() | v[2].unsigned_abs();
@@ -350,10 +357,11 @@ float_number!(
     f64,
     Format::F64,
     1.0 / 9_007_199_254_740_992.0,
-    1.0 / (1u64 << 62) as f64 / (1u64 << 38) as f64,
+    SMALLEST_F64,
     libm::sqrt,
     libm::exp,
     libm::floor,
     product_difference_f64,
+    |x: f64| if x.abs() < SMALLEST_F64 { 0.0 } else { x },
     |v: [i64; 3]| v.map(|component| component as f64)
 );

@@ -52,6 +52,16 @@ impl Format {
     }
 }
 
+/// A component by number. Unlike an index it keeps the vector in registers.
+#[inline(always)]
+pub(crate) fn pick<T: Copy>(v: [T; 3], axis: usize) -> T {
+    match axis {
+        0 => v[0],
+        1 => v[1],
+        _ => v[2],
+    }
+}
+
 mod sealed {
     pub trait Sealed {}
     impl Sealed for super::Fixed {}

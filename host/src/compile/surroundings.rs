@@ -39,9 +39,9 @@ impl Surroundings {
             supplied.push(String::from(
                 "a directional light from above the camera's left shoulder",
             ));
-            let view = (camera.target - camera.eye).normalize();
-            let right = view.cross(camera.up).normalize();
-            let direction = view + 0.5 * right - 0.7 * camera.up.normalize();
+            let view = unit(camera.target - camera.eye);
+            let up = unit(camera.up);
+            let direction = view + 0.5 * unit(view.cross(up)) - 0.7 * up;
             lights.push(Light::Directional {
                 direction,
                 color: [1.0; 3],
@@ -117,7 +117,14 @@ impl Surroundings {
 /// A camera that shows a box from above its front right corner.
 fn framing(lowest: DVec3, highest: DVec3) -> Camera {
     let target = (lowest + highest) * 0.5;
-    let radius = (0.5 * (highest - lowest)).length().max(f64::MIN_POSITIVE);
+    let diagonal = highest - lowest;
+    let longest = diagonal.max_element();
+    // A scene without extent is seen from as far as it lies from the origin.
+    let radius = if longest > 0.0 {
+        0.5 * longest * (diagonal / longest).length()
+    } else {
+        target.abs().max_element().max(1.0)
+    };
     let fov_degrees: f64 = 40.0;
     let distance = radius / (fov_degrees.to_radians() * 0.5).sin();
     let eye = target + DVec3::new(0.45, 0.35, 1.0).normalize() * distance;
@@ -129,10 +136,15 @@ fn framing(lowest: DVec3, highest: DVec3) -> Camera {
     }
 }
 
+/// A vector with length 1, however small or large its components are.
+fn unit(v: DVec3) -> DVec3 {
+    (v / v.abs().max_element()).normalize()
+}
+
 /// Vectors of the picture's frame, scaled so that their largest component has 28 bits.
 fn view_record(scene: &Scene, camera: &Camera, eye: [i64; 3]) -> record::View {
-    let forward = (camera.target - camera.eye).normalize();
-    let right = forward.cross(camera.up).normalize();
+    let forward = unit(camera.target - camera.eye);
+    let right = unit(forward.cross(unit(camera.up)));
     let half = (camera.fov_degrees.to_radians() * 0.5).tan();
     let frame = [forward, right * half, right.cross(forward) * half];
     let largest = frame
@@ -170,7 +182,7 @@ fn light_record(
             directional: 0,
         },
         Light::Directional { direction, color } => {
-            let towards = -(direction / direction.abs().max_element()).normalize();
+            let towards = -unit(direction);
             let vector = (towards * f64::from(1 << 30))
                 .round()
                 .to_array()

@@ -1,0 +1,104 @@
+//! Every structure gives the list's answer, and the flagged hierarchy does half of the work.
+
+use crate::query::{HitBits, UnitRay, any, closest, depart};
+use crate::random::Random;
+use gridel_core::{Bvh, Counters, Flagged, List, NoCount, Number, Scene};
+
+/// What was compared.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Tally {
+    pub rays: u64,
+    pub hits: u64,
+    /// Rays that were compared with the list, too.
+    pub listed: u64,
+    /// Planes tested, the root's apart.
+    pub plain_planes: u64,
+    pub flagged_planes: u64,
+}
+
+/// Compares all structures on rays, and on a ray from every tenth surface that they meet.
+///
+/// The list is asked for as many rays as fit `list_tests` tests of primitives.
+pub fn compare<N: Number>(
+    name: &str,
+    scene: &Scene<'_>,
+    rays: impl Iterator<Item = UnitRay>,
+    list_tests: u64,
+) -> Tally {
+    let primitives: usize = gridel_core::Kind::ALL.iter().map(|&k| scene.count(k)).sum();
+    let list_rays = list_tests / primitives.max(1) as u64;
+    let mut tally = Tally::default();
+    let mut random = Random(0xa9ee);
+    for ray in rays {
+        let Some(from) = compare_one::<N>(name, scene, &ray, list_rays, &mut tally) else {
+            continue;
+        };
+        if random.one_in(10) {
+            let direction = random.direction();
+            let secondary = UnitRay::new(from, direction);
+            compare_one::<N>(name, scene, &secondary, list_rays, &mut tally);
+        }
+    }
+    tally
+}
+
+/// Compares on one ray; returns where a ray leaves the surface that was met.
+fn compare_one<N: Number>(
+    name: &str,
+    scene: &Scene<'_>,
+    ray: &UnitRay,
+    list_rays: u64,
+    tally: &mut Tally,
+) -> Option<[f64; 3]> {
+    let Some(ready) = ray.ready::<N>(scene) else {
+        panic!("{name}: {ray:?} is refused");
+    };
+    tally.rays += 1;
+    let (mut plain_work, mut flagged_work) = (Counters::default(), Counters::default());
+    let plain = closest::<N, Bvh>(scene, &ready, &mut plain_work);
+    let flagged = closest::<N, Flagged>(scene, &ready, &mut flagged_work);
+    let bits = plain.as_ref().map(HitBits::of);
+    let about = || format!("{name}, {}: {ray:?}", N::FORMAT.name());
+    assert_eq!(bits, flagged.as_ref().map(HitBits::of), "{}", about());
+    assert_eq!(any::<N, Bvh>(scene, &ready), bits.is_some(), "{}", about());
+    assert_eq!(
+        any::<N, Flagged>(scene, &ready),
+        bits.is_some(),
+        "{}",
+        about()
+    );
+    let work = |counters: &Counters| (counters.boxes, counters.objects);
+    assert_eq!(work(&plain_work), work(&flagged_work), "{}", about());
+    let planes = |counters: &Counters| counters.planes - 6;
+    assert!(
+        2 * planes(&flagged_work) <= planes(&plain_work),
+        "{}",
+        about()
+    );
+    tally.plain_planes += planes(&plain_work);
+    tally.flagged_planes += planes(&flagged_work);
+    if tally.listed < list_rays {
+        tally.listed += 1;
+        let listed = closest::<N, List>(scene, &ready, &mut NoCount);
+        assert_eq!(listed.as_ref().map(HitBits::of), bits, "{}", about());
+        assert_eq!(any::<N, List>(scene, &ready), bits.is_some(), "{}", about());
+    }
+    let hit = plain?;
+    tally.hits += 1;
+    Some(depart(&hit, if hit.front { 1.0 } else { -1.0 }))
+}
+
+impl Tally {
+    /// Tells what was compared.
+    pub fn report<N: Number>(&self, name: &str) {
+        let percent = 100.0 * self.flagged_planes as f64 / self.plain_planes.max(1) as f64;
+        eprintln!(
+            "{name:24} {:5}: {:8} rays, {:8} hits, {:8} against the list; flagged {percent:.2} % of \
+             the planes",
+            N::FORMAT.name(),
+            self.rays,
+            self.hits,
+            self.listed
+        );
+    }
+}

@@ -1,0 +1,94 @@
+//! Asks the core through one structure or another.
+
+use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::{Accel, Count, Hit, Number, Ray, Scene, Stack, any_hit, closest_hit};
+
+/// A ray in the core's units, not yet in a number format.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnitRay {
+    pub origin: [f64; 3],
+    pub direction: [f64; 3],
+    pub tmin: f64,
+    pub tmax: f64,
+}
+
+impl UnitRay {
+    /// A ray with tmin 0 and without an end.
+    pub fn new(origin: [f64; 3], direction: [f64; 3]) -> Self {
+        Self {
+            origin,
+            direction,
+            tmin: 0.0,
+            tmax: f64::INFINITY,
+        }
+    }
+
+    /// The ray as the core takes it; `None` if it is none.
+    pub fn ready<N: Number>(&self, scene: &Scene<'_>) -> Option<Ray<N>> {
+        let Self {
+            origin,
+            direction,
+            tmin,
+            tmax,
+        } = *self;
+        Ray::from_f64(scene.bounds(), origin, direction, tmin, tmax).ok()
+    }
+}
+
+/// A hit to the last bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HitBits {
+    pub primitive: u32,
+    pub object: u32,
+    pub front: bool,
+    pub t: u64,
+    pub point: [u64; 3],
+    pub normal: [u64; 3],
+    pub error: u64,
+}
+
+impl HitBits {
+    pub fn of<N: Number>(hit: &Hit<N>) -> Self {
+        Self {
+            primitive: hit.primitive,
+            object: hit.object,
+            front: hit.front,
+            t: N::far_to_f64(hit.t).to_bits(),
+            point: hit.point.map(|x| x.length_to_f64().to_bits()),
+            normal: hit.normal.map(|x| x.ratio_to_f64().to_bits()),
+            error: hit.error.length_to_f64().to_bits(),
+        }
+    }
+}
+
+/// The first hit through one structure.
+pub fn closest<N: Number, A: Accel>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    count: &mut impl Count,
+) -> Option<Hit<N>> {
+    let mut stack = Stack::<MAX_STACK_DEPTH>::new();
+    closest_hit::<N, A, _>(scene, ray, stack.as_view(), count)
+}
+
+/// Whether there is a hit, through one structure.
+pub fn any<N: Number, A: Accel>(scene: &Scene<'_>, ray: &Ray<N>) -> bool {
+    let mut stack = Stack::<MAX_STACK_DEPTH>::new();
+    any_hit::<N, A, _>(scene, ray, stack.as_view(), &mut gridel_core::NoCount)
+}
+
+/// A point in units, from a hit.
+pub fn point_of<N: Number>(hit: &Hit<N>) -> [f64; 3] {
+    hit.point.map(N::length_to_f64)
+}
+
+/// Where a ray starts that leaves a hit on the normal's side (1) or the other (-1), computed as the
+/// ray loop does.
+pub fn depart<N: Number>(hit: &Hit<N>, side: f64) -> [f64; 3] {
+    let beside = |axis: usize| {
+        let shift = hit.error * hit.normal[axis];
+        let shift = if side < 0.0 { -shift } else { shift };
+        (hit.point[axis] + shift).length_to_f64()
+    };
+    [beside(0), beside(1), beside(2)]
+}

@@ -1,0 +1,173 @@
+//! Scenes: generated ones, the project's fixtures, and real ones where they are at hand.
+
+use crate::random::Random;
+use glam::DVec3;
+use gridel_core::Structure;
+use gridel_host::blob::Blob;
+use gridel_host::compile::{Options, compile};
+use gridel_host::scene::{Material, MoleculeOptions, Object, Place, Scene, Shape, load};
+use std::path::{Path, PathBuf};
+
+/// A scene of shapes of one plain material.
+pub fn of(shapes: impl IntoIterator<Item = Shape>) -> Scene {
+    let objects = shapes.into_iter().map(|shape| Object {
+        name: String::from("thing"),
+        material: 0,
+        shape,
+        place: Place::default(),
+    });
+    Scene {
+        materials: vec![Material::default()],
+        objects: objects.collect(),
+        ..Scene::default()
+    }
+}
+
+/// A blob with every structure.
+pub fn blob(scene: &Scene, lattice_bits: u8) -> Blob {
+    let options = Options {
+        structures: Structure::ALL.to_vec(),
+        lattice_bits,
+        ..Options::default()
+    };
+    compile(scene, &options).expect("compiles").blob
+}
+
+/// Reads a scene file, with its own folder as base.
+pub fn read(path: &Path) -> Scene {
+    match load(path, &MoleculeOptions::default()) {
+        Ok(imported) => imported.scene,
+        Err(error) => panic!("{}: {error}", path.display()),
+    }
+}
+
+/// The project's folder of fixtures.
+pub fn fixture_folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures")
+}
+
+/// All scenes in the project's folder of fixtures, by name.
+pub fn fixtures() -> Vec<(String, Scene)> {
+    let folder = fixture_folder();
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(&folder)
+        .expect("the folder of fixtures")
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|e| e == "toml" || e == "pdb"))
+        .filter(|path| path.file_name().is_some_and(|name| name != "hashes.toml"))
+        .collect();
+    paths.sort();
+    assert!(paths.len() >= 10, "{} fixtures", paths.len());
+    let name = |path: &PathBuf| path.file_stem().unwrap_or_default().display().to_string();
+    paths.iter().map(|path| (name(path), read(path))).collect()
+}
+
+/// A file of real scenes: below `GRIDEL_SCENES`, or in the folder `shared/scenes` beside the
+/// repository. Tests that need one are passed over, loudly, where it is absent.
+pub fn real(name: &str) -> Option<PathBuf> {
+    let folder = std::env::var_os("GRIDEL_SCENES").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/scenes"),
+        PathBuf::from,
+    );
+    let path = folder.join(name);
+    if path.exists() {
+        return Some(path);
+    }
+    eprintln!(
+        "SKIPPED: {} is not there; set GRIDEL_SCENES",
+        path.display()
+    );
+    None
+}
+
+fn point(random: &mut Random, size: f64) -> DVec3 {
+    DVec3::from_array([0; 3].map(|_| random.signed() * size))
+}
+
+/// A random shape of a kind (0 to 7) at a place of about a size.
+pub fn shape(random: &mut Random, kind: usize, place: DVec3, size: f64) -> Shape {
+    let length = |random: &mut Random| size * random.magnitude(0.1, 1.0);
+    match kind {
+        0 | 1 => Shape::Mesh {
+            vertices: (0..3).map(|_| place + point(random, size)).collect(),
+            triangles: vec![[0, 1, 2]],
+        },
+        2 => Shape::Sphere {
+            center: place,
+            radius: length(random),
+        },
+        3 => Shape::Box {
+            min: place,
+            max: place + point(random, size).abs(),
+        },
+        4 => Shape::Disc {
+            center: place,
+            normal: DVec3::from_array(random.direction()),
+            radius: length(random),
+        },
+        _ => {
+            let radius = length(random);
+            Shape::Cone {
+                base: place,
+                base_radius: radius,
+                apex: place + DVec3::from_array(random.direction()) * size,
+                apex_radius: [radius, 0.0, length(random)][kind - 5],
+            }
+        }
+    }
+}
+
+/// Shapes of every kind thrown into a cube of edge 2.
+pub fn soup(seed: u64, count: usize, size: f64) -> Scene {
+    let mut random = Random(seed);
+    of((0..count).map(|number| {
+        let place = point(&mut random, 1.0);
+        shape(&mut random, number % 8, place, size)
+    }))
+}
+
+/// The icosphere of a number of subdivisions: 20 times 4 to that power triangles.
+pub fn icosphere(subdivisions: usize) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let golden = 0.5 + 1.25_f64.sqrt();
+    let mut vertices = Vec::new();
+    for (a, b) in [
+        (1.0, golden),
+        (-1.0, golden),
+        (1.0, -golden),
+        (-1.0, -golden),
+    ] {
+        vertices.extend([[0.0, a, b], [a, b, 0.0], [b, 0.0, a]].map(DVec3::from_array));
+    }
+    // The faces are the triples of vertices at the edges' distance, 2.
+    let mut triangles = Vec::new();
+    let joined = |a: DVec3, b: DVec3| (a.distance_squared(b) - 4.0).abs() < 1e-9;
+    for a in 0..12 {
+        for b in a + 1..12 {
+            for c in b + 1..12 {
+                let [p, q, r] = [a, b, c].map(|v: usize| vertices[v]);
+                if joined(p, q) && joined(q, r) && joined(r, p) {
+                    let outward = (q - p).cross(r - p).dot(p) > 0.0;
+                    let face = if outward { [a, b, c] } else { [a, c, b] };
+                    triangles.push(face.map(|v| v as u32));
+                }
+            }
+        }
+    }
+    vertices.iter_mut().for_each(|v| *v = v.normalize());
+    for _ in 0..subdivisions {
+        let mut middles = std::collections::HashMap::new();
+        let mut middle = |a: u32, b: u32| {
+            *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                vertices.push((vertices[a as usize] + vertices[b as usize]).normalize());
+                vertices.len() as u32 - 1
+            })
+        };
+        triangles = triangles
+            .iter()
+            .flat_map(|&[a, b, c]| {
+                let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+                [[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]
+            })
+            .collect();
+    }
+    (vertices, triangles)
+}

@@ -1,0 +1,167 @@
+//! Every structure against the plain list, ray by ray, to the last bit.
+//!
+//! By default about 10^5 rays a scene and format; `cargo test -- --ignored --nocapture` traces the
+//! 10^6 that the project promises, and takes some minutes.
+
+use glam::DVec3;
+use gridel_core::Number;
+use gridel_host::scene::{Scene, Shape};
+use gridel_tests::agreement::compare;
+use gridel_tests::every_format;
+use gridel_tests::{rays, scenes};
+
+/// How much to compare of a scene in one format.
+#[derive(Clone, Copy)]
+struct Amount {
+    rays: usize,
+    /// Tests of primitives in the list.
+    list_tests: u64,
+}
+
+const QUICK: Amount = Amount {
+    rays: 60_000,
+    list_tests: 20_000_000,
+};
+const FULL: Amount = Amount {
+    rays: 1_000_000,
+    list_tests: 20_000_000_000,
+};
+
+fn compare_scene(name: &str, scene: &Scene, lattice_bits: u8, amount: Amount) {
+    let blob = scenes::blob(scene, lattice_bits);
+    let scene = blob.scene().expect("a scene");
+    fn compare_format<N: Number>(name: &str, scene: &gridel_core::Scene<'_>, amount: Amount) {
+        let rays = rays::rays(scene, 7).take(amount.rays);
+        compare::<N>(name, scene, rays, amount.list_tests).report::<N>(name);
+    }
+    every_format!(compare_format(name, &scene, amount));
+}
+
+fn soups(amount: Amount) {
+    compare_scene("soup of 40", &scenes::soup(1, 40, 0.5), 24, amount);
+    compare_scene("soup of 400", &scenes::soup(2, 400, 0.15), 16, amount);
+    compare_scene("soup of 4000", &scenes::soup(3, 4000, 0.05), 24, amount);
+    compare_scene("coarse soup", &scenes::soup(4, 300, 0.3), 10, amount);
+}
+
+fn hard_scenes(amount: Amount) {
+    for (name, scene) in degenerate_scenes() {
+        compare_scene(name, &scene, 24, amount);
+    }
+}
+
+fn fixtures(amount: Amount) {
+    for (name, scene) in scenes::fixtures() {
+        compare_scene(&name, &scene, 24, amount);
+    }
+}
+
+fn real_scenes(amount: Amount) {
+    let names = [
+        "spd/balls_s2.nff",
+        "spd/tetra.nff",
+        "spd/mount.nff",
+        "spd/gears.nff",
+        "spd/teapot.nff",
+        "meshes/cow.obj",
+        "meshes/fandisk.obj",
+        "meshes/cornell_box.obj",
+    ];
+    for path in names.iter().filter_map(|name| scenes::real(name)) {
+        let name = path.file_name().unwrap_or_default().display().to_string();
+        compare_scene(&name, &scenes::read(&path), 24, amount);
+    }
+}
+
+/// Scenes that a builder or a walk could stumble over.
+fn degenerate_scenes() -> Vec<(&'static str, Scene)> {
+    let sphere = |x: f64, radius: f64| Shape::Sphere {
+        center: DVec3::new(x, 0.25, -0.5),
+        radius,
+    };
+    let once = scenes::soup(5, 24, 0.6);
+    let mut twice = once.clone();
+    twice.objects.extend(once.objects.clone());
+    // A floor of triangles without height, and discs and boxes in its plane.
+    let grid = |x: u32, z: u32| DVec3::new(f64::from(x), 0.0, f64::from(z));
+    let mut vertices = Vec::new();
+    let mut triangles = Vec::new();
+    for (x, z) in (0..8).flat_map(|x| (0..8).map(move |z| (x, z))) {
+        let first = vertices.len() as u32;
+        vertices.extend([
+            grid(x, z),
+            grid(x + 1, z),
+            grid(x, z + 1),
+            grid(x + 1, z + 1),
+        ]);
+        triangles.extend([[0, 2, 1], [1, 2, 3]].map(|face: [u32; 3]| face.map(|v| first + v)));
+    }
+    let floor = Shape::Mesh {
+        vertices,
+        triangles,
+    };
+    let disc = Shape::Disc {
+        center: grid(4, 4),
+        normal: DVec3::Y,
+        radius: 3.0,
+    };
+    let slab = Shape::Box {
+        min: grid(1, 1),
+        max: grid(6, 2),
+    };
+    let mut line = scenes::of((0..200).map(|place| sphere(f64::from(place), 0.5)));
+    line.objects
+        .extend(scenes::of([sphere(0.0, 1e-5), sphere(199.0, 1e-4)]).objects);
+    vec![
+        ("everything twice", twice),
+        ("a flat floor", scenes::of([floor, disc, slab])),
+        ("one sphere", scenes::of([sphere(0.0, 1.0)])),
+        ("nothing", Scene::default()),
+        (
+            "300 of the same",
+            scenes::of((0..300).map(|_| sphere(1.0, 2.0))),
+        ),
+        ("spheres in a row", line),
+        (
+            "a point of a box",
+            scenes::of([Shape::Box {
+                min: DVec3::ONE,
+                max: DVec3::ONE,
+            }]),
+        ),
+    ]
+}
+
+#[test]
+fn soups_agree() {
+    soups(QUICK);
+}
+
+#[test]
+fn degenerate_scenes_agree() {
+    hard_scenes(QUICK);
+}
+
+#[test]
+fn fixtures_agree() {
+    fixtures(QUICK);
+}
+
+#[test]
+fn real_scenes_agree() {
+    real_scenes(QUICK);
+}
+
+#[test]
+#[ignore = "10^6 rays a scene and format take minutes"]
+fn full_synthetic_scenes_agree() {
+    soups(FULL);
+    hard_scenes(FULL);
+    fixtures(FULL);
+}
+
+#[test]
+#[ignore = "10^6 rays a scene and format take minutes"]
+fn full_real_scenes_agree() {
+    real_scenes(FULL);
+}
