@@ -44,7 +44,8 @@ fn pictures_are_the_hosts_byte_for_byte() {
                 program.folder().display()
             );
             if scene.name == "glass-chess" {
-                let ram = report["picture-stack-bytes"] + report["workspace-bytes"];
+                let stack = report["load-stack-bytes"].max(report["picture-stack-bytes"]);
+                let ram = stack + report["workspace-bytes"];
                 assert!(ram <= PICTURE_RAM, "{build}: {ram} bytes of RAM");
             }
             figures.add(&build.to_string(), &report);

@@ -1,5 +1,6 @@
 //! The scenes that go into flash, compiled small.
 
+use crate::firmware::skip;
 use glam::DVec3;
 use gridel_core::render::Pixel;
 use gridel_core::{Format, Rgb888, Settings, Structure};
@@ -40,7 +41,10 @@ pub fn suzanne() -> Option<Compiled> {
         .map_or_else(|| repository().join("../shared/scenes"), PathBuf::from);
     let path = folder.join("meshes/suzanne.obj");
     if !path.exists() {
-        println!("SKIPPED: {} is missing; set GRIDEL_SCENES", path.display());
+        skip(format_args!(
+            "{} is missing; set GRIDEL_SCENES",
+            path.display()
+        ));
         return None;
     }
     let mut scene = load(&path);
