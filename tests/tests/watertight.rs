@@ -177,7 +177,8 @@ fn axis_parallel_rays_through_vertices_hit() {
                     let flagged = closest::<N, Flagged>(scene, &ray, &mut NoCount);
                     assert_eq!(plain, flagged);
                     let radius = [1, 2].map(|k| target[(axis + k) % 3]);
-                    let inside = radius[0].hypot(radius[1]) < 0.98 * f64::from(scene.bounds().0[0][1]);
+                    let inside =
+                        radius[0].hypot(radius[1]) < 0.98 * f64::from(scene.bounds().0[0][1]);
                     rays += usize::from(inside);
                     rim += usize::from(!inside);
                     assert!(

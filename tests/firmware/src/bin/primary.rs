@@ -13,9 +13,11 @@ use semihosting::println;
 fn main() -> ! {
     static mut STACK: Stack<STACK_DEPTH> = Stack::new();
     let meter = Meter::default();
-    let (scene, load) = meter.run(|| Scene::from_bytes(BLOB));
-    let scene = scene.expect("the build script checked the blob");
-    let ((rays, hits), trace) = meter.run(|| trace(&scene, STACK));
+    let mut scene = None;
+    let load = meter.run(|| scene = Scene::from_bytes(BLOB).ok());
+    let scene = scene.as_ref().expect("the build script checked the blob");
+    let (mut rays, mut hits) = (0, 0);
+    let trace = meter.run(|| (rays, hits) = trace(scene, STACK));
     println!("blob-bytes {}", BLOB.len());
     println!("load-instructions {}", load.instructions);
     println!("load-stack-bytes {}", load.stack);
