@@ -4,7 +4,7 @@
 
 use core::panic::PanicInfo;
 use cortex_m_rt::entry;
-use gridel_core::{NoCount, Scene, Settings, Stack, closest_hit};
+use gridel_core::{NoCount, Scene, Settings, Stack, closest_primitive};
 use gridel_firmware::measure::Meter;
 use gridel_firmware::scene::{Accel, BLOB, Number, STACK_DEPTH, SceneRenderer};
 use semihosting::println;
@@ -40,7 +40,7 @@ fn trace(scene: &Scene<'static>, stack: &mut Stack<STACK_DEPTH>) -> (u32, u32) {
                 continue;
             };
             rays += 1;
-            let hit = closest_hit::<Number, Accel, _>(scene, &ray, stack.as_view(), &mut NoCount);
+            let hit = closest_primitive::<Number, Accel, _>(scene, &ray, stack.as_view(), &mut NoCount);
             hits += u32::from(hit.is_some());
         }
     }
