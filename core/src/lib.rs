@@ -4,7 +4,7 @@
 //! A host compiles a scene file into one binary blob (`gridel build`). [`Scene::from_bytes`] checks
 //! the blob once; after that nothing can fail. Two things can be asked of a scene:
 //!
-//! - **rays**: [`closest_hit`] and [`any_hit`], with a [`Ray`] of your own;
+//! - **rays**: [`closest_hit`], [`closest_primitive`] and [`any_hit`], with a [`Ray`] of your own;
 //! - **pictures**: a [`Renderer`] gives pixels row by row or for any rectangle.
 //!
 //! Both are generic over the number format (see [`Number`]): [`Fixed`] for cores without a
@@ -39,7 +39,7 @@ pub use accel::{Accel, Bvh, Flagged, List, Stack, StackView, Structure};
 pub use blob::{Aligned, BlobError, Scene};
 pub use count::{Count, Counters, NoCount, RayKind};
 pub use number::{Fixed, Format, Number};
-pub use query::{Hit, any_hit, closest_hit};
+pub use query::{Found, Hit, any_hit, closest_hit, closest_primitive};
 pub use ray::{Ray, RayError};
 pub use render::{Renderer, Rgb565, Rgb888, Settings, Workspace};
 pub use shade::Effects;

@@ -32,7 +32,7 @@ pub struct Hit<N: Number> {
 }
 
 /// The best hit so far.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Best<N> {
     t: N,
     /// The primitive in scene-file order.
@@ -206,16 +206,27 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     }
 }
 
-/// The first hit of a ray in its interval, found through the structure `A`.
+/// Which primitive a ray meets first, and where: all of a hit but its surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found<N: Number> {
+    /// Where on the ray: a length in units along the ray's major axis (see [`Ray`]).
+    pub t: N::Wide,
+    /// The primitive, counted in scene-file order over all objects.
+    pub primitive: u32,
+    best: Best<N>,
+}
+
+/// The primitive that a ray meets first in its interval, found through the structure `A`.
 ///
 /// Of hits at the same t the one that comes first in the scene file counts, so the answer is the
 /// same whatever the structure. The stack must be as deep as the blob says.
-pub fn closest_hit<N: Number, A: Accel, C: Count>(
+#[inline]
+pub fn closest_primitive<N: Number, A: Accel, C: Count>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
     stack: &mut StackView,
     count: &mut C,
-) -> Option<Hit<N>> {
+) -> Option<Found<N>> {
     let cull = A::Cull::<N>::new(ray);
     let mut search = Search::new(scene, ray, &cull);
     A::walk(scene, ray, &cull, stack, count, |leaf, count| {
@@ -224,20 +235,42 @@ pub fn closest_hit<N: Number, A: Accel, C: Count>(
         Some(search.tmax)
     });
     let best = search.best?;
-    let point = ray.at(best.t);
-    let surface = scene
-        .shapes
-        .surface(best.kind, best.index as usize, best.part, point)?;
-    let scale = extent(ray.origin).max(extent(point)).max(surface.extent);
-    Some(Hit {
+    Some(Found {
         t: best.t.widen() + ray.moved,
-        point,
-        normal: surface.normal,
-        front: N::dot(surface.normal, ray.slope) < N::Wide::default(),
-        object: scene.object(best.primitive),
         primitive: best.primitive,
-        error: N::error_bound(scale),
+        best,
     })
+}
+
+impl<N: Number> Found<N> {
+    /// The whole hit: the point and how the surface lies there. `scene` and `ray` are those of the
+    /// query.
+    pub fn hit(&self, scene: &Scene<'_>, ray: &Ray<N>) -> Option<Hit<N>> {
+        let best = self.best;
+        let point = ray.at(best.t);
+        let index = best.index as usize;
+        let surface = scene.shapes.surface(best.kind, index, best.part, point)?;
+        let scale = extent(ray.origin).max(extent(point)).max(surface.extent);
+        Some(Hit {
+            t: self.t,
+            point,
+            normal: surface.normal,
+            front: N::dot(surface.normal, ray.slope) < N::Wide::default(),
+            object: scene.object(best.primitive),
+            primitive: best.primitive,
+            error: N::error_bound(scale),
+        })
+    }
+}
+
+/// The first hit of a ray in its interval: [`closest_primitive`] with its surface.
+pub fn closest_hit<N: Number, A: Accel, C: Count>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    stack: &mut StackView,
+    count: &mut C,
+) -> Option<Hit<N>> {
+    closest_primitive::<N, A, C>(scene, ray, stack, count)?.hit(scene, ray)
 }
 
 /// Whether a ray meets anything in its interval: whether [`closest_hit`] would find something.

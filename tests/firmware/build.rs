@@ -40,4 +40,7 @@ fn main() {
     println!("cargo::rerun-if-changed={memory}");
     fs::copy(memory, out.join("memory.x")).expect("OUT_DIR can be written to");
     println!("cargo::rustc-link-search={}", out.display());
+    // Here rather than in Cargo's configuration, which RUSTFLAGS would override.
+    println!("cargo::rustc-link-arg-bins=-Tlink.x");
+    println!("cargo::rustc-link-arg-bins=--nmagic");
 }

@@ -359,14 +359,21 @@ impl Number for Fixed {
         }
         // The divisor's upper 32 bits are enough: t is a length of at most 31 bits.
         let shift = b.leading_zeros();
-        // Its uppermost bit is set; saying so proves that it is not 0.
-        let divisor = (b << shift) >> 32 | 1 << 31;
+        let divisor = (b << shift) >> 32;
         let dividend = match shift.checked_sub(32 - RATIO_BITS) {
             Some(up) if up > a.leading_zeros() => return with_sign(u64::MAX, sign),
             Some(up) => a << up,
             None => a >> (32 - RATIO_BITS - shift),
         };
-        with_sign(dividend.saturating_add(divisor / 2) / divisor, sign)
+        if dividend >> 31 >= divisor {
+            return with_sign(u64::MAX, sign);
+        }
+        // By the reciprocal, to a part in 2^29, and then by that of the rest: within one sub-step.
+        let inverse = reciprocal((divisor >> 1) as u32) as u64;
+        let coarse = ((dividend >> 31) * inverse) >> 31;
+        let rest = dividend.wrapping_sub(coarse.wrapping_mul(divisor)) as i64;
+        let fine = ((rest >> 8).wrapping_mul(inverse as i64) + (1 << 53)) >> 54;
+        with_sign(coarse.wrapping_add(fine as u64), sign)
     }
 
     fn root(square: Product) -> Self {
@@ -454,9 +461,12 @@ impl Number for Fixed {
         if norm == 0 {
             return ([Fixed(0); 3], Fixed(0));
         }
+        // The norm lies in [2^30, 2^32).
+        let down = (norm >> 31) as u32 & 1;
+        let inverse = reciprocal((norm >> down) as u32) as u64;
         let unit = scaled.map(|component| {
-            let magnitude = (component.unsigned_abs() << RATIO_BITS) + norm / 2;
-            with_sign(magnitude.checked_div(norm).unwrap_or(0), component)
+            let magnitude = (component.unsigned_abs() * inverse) >> (31 + down);
+            with_sign(magnitude, component)
         });
         // The vector has at most 32 bits, so it was shifted up, or down by one.
         let length = if bits >= 0 {

@@ -174,7 +174,7 @@ fn compare<N: Number>(checks: &mut Checks<'_>, ray: &Expected, found: Option<Hit
         t,
         tolerance,
     );
-    for axis in 0..3 {
+    for (axis, &expected) in normal.iter().enumerate() {
         let largest = ray
             .direction
             .iter()
@@ -188,7 +188,7 @@ fn compare<N: Number>(checks: &mut Checks<'_>, ray: &Expected, found: Option<Hit
         checks.near(
             format_args!("normal on axis {axis}: {what}"),
             found.normal[axis].ratio_to_f64(),
-            normal[axis],
+            expected,
             RATIO,
         );
     }

@@ -17,18 +17,19 @@ fn main() -> ! {
     static mut ROW: [Rgb888; WIDTH] = [Rgb888([0; 3]); WIDTH];
     let meter = Meter::default();
     let mut file = File::create(c"picture.rgb").expect("the host's file can be written to");
-    let (scene, load) = meter.run(|| Scene::from_bytes(BLOB));
-    let scene = scene.expect("the build script checked the blob");
+    let mut scene = None;
+    let load = meter.run(|| scene = Scene::from_bytes(BLOB).ok());
+    let scene = scene.as_ref().expect("the build script checked the blob");
 
-    let settings = Settings::of(&scene);
-    let renderer = SceneRenderer::new(&scene, settings).expect("the scene is for this renderer");
+    let settings = Settings::of(scene);
+    let renderer = SceneRenderer::new(scene, settings).expect("the scene is for this renderer");
     let mut space = SPACE.as_view();
     renderer
         .check_workspace(&space)
         .expect("the build script sized the workspace");
     let mut picture = Cost::default();
     for y in 0..settings.height {
-        let ((), cost) = meter.run(|| renderer.row(0, y, ROW, &mut space, &mut NoCount));
+        let cost = meter.run(|| renderer.row(0, y, ROW, &mut space, &mut NoCount));
         picture = picture.then(cost);
         for pixel in &*ROW {
             file.write_all(&pixel.0)

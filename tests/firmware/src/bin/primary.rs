@@ -4,7 +4,7 @@
 
 use core::panic::PanicInfo;
 use cortex_m_rt::entry;
-use gridel_core::{NoCount, Scene, Settings, Stack, closest_hit};
+use gridel_core::{NoCount, Scene, Settings, Stack, closest_primitive};
 use gridel_firmware::measure::Meter;
 use gridel_firmware::scene::{Accel, BLOB, Number, STACK_DEPTH, SceneRenderer};
 use semihosting::println;
@@ -13,9 +13,11 @@ use semihosting::println;
 fn main() -> ! {
     static mut STACK: Stack<STACK_DEPTH> = Stack::new();
     let meter = Meter::default();
-    let (scene, load) = meter.run(|| Scene::from_bytes(BLOB));
-    let scene = scene.expect("the build script checked the blob");
-    let ((rays, hits), trace) = meter.run(|| trace(&scene, STACK));
+    let mut scene = None;
+    let load = meter.run(|| scene = Scene::from_bytes(BLOB).ok());
+    let scene = scene.as_ref().expect("the build script checked the blob");
+    let (mut rays, mut hits) = (0, 0);
+    let trace = meter.run(|| (rays, hits) = trace(scene, STACK));
     println!("blob-bytes {}", BLOB.len());
     println!("load-instructions {}", load.instructions);
     println!("load-stack-bytes {}", load.stack);
@@ -38,7 +40,7 @@ fn trace(scene: &Scene<'static>, stack: &mut Stack<STACK_DEPTH>) -> (u32, u32) {
                 continue;
             };
             rays += 1;
-            let hit = closest_hit::<Number, Accel, _>(scene, &ray, stack.as_view(), &mut NoCount);
+            let hit = closest_primitive::<Number, Accel, _>(scene, &ray, stack.as_view(), &mut NoCount);
             hits += u32::from(hit.is_some());
         }
     }

@@ -1,0 +1,76 @@
+//! What was measured before, and whether it grew.
+
+use crate::scenes::repository;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::{env, fs};
+
+type Table = BTreeMap<String, BTreeMap<String, u64>>;
+
+/// Counts that follow from the scene and are no cost.
+const NO_COST: [&str; 2] = ["rays", "hits"];
+
+/// Figures by build and name.
+#[derive(Default)]
+pub struct Figures(Table);
+
+impl Figures {
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    pub fn add(&mut self, build: &str, report: &BTreeMap<String, u64>) {
+        let costs = report
+            .iter()
+            .filter(|(name, _)| !NO_COST.contains(&name.as_str()))
+            .map(|(name, &value)| (name.clone(), value));
+        self.0.entry(build.into()).or_default().extend(costs);
+    }
+
+    /// Prints all figures, and fails where one exceeds the recorded one by more than 2 %, or none
+    /// is recorded. With `GRIDEL_RECORD_BOARDS=1` records them instead.
+    pub fn check(&self) {
+        static FILE: Mutex<()> = Mutex::new(());
+        let _one_at_a_time = FILE.lock().unwrap_or_else(|poison| poison.into_inner());
+        let mut recorded: Table = fs::read(path())
+            .ok()
+            .map(|bytes| serde_json::from_slice(&bytes).expect("fixtures/board.json is a table"))
+            .unwrap_or_default();
+        if env::var_os("GRIDEL_RECORD_BOARDS").is_some_and(|value| value == "1") {
+            for (build, report) in &self.0 {
+                recorded
+                    .entry(build.clone())
+                    .or_default()
+                    .extend(report.clone());
+            }
+            let text = serde_json::to_string_pretty(&recorded).expect("a table of integers");
+            fs::write(path(), text + "\n").expect("the fixtures can be written to");
+            return;
+        }
+        let mut grown = Vec::new();
+        for (build, report) in &self.0 {
+            for (name, &value) in report {
+                let before = recorded.get(build).and_then(|report| report.get(name));
+                let change = before.map_or(String::from("not recorded"), |&before| {
+                    let percent = 100.0 * (value as f64 / before.max(1) as f64 - 1.0);
+                    format!("{percent:+.1} %")
+                });
+                let line = format!("{build}: {name} {value} ({change})");
+                println!("{line}");
+                if before.is_none_or(|&before| value > before + before / 50) {
+                    grown.push(line);
+                }
+            }
+        }
+        assert!(
+            grown.is_empty(),
+            "grew by more than 2 % (GRIDEL_RECORD_BOARDS=1 records them):\n{}",
+            grown.join("\n")
+        );
+    }
+}
+
+fn path() -> PathBuf {
+    repository().join("fixtures/board.json")
+}
