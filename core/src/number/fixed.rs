@@ -447,7 +447,8 @@ impl Number for Fixed {
         // d . d has 60 fraction bits: as 29, 1 to 3 lies in [2^29, 2^31).
         let norm2 = (Self::dot(d, d).0 >> 31) as u32;
         let up = norm2.leading_zeros().saturating_sub(1);
-        Fixed((reciprocal(norm2 << (up & 1)) >> (1 - (up & 1))) as i32)
+        // 2^61 over 2^29 to 2^31 is 2^32 to 2^30; a ratio has 30 bits.
+        Fixed((reciprocal(norm2 << (up & 1)) >> (2 - (up & 1))) as i32)
     }
 
     fn normalize(v: [Self; 3]) -> ([Self; 3], Self) {

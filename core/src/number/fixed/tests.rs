@@ -16,6 +16,20 @@ fn roots_are_the_nearest_integers() {
 }
 
 #[test]
+fn reciprocals_are_right_to_28_bits() {
+    for d in (1_u32 << 30..1 << 31)
+        .step_by(997)
+        .chain([1 << 30, (1 << 31) - 1])
+    {
+        let exact = f64::powi(2.0, 61) / f64::from(d);
+        assert!(
+            (f64::from(reciprocal(d)) / exact - 1.0).abs() < f64::powi(2.0, -28),
+            "{d}"
+        );
+    }
+}
+
+#[test]
 fn rounding_is_the_same_on_both_sides_of_zero() {
     for product in -100_000..100_000_i64 {
         for bits in 1..8 {
@@ -97,6 +111,14 @@ proptest! {
                 prop_assert!((f64::from(slope.0) - exact).abs() <= 4.0, "{slope:?} {exact}");
             }
         }
+    }
+
+    #[test]
+    fn norms_are_inverted(x in -(1 << 30)..=1 << 30_i32, y in -(1 << 30)..=1 << 30_i32) {
+        let slopes = [Fixed(x), Fixed::ONE, Fixed(y)];
+        let norm2: f64 = slopes.iter().map(|slope| slope.ratio_to_f64().powi(2)).sum();
+        let found = Fixed::recip_norm2(slopes).ratio_to_f64();
+        prop_assert!((found * norm2 - 1.0).abs() < f64::powi(2.0, -27), "{found} {norm2}");
     }
 
     /// Ratios by ratios of products, as kernels scale them.
