@@ -24,7 +24,7 @@ const QUICK: Amount = Amount {
 };
 const FULL: Amount = Amount {
     rays: 1_000_000,
-    list_tests: 20_000_000_000,
+    list_tests: 4_000_000_000,
 };
 
 fn compare_scene(name: &str, scene: &Scene, lattice_bits: u8, amount: Amount) {
