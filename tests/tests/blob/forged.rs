@@ -1,0 +1,211 @@
+//! Headers, section tables and hierarchies that lie, with a checksum that fits.
+
+use super::{Fate, sealed, small_blob, speaks, works};
+use gridel_core::accel::Link;
+use gridel_core::blob::SectionKind;
+use gridel_core::blob::record::{FlaggedPair, Header, Pair, SectionEntry};
+use std::mem::offset_of;
+
+/// A forged header must be refused.
+fn refuses_header(what: &str, forge: impl Fn(&mut Header)) {
+    let mut bytes = small_blob(24);
+    let (start, _) = bytes.split_at_mut(size_of::<Header>());
+    let mut header: Header = bytemuck::pod_read_unaligned(start);
+    forge(&mut header);
+    start.copy_from_slice(bytemuck::bytes_of(&header));
+    let error = sealed(&bytes).scene().err();
+    eprintln!(
+        "{what}: {}",
+        error.map_or(String::from("ACCEPTED"), |e| e.to_string())
+    );
+    assert!(error.is_some(), "{what} was accepted");
+}
+
+#[test]
+fn forged_headers_are_refused() {
+    refuses_header("stack depth 0", |h| (h.stack_depth, h.stack_bytes) = (0, 0));
+    refuses_header("stack depth 255", |h| {
+        (h.stack_depth, h.stack_bytes) = (255, 255 * 12)
+    });
+    refuses_header("stack depth one too large", |h| {
+        h.stack_depth += 1;
+        h.stack_bytes += 12;
+    });
+    refuses_header("too few stack bytes", |h| h.stack_bytes -= 1);
+    refuses_header("no primitives", |h| h.primitives = 0);
+    refuses_header("4294967295 objects", |h| h.objects = u32::MAX);
+    refuses_header("no objects", |h| h.objects = 0);
+    refuses_header("65535 sections", |h| h.section_count = u16::MAX);
+    refuses_header("another byte order", |h| {
+        h.endianness = h.endianness.swap_bytes()
+    });
+    refuses_header("version 2", |h| h.version = 2);
+    refuses_header("unknown effects", |h| h.effects |= 1 << 31);
+    refuses_header("unknown structures", |h| h.structures |= 1 << 31);
+    refuses_header("a missing effect", |h| h.effects = 0);
+    refuses_header("longest leaf 0", |h| h.longest_leaf = 0);
+    refuses_header("a box of -32768", |h| h.bounds.0[1][0] = i16::MIN);
+    refuses_header("an inverted box", |h| h.bounds.0[2].reverse());
+    refuses_header("an empty box", |h| h.bounds.0 = [[0; 2]; 3]);
+    for (axis, value) in [(0, f64::NAN), (1, f64::INFINITY), (2, f64::NEG_INFINITY)] {
+        refuses_header("an origin that is not finite", |h| h.origin[axis] = value);
+    }
+    refuses_header("unit exponent -32768", |h| h.unit_exponent = i16::MIN);
+    refuses_header("unit exponent 32767", |h| h.unit_exponent = i16::MAX);
+}
+
+/// Primitives that the lattice took keep their numbers, so a scene may count more than there are.
+#[test]
+fn primitives_that_have_no_record_are_harmless() {
+    let mut bytes = small_blob(24);
+    let place = offset_of!(Header, primitives);
+    bytes[place..place + 4].copy_from_slice(&u32::MAX.to_le_bytes());
+    works(&sealed(&bytes).scene().expect("a scene"), 50);
+}
+
+#[test]
+fn odd_but_finite_origins_are_harmless() {
+    for value in [
+        0.0,
+        -0.0,
+        f64::MIN_POSITIVE / 4.0,
+        f64::MAX,
+        -f64::MAX,
+        1e-300,
+    ] {
+        let mut bytes = small_blob(24);
+        let place = offset_of!(Header, origin);
+        bytes[place..place + 8].copy_from_slice(&value.to_le_bytes());
+        works(&sealed(&bytes).scene().expect("a scene"), 50);
+    }
+}
+
+/// Where a section lies, and its entry's place in the table.
+fn section(bytes: &[u8], kind: SectionKind) -> (usize, SectionEntry) {
+    let header: Header = bytemuck::pod_read_unaligned(&bytes[..size_of::<Header>()]);
+    let places = (0..usize::from(header.section_count)).map(|index| 96 + 16 * index);
+    let mut entries = places.map(|place| {
+        let entry: SectionEntry = bytemuck::pod_read_unaligned(&bytes[place..place + 16]);
+        (place, entry)
+    });
+    entries
+        .find(|(_, entry)| entry.kind == kind as u16)
+        .expect("the section")
+}
+
+#[test]
+fn forged_sections_are_refused() {
+    let bytes = small_blob(24);
+    for kind in SectionKind::ALL {
+        let (place, entry) = section(&bytes, kind);
+        let forgeries = [
+            SectionEntry {
+                count: u32::MAX,
+                ..entry
+            },
+            SectionEntry {
+                count: (u32::MAX / u32::from(entry.stride)).saturating_add(1),
+                ..entry
+            },
+            SectionEntry {
+                count: entry.count + 1,
+                ..entry
+            },
+            SectionEntry {
+                count: entry.count - 1,
+                ..entry
+            },
+            SectionEntry { stride: 0, ..entry },
+            SectionEntry {
+                stride: u16::MAX,
+                ..entry
+            },
+            SectionEntry {
+                stride: entry.stride + 1,
+                ..entry
+            },
+            SectionEntry { offset: 0, ..entry },
+            SectionEntry {
+                offset: u32::MAX - 15,
+                ..entry
+            },
+            SectionEntry {
+                offset: entry.offset + 16,
+                ..entry
+            },
+            SectionEntry { kind: 0, ..entry },
+            SectionEntry {
+                kind: u16::MAX,
+                ..entry
+            },
+            SectionEntry {
+                kind: entry.kind + 1,
+                ..entry
+            },
+        ];
+        for forged in forgeries {
+            let mut changed = bytes.clone();
+            changed[place..place + 16].copy_from_slice(bytemuck::bytes_of(&forged));
+            let blob = sealed(&changed);
+            let error = blob.scene().err();
+            assert!(error.is_some(), "{kind:?}: {forged:?}");
+            error.iter().for_each(speaks);
+        }
+    }
+}
+
+/// Children that lead to their own pair, backwards, beyond the end, or past a pair or a leaf.
+#[test]
+fn cycles_and_orphans_are_refused() {
+    let bytes = small_blob(24);
+    let mut fate = Fate::default();
+    let mut forge = |place: usize, forged: u32| {
+        let mut changed = bytes.clone();
+        changed[place..place + 4].copy_from_slice(&forged.to_le_bytes());
+        if changed != bytes {
+            fate.of(&sealed(&changed), 100);
+        }
+    };
+    let word_at = |place: usize| bytemuck::pod_read_unaligned::<u32>(&bytes[place..place + 4]);
+    let pairs = section(&bytes, SectionKind::Pairs).1;
+    for index in 0..pairs.count {
+        let end = pairs.offset as usize + (index as usize + 1) * size_of::<Pair>();
+        for place in [end - 8, end - 4] {
+            let word = word_at(place);
+            for number in [
+                0,
+                index,
+                index.wrapping_sub(1),
+                word + 1,
+                word ^ 1 << 31,
+                pairs.count,
+            ] {
+                forge(place, number);
+                forge(place, number | 1 << 31);
+            }
+            forge(place, u32::MAX);
+        }
+    }
+    let flagged = section(&bytes, SectionKind::FlaggedPairs).1;
+    for index in 0..flagged.count {
+        let end = flagged.offset as usize + (index as usize + 1) * size_of::<FlaggedPair>();
+        let word = word_at(end - 4);
+        let next = Link(word).first_pair() + 1;
+        for first in [
+            0,
+            index,
+            index.wrapping_sub(1) & 0xff_ffff,
+            next,
+            flagged.count,
+            0xff_ffff,
+        ] {
+            for (left, right) in [(false, false), (true, false), (false, true), (true, true)] {
+                let link = Link::new(first, left, right).with_owners(word >> 26);
+                forge(end - 4, link.0);
+            }
+        }
+    }
+    eprintln!("forged links: {fate:?}");
+    // A leaf's pair may count no pairs before it and mean the same.
+    assert!(fate.refused > 20 * fate.accepted);
+}
