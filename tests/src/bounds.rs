@@ -5,6 +5,7 @@
 //! are counted in sub-steps, 2^-13 of a unit. An answer is off by a length if it is right for a shape
 //! that is larger or smaller by that length (see [`crate::solid`]).
 
+use crate::solid::Normal;
 use gridel_core::{Format, Number};
 
 /// Allowed errors of one shape.
@@ -68,11 +69,17 @@ pub fn length_step<N: Number>(magnitude: f64) -> f64 {
     }
 }
 
-/// The unit that errors of normals are counted in.
-pub fn ratio_step<N: Number>() -> f64 {
-    match N::FORMAT {
+/// The unit that errors of a normal are counted in.
+pub fn normal_step<N: Number>(normal: &Normal) -> f64 {
+    let step = match N::FORMAT {
         Format::Fixed => f64::powi(2.0, -28),
         Format::F32 => f64::powi(2.0, -24),
         Format::F64 => f64::powi(2.0, -53),
-    }
+    };
+    // The angle of a small cone comes from lengths of few sub-steps.
+    let angle = match N::FORMAT {
+        Format::Fixed => f64::powi(2.0, -13) / normal.size,
+        _ => 0.0,
+    };
+    step * normal.condition + angle
 }

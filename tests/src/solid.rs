@@ -51,6 +51,25 @@ impl Line {
     }
 }
 
+/// A normal, and what an error of it is proportional to.
+pub struct Normal {
+    pub exact: Vector,
+    /// How often coordinates are larger than the length that the direction is taken from.
+    pub condition: f64,
+    /// The length that the angle of a cone is taken from, half of its slanted side.
+    pub size: f64,
+}
+
+impl Normal {
+    fn flat(exact: Vector) -> Self {
+        Self {
+            exact,
+            condition: 1.0,
+            size: f64::INFINITY,
+        }
+    }
+}
+
 /// Where a line enters and leaves.
 type Span = Option<(Real, Real)>;
 
@@ -94,21 +113,9 @@ fn roots(a: &Real, b: &Real, c: &Real) -> Span {
 }
 
 impl Solid {
-    /// The name of the shape's kernel and class of parameters.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Solid::Sphere { .. } => "sphere",
-            Solid::Box { .. } => "box",
-            Solid::Disc { .. } => "disc",
-            Solid::Triangle(_) => "triangle",
-            Solid::Cone {
-                base_radius,
-                apex_radius,
-                ..
-            } if base_radius == apex_radius => "cylinder",
-            Solid::Cone { apex_radius, .. } if *apex_radius == 0.0 => "cone",
-            Solid::Cone { .. } => "frustum",
-        }
+    /// Whether the shape encloses nothing.
+    pub fn is_flat(&self) -> bool {
+        matches!(self, Solid::Disc { .. } | Solid::Triangle(_))
     }
 
     /// The crossing with the shape, moved outward by a length (inward by a negative one).
@@ -225,25 +232,84 @@ impl Solid {
         })
     }
 
-    /// The outward (or front) normal at a point of the surface, and the largest length that the
-    /// normal's error there is proportional to, over the one that divides it.
-    ///
-    /// Of a solid with several faces the one whose distance from the point is least.
-    pub fn normals(&self, point: [f64; 3]) -> Vec<(Vector, f64)> {
+    /// By how much the shape would have to grow for a point to be on each of its faces; the point
+    /// is on the surface where the largest is 0. Of flat shapes, their plane alone.
+    pub fn excesses(&self, point: [f64; 3]) -> Vec<f64> {
+        let p = vector(point);
+        let mut excesses: Vec<f64> = match self {
+            Solid::Sphere { center, radius } => {
+                vec![(norm(&minus(&p, &vector(*center))) - Real::of(*radius)).to_f64()]
+            }
+            Solid::Box { lowest, highest } => (0..3)
+                .flat_map(|k| [lowest[k] - point[k], point[k] - highest[k]])
+                .collect(),
+            Solid::Disc { center, normal, .. } => {
+                let apart = minus(&p, &vector(*center));
+                vec![dot(&unit(&vector(*normal)), &apart).abs().to_f64()]
+            }
+            Solid::Triangle([a, ..]) => self.normals(point).first().map_or(Vec::new(), |normal| {
+                vec![dot(&normal.exact, &minus(&p, &vector(*a))).abs().to_f64()]
+            }),
+            Solid::Cone { .. } => self.frame().map_or(Vec::new(), |frame| {
+                let q = minus(&p, &frame.middle);
+                let y = dot(&q, &frame.axis);
+                let distance = norm(&along(&q, &-&y, &frame.axis));
+                let mantle = &frame.cos * (distance - &frame.radius) + &frame.sin * &y;
+                [mantle, &y - &frame.half_height, -y - &frame.half_height]
+                    .map(|x| x.to_f64())
+                    .to_vec()
+            }),
+        };
+        excesses.sort_by(|a, b| b.total_cmp(a));
+        excesses
+    }
+
+    /// How far a point of the surface is from a rim or a corner, at least; infinite on shapes that
+    /// have none, and on flat ones, which have no second face to meet there.
+    pub fn rim_distance(&self, point: [f64; 3]) -> f64 {
+        match self {
+            Solid::Box { .. } | Solid::Cone { .. } => -self.excesses(point)[1],
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// How many times thinner a cone is at a point than where it is thickest, up to a million times;
+    /// 1 for other shapes.
+    pub fn taper(&self, point: [f64; 3]) -> f64 {
+        match (self, self.frame()) {
+            (
+                Solid::Cone {
+                    base_radius,
+                    apex_radius,
+                    ..
+                },
+                Some(frame),
+            ) => {
+                let y = dot(&minus(&vector(point), &frame.middle), &frame.axis);
+                let radius = (&frame.radius - &frame.sin * y / &frame.cos).to_f64();
+                let widest = base_radius.max(*apex_radius);
+                (widest / radius.max(1e-300)).clamp(1.0, 1e6)
+            }
+            _ => 1.0,
+        }
+    }
+
+    /// The outward (or front) normals at a point, one for each face that it may be on.
+    pub fn normals(&self, point: [f64; 3]) -> Vec<Normal> {
         let p = vector(point);
         match self {
-            Solid::Sphere { center, .. } => vec![(unit(&minus(&p, &vector(*center))), 1.0)],
+            Solid::Sphere { center, .. } => vec![Normal::flat(unit(&minus(&p, &vector(*center))))],
             Solid::Box { .. } => (0..6)
                 .map(|face| {
                     let mut normal = [0.0; 3];
                     normal[face / 2] = if face % 2 == 0 { -1.0 } else { 1.0 };
-                    (vector(normal), 1.0)
+                    Normal::flat(vector(normal))
                 })
                 .collect(),
-            Solid::Disc { normal, .. } => vec![(unit(&vector(*normal)), 1.0)],
+            Solid::Disc { normal, .. } => vec![Normal::flat(unit(&vector(*normal)))],
             Solid::Triangle([a, b, c]) => {
                 let [a, b, c] = [*a, *b, *c].map(vector);
-                vec![(unit(&cross(&minus(&b, &a), &minus(&c, &a))), 1.0)]
+                vec![Normal::flat(unit(&cross(&minus(&b, &a), &minus(&c, &a))))]
             }
             Solid::Cone { .. } => {
                 let Some(frame) = self.frame() else {
@@ -256,10 +322,15 @@ impl Solid {
                 let radial = scaled(&unit(&across), &frame.cos);
                 let mantle = along(&radial, &frame.sin, &frame.axis);
                 let condition = 1.0 + norm(&q).to_f64() / distance.max(1e-300);
+                let size = (&frame.half_height / &frame.cos).to_f64();
                 vec![
-                    (mantle, condition),
-                    (frame.axis.clone(), 1.0),
-                    (frame.axis.map(|x| -x), 1.0),
+                    Normal {
+                        exact: mantle,
+                        condition,
+                        size,
+                    },
+                    Normal::flat(frame.axis.clone()),
+                    Normal::flat(frame.axis.map(|x| -x)),
                 ]
             }
         }

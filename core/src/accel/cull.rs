@@ -179,3 +179,6 @@ pub(crate) type FloatCulling = super::lanes::Lanes;
     all(target_arch = "wasm32", target_feature = "simd128")
 )))]
 pub(crate) type FloatCulling = Cull;
+
+#[cfg(test)]
+mod tests;

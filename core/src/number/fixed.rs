@@ -273,10 +273,11 @@ impl Number for Fixed {
         if exponent >= 22 << RATIO_BITS {
             return Fixed(0);
         }
-        let binary = (((exponent >> 5) * LOG2_E) >> (RATIO_BITS - 5)) as i64;
+        let fraction = exponent & ((1 << RATIO_BITS) - 1);
+        let binary = (exponent >> RATIO_BITS) * LOG2_E + ((fraction * LOG2_E) >> RATIO_BITS);
         let (whole, part) = (
             (binary >> RATIO_BITS) as u32,
-            Fixed((binary & ((1 << 30) - 1)) as i32),
+            Fixed((binary & ((1 << RATIO_BITS) - 1)) as i32),
         );
         // 2^-x on [0, 1] by Horner's rule over the Taylor series of e^(-x ln 2) up to the tenth
         // power, whose remainder is below 2^-30.
@@ -446,7 +447,8 @@ impl Number for Fixed {
         // d . d has 60 fraction bits: as 29, 1 to 3 lies in [2^29, 2^31).
         let norm2 = (Self::dot(d, d).0 >> 31) as u32;
         let up = norm2.leading_zeros().saturating_sub(1);
-        Fixed((reciprocal(norm2 << (up & 1)) >> (1 - (up & 1))) as i32)
+        // 2^61 over 2^29 to 2^31 is 2^32 to 2^30; a ratio has 30 bits.
+        Fixed((reciprocal(norm2 << (up & 1)) >> (2 - (up & 1))) as i32)
     }
 
     fn normalize(v: [Self; 3]) -> ([Self; 3], Self) {
@@ -518,3 +520,6 @@ impl Number for Fixed {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -381,3 +381,6 @@ float_number!(
     |x: f64| if x.abs() < SMALLEST_F64 { 0.0 } else { x },
     |v: [i64; 3]| v.map(|component| component as f64)
 );
+
+#[cfg(test)]
+mod tests;

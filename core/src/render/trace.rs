@@ -289,7 +289,9 @@ impl Loop<'_, '_> {
             return Color::BLACK;
         }
         let mut arriving = Color::radiance(light.color);
-        if effects.contains(Effects::SHADOW) {
+        // No material says so, as with the other effects: the scene itself may do without shadows.
+        let shadows = self.scene.effects().contains(Effects::SHADOW);
+        if effects.contains(Effects::SHADOW) && shadows {
             let shadow = Shadow {
                 origin,
                 way,

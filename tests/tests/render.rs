@@ -1,0 +1,349 @@
+//! Pictures: the same bytes however they are made, and what physics demands of them.
+//!
+//! `fixtures/hashes.toml` holds a hash of a small picture of every fixture in every number format.
+//! After a change that is meant to change pictures, `GRIDEL_BLESS=1 cargo test -p gridel-tests
+//! --test render` writes them anew; the difference belongs into the same commit.
+
+use glam::DVec3;
+use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::render::MAX_RAY_DEPTH;
+use gridel_core::{
+    Effects, Flagged, Format, NoCount, Number, Renderer, Rgb888, Scene, Settings, Structure,
+    Workspace,
+};
+use gridel_host::blob::Blob;
+use gridel_host::render::{Job, Picture, render};
+use gridel_host::scene::{Camera, Diffuse, Light, Material, Scene as SceneFile, Shape};
+use gridel_tests::{every_format, scenes};
+use std::collections::BTreeMap;
+
+fn small(scene: &Scene<'_>) -> Settings {
+    Settings {
+        width: 48,
+        height: 36,
+        samples: 2,
+        ..Settings::of(scene)
+    }
+}
+
+fn job(format: Format, settings: Settings) -> Job {
+    Job {
+        format,
+        structure: Structure::Flagged,
+        settings,
+        rows: 0..settings.height,
+        count: false,
+    }
+}
+
+fn picture(scene: &Scene<'_>, job: &Job) -> Picture {
+    render(scene, job, &|| ()).expect("a picture")
+}
+
+/// FNV-1a with 64 bits over the channels.
+fn hash(pixels: &[[u16; 3]]) -> String {
+    let bytes = pixels
+        .iter()
+        .flatten()
+        .flat_map(|channel| channel.to_le_bytes());
+    let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    });
+    format!("{hash:016x}")
+}
+
+type Hashes = BTreeMap<String, BTreeMap<String, String>>;
+
+#[test]
+fn fixtures_have_their_recorded_hashes() {
+    let path = scenes::fixture_folder().join("hashes.toml");
+    let mut hashes = Hashes::new();
+    for (name, scene) in scenes::fixtures() {
+        let blob = scenes::blob(&scene, 24);
+        let scene = blob.scene().expect("a scene");
+        let of = |format: Format| {
+            let hash = hash(&picture(&scene, &job(format, small(&scene))).pixels);
+            (String::from(format.name()), hash)
+        };
+        hashes.insert(name, Format::ALL.map(of).into());
+    }
+    if std::env::var_os("GRIDEL_BLESS").is_some() {
+        let mut text = String::from("# Written by the test `render`, which says how and when.\n");
+        for (name, formats) in &hashes {
+            text += &format!("\n[{name}]\n");
+            text.extend(
+                formats
+                    .iter()
+                    .map(|(format, hash)| format!("{format} = \"{hash}\"\n")),
+            );
+        }
+        std::fs::write(&path, text).expect("the hashes were written");
+    }
+    let text = std::fs::read_to_string(&path).expect("fixtures/hashes.toml");
+    let recorded: Hashes = toml::from_str(&text).expect("hashes");
+    assert_eq!(
+        hashes, recorded,
+        "set GRIDEL_BLESS=1 if pictures were meant to change"
+    );
+}
+
+#[test]
+fn threads_rows_and_structures_do_not_matter() {
+    for (name, scene) in scenes::fixtures() {
+        let blob = scenes::blob(&scene, 24);
+        let scene = blob.scene().expect("a scene");
+        for format in Format::ALL {
+            let whole = job(format, small(&scene));
+            let with_threads = |threads: usize, job: &Job| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+                pool.expect("threads")
+                    .install(|| picture(&scene, job))
+                    .pixels
+            };
+            let one = with_threads(1, &whole);
+            assert!(
+                one == with_threads(2, &whole),
+                "{name}, {format:?}: threads"
+            );
+            let part = Job {
+                rows: 7..20,
+                ..whole.clone()
+            };
+            let rows = 7 * 48..20 * 48;
+            assert!(
+                one[rows] == with_threads(2, &part),
+                "{name}, {format:?}: rows"
+            );
+            let plain = Job {
+                structure: Structure::Bvh,
+                count: true,
+                ..whole
+            };
+            assert!(
+                one == with_threads(2, &plain),
+                "{name}, {format:?}: bvh, counted"
+            );
+        }
+    }
+}
+
+/// No format is far from another, and none has a black pixel where another has light: a NaN would
+/// be black.
+#[test]
+fn formats_agree() {
+    for (name, scene) in scenes::fixtures() {
+        let blob = scenes::blob(&scene, 24);
+        let scene = blob.scene().expect("a scene");
+        let [fixed, f32, f64] =
+            Format::ALL.map(|format| picture(&scene, &job(format, small(&scene))).pixels);
+        for (format, other) in [("fixed", fixed), ("f32", f32)] {
+            let apart = |a: u16, b: u16| f64::from(a.abs_diff(b)) / 65_535.0;
+            let channels = other.iter().flatten().zip(f64.iter().flatten());
+            let mean = channels.map(|(&a, &b)| apart(a, b)).sum::<f64>() / (3 * f64.len()) as f64;
+            let dark = |pixel: &[u16; 3]| pixel.iter().all(|&channel| channel < 8);
+            let lost = other
+                .iter()
+                .zip(&f64)
+                .filter(|(a, b)| dark(a) != dark(b))
+                .count();
+            eprintln!(
+                "{name:16} {format:5} against f64: mean difference {mean:.2e}, {lost} pixels lost"
+            );
+            assert!(mean < 0.01 && lost <= 4, "{name}, {format}");
+        }
+    }
+}
+
+/// A floor and a ball of one material, under a light that casts shadows or does not.
+fn ball_on_floor(material: Material, shadows: bool) -> Blob {
+    let ball = Shape::Sphere {
+        center: DVec3::new(0.0, 1.0, 0.0),
+        radius: 1.0,
+    };
+    let floor = Shape::Box {
+        min: DVec3::new(-4.0, -0.5, -4.0),
+        max: DVec3::new(4.0, 0.0, 4.0),
+    };
+    let mut scene = scenes::of([ball, floor]);
+    scene.materials = vec![material];
+    scene.lights = vec![Light::Point {
+        position: DVec3::new(3.0, 6.0, 4.0),
+        color: [0.9, 0.8, 0.7],
+    }];
+    scene.background = [0.2, 0.3, 0.5];
+    scene.ambient = [0.1; 3];
+    scene.render.shadows = shadows;
+    scenes::blob(&scene, 24)
+}
+
+#[test]
+fn without_effects_there_are_no_secondary_rays() {
+    let blob = ball_on_floor(Material::default(), false);
+    let scene = blob.scene().expect("a scene");
+    assert_eq!(scene.effects(), Effects::NONE);
+    for format in Format::ALL {
+        let counted = Job {
+            count: true,
+            ..job(format, small(&scene))
+        };
+        let counters = picture(&scene, &counted).counters.expect("counters");
+        assert_eq!((counters.primary, counters.secondary()), (48 * 36 * 2, 0));
+    }
+}
+
+fn bytes<N: Number, const EFFECTS: u32>(scene: &Scene<'_>) -> Vec<[u8; 3]> {
+    let settings = small(scene);
+    let renderer = Renderer::<N, Flagged, EFFECTS>::new(scene, settings).expect("a renderer");
+    let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let mut pixels = Vec::new();
+    let size = [settings.width, settings.height];
+    let sink = |_, _, pixel: Rgb888| pixels.push(pixel.0);
+    renderer.rectangle([0, 0], size, &mut space.as_view(), &mut NoCount, sink);
+    pixels
+}
+
+/// A picture made with exactly its scene's effects is the one made with all.
+fn unused_effects_are_free<const EFFECTS: u32>(material: Material, shadows: bool) {
+    fn compare<N: Number, const EFFECTS: u32>(scene: &Scene<'_>) {
+        assert!(bytes::<N, EFFECTS>(scene) == bytes::<N, { Effects::ALL.0 }>(scene));
+    }
+    let blob = ball_on_floor(material, shadows);
+    let scene = blob.scene().expect("a scene");
+    assert_eq!(scene.effects(), Effects(EFFECTS));
+    compare::<gridel_core::Fixed, EFFECTS>(&scene);
+    compare::<f32, EFFECTS>(&scene);
+    compare::<f64, EFFECTS>(&scene);
+}
+
+#[test]
+fn unused_effects_change_no_byte() {
+    const SHADOW: u32 = Effects::SHADOW.0;
+    const CHECKERED: u32 = Effects::CHECKER.0;
+    const GLOSSY: u32 = Effects::HIGHLIGHT.0;
+    const MIRRORED: u32 = Effects::MIRROR.0 | SHADOW;
+    const CLEAR: u32 = Effects::GLASS.0;
+    const TINTED: u32 = Effects::GLASS.0 | Effects::ABSORPTION.0 | SHADOW;
+    let plain = Material::default;
+    unused_effects_are_free::<0>(plain(), false);
+    unused_effects_are_free::<SHADOW>(plain(), true);
+    let checker = Diffuse::Checker {
+        even: [0.9; 3],
+        odd: [0.1, 0.2, 0.3],
+        size: 0.7,
+        origin: DVec3::splat(0.1),
+    };
+    unused_effects_are_free::<CHECKERED>(
+        Material {
+            diffuse: checker,
+            ..plain()
+        },
+        false,
+    );
+    unused_effects_are_free::<GLOSSY>(
+        Material {
+            highlight: [0.6; 3],
+            ..plain()
+        },
+        false,
+    );
+    unused_effects_are_free::<MIRRORED>(
+        Material {
+            mirror: [0.5; 3],
+            ..plain()
+        },
+        true,
+    );
+    let glass = Material {
+        transmit: [0.9; 3],
+        ..plain()
+    };
+    unused_effects_are_free::<CLEAR>(glass.clone(), false);
+    let absorption = [0.3, 0.1, 0.6];
+    unused_effects_are_free::<TINTED>(
+        Material {
+            absorption,
+            ..glass
+        },
+        true,
+    );
+}
+
+/// A clear glass ball in white surroundings, which fills the picture.
+fn furnace() -> SceneFile {
+    let mut scene = scenes::of([Shape::Sphere {
+        center: DVec3::new(0.3, -0.2, 0.1),
+        radius: 1.0,
+    }]);
+    scene.materials = vec![Material {
+        diffuse: Diffuse::Plain([0.0; 3]),
+        transmit: [1.0; 3],
+        ior: 1.5,
+        ..Material::default()
+    }];
+    scene.background = [1.0; 3];
+    scene.camera = Some(Camera {
+        eye: DVec3::new(0.3, -0.2, 40.0),
+        target: DVec3::new(0.3, -0.2, 0.1),
+        up: DVec3::Y,
+        // Up to 0.9 of the ball's radius in the picture's corners.
+        fov_degrees: 2.0 * (0.63_f64 / 39.9).atan().to_degrees(),
+    });
+    scene.render.depth = 16;
+    scene.render.cutoff = 0.0;
+    scene
+}
+
+#[test]
+fn glass_in_white_surroundings_is_white() {
+    let blob = scenes::blob(&furnace(), 24);
+    let scene = blob.scene().expect("a scene");
+    let settings = Settings {
+        width: 48,
+        height: 48,
+        samples: 4,
+        ..Settings::of(&scene)
+    };
+    for format in Format::ALL {
+        let pixels = picture(&scene, &job(format, settings)).pixels;
+        let darkest = pixels.iter().flatten().min().copied().unwrap_or(0);
+        let lost = 1.0 - f64::from(darkest) / 65_535.0;
+        eprintln!("white furnace, {}: at most {lost:.1e} lost", format.name());
+        assert!(lost < 1e-3, "{}", format.name());
+    }
+}
+
+/// More depth never makes a picture darker: light is only added.
+#[test]
+fn depth_only_adds_light() {
+    let mut scene = furnace();
+    scene.materials[0].absorption = [0.05, 0.1, 0.2];
+    scene.objects.extend(
+        scenes::of([Shape::Box {
+            min: DVec3::new(-3.0, -3.0, -5.0),
+            max: DVec3::new(3.0, 3.0, -4.0),
+        }])
+        .objects,
+    );
+    let blob = scenes::blob(&scene, 24);
+    let scene = blob.scene().expect("a scene");
+    fn monotone<N: Number>(scene: &Scene<'_>) {
+        let mut last = vec![[0; 3]; 48 * 36];
+        for depth in 0..=16 {
+            let settings = Settings {
+                depth,
+                ..small(scene)
+            };
+            let pixels = picture(scene, &job(N::FORMAT, settings)).pixels;
+            // Floats round sums; one step of 65,535 is forgiven.
+            let fell = pixels
+                .iter()
+                .flatten()
+                .zip(last.iter().flatten())
+                .any(|(&now, &then)| now + 1 < then);
+            assert!(!fell, "{}, depth {depth}", N::FORMAT.name());
+            last = pixels;
+        }
+        assert!(last.iter().flatten().any(|&channel| channel > 30_000));
+    }
+    every_format!(monotone(&scene));
+}
