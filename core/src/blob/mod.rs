@@ -160,17 +160,19 @@ impl<'a> Scene<'a> {
 pub fn checksum(blob: &[u8]) -> u32 {
     const OWN_WORD: usize = core::mem::offset_of!(Header, checksum) / 4;
     let mut state: u32 = 0x811c_9dc5;
-    for (index, word) in blob.chunks(4).enumerate() {
-        let mut bytes = [0; 4];
-        for (byte, &source) in bytes.iter_mut().zip(word) {
-            *byte = source;
-        }
-        let word = if index == OWN_WORD {
-            0
-        } else {
-            u32::from_le_bytes(bytes)
-        };
-        state = (state ^ word).wrapping_mul(0x0100_0193);
+    let mix = |state: u32, word: u32| (state ^ word).wrapping_mul(0x0100_0193);
+    let (words, rest) = blob.as_chunks();
+    for (index, &word) in words.iter().enumerate() {
+        let own = index == OWN_WORD;
+        state = mix(state, if own { 0 } else { u32::from_le_bytes(word) });
+    }
+    if !rest.is_empty() {
+        // The last bytes as a word that ends in zeros.
+        let last = rest
+            .iter()
+            .rev()
+            .fold(0, |word, &byte| word << 8 | u32::from(byte));
+        state = mix(state, last);
     }
     state
 }
