@@ -38,7 +38,9 @@ fn main() {
         || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/scenes")),
         PathBuf::from,
     );
-    println!("median Mrays/s of {REPEATS} interleaved repeats, one thread; (x) is the ratio to obvhs Bvh2");
+    println!(
+        "median Mrays/s of {REPEATS} interleaved repeats, one thread; (x) is the ratio to obvhs Bvh2"
+    );
     for name in ["suzanne", "stanford-bunny"] {
         let path = root.join(format!("meshes/{name}.obj"));
         if !path.exists() {
@@ -52,14 +54,23 @@ fn main() {
 }
 
 fn compare(name: &str, path: &std::path::Path, lattice_bits: u8) {
-    let scene = scene::load(path, &scene::MoleculeOptions::default()).expect("a mesh").scene;
+    let scene = scene::load(path, &scene::MoleculeOptions::default())
+        .expect("a mesh")
+        .scene;
     let options = Options {
         lattice_bits,
         structures: vec![Structure::Bvh, Structure::Flagged],
         ..Options::default()
     };
     let compiled = compile(&scene, &options).expect("a blob");
-    let flagged_only = compile(&scene, &Options { lattice_bits, ..Options::default() }).expect("a blob");
+    let flagged_only = compile(
+        &scene,
+        &Options {
+            lattice_bits,
+            ..Options::default()
+        },
+    )
+    .expect("a blob");
     let blob = compiled.blob.scene().expect("a sound blob");
     let started = Instant::now();
     flagged_only.blob.scene().expect("a sound blob");
@@ -69,17 +80,31 @@ fn compare(name: &str, path: &std::path::Path, lattice_bits: u8) {
         .objects
         .iter()
         .filter_map(|object| match &object.shape {
-            Shape::Mesh { vertices, triangles } => Some((vertices, triangles)),
+            Shape::Mesh {
+                vertices,
+                triangles,
+            } => Some((vertices, triangles)),
             _ => None,
         })
         .flat_map(|(vertices, triangles)| {
             let vertex = |v: u32| Vec3A::from(vertices[v as usize].as_vec3());
-            triangles.iter().map(move |t| Triangle { v0: vertex(t[0]), v1: vertex(t[1]), v2: vertex(t[2]) })
+            triangles.iter().map(move |t| Triangle {
+                v0: vertex(t[0]),
+                v1: vertex(t[1]),
+                v2: vertex(t[2]),
+            })
         })
         .collect();
-    let peer = build_bvh2_from_tris(&triangles, BvhBuildParams::medium_build(), &mut Duration::default());
-    let ordered: Vec<Triangle> =
-        peer.primitive_indices.iter().map(|&index| triangles[index as usize]).collect();
+    let peer = build_bvh2_from_tris(
+        &triangles,
+        BvhBuildParams::medium_build(),
+        &mut Duration::default(),
+    );
+    let ordered: Vec<Triangle> = peer
+        .primitive_indices
+        .iter()
+        .map(|&index| triangles[index as usize])
+        .collect();
     println!(
         "\n{name}: {} triangles, {lattice_bits} bits; flagged blob {:.1} bytes a triangle, from_bytes {load:?}",
         triangles.len(),
@@ -87,14 +112,33 @@ fn compare(name: &str, path: &std::path::Path, lattice_bits: u8) {
     );
 
     let contenders: [Contender<'_>; 3] = [
-        ("obvhs Bvh2", Box::new(|rays, any| trace_peer(&peer, &ordered, rays, any))),
-        ("gridel bvh f32", Box::new(|rays, any| trace::<Bvh>(&blob, rays, any))),
-        ("gridel flagged f32", Box::new(|rays, any| trace::<Flagged>(&blob, rays, any))),
+        (
+            "obvhs Bvh2",
+            Box::new(|rays, any| trace_peer(&peer, &ordered, rays, any)),
+        ),
+        (
+            "gridel bvh f32",
+            Box::new(|rays, any| trace::<Bvh>(&blob, rays, any)),
+        ),
+        (
+            "gridel flagged f32",
+            Box::new(|rays, any| trace::<Flagged>(&blob, rays, any)),
+        ),
     ];
     let primary = primary_rays(&scene);
     let bounce = bounce_rays(&peer, &ordered, &primary);
-    let shadow: Vec<Query> = bounce.iter().map(|ray| Query { tmax: f32::INFINITY, ..*ray }).collect();
-    for (kind, rays, any) in [("primary", &primary, false), ("bounce", &bounce, false), ("shadow", &shadow, true)] {
+    let shadow: Vec<Query> = bounce
+        .iter()
+        .map(|ray| Query {
+            tmax: f32::INFINITY,
+            ..*ray
+        })
+        .collect();
+    for (kind, rays, any) in [
+        ("primary", &primary, false),
+        ("bounce", &bounce, false),
+        ("shadow", &shadow, true),
+    ] {
         let mut times = [const { Vec::new() }; 3];
         let mut hits = [0; 3];
         for _ in 0..REPEATS {
@@ -110,7 +154,12 @@ fn compare(name: &str, path: &std::path::Path, lattice_bits: u8) {
         });
         print!("  {kind:8}");
         for (number, (contender, _)) in contenders.iter().enumerate() {
-            print!(" | {contender} {:6.2} ({:.2}) {}", rates[number], rates[number] / rates[0], hits[number]);
+            print!(
+                " | {contender} {:6.2} ({:.2}) {}",
+                rates[number],
+                rates[number] / rates[0],
+                hits[number]
+            );
         }
         println!();
     }
@@ -138,7 +187,11 @@ fn primary_rays(scene: &scene::Scene) -> Vec<Query> {
         .map(|(x, y)| {
             let place = |pixel: usize| (pixel as f32 + 0.5) / SIDE as f32 * 0.7 - 0.35;
             let direction = (forward + right * place(x) - up * place(y)).normalize();
-            Query { origin: eye, direction, tmax: f32::INFINITY }
+            Query {
+                origin: eye,
+                direction,
+                tmax: f32::INFINITY,
+            }
         })
         .collect()
 }
@@ -163,11 +216,19 @@ fn bounce_rays(peer: &Bvh2, triangles: &[Triangle], primary: &[Query]) -> Vec<Qu
             let triangle = &triangles[hit.primitive_id as usize];
             let normal = Vec3::from((triangle.v1 - triangle.v0).cross(triangle.v2 - triangle.v0));
             let normal = normal.normalize_or_zero();
-            let normal = if normal.dot(query.direction) > 0.0 { -normal } else { normal };
+            let normal = if normal.dot(query.direction) > 0.0 {
+                -normal
+            } else {
+                normal
+            };
             let point = query.origin + query.direction * hit.t;
             let random = Vec3::new(random(), random(), random());
             let direction = (normal * 1.001 + random.normalize_or_zero()).normalize_or(normal);
-            Some(Query { origin: point + normal * 1e-4, direction, tmax: f32::INFINITY })
+            Some(Query {
+                origin: point + normal * 1e-4,
+                direction,
+                tmax: f32::INFINITY,
+            })
         })
         .collect()
 }

@@ -121,13 +121,13 @@ impl Solid {
                 let span = roots(&dot(&line.slope, &line.slope), &dot(&from, &line.slope), &c);
                 span.filter(|_| !radius.is_negative())
             }
-            Solid::Box { lowest, highest } => (0..3).fold(Some((-far(), far())), |span, axis| {
+            Solid::Box { lowest, highest } => (0..3).try_fold((-far(), far()), |span, axis| {
                 let (low, high) = (Real::of(lowest[axis]), Real::of(highest[axis]));
                 let half = Real::of(0.5);
                 let middle = (&low + &high) * &half;
                 let reach = (high - low) * half + grow;
                 let place = &line.origin[axis] - middle;
-                overlap(span, slab(&place, &line.slope[axis], &reach))
+                overlap(Some(span), slab(&place, &line.slope[axis], &reach))
             }),
             Solid::Cone { .. } => self.cone_span(line, grow),
             Solid::Disc {

@@ -27,7 +27,6 @@ fn blob_of(solid: &Solid) -> Blob {
     let scene = blob.scene().expect("a scene");
     let header = scene.header();
     assert_eq!((header.unit_exponent, header.origin), (0, [0.0; 3]));
-    drop(scene);
     blob
 }
 

@@ -21,7 +21,7 @@ pub(crate) fn place(index: u16, count: u16) -> [i32; 2] {
         column ^= column >> 1;
     }
     // Half a cell of the finest power of two that holds the samples.
-    let half_cell = SUBPIXELS / 2 >> count.next_power_of_two().min(128).trailing_zeros();
+    let half_cell = (SUBPIXELS / 2) >> count.next_power_of_two().min(128).trailing_zeros();
     [
         i32::from(mirrored) + half_cell,
         i32::from(second) + half_cell,
