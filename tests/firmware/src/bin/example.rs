@@ -28,7 +28,9 @@ fn main() -> ! {
 }
 
 fn halt() -> ! {
-    loop {}
+    loop {
+        core::hint::spin_loop();
+    }
 }
 
 #[panic_handler]
