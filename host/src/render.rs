@@ -114,7 +114,7 @@ fn rows<N: Number, A: Accel, const EFFECTS: u32>(
                     &renderer,
                     y,
                     pixels,
-                    || Counters::default(),
+                    Counters::default,
                     |counters: Counters| {
                         work.push((counters.boxes + counters.objects).min(u32::MAX.into()) as u32);
                         total = total.plus(&counters);

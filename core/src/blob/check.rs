@@ -113,7 +113,7 @@ fn check_header(blob: &[u8]) -> Result<&Header, BlobError> {
         needed,
         found: blob.len(),
     })?;
-    if blob.as_ptr() as usize % ALIGNMENT != 0 {
+    if !(blob.as_ptr() as usize).is_multiple_of(ALIGNMENT) {
         return Err(BlobError::Misaligned);
     }
     let header: &Header = bytemuck::try_from_bytes(bytes).map_err(|_| BlobError::Misaligned)?;

@@ -165,11 +165,9 @@ impl Cone {
         if to < leave.0 {
             leave = (to, MANTLE);
         }
-        if !(enter.0 <= leave.0) {
-            return None;
-        }
         let back = |(s, part): (N, Part)| (closest + s.scale_down(bits), part);
-        Some(Crossing {
+        // Written so that a NaN is no crossing.
+        (enter.0 <= leave.0).then(|| Crossing {
             enter: back(enter),
             leave: back(leave),
         })

@@ -73,7 +73,7 @@ impl Lattice {
     }
 
     /// A point in units of the core, not snapped.
-    pub fn to_units(&self, point: DVec3) -> DVec3 {
+    pub fn in_units(&self, point: DVec3) -> DVec3 {
         (point - self.origin) / self.unit()
     }
 

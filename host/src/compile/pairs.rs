@@ -89,7 +89,7 @@ impl Flat {
         // On each side of the parent, the plane of the child that does not touch it.
         let mut owners = 0;
         let mut planes = [0; 3];
-        for axis in 0..3 {
+        for (axis, word) in planes.iter_mut().enumerate() {
             let mut inner = parent.0[axis];
             for (side, plane) in inner.iter_mut().enumerate() {
                 let flagged = |child: usize| boxes[child].0[axis][side] == parent.0[axis][side];
@@ -99,7 +99,7 @@ impl Flat {
                 *plane = boxes[owner].0[axis][side];
                 owners |= (owner as u32) << (axis + 3 * side);
             }
-            planes[axis] = plane_word(inner);
+            *word = plane_word(inner);
         }
         self.flagged.push(FlaggedPair {
             planes,

@@ -49,9 +49,9 @@ impl Surroundings {
         }
         let size = (highest - lowest).max_element();
         let far = |what: String, point: DVec3| -> Result<[i64; 3], CompileError> {
-            let q13 = lattice.to_units(point) * 8192.0;
-            // Comparisons that NaN fails.
-            if !(q13.abs().max_element() <= f64::powi(2.0, 50)) {
+            let q13 = lattice.in_units(point) * 8192.0;
+            let largest = q13.abs().max_element();
+            if largest.is_nan() || largest > f64::powi(2.0, 50) {
                 let distance = (point - lattice.origin).length();
                 return Err(CompileError::FarAway {
                     what,
@@ -211,7 +211,7 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
             let size = (size / unit).clamp(1.0 / 8192.0, 131_071.0);
             // The pattern repeats after two cells.
             let origin = lattice
-                .to_units(origin)
+                .in_units(origin)
                 .to_array()
                 .map(|x| x.rem_euclid(2.0 * size));
             let q13 = |units: f64| (units * 8192.0).round() as i32;

@@ -6,8 +6,9 @@
 //! | `primary` | traces one ray a pixel and counts the hits |
 //! | `selftest` | runs the core's own tests |
 //! | `bare` | renders and talks to nobody: what it links is what a product would flash |
+//! | `example` | the README's example |
 //!
-//! All but the last run in QEMU and print what they measured, a line each: a name and a number.
+//! All but the last two run in QEMU and print what they measured, a line each: a name and a number.
 //! Blob, number format and structure are chosen when they are built:
 //!
 //! ```text

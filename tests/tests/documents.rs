@@ -1,0 +1,62 @@
+//! What the documents show is what the project has: examples and dumps cannot fall behind.
+
+use gridel_host::compile::{Options, compile};
+use gridel_tests::scenes;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn text(path: &str) -> String {
+    fs::read_to_string(repository().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// The first block of a language behind a heading.
+fn block<'d>(document: &'d str, heading: &str, language: &str) -> &'d str {
+    let (_, section) = document.split_once(heading).expect("the heading");
+    let (_, block) = section
+        .split_once(&format!("```{language}\n"))
+        .expect("a block");
+    block.split_once("```").expect("its end").0
+}
+
+/// Code without comments on the whole file.
+fn code(source: &str) -> Vec<&str> {
+    let lines = source.lines().filter(|line| !line.starts_with("//!"));
+    lines.collect()
+}
+
+#[test]
+fn the_readme_shows_the_firmware_that_is_built() {
+    let readme = text("README.md");
+    let program = text("tests/firmware/src/bin/example.rs");
+    assert_eq!(
+        code(block(&readme, "## On a board", "rust")),
+        code(&program)
+    );
+}
+
+#[test]
+fn the_formats_dump_is_what_the_compiler_writes() {
+    let heading = "## A blob, read by hand";
+    let format = text("core/FORMAT.md");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("documents");
+    fs::create_dir_all(&folder).expect("the target folder can be written to");
+    let path = folder.join("sphere.toml");
+    fs::write(&path, block(&format, heading, "toml")).expect("the file can be written to");
+    let options = Options {
+        lattice_bits: 16,
+        ..Options::default()
+    };
+    let compiled = compile(&scenes::read(&path), &options).expect("compiles");
+    // An address, a colon, up to sixteen bytes in hexadecimal, and words about them.
+    let dump = block(&format, heading, "text").lines().flat_map(|line| {
+        let bytes = line.get(10..57).expect("a line of a dump");
+        bytes
+            .split_whitespace()
+            .map(|byte| u8::from_str_radix(byte, 16).expect("a byte"))
+    });
+    assert!(dump.eq(compiled.blob.bytes().iter().copied()));
+}
