@@ -2,6 +2,7 @@
 
 use crate::blob::record::UnitBox;
 use crate::number::{Number, pick};
+use core::cmp::Ordering;
 use core::fmt;
 
 /// A half-line with an interval, ready to be traced through one scene.
@@ -67,13 +68,12 @@ impl<N: Number> Ray<N> {
         tmax: N::Wide,
     ) -> Result<Self, RayError> {
         let (slope, major) = N::slopes(direction).ok_or(RayError::Direction)?;
-        if !(tmin <= tmax) {
+        if tmin.partial_cmp(&tmax).is_none_or(Ordering::is_gt) {
             return Err(RayError::Interval);
         }
         let zero = N::Wide::default();
-        // Anything minus itself is zero, unless it is infinite or NaN.
         let sum = origin[0] + origin[1] + origin[2];
-        if sum - sum != zero {
+        if !N::is_finite(sum) {
             return Err(RayError::Origin);
         }
 

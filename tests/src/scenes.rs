@@ -53,7 +53,6 @@ pub fn fixtures() -> Vec<(String, Scene)> {
         .expect("the folder of fixtures")
         .map(|entry| entry.expect("an entry").path())
         .filter(|path| path.extension().is_some_and(|e| e == "toml" || e == "pdb"))
-        .filter(|path| path.file_name().is_some_and(|name| name != "hashes.toml"))
         .collect();
     paths.sort();
     assert!(paths.len() >= 10, "{} fixtures", paths.len());

@@ -1,6 +1,6 @@
 //! Pictures: the same bytes however they are made, and what physics demands of them.
 //!
-//! `fixtures/hashes.toml` holds a hash of a small picture of every fixture in every number format.
+//! `fixtures/recorded/hashes.toml` holds a hash of a small picture of every fixture in every number format.
 //! After a change that is meant to change pictures, `GRIDEL_BLESS=1 cargo test -p gridel-tests
 //! --test render` writes them anew; the difference belongs into the same commit.
 
@@ -56,7 +56,7 @@ type Hashes = BTreeMap<String, BTreeMap<String, String>>;
 
 #[test]
 fn fixtures_have_their_recorded_hashes() {
-    let path = scenes::fixture_folder().join("hashes.toml");
+    let path = scenes::fixture_folder().join("recorded/hashes.toml");
     let mut hashes = Hashes::new();
     for (name, scene) in scenes::fixtures() {
         let blob = scenes::blob(&scene, 24);
@@ -79,7 +79,7 @@ fn fixtures_have_their_recorded_hashes() {
         }
         std::fs::write(&path, text).expect("the hashes were written");
     }
-    let text = std::fs::read_to_string(&path).expect("fixtures/hashes.toml");
+    let text = std::fs::read_to_string(&path).expect("fixtures/recorded/hashes.toml");
     let recorded: Hashes = toml::from_str(&text).expect("hashes");
     assert_eq!(
         hashes, recorded,

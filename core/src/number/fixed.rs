@@ -90,7 +90,7 @@ fn excess_bits(v: [i64; 3], bits: i32) -> i32 {
 /// have or emulate cheaply, and one step of Newton's iteration.
 #[inline(always)]
 fn reciprocal(d: u32) -> u32 {
-    let coarse = u32::MAX / (d.wrapping_add(1 << 14) >> 15).max(1) << 14;
+    let coarse = (u32::MAX / (d.wrapping_add(1 << 14) >> 15).max(1)) << 14;
     // d * coarse is 2^61 but for a part in 2^15.
     let excess = ((d as u64 * coarse as u64) >> 29) as u32 as i32;
     coarse.wrapping_sub(((coarse as i64 * excess as i64) >> 32) as u32)
@@ -320,6 +320,11 @@ impl Number for Fixed {
     }
 
     #[inline(always)]
+    fn is_finite(_: Product) -> bool {
+        true
+    }
+
+    #[inline(always)]
     fn wide_times(wide: Product, factor: i32) -> Product {
         Product(wide.0.wrapping_mul(factor as i64))
     }
@@ -430,7 +435,7 @@ impl Number for Fixed {
         let inverse = reciprocal(shift_magnitude(largest as i64, bits).unsigned_abs());
         let mut slopes = v.map(|component| {
             let scaled = shift_magnitude(component, bits);
-            let magnitude = (scaled.unsigned_abs() as u64 * inverse as u64 >> 31) as u32;
+            let magnitude = ((scaled.unsigned_abs() as u64 * inverse as u64) >> 31) as u32;
             let magnitude = magnitude.min(1 << RATIO_BITS) as i32;
             Fixed(if scaled < 0 { -magnitude } else { magnitude })
         });

@@ -59,8 +59,7 @@ const SMALLEST_F64: f64 = 1.0 / (1u64 << 50) as f64 / (1u64 << 50) as f64;
 fn slopes_of_extremes<N: Number<Wide = N>>(v: [N; 3]) -> Option<([N; 3], usize)> {
     let [x, y, z] = v.map(N::abs);
     let largest = x.max(y).max(z);
-    // NaN compares as neither, and infinity stays itself.
-    let ordinary = v.iter().all(|&component| component - component == N::ZERO);
+    let ordinary = v.iter().all(|&component| N::is_finite(component));
     if !ordinary || largest == N::ZERO {
         return None;
     }
@@ -208,6 +207,11 @@ macro_rules! float_number {
             }
 
             #[inline(always)]
+            fn is_finite(wide: Self) -> bool {
+                $float::is_finite(wide)
+            }
+
+            #[inline(always)]
             fn wide_times(wide: Self, factor: i32) -> Self {
                 wide * factor as $float
             }
@@ -272,7 +276,7 @@ macro_rules! float_number {
                 let [x, y, z] = v.map($float::abs);
                 // NaN and infinities fail the comparisons too.
                 let sum = x + y + z;
-                if !(sum >= $smallest && sum <= 1.0 / $smallest) {
+                if !($smallest..=1.0 / $smallest).contains(&sum) {
                     return slopes_of_extremes(v);
                 }
                 let (largest, axis) = if x >= y && x >= z {

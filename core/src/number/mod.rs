@@ -190,6 +190,8 @@ pub trait Number:
     fn widen(self) -> Self::Wide;
     /// The inverse of [`widen`](Self::widen); saturates.
     fn narrow(wide: Self::Wide) -> Self;
+    /// Whether a wide number is an ordinary one: false for NaN and infinities.
+    fn is_finite(wide: Self::Wide) -> bool;
     /// A wide number times an integer.
     fn wide_times(wide: Self::Wide, factor: i32) -> Self::Wide;
     /// A wide number over a positive integer, towards zero.

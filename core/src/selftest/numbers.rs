@@ -215,7 +215,7 @@ fn vectors_in<N: Number>(checks: &mut Checks<'_>, tolerance: f64) {
 pub(super) fn bits(checks: &mut Checks<'_>) {
     checks.equal(format_args!("f32"), chain::<f32>(), 1_029_389_503);
     checks.equal(format_args!("f64"), chain::<f64>(), 2_651_187_688);
-    checks.equal(format_args!("fixed"), chain::<Fixed>(), 1_535_635_864);
+    checks.equal(format_args!("fixed"), chain::<Fixed>(), 973_768_781);
 }
 
 fn chain<N: Number>() -> u32 {

@@ -35,7 +35,9 @@ impl Figures {
         let _one_at_a_time = FILE.lock().unwrap_or_else(|poison| poison.into_inner());
         let mut recorded: Table = fs::read(path())
             .ok()
-            .map(|bytes| serde_json::from_slice(&bytes).expect("fixtures/board.json is a table"))
+            .map(|bytes| {
+                serde_json::from_slice(&bytes).expect("fixtures/recorded/board.json is a table")
+            })
             .unwrap_or_default();
         if env::var_os("GRIDEL_RECORD_BOARDS").is_some_and(|value| value == "1") {
             for (build, report) in &self.0 {
@@ -72,5 +74,5 @@ impl Figures {
 }
 
 fn path() -> PathBuf {
-    repository().join("fixtures/board.json")
+    repository().join("fixtures/recorded/board.json")
 }

@@ -2,7 +2,7 @@
 //!
 //! Needs `qemu-system-arm` and the targets `thumbv7em-none-eabihf` and `thumbv7m-none-eabi`
 //! (`rustup target add`). Without them the tests say so and pass, unless `GRIDEL_REQUIRE_BOARDS`
-//! is 1. `fixtures/board.json` holds what was measured last: nothing may grow by more than 2 %.
+//! is 1. `fixtures/recorded/board.json` holds what was measured last: nothing may grow by more than 2 %.
 //! `GRIDEL_RECORD_BOARDS=1` records anew; read the difference before it is committed.
 
 mod elf;

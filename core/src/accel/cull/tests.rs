@@ -55,7 +55,7 @@ fn holds_the_true_interval<N: Number>(
     let mut bounds = [[0_i16; 2]; 3];
     for k in 0..3 {
         let (origin, _, below, above) = axes[k];
-        let moved = i128::from(slopes[k]) * i128::from(place) << (ORIGIN_BITS - 4);
+        let moved = (i128::from(slopes[k]) * i128::from(place)) << (ORIGIN_BITS - 4);
         let point = (i128::from(origin) << SLOPE_BITS) + moved;
         let low = point.div_euclid(scale) - i128::from(below);
         let high = -(-point).div_euclid(scale) + i128::from(above);

@@ -40,7 +40,8 @@ fn trace(scene: &Scene<'static>, stack: &mut Stack<STACK_DEPTH>) -> (u32, u32) {
                 continue;
             };
             rays += 1;
-            let hit = closest_primitive::<Number, Accel, _>(scene, &ray, stack.as_view(), &mut NoCount);
+            let hit =
+                closest_primitive::<Number, Accel, _>(scene, &ray, stack.as_view(), &mut NoCount);
             hits += u32::from(hit.is_some());
         }
     }
