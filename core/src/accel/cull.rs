@@ -34,7 +34,7 @@ pub struct Interval {
     pub far: i32,
 }
 
-/// A form of a ray that culls boxes: [`Cull`] in integers, [`Lanes`] in SIMD.
+/// A form of a ray that culls boxes: [`Cull`] in integers, or lanes of floats where there is SIMD.
 pub trait Culling<N: Number>: Copy + core::fmt::Debug + Default + Send + Sync {
     /// Sets up a ray.
     fn new(ray: &Ray<N>) -> Self;

@@ -9,7 +9,7 @@
 //! was rounded on the way, a primitive that is met lies in boxes that are met.
 
 pub mod bvh;
-pub(crate) mod cull;
+pub mod cull;
 pub mod flagged;
 #[cfg(any(
     target_arch = "x86_64",
@@ -96,7 +96,8 @@ pub struct Entry {
 ///
 /// `DEPTH` must be at least the blob's [`stack_depth`](crate::Scene::stack_depth), which
 /// [`Scene::from_bytes`](crate::Scene::from_bytes) proves. A smaller stack is never overrun:
-/// queries on it have no hit, and [`Tracer::new`](crate::Tracer::new) refuses it.
+/// queries on it have no hit, and
+/// [`Renderer::check_workspace`](crate::Renderer::check_workspace) refuses it.
 #[derive(Debug, Default)]
 pub struct Stack<const DEPTH: usize>(Vec<Entry, DEPTH>);
 

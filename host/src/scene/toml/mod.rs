@@ -230,7 +230,6 @@ mod import;
 mod material;
 mod object;
 mod place;
-mod polygon;
 mod shape;
 mod source;
 mod transform;
