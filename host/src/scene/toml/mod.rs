@@ -230,6 +230,7 @@ mod import;
 mod material;
 mod object;
 mod place;
+mod polygon;
 mod shape;
 mod source;
 mod transform;

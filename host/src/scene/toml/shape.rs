@@ -1,11 +1,9 @@
 //! The kinds of objects that are shapes.
 
+use super::polygon::{self, Flaw, MAX_CORNERS};
 use super::value::{Fields, Value};
-use crate::scene::{SceneError, Shape, polygon};
+use crate::scene::{SceneError, Shape};
 use glam::DVec3;
-
-/// The most corners of a face.
-const MAX_CORNERS: usize = 1024;
 
 /// The keys of a kind of shape, apart from those of every object.
 pub(super) fn keys(kind: &str) -> &'static [&'static str] {
@@ -102,25 +100,16 @@ fn triangle(fields: &Fields<'_>) -> Result<Shape, SceneError> {
             "`vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]`",
         ));
     }
-    let triangle = [0, 1, 2];
-    if !has_area(&vertices, &triangle) {
-        return Err(value.error(
+    match polygon::triangulate(&vertices) {
+        Ok(_) => Ok(Shape::Mesh {
+            vertices,
+            triangles: vec![[0, 1, 2]],
+        }),
+        Err(_) => Err(value.error(
             "the triangle has no area: its vertices lie on one line",
             "move one of the vertices off that line",
-        ));
+        )),
     }
-    Ok(Shape::Mesh {
-        vertices,
-        triangles: vec![triangle],
-    })
-}
-
-fn has_area(vertices: &[DVec3], triangle: &[u32; 3]) -> bool {
-    let [a, b, c] = triangle.map(|corner| vertices[corner as usize]);
-    // A power of two, so that tiny triangles do not underflow.
-    let largest = (b - a).abs().max((c - a).abs()).max_element();
-    let scale = libm::ldexp(1.0, -libm::frexp(largest).1);
-    ((b - a) * scale).cross((c - a) * scale) != DVec3::ZERO
 }
 
 fn mesh(fields: &Fields<'_>) -> Result<Shape, SceneError> {
@@ -133,28 +122,19 @@ fn mesh(fields: &Fields<'_>) -> Result<Shape, SceneError> {
             .iter()
             .map(|&corner| vertices[corner as usize])
             .collect();
-        // Never too many corners: their number was checked.
-        let cut = polygon::triangulate(&points).filter(|cut| cut.exact);
-        let Some(cut) = cut else {
-            return Err(face.error(
-                "the outline of this face crosses itself",
-                "list its vertices in the order in which they follow around the face",
-            ));
-        };
-        if !cut
-            .triangles
-            .iter()
-            .any(|triangle| has_area(&points, triangle))
-        {
-            return Err(face.error(
+        let cut = polygon::triangulate(&points).map_err(|flaw| match flaw {
+            Flaw::NoArea => face.error(
                 "this face has no area",
                 "remove the face, or move its vertices off their line",
-            ));
-        }
+            ),
+            Flaw::CrossesItself => face.error(
+                "the outline of this face crosses itself",
+                "list its vertices in the order in which they follow around the face",
+            ),
+        })?;
         triangles.extend(
-            cut.triangles
-                .into_iter()
-                .map(|triangle| triangle.map(|corner| corners[corner as usize])),
+            cut.into_iter()
+                .map(|triangle| triangle.map(|corner| corners[corner])),
         );
     }
     if triangles.is_empty() {
