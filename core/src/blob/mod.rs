@@ -47,7 +47,7 @@ impl<'a> Scene<'a> {
     /// their parents' and primitives inside their leaves', each primitive in one leaf. After that
     /// a walk through any structure ends, and gives the same hits as testing every primitive.
     ///
-    /// Costs time linear in the blob's length and about 1.5 KiB of stack.
+    /// Costs time linear in the blob's length and about 2 KiB of stack.
     ///
     /// # Errors
     /// If anything of this fails to hold, or the scene calls for an effect that this build was
