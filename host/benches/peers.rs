@@ -2,13 +2,13 @@
 //!
 //! `cargo bench -p gridel-host --bench peers`. Meshes come from `GRIDEL_SCENES` or
 //! `../shared/scenes`; what is absent is left out, loudly. A rate counts everything from a ray's
-//! origin and direction in scene units to its hit: Gridel's set-up on the lattice and its hit's
-//! point, normal and object are in its time. Only the ratios within one run mean anything.
+//! origin and direction in scene units to what all of them answer, t and primitive: Gridel's set-up
+//! on the lattice is in its time. Only the ratios within one run mean anything.
 
 use glam::{DVec3, Vec3, Vec3A};
 use gridel_core::accel::MAX_STACK_DEPTH;
 use gridel_core::{
-    Accel, Bvh, Flagged, NoCount, Ray, Scene, Stack, Structure, any_hit, closest_hit,
+    Accel, Bvh, Flagged, NoCount, Ray, Scene, Stack, Structure, any_hit, closest_primitive,
 };
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::{self, Shape};
@@ -267,7 +267,7 @@ fn trace<A: Accel>(scene: &Scene<'_>, rays: &[Query], any: bool) -> usize {
         let hit = if any {
             any_hit::<f32, A, _>(scene, &ray, stack.as_view(), &mut NoCount)
         } else {
-            closest_hit::<f32, A, _>(scene, &ray, stack.as_view(), &mut NoCount).is_some()
+            closest_primitive::<f32, A, _>(scene, &ray, stack.as_view(), &mut NoCount).is_some()
         };
         hits += usize::from(hit);
     }
