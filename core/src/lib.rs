@@ -22,6 +22,8 @@
 #![cfg_attr(not(any(test, feature = "std")), no_std)]
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
+// A build without some structures leaves tools unused that they share.
+#![cfg_attr(not(feature = "all-structures"), allow(dead_code))]
 
 pub mod accel;
 pub mod blob;
@@ -35,7 +37,11 @@ pub mod selftest;
 pub mod shade;
 mod shape;
 
-pub use accel::{Accel, Bvh, Flagged, List, Stack, StackView, Structure};
+#[cfg(feature = "bvh")]
+pub use accel::Bvh;
+#[cfg(feature = "flagged")]
+pub use accel::Flagged;
+pub use accel::{Accel, List, Stack, StackView, Structure, StructureVisitor};
 pub use blob::{Aligned, BlobError, Scene};
 pub use count::{Count, Counters, NoCount, RayKind};
 pub use number::{Fixed, Format, Number};

@@ -6,10 +6,11 @@
 use gridel_core::accel::MAX_STACK_DEPTH;
 use gridel_core::render::{MAX_RAY_DEPTH, RenderError};
 use gridel_core::{
-    Accel, Bvh, Count, Counters, Effects, Fixed, Flagged, Format, List, NoCount, Number, Renderer,
-    Scene, Settings, Structure, Workspace,
+    Accel, Count, Counters, Effects, Fixed, Format, NoCount, Number, Renderer, Scene, Settings,
+    Structure, StructureVisitor, Workspace,
 };
 use rayon::prelude::*;
+use std::marker::PhantomData;
 use std::ops::Range;
 
 /// Linear pixels of some rows of a picture, and what they cost.
@@ -57,11 +58,21 @@ fn with_format<N: Number>(
     job: &Job,
     progress: &(dyn Fn() + Sync),
 ) -> Result<Picture, RenderError> {
-    match job.structure {
-        Structure::List => with_structure::<N, List>(scene, job, progress),
-        Structure::Bvh => with_structure::<N, Bvh>(scene, job, progress),
-        Structure::Flagged => with_structure::<N, Flagged>(scene, job, progress),
+    struct Through<'t, N>(
+        &'t Scene<'t>,
+        &'t Job,
+        &'t (dyn Fn() + Sync),
+        PhantomData<N>,
+    );
+    impl<N: Number> StructureVisitor for Through<'_, N> {
+        type Output = Result<Picture, RenderError>;
+
+        fn visit<A: Accel>(self) -> Self::Output {
+            with_structure::<N, A>(self.0, self.1, self.2)
+        }
     }
+    job.structure
+        .visit(Through(scene, job, progress, PhantomData::<N>))
 }
 
 /// Sets of effects that the ray loop is compiled for; a scene gets the first that has all of its.

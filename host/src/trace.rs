@@ -3,9 +3,10 @@
 use glam::DVec3;
 use gridel_core::accel::MAX_STACK_DEPTH;
 use gridel_core::{
-    Accel, Bvh, Count, Fixed, Flagged, Format, List, Number, Ray, Scene, Stack, Structure, any_hit,
+    Accel, Count, Fixed, Format, Number, Ray, Scene, Stack, Structure, StructureVisitor, any_hit,
     closest_hit,
 };
+use std::marker::PhantomData;
 
 /// A ray in scene units; t counts multiples of the direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,11 +68,29 @@ fn with_format<N: Number, C: Count>(
     hits: &mut [SceneHit],
     count: &mut C,
 ) {
-    match query.structure {
-        Structure::List => trace_through::<N, List, C>(scene, rays, query.any, hits, count),
-        Structure::Bvh => trace_through::<N, Bvh, C>(scene, rays, query.any, hits, count),
-        Structure::Flagged => trace_through::<N, Flagged, C>(scene, rays, query.any, hits, count),
+    struct Through<'t, N, C> {
+        scene: &'t Scene<'t>,
+        rays: &'t [SceneRay],
+        any: bool,
+        hits: &'t mut [SceneHit],
+        count: &'t mut C,
+        format: PhantomData<N>,
     }
+    impl<N: Number, C: Count> StructureVisitor for Through<'_, N, C> {
+        type Output = ();
+
+        fn visit<A: Accel>(self) {
+            trace_through::<N, A, C>(self.scene, self.rays, self.any, self.hits, self.count);
+        }
+    }
+    query.structure.visit(Through {
+        scene,
+        rays,
+        any: query.any,
+        hits,
+        count,
+        format: PhantomData::<N>,
+    });
 }
 
 fn trace_through<N: Number, A: Accel, C: Count>(

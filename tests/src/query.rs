@@ -1,7 +1,10 @@
 //! Asks the core through one structure or another.
 
 use gridel_core::accel::MAX_STACK_DEPTH;
-use gridel_core::{Accel, Count, Hit, Number, Ray, Scene, Stack, any_hit, closest_hit};
+use gridel_core::{
+    Accel, Count, Hit, NoCount, Number, Ray, Scene, Stack, Structure, StructureVisitor, any_hit,
+    closest_hit,
+};
 
 /// A ray in the core's units, not yet in a number format.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +77,35 @@ pub fn closest<N: Number, A: Accel>(
 /// Whether there is a hit, through one structure.
 pub fn any<N: Number, A: Accel>(scene: &Scene<'_>, ray: &Ray<N>) -> bool {
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
-    any_hit::<N, A, _>(scene, ray, stack.as_view(), &mut gridel_core::NoCount)
+    any_hit::<N, A, _>(scene, ray, stack.as_view(), &mut NoCount)
+}
+
+/// The structures of a scene that are not the list.
+pub fn held(scene: &Scene<'_>) -> impl Iterator<Item = Structure> {
+    let all = Structure::ALL.into_iter();
+    all.filter(|&structure| structure != Structure::List && scene.holds(structure))
+}
+
+/// The first hit through a structure that is chosen while the program runs, and whether
+/// [`any_hit`] finds one.
+pub fn through<N: Number>(
+    structure: Structure,
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+) -> (Option<Hit<N>>, bool) {
+    struct Through<'t, N: Number>(&'t Scene<'t>, &'t Ray<N>);
+    impl<N: Number> StructureVisitor for Through<'_, N> {
+        type Output = (Option<Hit<N>>, bool);
+
+        fn visit<A: Accel>(self) -> Self::Output {
+            let Self(scene, ray) = self;
+            (
+                closest::<N, A>(scene, ray, &mut NoCount),
+                any::<N, A>(scene, ray),
+            )
+        }
+    }
+    structure.visit(Through(scene, ray))
 }
 
 /// A point in units, from a hit.

@@ -1,11 +1,11 @@
 //! No ray slips through a closed mesh: aimed at vertices, at edges, and along the lattice.
 
 use glam::DVec3;
-use gridel_core::{Accel, Bvh, Flagged, Format, Kind, List, NoCount, Number, Scene};
+use gridel_core::{Bvh, Flagged, Format, Kind, NoCount, Number, Scene, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::scene::Shape;
 use gridel_tests::every_format;
-use gridel_tests::query::{UnitRay, closest};
+use gridel_tests::query::{UnitRay, closest, held, through};
 use gridel_tests::random::Random;
 use gridel_tests::scenes;
 use std::collections::BTreeSet;
@@ -68,7 +68,8 @@ fn vertices_and_edges(scene: &Scene<'_>) -> Vec<[f64; 3]> {
 }
 
 /// How many rays from a point at points meet nothing.
-fn leaks<N: Number, A: Accel>(
+fn leaks<N: Number>(
+    structure: Structure,
     scene: &Scene<'_>,
     from: [f64; 3],
     targets: impl Iterator<Item = [f64; 3]>,
@@ -78,7 +79,7 @@ fn leaks<N: Number, A: Accel>(
         let ray = UnitRay::new(from, direction)
             .ready::<N>(scene)
             .expect("a ray");
-        let missed = closest::<N, A>(scene, &ray, &mut NoCount).is_none();
+        let missed = through::<N>(structure, scene, &ray).0.is_none();
         (rays + 1, leaks + usize::from(missed))
     })
 }
@@ -87,15 +88,12 @@ fn leaks<N: Number, A: Accel>(
 fn no_leaks<N: Number>(name: &str, scene: &Scene<'_>, from: [f64; 3], list_step: usize) {
     let targets = vertices_and_edges(scene);
     let all = || targets.iter().copied();
-    let results = [
-        (
-            "list",
-            leaks::<N, List>(scene, from, all().step_by(list_step)),
-        ),
-        ("bvh", leaks::<N, Bvh>(scene, from, all())),
-        ("flagged", leaks::<N, Flagged>(scene, from, all())),
-    ];
+    let listed = leaks::<N>(Structure::List, scene, from, all().step_by(list_step));
+    let results = held(scene)
+        .map(|structure| (structure, leaks::<N>(structure, scene, from, all())))
+        .chain([(Structure::List, listed)]);
     for (structure, (rays, leaks)) in results {
+        let structure = structure.name();
         let format = N::FORMAT.name();
         eprintln!("{name:24} {format:5} {structure:8}: {rays:7} rays, {leaks} leaks");
         assert_eq!(leaks, 0, "{name}, {format}, {structure}");
@@ -174,8 +172,9 @@ fn axis_parallel_rays_through_vertices_hit() {
                         .ready::<N>(scene)
                         .expect("a ray");
                     let plain = closest::<N, Bvh>(scene, &ray, &mut NoCount);
-                    let flagged = closest::<N, Flagged>(scene, &ray, &mut NoCount);
-                    assert_eq!(plain, flagged);
+                    for structure in held(scene) {
+                        assert_eq!(plain, through::<N>(structure, scene, &ray).0);
+                    }
                     let radius = [1, 2].map(|k| target[(axis + k) % 3]);
                     let inside =
                         radius[0].hypot(radius[1]) < 0.98 * f64::from(scene.bounds().0[0][1]);

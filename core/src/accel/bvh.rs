@@ -1,8 +1,9 @@
 //! The bounding volume hierarchy with ordinary traversal: all planes of both children are tested.
 
 use super::cull::Culling;
-use super::pairs::{PairRecord, Walk};
-use super::{Accel, Leaf, Node, StackView, Structure};
+use super::link::Node;
+use super::pairs::{PairRecord, Pairs, Walk};
+use super::{Accel, Leaf, StackView, Structure};
 use crate::blob::record::{Pair, UnitBox};
 use crate::blob::{Scene, SectionKind};
 use crate::count::Count;
@@ -30,7 +31,7 @@ impl Accel for Bvh {
         let narrow = |pair: &Pair, _, limit| cull.children(pair, limit);
         let walk = Walk {
             scene,
-            pairs: scene.pairs,
+            pairs: scene.held.bvh.0,
             root,
             narrow,
             limit: N::Cull::limit,
@@ -38,6 +39,9 @@ impl Accel for Bvh {
         walk.run(ray.tmax, stack, count, leaf);
     }
 }
+
+/// The pairs of a scene.
+pub(crate) type Held<'a> = Pairs<'a, Pair>;
 
 impl PairRecord for Pair {
     const SECTION: SectionKind = SectionKind::Pairs;

@@ -7,8 +7,9 @@
 //! brings its interval in the parent and narrows it by six planes instead of twelve.
 
 use super::cull::{Cull, Culling, Interval};
-use super::pairs::{PairRecord, Walk};
-use super::{Accel, Leaf, Link, Node, StackView, Structure};
+use super::link::{Link, Node};
+use super::pairs::{PairRecord, Pairs, Walk};
+use super::{Accel, Leaf, StackView, Structure};
 use crate::blob::record::{FlaggedPair, UnitBox};
 use crate::blob::{Scene, SectionKind};
 use crate::count::Count;
@@ -37,7 +38,7 @@ impl Accel for Flagged {
         let limit = <Cull as Culling<N>>::limit;
         let walk = Walk {
             scene,
-            pairs: scene.flagged,
+            pairs: scene.held.flagged.0,
             root,
             narrow,
             limit,
@@ -45,6 +46,9 @@ impl Accel for Flagged {
         walk.run(ray.tmax, stack, count, leaf);
     }
 }
+
+/// The pairs of a scene.
+pub(crate) type Held<'a> = Pairs<'a, FlaggedPair>;
 
 impl PairRecord for FlaggedPair {
     const SECTION: SectionKind = SectionKind::FlaggedPairs;

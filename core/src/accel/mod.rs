@@ -8,8 +8,10 @@
 //! in the leaf's and every box in its parent's, and culling is monotone (see [`cull`]). Whatever
 //! was rounded on the way, a primitive that is met lies in boxes that are met.
 
+#[cfg(feature = "bvh")]
 pub mod bvh;
 pub mod cull;
+#[cfg(feature = "flagged")]
 pub mod flagged;
 #[cfg(any(
     target_arch = "x86_64",
@@ -17,13 +19,22 @@ pub mod flagged;
     all(target_arch = "wasm32", target_feature = "simd128")
 ))]
 mod lanes;
+#[cfg(any(feature = "bvh", feature = "flagged"))]
+mod link;
 pub mod list;
+#[cfg(any(feature = "bvh", feature = "flagged"))]
 mod pairs;
+mod registry;
 
+#[cfg(feature = "bvh")]
 pub use bvh::Bvh;
+#[cfg(feature = "flagged")]
 pub use flagged::Flagged;
+#[cfg(any(feature = "bvh", feature = "flagged"))]
+pub use link::Link;
 pub use list::List;
-pub(crate) use pairs::check_pairs;
+pub(crate) use registry::{Held, Records};
+pub use registry::{Structure, StructureVisitor};
 
 use crate::blob::Scene;
 use crate::count::Count;
@@ -32,37 +43,6 @@ use crate::ray::Ray;
 use crate::shape::Kind;
 use cull::Culling;
 use heapless::{Vec, VecView};
-
-/// The name of a structure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[repr(u32)]
-pub enum Structure {
-    /// Every primitive, one after the other.
-    List,
-    /// A bounding volume hierarchy of pairs, 32 bytes each, traversed in the ordinary way.
-    Bvh,
-    /// The same hierarchy without the sides that coincide with the parent's, 16 bytes a pair.
-    Flagged,
-}
-
-impl Structure {
-    /// All structures.
-    pub const ALL: [Structure; 3] = [Structure::List, Structure::Bvh, Structure::Flagged];
-
-    /// The name that command lines and tables use.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Structure::List => "list",
-            Structure::Bvh => "bvh",
-            Structure::Flagged => "flagged",
-        }
-    }
-
-    /// The structure's bit in the header.
-    pub const fn bit(self) -> u32 {
-        1 << self as u32
-    }
-}
 
 /// A structure, as a type: the code of those that are not named is not in the program.
 pub trait Accel: Send + Sync {
@@ -153,80 +133,5 @@ impl Leaf {
             first: word & 0xff_ffff,
             count: word >> 24 & 31,
         })
-    }
-}
-
-/// What the two children of a pair are: one word.
-///
-/// Bits 0 to 23 are the number of the first child that is a pair; if both are, the right one
-/// follows the left. Bits 24 and 25 say that the left and the right child is a leaf. Bits 26 to 31
-/// are the owners of a [flagged pair](crate::blob::record::FlaggedPair)'s planes.
-///
-/// Leaves need no number of their own, because pairs lie in breadth-first order: of the `2 j + 1`
-/// nodes that were numbered before the children of pair `j`, all that are not pairs are leaves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Link(pub u32);
-
-impl Link {
-    /// Number of pairs that a link can tell apart.
-    pub const PAIRS: u32 = 1 << 24;
-
-    /// A link without owners.
-    pub const fn new(first_pair: u32, left_is_leaf: bool, right_is_leaf: bool) -> Self {
-        Self(first_pair | (left_is_leaf as u32) << 24 | (right_is_leaf as u32) << 25)
-    }
-
-    /// The same link with owners: bits 0 to 2 for the lower planes of x, y and z, bits 3 to 5 for
-    /// the upper ones; a set bit means the right child.
-    pub const fn with_owners(self, owners: u32) -> Self {
-        Self(self.0 & 0x03ff_ffff | owners << 26)
-    }
-
-    /// Number of the first child that is a pair.
-    #[inline(always)]
-    pub const fn first_pair(self) -> u32 {
-        self.0 & 0xff_ffff
-    }
-
-    /// The owners of the planes.
-    #[inline(always)]
-    pub const fn owners(self) -> u32 {
-        self.0 >> 26
-    }
-
-    /// The left (0) or right (1) child of pair `pair` as a node.
-    #[inline(always)]
-    const fn child(self, pair: u32, side: u32) -> Node {
-        // Pairs or leaves among the children before this one.
-        let left_leaf = self.0 >> 24 & side;
-        if self.0 & 1 << (24 + side) != 0 {
-            Node::leaf((2 * pair + 1 + left_leaf).wrapping_sub(self.first_pair()))
-        } else {
-            Node::pair(self.first_pair() + side - left_leaf)
-        }
-    }
-}
-
-/// A pair or a leaf, by number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Node(u32);
-
-impl Node {
-    const fn pair(number: u32) -> Self {
-        Self(number)
-    }
-
-    const fn leaf(number: u32) -> Self {
-        Self(number | 1 << 31)
-    }
-
-    #[inline(always)]
-    const fn is_leaf(self) -> bool {
-        self.0 >> 31 != 0
-    }
-
-    #[inline(always)]
-    const fn number(self) -> u32 {
-        self.0 & 0x7fff_ffff
     }
 }

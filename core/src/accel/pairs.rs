@@ -1,16 +1,17 @@
 //! What the ordinary and the flagged hierarchy share: the walk, and the proof that it is sound.
 
 use super::cull::Interval;
-use super::{Entry, Leaf, MAX_STACK_DEPTH, Node, StackView};
+use super::link::Node;
+use super::{Entry, Leaf, MAX_STACK_DEPTH, Records, StackView};
 use crate::blob::record::UnitBox;
-use crate::blob::{BlobError, Scene, SectionKind};
+use crate::blob::{BlobError, Scene, SectionKind, Sections};
 use crate::count::Count;
 use crate::number::Number;
 use crate::shape::Shapes;
 use heapless::Vec;
 
 /// A record of two children.
-pub(crate) trait PairRecord: Copy {
+pub(super) trait PairRecord: bytemuck::Pod {
     /// The section that holds these records.
     const SECTION: SectionKind;
     /// Planes that are tested for a record.
@@ -21,6 +22,23 @@ pub(crate) trait PairRecord: Copy {
 
     /// The children's boxes, given their parent's.
     fn boxes(&self, parent: &UnitBox) -> [UnitBox; 2];
+}
+
+/// The pairs of a hierarchy.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pairs<'a, P>(pub(super) &'a [P]);
+
+impl<'a, P: PairRecord> Records<'a> for Pairs<'a, P> {
+    const SECTIONS: &'static [SectionKind] = &[P::SECTION];
+    const USES_LEAVES: bool = true;
+
+    fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
+        Ok(Self(sections.records(P::SECTION)?))
+    }
+
+    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
+        check_pairs(self.0, scene.leaves, &scene.shapes, scene.bounds())
+    }
 }
 
 /// A walk through a hierarchy: what the ray brings to it.
@@ -135,7 +153,7 @@ fn root<P>(pairs: &[P]) -> Node {
 /// every leaf used. Returns the stack that a walk needs.
 ///
 /// Linear in pairs and primitives; uses [`MAX_STACK_DEPTH`] times 16 bytes of stack.
-pub(crate) fn check_pairs<P: PairRecord>(
+fn check_pairs<P: PairRecord>(
     pairs: &[P],
     leaves: &[u32],
     shapes: &Shapes<'_>,

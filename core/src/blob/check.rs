@@ -1,12 +1,12 @@
 //! The proofs that [`Scene::from_bytes`] makes, in the order in which each relies on those before.
 
 use super::record::{
-    ALIGNMENT, Cone, Cuboid, Disc, ENDIANNESS, FlaggedPair, Header, Light, MAGIC, Material, Pair,
-    UnitBox, VERSION, View,
+    ALIGNMENT, Cone, Cuboid, Disc, ENDIANNESS, Header, Light, MAGIC, Material, UnitBox, VERSION,
+    View,
 };
 use super::section::Sections;
 use super::{BlobError, Indices, Scene, SectionKind, checksum};
-use crate::accel::{Entry, Leaf, MAX_STACK_DEPTH, Structure, check_pairs};
+use crate::accel::{Entry, Held, Leaf, MAX_STACK_DEPTH, Structure};
 use crate::number::{Fixed, Number};
 use crate::render::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use crate::shade::Effects;
@@ -32,12 +32,11 @@ pub(super) fn check(blob: &[u8]) -> Result<Scene<'_>, BlobError> {
         order: Indices::read(&sections, SectionKind::Order)?,
         shapes,
         leaves: sections.records(SectionKind::Leaves)?,
-        pairs: sections.records::<Pair>(SectionKind::Pairs)?,
-        flagged: sections.records::<FlaggedPair>(SectionKind::FlaggedPairs)?,
+        held: Held::read(&sections)?,
         needs_norm: shapes.spheres.len() + shapes.cones.len() > 0,
     };
     check_objects(&scene)?;
-    check_structures(&scene)?;
+    check_structures(&scene, &sections)?;
     Ok(scene)
 }
 
@@ -512,37 +511,19 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
     Ok(())
 }
 
-fn check_structures(scene: &Scene<'_>) -> Result<(), BlobError> {
-    let hierarchies = scene.holds(Structure::Bvh) || scene.holds(Structure::Flagged);
-    let longest = check_leaves(scene, hierarchies)?;
+fn check_structures<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<(), BlobError> {
+    let longest = check_leaves(scene, Held::uses_leaves(scene))?;
     exactly(
         "longest leaf",
         scene.header.longest_leaf.into(),
         longest.into(),
     )?;
-    let mut depth = 0;
-    let (leaves, shapes, bounds) = (scene.leaves, &scene.shapes, &scene.header.bounds);
-    if scene.holds(Structure::Bvh) {
-        depth = depth.max(check_pairs(scene.pairs, leaves, shapes, bounds)?);
-    } else if !scene.pairs.is_empty() {
-        let (section, found) = (SectionKind::Pairs, scene.pairs.len());
-        return Err(BlobError::Count {
-            section,
-            found,
-            expected: 0,
-        });
+    let (depth, all_proved) = Held::check(scene, sections)?;
+    let found = scene.header.stack_depth;
+    if all_proved || usize::from(found) < depth {
+        exactly("stack depth", found.into(), depth as u64)?;
     }
-    if scene.holds(Structure::Flagged) {
-        depth = depth.max(check_pairs(scene.flagged, leaves, shapes, bounds)?);
-    } else if !scene.flagged.is_empty() {
-        let (section, found) = (SectionKind::FlaggedPairs, scene.flagged.len());
-        return Err(BlobError::Count {
-            section,
-            found,
-            expected: 0,
-        });
-    }
-    exactly("stack depth", scene.header.stack_depth.into(), depth as u64)
+    Ok(())
 }
 
 /// Proves that every primitive lies in exactly one leaf, and returns the longest leaf's count:

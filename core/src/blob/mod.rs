@@ -11,11 +11,12 @@ mod section;
 pub use error::BlobError;
 pub use index::Indices;
 pub use section::SectionKind;
+pub(crate) use section::Sections;
 
-use crate::accel::{Leaf, Structure};
+use crate::accel::{Held, Leaf, Structure};
 use crate::shade::Effects;
 use crate::shape::{Kind, Shapes};
-use record::{FlaggedPair, Header, Light, Material, Pair, UnitBox, View};
+use record::{Header, Light, Material, UnitBox, View};
 
 /// A checked view of a blob: a few hundred bytes that borrow from it.
 ///
@@ -31,9 +32,8 @@ pub struct Scene<'a> {
     object_material: Indices<'a>,
     order: Indices<'a>,
     pub(crate) shapes: Shapes<'a>,
-    leaves: &'a [u32],
-    pub(crate) pairs: &'a [Pair],
-    pub(crate) flagged: &'a [FlaggedPair],
+    pub(crate) leaves: &'a [u32],
+    pub(crate) held: Held<'a>,
     /// Whether any primitive's test needs the norm of the ray's direction.
     pub(crate) needs_norm: bool,
 }

@@ -4,85 +4,65 @@ use super::error::BlobError;
 use super::record::{ALIGNMENT, Header, SectionEntry};
 use core::mem::size_of;
 
-/// What a section holds. The order of the kinds is the order of the sections in a blob.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[repr(u16)]
-pub enum SectionKind {
+macro_rules! kinds {
+    ($($(#[doc = $doc:literal])* $kind:ident = $number:literal, $name:literal;)*) => {
+        /// What a section holds. The order of the kinds is the order of the sections in a blob.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        #[repr(u16)]
+        pub enum SectionKind {
+            $($(#[doc = $doc])* $kind = $number,)*
+        }
+
+        impl SectionKind {
+            /// All kinds, in order.
+            pub const ALL: [SectionKind; [$($number),*].len()] = [$(SectionKind::$kind),*];
+
+            /// The name that errors and memory maps use.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(SectionKind::$kind => $name,)*
+                }
+            }
+        }
+    };
+}
+
+kinds! {
     /// One [`View`](super::record::View).
-    View = 1,
+    View = 1, "view";
     /// [`Light`](super::record::Light)s.
-    Lights,
+    Lights = 2, "lights";
     /// [`Material`](super::record::Material)s.
-    Materials,
+    Materials = 3, "materials";
     /// For each object, the number of its first primitive (2 to 4 bytes). Absent where every
     /// object is one primitive, or all primitives are one object.
-    ObjectFirst,
+    ObjectFirst = 4, "object-first";
     /// For each object, its material (1 to 4 bytes). Absent where there is one material.
-    ObjectMaterial,
+    ObjectMaterial = 5, "object-material";
     /// For each slot, the primitive that lies in it, counted in scene-file order (2 to 4 bytes).
     /// Absent where slots and primitives agree.
-    Order,
+    Order = 6, "order";
     /// [`Vertex16`](super::record::Vertex16) or [`Vertex24`](super::record::Vertex24).
-    Vertices,
+    Vertices = 7, "vertices";
     /// Three vertex indices each, `u16` or `u32`.
-    Triangles,
+    Triangles = 8, "triangles";
     /// [`Sphere16`](super::record::Sphere16) or [`Sphere24`](super::record::Sphere24).
-    Spheres,
+    Spheres = 9, "spheres";
     /// [`Cuboid`](super::record::Cuboid)s.
-    Boxes,
+    Boxes = 10, "boxes";
     /// [`Disc`](super::record::Disc)s.
-    Discs,
+    Discs = 11, "discs";
     /// [`Cone`](super::record::Cone)s: cylinders, cones and frusta.
-    Cones,
+    Cones = 12, "cones";
     /// [`Leaf`](crate::accel::Leaf)s, `u32` each.
-    Leaves,
+    Leaves = 13, "leaves";
     /// [`Pair`](super::record::Pair)s of the ordinary hierarchy.
-    Pairs,
+    Pairs = 14, "pairs";
     /// [`FlaggedPair`](super::record::FlaggedPair)s.
-    FlaggedPairs,
+    FlaggedPairs = 15, "flagged-pairs";
 }
 
 impl SectionKind {
-    /// All kinds, in order.
-    pub const ALL: [SectionKind; 15] = [
-        SectionKind::View,
-        SectionKind::Lights,
-        SectionKind::Materials,
-        SectionKind::ObjectFirst,
-        SectionKind::ObjectMaterial,
-        SectionKind::Order,
-        SectionKind::Vertices,
-        SectionKind::Triangles,
-        SectionKind::Spheres,
-        SectionKind::Boxes,
-        SectionKind::Discs,
-        SectionKind::Cones,
-        SectionKind::Leaves,
-        SectionKind::Pairs,
-        SectionKind::FlaggedPairs,
-    ];
-
-    /// The name that errors and memory maps use.
-    pub const fn name(self) -> &'static str {
-        match self {
-            SectionKind::View => "view",
-            SectionKind::Lights => "lights",
-            SectionKind::Materials => "materials",
-            SectionKind::ObjectFirst => "object-first",
-            SectionKind::ObjectMaterial => "object-material",
-            SectionKind::Order => "order",
-            SectionKind::Vertices => "vertices",
-            SectionKind::Triangles => "triangles",
-            SectionKind::Spheres => "spheres",
-            SectionKind::Boxes => "boxes",
-            SectionKind::Discs => "discs",
-            SectionKind::Cones => "cones",
-            SectionKind::Leaves => "leaves",
-            SectionKind::Pairs => "pairs",
-            SectionKind::FlaggedPairs => "flagged-pairs",
-        }
-    }
-
     fn from_number(number: u16) -> Option<Self> {
         Self::ALL.get(usize::from(number).checked_sub(1)?).copied()
     }
@@ -90,18 +70,18 @@ impl SectionKind {
 
 /// A section's place, proved to lie in the blob.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Section<'a> {
-    pub(super) bytes: &'a [u8],
-    pub(super) stride: usize,
+pub(crate) struct Section<'a> {
+    pub(crate) bytes: &'a [u8],
+    pub(crate) stride: usize,
 }
 
 /// All sections of a blob; absent ones are empty.
-pub(super) struct Sections<'a>([Section<'a>; SectionKind::ALL.len()]);
+pub(crate) struct Sections<'a>([Section<'a>; SectionKind::ALL.len()]);
 
 impl<'a> Sections<'a> {
     /// Reads the section table. Proves that kinds are known and ascend, and that sections are
     /// aligned, in order, disjoint and inside the blob.
-    pub(super) fn read(blob: &'a [u8], count: u16) -> Result<Self, BlobError> {
+    pub(crate) fn read(blob: &'a [u8], count: u16) -> Result<Self, BlobError> {
         let table_bytes = usize::from(count) * size_of::<SectionEntry>();
         let table = blob
             .get(size_of::<Header>()..size_of::<Header>() + table_bytes)
@@ -168,12 +148,18 @@ impl<'a> Sections<'a> {
         Ok(sections)
     }
 
-    pub(super) fn get(&self, kind: SectionKind) -> Section<'a> {
+    pub(crate) fn get(&self, kind: SectionKind) -> Section<'a> {
         self.0.get(kind as usize - 1).copied().unwrap_or_default()
     }
 
+    /// Number of records of a section.
+    pub(crate) fn len(&self, kind: SectionKind) -> usize {
+        let section = self.get(kind);
+        section.bytes.len() / section.stride.max(1)
+    }
+
     /// The records of a section, which must have the stride of `T` unless it is empty.
-    pub(super) fn records<T: bytemuck::Pod>(
+    pub(crate) fn records<T: bytemuck::Pod>(
         &self,
         kind: SectionKind,
     ) -> Result<&'a [T], BlobError> {

@@ -2,6 +2,7 @@
 
 mod hierarchy;
 mod lattice;
+mod layout;
 mod pairs;
 mod primitives;
 mod surroundings;
@@ -14,6 +15,7 @@ use glam::DVec3;
 use gridel_core::Structure;
 use hierarchy::Primitive;
 use lattice::Lattice;
+use layout::Layout;
 use primitives::Primitives;
 
 /// What to put into a blob.
@@ -127,6 +129,13 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
     let sah_cost = root.as_ref().map_or(0.0, hierarchy::sah_cost);
     let bounds = root.map(|root| *root.bounds());
     let surroundings = surroundings::Surroundings::of(scene, &lattice, (lowest, highest))?;
+    let mut structures = options.structures.clone();
+    structures.sort();
+    structures.dedup();
+    let layouts: Vec<Layout> = structures
+        .iter()
+        .map(|&structure| Layout::of(structure, &flat))
+        .collect();
     let blob = writer::write(&writer::Parts {
         scene,
         lattice: &lattice,
@@ -134,11 +143,11 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
         flat: &flat,
         bounds,
         surroundings: &surroundings,
-        structures: &options.structures,
+        layouts: &layouts,
     })?;
     let bytes = blob.bytes().len();
     if let Some(most) = options.max_bytes.filter(|&most| bytes as u64 > most) {
-        let advice = advice(options, &snapped, &flat);
+        let advice = advice(options, &snapped, &layouts);
         return Err(CompileError::TooLarge {
             bytes: bytes as u64,
             over: bytes as u64 - most,
@@ -158,7 +167,7 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
 }
 
 /// What makes a blob smaller, by its own figures.
-fn advice(options: &Options, snapped: &Primitives, flat: &pairs::Flat) -> String {
+fn advice(options: &Options, snapped: &Primitives, layouts: &[Layout]) -> String {
     let mut steps = Vec::new();
     if options.lattice_bits > 16 {
         let saved = 3 * snapped.vertices.len() + 4 * snapped.spheres.len();
@@ -166,15 +175,13 @@ fn advice(options: &Options, snapped: &Primitives, flat: &pairs::Flat) -> String
             steps.push(format!("`--lattice-bits 16` saves {saved} bytes"));
         }
     }
-    if options.structures.contains(&Structure::Bvh) {
-        let saved = size_of_val(&flat.pairs[..]);
-        steps.push(format!("leaving out `--accel bvh` saves {saved} bytes"));
-    }
-    if options.structures.contains(&Structure::Flagged) {
-        let saved = size_of_val(&flat.flagged[..]);
-        steps.push(format!(
-            "`--accel list` instead of a hierarchy saves {saved} bytes and costs time"
-        ));
+    for layout in layouts.iter().filter(|layout| layout.bytes() > 0) {
+        let (name, saved) = (layout.structure.name(), layout.bytes());
+        steps.push(if layouts.len() > 1 {
+            format!("leaving out `--accel {name}` saves {saved} bytes")
+        } else {
+            format!("`--accel list` instead of {name} saves {saved} bytes and costs time")
+        });
     }
     steps.push(String::from("a scene with fewer primitives"));
     steps.join("; ")

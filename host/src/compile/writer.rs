@@ -2,6 +2,7 @@
 
 use super::CompileError;
 use super::lattice::Lattice;
+use super::layout::Layout;
 use super::pairs::Flat;
 use super::primitives::Primitives;
 use super::surroundings::Surroundings;
@@ -23,17 +24,19 @@ pub struct Parts<'p> {
     pub flat: &'p Flat,
     pub bounds: Option<UnitBox>,
     pub surroundings: &'p Surroundings,
-    pub structures: &'p [Structure],
+    pub layouts: &'p [Layout],
 }
 
 /// A section before it has a place.
-struct Section {
-    kind: SectionKind,
-    stride: usize,
-    bytes: Vec<u8>,
+#[derive(Clone, Debug)]
+pub struct Section {
+    pub kind: SectionKind,
+    pub stride: usize,
+    pub bytes: Vec<u8>,
 }
 
-fn section<T: bytemuck::NoUninit>(kind: SectionKind, records: &[T]) -> Section {
+/// A section of records.
+pub fn section<T: bytemuck::NoUninit>(kind: SectionKind, records: &[T]) -> Section {
     Section {
         kind,
         stride: size_of::<T>(),
@@ -42,7 +45,7 @@ fn section<T: bytemuck::NoUninit>(kind: SectionKind, records: &[T]) -> Section {
 }
 
 /// A section of integers, in as few bytes each as the largest needs, but at least `narrowest`.
-fn indices(kind: SectionKind, values: &[u32], narrowest: usize) -> Section {
+pub fn indices(kind: SectionKind, values: &[u32], narrowest: usize) -> Section {
     let largest = values.iter().copied().max().unwrap_or(0);
     if narrowest == 1 && largest <= u8::MAX.into() {
         section(
@@ -75,8 +78,7 @@ fn counts_up(values: &[u32]) -> bool {
 
 /// Writes a blob.
 pub fn write(parts: &Parts<'_>) -> Result<Blob, CompileError> {
-    let has = |structure| parts.structures.contains(&structure);
-    let hierarchy = has(Structure::Bvh) || has(Structure::Flagged);
+    let uses_leaves = parts.layouts.iter().any(|layout| layout.uses_leaves);
     let Parts {
         scene,
         lattice,
@@ -118,22 +120,21 @@ pub fn write(parts: &Parts<'_>) -> Result<Blob, CompileError> {
         sections.push(indices(SectionKind::Order, &order, 2));
     }
     sections.extend(geometry(lattice, primitives, flat));
-    if hierarchy {
+    if uses_leaves {
         sections.push(section(SectionKind::Leaves, &flat.leaves));
     }
-    if has(Structure::Bvh) {
-        sections.push(section(SectionKind::Pairs, &flat.pairs));
-    }
-    if has(Structure::Flagged) {
-        sections.push(section(SectionKind::FlaggedPairs, &flat.flagged));
-    }
+    let own = parts.layouts.iter().flat_map(|layout| &layout.sections);
+    sections.extend(own.cloned());
     sections.retain(|section| !section.bytes.is_empty());
+    sections.sort_by_key(|section| section.kind);
 
-    let stack_depth = if hierarchy { flat.depth as u16 } else { 0 };
+    let depths = parts.layouts.iter().map(|layout| layout.stack_depth);
+    let stack_depth = depths.max().unwrap_or(0) as u16;
     let structures = parts
-        .structures
+        .layouts
         .iter()
-        .chain(&[Structure::List])
+        .map(|layout| layout.structure)
+        .chain([Structure::List])
         .fold(0, |bits, structure| bits | structure.bit());
     let header = Header {
         magic: MAGIC,
@@ -145,7 +146,7 @@ pub fn write(parts: &Parts<'_>) -> Result<Blob, CompileError> {
         structures,
         effects: surroundings.effects.0,
         stack_depth,
-        longest_leaf: if hierarchy {
+        longest_leaf: if uses_leaves {
             flat.longest_leaf as u16
         } else {
             0

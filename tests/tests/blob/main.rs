@@ -5,11 +5,11 @@ mod forged;
 use glam::DVec3;
 use gridel_core::blob::record::Header;
 use gridel_core::blob::{BlobError, checksum};
-use gridel_core::{Bvh, Flagged, Format, Hit, List, NoCount, Number, Scene, Settings, Structure};
+use gridel_core::{Format, Hit, List, NoCount, Number, Scene, Settings, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::render::{Job, render};
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Shape};
-use gridel_tests::query::{UnitRay, any, closest};
+use gridel_tests::query::{UnitRay, any, closest, held, through};
 use gridel_tests::random::Random;
 use gridel_tests::{every_format, rays, scenes};
 use std::mem::offset_of;
@@ -154,17 +154,9 @@ fn structures_agree<N: Number>(scene: &Scene<'_>, rays_each: usize) {
             closest::<N, List>(scene, &ready, &mut NoCount),
             any::<N, List>(scene, &ready),
         );
-        if scene.holds(Structure::Bvh) {
-            check(
-                closest::<N, Bvh>(scene, &ready, &mut NoCount),
-                any::<N, Bvh>(scene, &ready),
-            );
-        }
-        if scene.holds(Structure::Flagged) {
-            check(
-                closest::<N, Flagged>(scene, &ready, &mut NoCount),
-                any::<N, Flagged>(scene, &ready),
-            );
+        for structure in held(scene) {
+            let (hit, any) = through::<N>(structure, scene, &ready);
+            check(hit, any);
         }
     }
 }

@@ -1,0 +1,152 @@
+//! The structures there are: the one place that names them all.
+//!
+//! A structure is a file beside this one with its type, its records in the blob ([`Records`]) and a
+//! line in the table below. Its code is a Cargo feature of the same name; sections of structures
+//! that a build was compiled without are passed over.
+
+use super::Accel;
+use crate::blob::{BlobError, Scene, SectionKind, Sections};
+
+/// What is done with a structure that is chosen while the program runs: see [`Structure::visit`].
+pub trait StructureVisitor {
+    /// What comes of it.
+    type Output;
+
+    /// Does it with the structure `A`.
+    fn visit<A: Accel>(self) -> Self::Output;
+}
+
+/// What a structure keeps in a blob, and the proof that it is sound.
+pub(crate) trait Records<'a>: Copy {
+    /// The sections that are this structure's alone.
+    const SECTIONS: &'static [SectionKind];
+    /// Whether the structure leads to the leaves that hierarchies share.
+    const USES_LEAVES: bool;
+
+    /// Finds the records.
+    fn read(sections: &Sections<'a>) -> Result<Self, BlobError>;
+
+    /// Proves all that a walk relies on, in linear time, and returns the entries that its stack
+    /// needs. Everything else in the scene is proved already.
+    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError>;
+}
+
+macro_rules! structures {
+    ($(
+        $(#[doc = $doc:literal])*
+        $variant:ident = $number:literal, $name:literal, $module:ident, if $feature:meta;
+    )*) => {
+        /// The name of a structure.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[repr(u32)]
+        pub enum Structure {
+            $($(#[doc = $doc])* $variant = $number,)*
+        }
+
+        impl Structure {
+            /// All structures, compiled in or not.
+            pub const ALL: [Structure; [$($number),*].len()] = [$(Structure::$variant),*];
+
+            /// The name that command lines and tables use.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Structure::$variant => $name,)*
+                }
+            }
+
+            /// Hands the structure to a visitor as a type.
+            #[cfg(feature = "all-structures")]
+            pub fn visit<V: StructureVisitor>(self, visitor: V) -> V::Output {
+                match self {
+                    $(Structure::$variant => visitor.visit::<super::$variant>(),)*
+                }
+            }
+        }
+
+        /// The records of every structure in a scene.
+        #[derive(Clone, Copy, Debug)]
+        pub(crate) struct Held<'a> {
+            $(#[cfg($feature)] pub(crate) $module: super::$module::Held<'a>,)*
+        }
+
+        impl<'a> Held<'a> {
+            /// Finds the records.
+            pub(crate) fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
+                Ok(Self {
+                    $(#[cfg($feature)] $module: Records::read(sections)?,)*
+                })
+            }
+
+            /// Whether a structure of the scene leads to the shared leaves. A structure whose code
+            /// is not here is taken to.
+            pub(crate) fn uses_leaves(scene: &Scene<'_>) -> bool {
+                let uses = |structure| match structure {
+                    $(
+                        #[cfg($feature)]
+                        Structure::$variant => <super::$module::Held<'a> as Records>::USES_LEAVES,
+                    )*
+                    #[cfg(not(feature = "all-structures"))]
+                    _ => true,
+                };
+                Structure::ALL.into_iter().any(|it| scene.holds(it) && uses(it))
+            }
+
+            /// Proves every structure whose code is here. Returns the deepest stack that one needs,
+            /// and whether all that the scene holds were proved.
+            pub(crate) fn check(scene: &Scene<'a>, sections: &Sections<'a>)
+                -> Result<(usize, bool), BlobError>
+            {
+                let (mut depth, mut proved) = (0, 0);
+                $(
+                    #[cfg($feature)]
+                    {
+                        proved |= Structure::$variant.bit();
+                        depth = depth.max(check_one(
+                            &scene.held.$module, Structure::$variant, scene, sections,
+                        )?);
+                    }
+                )*
+                Ok((depth, scene.header.structures & !proved == 0))
+            }
+        }
+    };
+}
+
+structures! {
+    /// Every primitive, one after the other.
+    List = 0, "list", list, if all();
+    /// A bounding volume hierarchy of pairs, 32 bytes each, traversed in the ordinary way.
+    Bvh = 1, "bvh", bvh, if feature = "bvh";
+    /// The same hierarchy without the sides that coincide with the parent's, 16 bytes a pair.
+    Flagged = 2, "flagged", flagged, if feature = "flagged";
+}
+
+impl Structure {
+    /// The structure's bit in the header.
+    pub const fn bit(self) -> u32 {
+        1 << self as u32
+    }
+}
+
+/// Proves one structure, or that the blob has no sections of it.
+fn check_one<'a, R: Records<'a>>(
+    records: &R,
+    structure: Structure,
+    scene: &Scene<'a>,
+    sections: &Sections<'a>,
+) -> Result<usize, BlobError> {
+    if scene.holds(structure) {
+        return records.check(scene);
+    }
+    for &section in R::SECTIONS {
+        let found = sections.len(section);
+        if found > 0 {
+            return Err(BlobError::Count {
+                section,
+                found,
+                expected: 0,
+            });
+        }
+    }
+    Ok(0)
+}
