@@ -5,7 +5,8 @@
 //! the blob once; after that nothing can fail. Two things can be asked of a scene:
 //!
 //! - **rays**: [`closest_hit`], [`closest_primitive`] and [`any_hit`], with a [`Ray`] of your own;
-//! - **pictures**: a [`Renderer`] gives pixels row by row or for any rectangle.
+//! - **pictures**: a [`Renderer`] gives pixels row by row or for any rectangle, and a
+//!   [`Cursor`](render::Cursor) gives them a bounded number of rays at a time.
 //!
 //! Both are generic over the number format (see [`Number`]): [`Fixed`] for cores without a
 //! floating-point unit, `f32`, `f64`; and over the acceleration structure ([`List`], [`Bvh`],

@@ -8,8 +8,8 @@ use glam::DVec3;
 use gridel_core::accel::MAX_STACK_DEPTH;
 use gridel_core::render::MAX_RAY_DEPTH;
 use gridel_core::{
-    Effects, Flagged, Format, NoCount, Number, Renderer, Rgb888, Scene, Settings, Structure,
-    Workspace,
+    Counters, Effects, Flagged, Format, NoCount, Number, Renderer, Rgb888, Scene, Settings,
+    Structure, Workspace,
 };
 use gridel_host::blob::Blob;
 use gridel_host::render::{Job, Picture, render};
@@ -200,6 +200,104 @@ fn bytes<N: Number, const EFFECTS: u32>(scene: &Scene<'_>) -> Vec<[u8; 3]> {
     let sink = |_, _, pixel: Rgb888| pixels.push(pixel.0);
     renderer.rectangle([0, 0], size, &mut space.as_view(), &mut NoCount, sink);
     pixels
+}
+
+/// A picture made a few rays at a time is the one made row by row, whatever the steps; and no step
+/// traces more rays than it may.
+fn steps_do_not_matter<N: Number>(name: &str, scene: &Scene<'_>) {
+    let settings = small(scene);
+    let renderer = Renderer::<N, Flagged, { Effects::ALL.0 }>::new(scene, settings);
+    let renderer = renderer.expect("a renderer");
+    let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let (corner, size) = ([5, 7], [settings.width - 9, settings.height - 11]);
+    let mut whole = Vec::new();
+    let mut counted = Counters::default();
+    let sink = |x, y, pixel: Rgb888| whole.push((x, y, pixel.0));
+    renderer.rectangle(corner, size, &mut space.as_view(), &mut counted, sink);
+    // Shadow rays belong to the ray that met the surface.
+    let rays = |counters: &Counters| counters.rays() - counters.shadow;
+    for budget in [1, 2, 7, 64, 1000, u32::MAX] {
+        let mut pixels = Vec::new();
+        let mut sum = Counters::default();
+        let mut steps = 0;
+        let mut cursor = renderer.cursor(corner, size, space.as_view());
+        while !cursor.is_done() {
+            let mut count = Counters::default();
+            cursor.step(budget, &mut count, |x, y, pixel: Rgb888| {
+                pixels.push((x, y, pixel.0));
+            });
+            assert!(rays(&count) <= budget.into(), "{name}, steps of {budget}");
+            sum = sum.plus(&count);
+            steps += 1;
+        }
+        assert!(
+            pixels == whole,
+            "{name}, {}, steps of {budget}",
+            N::FORMAT.name()
+        );
+        assert_eq!(sum, counted, "{name}, steps of {budget}");
+        // Every ray of these cameras has a direction, so no step but the last is short.
+        assert_eq!(
+            steps,
+            rays(&sum).div_ceil(budget.into()),
+            "{name}, steps of {budget}"
+        );
+        // Nothing is left to do, and nothing is done.
+        cursor.step(budget, &mut sum, |_, _, _: Rgb888| {
+            panic!("{name}: a pixel too many")
+        });
+        assert_eq!(sum, counted, "{name}, behind the end");
+    }
+}
+
+#[test]
+fn pictures_are_the_same_a_few_rays_at_a_time() {
+    for (name, scene) in scenes::fixtures() {
+        let blob = scenes::blob(&scene, 24);
+        let scene = blob.scene().expect("a scene");
+        every_format!(steps_do_not_matter(&name, &scene));
+    }
+}
+
+/// An abandoned cursor leaves rays in the workspace, which must not reach the next picture; and
+/// rectangles end at the last pixel that there is.
+#[test]
+fn cursors_can_be_dropped_and_ends_are_ends() {
+    let fixture = scenes::read(&scenes::fixture_folder().join("glass-chess.toml"));
+    let blob = scenes::blob(&fixture, 24);
+    let scene = blob.scene().expect("a scene");
+    let renderer = Renderer::<f32, Flagged, { Effects::ALL.0 }>::new(&scene, small(&scene));
+    let renderer = renderer.expect("a renderer");
+    let mut space = Workspace::<f32, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let pixel = |space: &mut Workspace<_, _, _>| {
+        renderer.linear(24, 20, &mut space.as_view(), &mut NoCount)
+    };
+    let fresh = pixel(&mut space);
+    for rays in 1..40 {
+        let mut cursor = renderer.cursor([20, 20], [9, 9], space.as_view());
+        cursor.step(rays, &mut NoCount, |_, _, _: Rgb888| ());
+        assert!(!cursor.is_done());
+        assert_eq!(pixel(&mut space), fresh);
+    }
+    let end = u16::MAX;
+    for (corner, size, expected) in [
+        ([0, 0], [0, 5], 0),
+        ([0, 0], [5, 0], 0),
+        ([end, end], [1, 1], 1),
+        ([end, end], [end, end], 1),
+        ([end - 1, end - 2], [7, 7], 6),
+    ] {
+        let mut places = Vec::new();
+        let sink = |x, y, _: Rgb888| places.push([x, y]);
+        renderer.rectangle(corner, size, &mut space.as_view(), &mut NoCount, sink);
+        let mut stepped = Vec::new();
+        let mut cursor = renderer.cursor(corner, size, space.as_view());
+        while !cursor.is_done() {
+            cursor.step(3, &mut NoCount, |x, y, _: Rgb888| stepped.push([x, y]));
+        }
+        assert_eq!(stepped, places);
+        assert_eq!(stepped.len(), expected);
+    }
 }
 
 /// A picture made with exactly its scene's effects is the one made with all.

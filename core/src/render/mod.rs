@@ -4,14 +4,17 @@
 //! |---|---|
 //! | where in the pixel, and in which direction | `sample.rs`, `camera.rs` |
 //! | what the ray and those it causes bring | `trace.rs` |
+//! | where rendering is between two calls | `cursor.rs` |
 //! | from radiance to the bytes of a display | `pixel.rs` |
 
 mod camera;
+mod cursor;
 mod pixel;
 mod renderer;
 mod sample;
 mod trace;
 
+pub use cursor::Cursor;
 pub use pixel::{Pixel, Rgb565, Rgb888};
 pub use renderer::{RenderError, Renderer, Settings};
 pub use trace::{Workspace, WorkspaceView, work_depth};

@@ -1,8 +1,9 @@
 //! The renderer: pixels of one scene at one size, wherever and in whatever order they are wanted.
 
 use super::camera::Camera;
-use super::pixel::{Linear, Pixel};
-use super::sample::{SUBPIXELS, place};
+use super::cursor::{Cursor, Samples};
+use super::pixel::Pixel;
+use super::sample::SUBPIXELS;
 use super::trace::{Loop, WorkspaceView, work_depth};
 use super::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use crate::accel::{Accel, Structure};
@@ -10,7 +11,7 @@ use crate::blob::Scene;
 use crate::count::Count;
 use crate::number::Number;
 use crate::ray::{Ray, RayError};
-use crate::shade::{Color, Effects};
+use crate::shade::Effects;
 use core::fmt;
 use core::marker::PhantomData;
 
@@ -220,7 +221,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
 
     /// The ray from the eye through a point given in subpixels from the upper left corner.
     #[inline(always)]
-    fn ray_through(&self, x: i32, y: i32) -> Result<Ray<N>, RayError> {
+    pub(super) fn ray_through(&self, x: i32, y: i32) -> Result<Ray<N>, RayError> {
         let direction = self.camera.direction(&self.camera.row(y), x);
         let (eye, zero, far) = (self.camera.eye(), N::Wide::default(), N::far(1 << 60));
         Ray::new(self.scene.bounds(), eye, direction, zero, far)
@@ -234,32 +235,13 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         space: &mut WorkspaceView<'_, N>,
         count: &mut C,
     ) -> [u16; 3] {
-        let Settings { samples, depth, .. } = self.settings;
-        let tracing = Loop {
-            scene: self.scene,
-            depth,
-        };
-        let mut sum = Color::BLACK;
-        for index in 0..samples {
-            let [dx, dy] = place(index, samples);
-            let (x, y) = (i32::from(x) * SUBPIXELS + dx, i32::from(y) * SUBPIXELS + dy);
-            let Ok(ray) = self.ray_through(x, y) else {
-                continue;
-            };
-            let radiance = tracing.radiance::<N, A, C, EFFECTS>(&ray, space, count);
-            // Clamped before they are averaged, so that the edge of a highlight is smooth.
-            let white = N::radiance(1 << 20);
-            let seen = Color(radiance.0.map(|channel| channel.max(N::ZERO).min(white)));
-            sum = sum.plus(seen);
+        space.work.clear();
+        let mut samples = Samples::new();
+        loop {
+            if let Some(linear) = samples.step(self, [x, y], space, count) {
+                return linear;
+            }
         }
-        let mean = if samples == 1 {
-            sum
-        } else {
-            // `new` refuses 0 samples.
-            sum.scaled(N::ratio((1 << 30) / i32::from(samples.max(1))))
-        };
-        let linear: Linear = mean.0.map(N::to_linear16);
-        linear
     }
 
     /// One pixel in a display's form.
@@ -303,6 +285,23 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
             for x in (corner[0]..=u16::MAX).take(size[0].into()) {
                 sink(x, y, self.pixel(x, y, space, count));
             }
+        }
+    }
+
+    /// The same rectangle, rendered a few rays at a time: see [`Cursor`].
+    pub fn cursor<'r>(
+        &'r self,
+        corner: [u16; 2],
+        size: [u16; 2],
+        space: WorkspaceView<'r, N>,
+    ) -> Cursor<'r, 's, 'a, N, A, EFFECTS> {
+        Cursor::new(self, corner, size, space)
+    }
+
+    pub(super) fn tracing(&self) -> Loop<'s, 'a> {
+        Loop {
+            scene: self.scene,
+            depth: self.settings.depth,
         }
     }
 }

@@ -16,7 +16,7 @@ use crate::blob::record::{Light, Material};
 use crate::count::{Count, RayKind};
 use crate::number::Number;
 use crate::query::{Hit, any_hit, closest_hit};
-use crate::ray::Ray;
+use crate::ray::{Ray, RayError};
 use crate::shade::glass::{self, Split};
 use crate::shade::{Color, Effects};
 use heapless::{Vec, VecView};
@@ -89,32 +89,33 @@ pub(super) struct Loop<'s, 'a> {
 }
 
 impl Loop<'_, '_> {
-    /// The radiance that a ray from the camera brings.
-    pub(super) fn radiance<N: Number, A: Accel, C: Count, const EFFECTS: u32>(
+    /// Traces one ray and the shadow rays of what it meets: the last that waits, or else the one
+    /// from the camera. Returns whether none waits any more.
+    #[inline(always)]
+    pub(super) fn step<N: Number, A: Accel, C: Count, const EFFECTS: u32>(
         &self,
-        ray: &Ray<N>,
+        camera: impl FnOnce() -> Result<Ray<N>, RayError>,
+        radiance: &mut Color<N>,
         space: &mut WorkspaceView<'_, N>,
         count: &mut C,
-    ) -> Color<N> {
-        let secondary = Effects::MIRROR.with(Effects::GLASS);
-        let mut radiance = Color::BLACK;
-        space.work.clear();
-        count.ray(RayKind::Primary);
-        self.add::<N, A, C, EFFECTS>(ray, Color::WHITE, 0, &mut radiance, space, count);
-        if EFFECTS & secondary.0 == 0 {
-            return radiance;
-        }
-        while let Some(next) = space.work.pop() {
-            let zero = N::Wide::default();
-            let (origin, direction) = (next.origin.map(N::widen), next.direction.map(N::widen));
-            let far = N::FAR.widen();
-            if let Ok(ray) = Ray::new(self.scene.bounds(), origin, direction, zero, far) {
-                count.ray(next.kind);
-                let (weight, depth) = (next.weight, next.depth);
-                self.add::<N, A, C, EFFECTS>(&ray, weight, depth, &mut radiance, space, count);
+    ) -> bool {
+        let causes_rays = EFFECTS & Effects::MIRROR.with(Effects::GLASS).0 != 0;
+        let waiting = if causes_rays { space.work.pop() } else { None };
+        let (ray, weight, depth, kind) = match waiting {
+            Some(next) => {
+                let (origin, direction) = (next.origin.map(N::widen), next.direction.map(N::widen));
+                let (zero, far) = (N::Wide::default(), N::FAR.widen());
+                let ray = Ray::new(self.scene.bounds(), origin, direction, zero, far);
+                (ray, next.weight, next.depth, next.kind)
             }
+            None => (camera(), Color::WHITE, 0, RayKind::Primary),
+        };
+        // A direction that cannot be told brings nothing.
+        if let Ok(ray) = ray {
+            count.ray(kind);
+            self.add::<N, A, C, EFFECTS>(&ray, weight, depth, radiance, space, count);
         }
-        radiance
+        !causes_rays || space.work.is_empty()
     }
 
     /// Adds what one ray brings, and puts the rays that it causes on the work list.

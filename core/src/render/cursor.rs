@@ -1,0 +1,172 @@
+//! Where rendering is: the sample of a pixel, the pixel of a rectangle. It can stop behind any ray
+//! and go on later, so a call takes a bounded time and the picture is the same bit for bit.
+
+use super::pixel::{Linear, Pixel};
+use super::renderer::Renderer;
+use super::sample::{SUBPIXELS, place};
+use super::trace::WorkspaceView;
+use crate::accel::Accel;
+use crate::count::Count;
+use crate::number::Number;
+use crate::shade::Color;
+
+/// A rectangle of a picture that is rendered a few rays at a time, for firmware with deadlines.
+///
+/// [`step`](Self::step) traces so many rays and returns; the next call goes on exactly where it
+/// stopped, and every pixel is handed out as soon as its last ray was traced. Pixels have the bits
+/// that [`Renderer::row`] gives them, whatever the steps.
+///
+/// Between two steps the rays that wait stay in the workspace, which is therefore borrowed as long
+/// as the cursor lives; a cursor that is dropped may leave its picture unfinished. It takes 60
+/// bytes in `f32` and `fixed` and at most 88 in `f64` on a 32-bit board.
+///
+/// # What a ray costs
+/// A step counts the rays from the camera, off mirrors and through glass. Each of them costs one
+/// closest hit, and if it meets a surface, each light that shines on that surface one shadow ray:
+/// any hit in a scene without glass, else up to 64 closest hits, one for every surface of glass on
+/// the way. Nothing else takes time that depends on the scene.
+#[derive(Debug)]
+pub struct Cursor<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> {
+    renderer: &'r Renderer<'s, 'a, N, A, EFFECTS>,
+    space: WorkspaceView<'r, N>,
+    samples: Samples<N>,
+    /// The pixel that is being rendered.
+    pixel: [u16; 2],
+    /// The first column and the last.
+    columns: [u16; 2],
+    /// Rows that are not done.
+    rows: u16,
+}
+
+impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> Cursor<'r, 's, 'a, N, A, EFFECTS> {
+    pub(super) fn new(
+        renderer: &'r Renderer<'s, 'a, N, A, EFFECTS>,
+        corner: [u16; 2],
+        [width, height]: [u16; 2],
+        space: WorkspaceView<'r, N>,
+    ) -> Self {
+        space.work.clear();
+        // There are no pixels beyond number 65535.
+        let [x, y] = corner;
+        let rows = if y == 0 {
+            height
+        } else {
+            height.min((u16::MAX - y).saturating_add(1))
+        };
+        Self {
+            renderer,
+            space,
+            samples: Samples::new(),
+            pixel: corner,
+            columns: [x, x.saturating_add(width.saturating_sub(1))],
+            rows: if width == 0 { 0 } else { rows },
+        }
+    }
+
+    /// Whether all pixels were handed out.
+    pub fn is_done(&self) -> bool {
+        self.rows == 0
+    }
+
+    /// Traces at most so many rays, and hands out the pixels that they complete, row by row from
+    /// the upper left corner.
+    pub fn step<P: Pixel, C: Count>(
+        &mut self,
+        rays: u32,
+        count: &mut C,
+        mut sink: impl FnMut(u16, u16, P),
+    ) {
+        let dither = self.renderer.settings().dither;
+        for _ in 0..rays {
+            if self.is_done() {
+                return;
+            }
+            let pixel = self.pixel;
+            let traced = self
+                .samples
+                .step(self.renderer, pixel, &mut self.space, count);
+            let Some(linear) = traced else { continue };
+            let [x, y] = pixel;
+            sink(x, y, P::encode(linear, dither.then_some(pixel)));
+            self.samples = Samples::new();
+            let [first, last] = self.columns;
+            self.pixel = if x < last {
+                [x.saturating_add(1), y]
+            } else {
+                self.rows = self.rows.saturating_sub(1);
+                [first, y.saturating_add(1)]
+            };
+        }
+    }
+}
+
+/// A pixel that is being rendered: the number of its sample, and what was seen so far.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Samples<N: Number> {
+    index: u16,
+    /// Of the samples before this one.
+    sum: Color<N>,
+    /// What this sample's rays have brought.
+    radiance: Color<N>,
+}
+
+impl<N: Number> Samples<N> {
+    pub(super) fn new() -> Self {
+        Self {
+            index: 0,
+            sum: Color::BLACK,
+            radiance: Color::BLACK,
+        }
+    }
+
+    /// Traces one ray; the pixel, linear, if that was its last. The work list holds rays of the
+    /// pixel's current sample, and is empty when a sample begins.
+    #[inline(always)]
+    pub(super) fn step<A: Accel, C: Count, const EFFECTS: u32>(
+        &mut self,
+        renderer: &Renderer<'_, '_, N, A, EFFECTS>,
+        [x, y]: [u16; 2],
+        space: &mut WorkspaceView<'_, N>,
+        count: &mut C,
+    ) -> Option<Linear> {
+        let samples = renderer.settings().samples;
+        let camera = || {
+            let [dx, dy] = place(self.index, samples);
+            renderer.ray_through(i32::from(x) * SUBPIXELS + dx, i32::from(y) * SUBPIXELS + dy)
+        };
+        let radiance = &mut self.radiance;
+        let tracing = renderer.tracing();
+        if !tracing.step::<N, A, C, EFFECTS>(camera, radiance, space, count) {
+            return None;
+        }
+        // Clamped before they are averaged, so that the edge of a highlight is smooth.
+        let white = N::radiance(1 << 20);
+        let seen = self
+            .radiance
+            .0
+            .map(|channel| channel.max(N::ZERO).min(white));
+        self.sum = self.sum.plus(Color(seen));
+        self.radiance = Color::BLACK;
+        self.index = self.index.saturating_add(1);
+        if self.index < samples {
+            return None;
+        }
+        let mean = if samples == 1 {
+            self.sum
+        } else {
+            // `Renderer::new` refuses 0 samples.
+            self.sum
+                .scaled(N::ratio((1 << 30) / i32::from(samples.max(1))))
+        };
+        Some(mean.0.map(N::to_linear16))
+    }
+}
+
+/// What the documentation promises; a board is where it matters.
+#[cfg(target_pointer_width = "32")]
+const _: () = {
+    use crate::{Fixed, List};
+    assert!(size_of::<Cursor<'_, '_, '_, f32, List, 0>>() <= 60);
+    assert!(size_of::<Cursor<'_, '_, '_, Fixed, List, 0>>() <= 60);
+    assert!(size_of::<Cursor<'_, '_, '_, f64, List, 0>>() <= 88);
+};
