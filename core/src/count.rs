@@ -1,4 +1,6 @@
-//! Counters of work, which cost nothing where nobody asks for them.
+//! Counters of work, and the story of a ray, which cost nothing where nobody asks for them.
+
+use crate::event::Event;
 
 /// What a ray was cast for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,7 +15,7 @@ pub enum RayKind {
     Refracted,
 }
 
-/// Receives counts; every method does nothing unless it is overridden.
+/// Receives counts and events; every method does nothing unless it is overridden.
 pub trait Count {
     /// Planes of boxes were tested.
     #[inline(always)]
@@ -27,6 +29,12 @@ pub trait Count {
     /// A ray was cast.
     #[inline(always)]
     fn ray(&mut self, _: RayKind) {}
+    /// Something happened, and `event` says what. It is called only by those who listen, so that
+    /// nobody else pays for telling.
+    #[inline(always)]
+    fn tell(&mut self, event: impl FnOnce() -> Event) {
+        let _ = event;
+    }
 }
 
 /// Counts nothing, at no cost.

@@ -29,6 +29,7 @@
 pub mod accel;
 pub mod blob;
 pub mod count;
+pub mod event;
 pub mod number;
 mod query;
 pub mod ray;
@@ -45,6 +46,7 @@ pub use accel::Flagged;
 pub use accel::{Accel, List, Stack, StackView, Structure, StructureVisitor};
 pub use blob::{Aligned, BlobError, Scene};
 pub use count::{Count, Counters, NoCount, RayKind};
+pub use event::Event;
 pub use number::{Fixed, Format, Number};
 pub use query::{Found, Hit, any_hit, closest_hit, closest_primitive};
 pub use ray::{Ray, RayError};

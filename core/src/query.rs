@@ -5,6 +5,7 @@ use crate::accel::{Accel, Leaf, StackView};
 use crate::blob::Scene;
 use crate::blob::record::{Corners, Cuboid, Sphere, UnitBox, Vertex};
 use crate::count::Count;
+use crate::event::{Event, Met};
 use crate::number::Number;
 use crate::ray::Ray;
 use crate::shape::sphere;
@@ -96,37 +97,68 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         }
     }
 
+    /// Tells of a primitive that was just tested, and considered if it was met.
+    #[inline(always)]
+    fn tell<C: Count>(
+        &self,
+        kind: Kind,
+        index: u32,
+        crossing: Option<&Crossing<N>>,
+        count: &mut C,
+    ) {
+        count.tell(|| Event::Candidate {
+            kind,
+            primitive: self.scene.primitive(kind, index),
+            crossing: crossing.map(|c| [c.enter.0, c.leave.0].map(N::length_to_f64)),
+            nearest: self
+                .best
+                .is_some_and(|best| (best.kind, best.index) == (kind, index)),
+        });
+    }
+
     /// Tests the primitives of a leaf.
     #[inline(always)]
-    fn leaf(&mut self, leaf: Leaf) {
+    fn leaf<C: Count>(&mut self, leaf: Leaf, count: &mut C) {
+        count.objects(leaf.count);
         let (first, end) = (leaf.first as usize, (leaf.first + leaf.count) as usize);
         let shapes = &self.scene.shapes;
         match leaf.kind {
             Kind::Triangle => match (shapes.vertices, shapes.triangles) {
-                (Vertices::V16(v), Triangles::U16(t)) => self.triangles(v, t.get(first..end), leaf),
-                (Vertices::V16(v), Triangles::U32(t)) => self.triangles(v, t.get(first..end), leaf),
-                (Vertices::V24(v), Triangles::U16(t)) => self.triangles(v, t.get(first..end), leaf),
-                (Vertices::V24(v), Triangles::U32(t)) => self.triangles(v, t.get(first..end), leaf),
+                (Vertices::V16(v), Triangles::U16(t)) => {
+                    self.triangles(v, t.get(first..end), leaf, count)
+                }
+                (Vertices::V16(v), Triangles::U32(t)) => {
+                    self.triangles(v, t.get(first..end), leaf, count)
+                }
+                (Vertices::V24(v), Triangles::U16(t)) => {
+                    self.triangles(v, t.get(first..end), leaf, count)
+                }
+                (Vertices::V24(v), Triangles::U32(t)) => {
+                    self.triangles(v, t.get(first..end), leaf, count)
+                }
             },
             Kind::Sphere => match shapes.spheres {
-                Spheres::S16(spheres) => self.spheres(spheres.get(first..end), leaf),
-                Spheres::S24(spheres) => self.spheres(spheres.get(first..end), leaf),
+                Spheres::S16(spheres) => self.spheres(spheres.get(first..end), leaf, count),
+                Spheres::S24(spheres) => self.spheres(spheres.get(first..end), leaf, count),
             },
             Kind::Box => self.solids(
                 shapes.boxes.get(first..end),
                 leaf,
+                count,
                 |search, cuboid| cuboid.cross(search.ray),
                 Cuboid::bounds,
             ),
             Kind::Disc => self.solids(
                 shapes.discs.get(first..end),
                 leaf,
+                count,
                 |search, disc| disc.cross(search.ray),
                 |disc| disc.bounds,
             ),
             Kind::Cone => self.solids(
                 shapes.cones.get(first..end),
                 leaf,
+                count,
                 |search, cone| cone.cross(search.ray, search.recip_norm2),
                 |cone| cone.bounds,
             ),
@@ -135,22 +167,25 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
 
     /// Tests records one after the other; `bounds` is asked for the boxes of those that are met.
     #[inline(always)]
-    fn solids<T>(
+    fn solids<T, C: Count>(
         &mut self,
         records: Option<&[T]>,
         leaf: Leaf,
+        count: &mut C,
         cross: impl Fn(&Self, &T) -> Option<Crossing<N>>,
         bounds: impl Fn(&T) -> UnitBox,
     ) {
         for (index, record) in (leaf.first..).zip(records.unwrap_or_default()) {
-            if let Some(crossing) = cross(self, record) {
+            let crossing = cross(self, record);
+            if let Some(crossing) = crossing {
                 self.consider(crossing, bounds(record), leaf.kind, index);
             }
+            self.tell(leaf.kind, index, crossing.as_ref(), count);
         }
     }
 
     #[inline(always)]
-    fn spheres<S: Sphere>(&mut self, spheres: Option<&[S]>, leaf: Leaf) {
+    fn spheres<S: Sphere, C: Count>(&mut self, spheres: Option<&[S]>, leaf: Leaf, count: &mut C) {
         let cross = |search: &Self, record: &S| {
             let (center, radius) = record.lattice();
             sphere::cross(search.ray, search.recip_norm2, center, radius)
@@ -159,29 +194,31 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             let (center, radius) = record.lattice();
             sphere::bounds(center, radius)
         };
-        self.solids(spheres, leaf, cross, bounds);
+        self.solids(spheres, leaf, count, cross, bounds);
     }
 
     /// Chooses the copy of the triangle test for the ray's major axis.
     #[inline(always)]
-    fn triangles<V: Vertex, I: Corners>(
+    fn triangles<V: Vertex, I: Corners, C: Count>(
         &mut self,
         vertices: &[V],
         triangles: Option<&[I]>,
         leaf: Leaf,
+        count: &mut C,
     ) {
         match self.ray.major {
-            0 => self.triangles_along::<0, V, I>(vertices, triangles, leaf),
-            1 => self.triangles_along::<1, V, I>(vertices, triangles, leaf),
-            _ => self.triangles_along::<2, V, I>(vertices, triangles, leaf),
+            0 => self.triangles_along::<0, V, I, C>(vertices, triangles, leaf, count),
+            1 => self.triangles_along::<1, V, I, C>(vertices, triangles, leaf, count),
+            _ => self.triangles_along::<2, V, I, C>(vertices, triangles, leaf, count),
         }
     }
 
-    fn triangles_along<const MAJOR: usize, V: Vertex, I: Corners>(
+    fn triangles_along<const MAJOR: usize, V: Vertex, I: Corners, C: Count>(
         &mut self,
         vertices: &[V],
         triangles: Option<&[I]>,
         leaf: Leaf,
+        count: &mut C,
     ) {
         let projection = self.projection;
         for (index, record) in (leaf.first..).zip(triangles.unwrap_or_default()) {
@@ -191,18 +228,23 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                 continue;
             };
             if projection.meets::<MAJOR, V>(a, b, c) {
-                self.triangle([a.position(), b.position(), c.position()], index);
+                let corners = [a.position(), b.position(), c.position()];
+                self.triangle(corners, index, count);
+            } else {
+                self.tell(Kind::Triangle, index, None, count);
             }
         }
     }
 
     /// Takes a triangle that the ray meets somewhere on its line.
     #[inline(never)]
-    fn triangle(&mut self, corners: [[i32; 3]; 3], index: u32) {
-        if let Some(crossing) = triangle::cross(self.ray, corners) {
+    fn triangle<C: Count>(&mut self, corners: [[i32; 3]; 3], index: u32, count: &mut C) {
+        let crossing = triangle::cross(self.ray, corners);
+        if let Some(crossing) = crossing {
             let bounds = triangle::bounds(corners);
             self.consider(crossing, bounds, Kind::Triangle, index);
         }
+        self.tell(Kind::Triangle, index, crossing.as_ref(), count);
     }
 }
 
@@ -229,9 +271,9 @@ pub fn closest_primitive<N: Number, A: Accel, C: Count>(
 ) -> Option<Found<N>> {
     let cull = A::Cull::<N>::new(ray);
     let mut search = Search::new(scene, ray, &cull);
+    count.tell(|| ray.query(false));
     A::walk(scene, ray, &cull, stack, count, |leaf, count| {
-        count.objects(leaf.count);
-        search.leaf(leaf);
+        search.leaf(leaf, count);
         Some(search.tmax)
     });
     let best = search.best?;
@@ -263,6 +305,21 @@ impl<N: Number> Found<N> {
     }
 }
 
+impl<N: Number> Hit<N> {
+    /// The hit as events tell it.
+    fn met(&self) -> Met {
+        Met {
+            t: N::far_to_f64(self.t),
+            point: self.point.map(N::length_to_f64),
+            normal: self.normal.map(N::ratio_to_f64),
+            front: self.front,
+            object: self.object,
+            primitive: self.primitive,
+            error: self.error.length_to_f64(),
+        }
+    }
+}
+
 /// The first hit of a ray in its interval: [`closest_primitive`] with its surface.
 pub fn closest_hit<N: Number, A: Accel, C: Count>(
     scene: &Scene<'_>,
@@ -270,7 +327,10 @@ pub fn closest_hit<N: Number, A: Accel, C: Count>(
     stack: &mut StackView,
     count: &mut C,
 ) -> Option<Hit<N>> {
-    closest_primitive::<N, A, C>(scene, ray, stack, count)?.hit(scene, ray)
+    let found = closest_primitive::<N, A, C>(scene, ray, stack, count);
+    let hit = found.and_then(|found| found.hit(scene, ray));
+    count.tell(|| Event::Nearest(hit.map(|hit| hit.met())));
+    hit
 }
 
 /// Whether a ray meets anything in its interval: whether [`closest_hit`] would find something.
@@ -282,10 +342,11 @@ pub fn any_hit<N: Number, A: Accel, C: Count>(
 ) -> bool {
     let cull = A::Cull::<N>::new(ray);
     let mut search = Search::new(scene, ray, &cull);
+    count.tell(|| ray.query(true));
     A::walk(scene, ray, &cull, stack, count, |leaf, count| {
-        count.objects(leaf.count);
-        search.leaf(leaf);
+        search.leaf(leaf, count);
         search.best.is_none().then_some(search.tmax)
     });
+    count.tell(|| Event::Any(search.best.is_some()));
     search.best.is_some()
 }

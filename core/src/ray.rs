@@ -1,6 +1,7 @@
 //! Rays, in the one form that every kernel uses.
 
 use crate::blob::record::UnitBox;
+use crate::event::Event;
 use crate::number::{Number, pick};
 use core::cmp::Ordering;
 use core::fmt;
@@ -154,6 +155,28 @@ impl<N: Number> Ray<N> {
     /// The direction, scaled so that its major component is 1 or -1.
     pub fn slope(&self) -> [N; 3] {
         self.slope
+    }
+
+    /// Where the ray starts inside of the kernels, in units: its own origin, or where it comes to the
+    /// scene's box.
+    pub fn start(&self) -> [N; 3] {
+        self.origin
+    }
+
+    /// The t of [`start`](Self::start), as the caller counts it.
+    pub fn moved(&self) -> N::Wide {
+        self.moved
+    }
+
+    /// A query along this ray, as events tell it.
+    pub(crate) fn query(&self, any: bool) -> Event {
+        Event::Query {
+            origin: self.origin.map(N::length_to_f64),
+            slope: self.slope.map(N::ratio_to_f64),
+            moved: N::far_to_f64(self.moved),
+            interval: [self.tmin, self.tmax].map(N::length_to_f64),
+            any,
+        }
     }
 
     /// The point at a parameter that is counted inside the kernels.

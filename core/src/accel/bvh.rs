@@ -7,6 +7,7 @@ use super::{Accel, Leaf, StackView, Structure};
 use crate::blob::record::{Pair, UnitBox};
 use crate::blob::{Scene, SectionKind};
 use crate::count::Count;
+use crate::event::Sides;
 use crate::number::Number;
 use crate::ray::Ray;
 
@@ -50,6 +51,10 @@ impl PairRecord for Pair {
     #[inline(always)]
     fn child(&self, _: u32, side: u32) -> Node {
         Node(self.children[(side & 1) as usize])
+    }
+
+    fn sides(&self) -> [Sides; 2] {
+        [0, 1].map(|child| self.planes.map(|axis| axis.map(|side| Some(side[child]))))
     }
 
     fn boxes(&self, _: &UnitBox) -> [UnitBox; 2] {

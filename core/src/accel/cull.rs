@@ -34,6 +34,13 @@ pub struct Interval {
     pub far: i32,
 }
 
+impl Interval {
+    /// From where to where, in units, as events tell it.
+    pub(crate) fn units(self) -> [f64; 2] {
+        [self.near, self.far].map(|step| f64::from(step) / 2.0)
+    }
+}
+
 /// A form of a ray that culls boxes: [`Cull`] in integers, or lanes of floats where there is SIMD.
 pub trait Culling<N: Number>: Copy + core::fmt::Debug + Default + Send + Sync {
     /// Sets up a ray.

@@ -13,6 +13,7 @@ use super::{Accel, Leaf, StackView, Structure};
 use crate::blob::record::{FlaggedPair, UnitBox};
 use crate::blob::{Scene, SectionKind};
 use crate::count::Count;
+use crate::event::Sides;
 use crate::number::Number;
 use crate::ray::Ray;
 
@@ -57,6 +58,16 @@ impl PairRecord for FlaggedPair {
     #[inline(always)]
     fn child(&self, number: u32, side: u32) -> Node {
         Link(self.link).child(number, side)
+    }
+
+    fn sides(&self) -> [Sides; 2] {
+        let owners = Link(self.link).owners();
+        let mut children = [Sides::default(); 2];
+        for (axis, &word) in self.planes.iter().enumerate() {
+            children[(owners >> axis & 1) as usize][axis][0] = Some(word as i16);
+            children[(owners >> (axis + 3) & 1) as usize][axis][1] = Some((word >> 16) as i16);
+        }
+        children
     }
 
     fn boxes(&self, parent: &UnitBox) -> [UnitBox; 2] {

@@ -1,5 +1,7 @@
 //! How a pair names its children.
 
+use crate::event::Place;
+
 /// What the two children of a pair are: one word.
 ///
 /// Bits 0 to 23 are the number of the first child that is a pair; if both are, the right one
@@ -72,5 +74,13 @@ impl Node {
     #[inline(always)]
     pub(super) const fn number(self) -> u32 {
         self.0 & 0x7fff_ffff
+    }
+
+    /// The node as events tell it.
+    pub(super) const fn place(self) -> Place {
+        Place {
+            what: if self.is_leaf() { "leaf" } else { "pair" },
+            number: self.number(),
+        }
     }
 }

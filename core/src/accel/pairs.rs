@@ -6,6 +6,7 @@ use super::{Entry, Leaf, MAX_STACK_DEPTH, Records, StackView};
 use crate::blob::record::UnitBox;
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
 use crate::count::Count;
+use crate::event::{Event, Sides};
 use crate::number::Number;
 use crate::shape::Shapes;
 use heapless::Vec;
@@ -19,6 +20,9 @@ pub(super) trait PairRecord: bytemuck::Pod {
 
     /// The left (0) or right (1) child of this record, whose number is given.
     fn child(&self, number: u32, side: u32) -> Node;
+
+    /// The planes that are tested for the left and the right child.
+    fn sides(&self) -> [Sides; 2];
 
     /// The children's boxes, given their parent's.
     fn boxes(&self, parent: &UnitBox) -> [UnitBox; 2];
@@ -74,12 +78,18 @@ where
         count.boxes(1);
         let mut limit = (self.limit)(tmax);
         let mut interval = (self.root)(limit);
+        count.tell(|| Event::Tested {
+            place: root(self.pairs).place(),
+            sides: self.scene.bounds().0.map(|axis| axis.map(Some)),
+            span: interval.units(),
+        });
         if interval.near > interval.far {
             return;
         }
         let mut node = root(self.pairs);
         stack.clear();
         loop {
+            count.tell(|| Event::Opened(node.place()));
             if node.is_leaf() {
                 let Some(range) = self.scene.leaf(node.number()) else {
                     return;
@@ -96,6 +106,13 @@ where
                 count.planes(P::PLANES);
                 count.boxes(2);
                 let number = node.number();
+                for (side, interval) in (0..).zip([left, right]) {
+                    count.tell(|| Event::Tested {
+                        place: pair.child(number, side).place(),
+                        sides: pair.sides()[side as usize & 1],
+                        span: interval.units(),
+                    });
+                }
                 let meets_left = left.near <= left.far;
                 let meets_right = right.near <= right.far;
                 if meets_left && meets_right {
@@ -134,6 +151,10 @@ where
                     };
                     break;
                 }
+                count.tell(|| Event::GivenUp {
+                    place: Node(entry.node).place(),
+                    enters: f64::from(entry.near) / 2.0,
+                });
             }
         }
     }

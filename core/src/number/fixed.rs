@@ -236,6 +236,10 @@ impl Number for Fixed {
         f64::from(self.0) / f64::from(1 << RATIO_BITS)
     }
 
+    fn radiance_to_f64(self) -> f64 {
+        f64::from(self.0) / f64::from(1 << RADIANCE_BITS)
+    }
+
     #[inline(always)]
     fn abs(self) -> Self {
         Fixed(self.0.saturating_abs())

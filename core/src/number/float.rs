@@ -158,6 +158,10 @@ macro_rules! float_number {
                 self as f64
             }
 
+            fn radiance_to_f64(self) -> f64 {
+                self as f64
+            }
+
             #[inline(always)]
             fn abs(self) -> Self {
                 $float::abs(self)

@@ -146,6 +146,8 @@ pub trait Number:
     fn length_to_f64(self) -> f64;
     /// A ratio in double precision, for reports.
     fn ratio_to_f64(self) -> f64;
+    /// A radiance in double precision, for reports.
+    fn radiance_to_f64(self) -> f64;
 
     // Single numbers
 

@@ -3,10 +3,11 @@
 
 use super::pixel::{Linear, Pixel};
 use super::renderer::Renderer;
-use super::sample::{SUBPIXELS, place};
+use super::sample::place;
 use super::trace::WorkspaceView;
 use crate::accel::Accel;
 use crate::count::Count;
+use crate::event::Event;
 use crate::number::Number;
 use crate::shade::Color;
 
@@ -131,8 +132,8 @@ impl<N: Number> Samples<N> {
     ) -> Option<Linear> {
         let samples = renderer.settings().samples;
         let camera = || {
-            let [dx, dy] = place(self.index, samples);
-            renderer.ray_through(i32::from(x) * SUBPIXELS + dx, i32::from(y) * SUBPIXELS + dy)
+            let [x, y] = place([x, y], self.index, samples);
+            renderer.ray_through(x, y)
         };
         let radiance = &mut self.radiance;
         let tracing = renderer.tracing();
@@ -140,12 +141,12 @@ impl<N: Number> Samples<N> {
             return None;
         }
         // Clamped before they are averaged, so that the edge of a highlight is smooth.
-        let white = N::radiance(1 << 20);
-        let seen = self
-            .radiance
-            .0
-            .map(|channel| channel.max(N::ZERO).min(white));
-        self.sum = self.sum.plus(Color(seen));
+        let seen = self.radiance.displayable();
+        self.sum = self.sum.plus(seen);
+        count.tell(|| Event::Seen {
+            place: Some(place([x, y], self.index, samples)),
+            radiance: seen.told(),
+        });
         self.radiance = Color::BLACK;
         self.index = self.index.saturating_add(1);
         if self.index < samples {

@@ -9,9 +9,10 @@ use super::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use crate::accel::{Accel, Structure};
 use crate::blob::Scene;
 use crate::count::Count;
+use crate::event::Event;
 use crate::number::Number;
 use crate::ray::{Ray, RayError};
-use crate::shade::Effects;
+use crate::shade::{Color, Effects};
 use core::fmt;
 use core::marker::PhantomData;
 
@@ -242,6 +243,26 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
                 return linear;
             }
         }
+    }
+
+    /// What is seen along a ray of the caller's own, linear, 65535 being white.
+    pub fn linear_along<C: Count>(
+        &self,
+        ray: &Ray<N>,
+        space: &mut WorkspaceView<'_, N>,
+        count: &mut C,
+    ) -> [u16; 3] {
+        space.work.clear();
+        let tracing = self.tracing();
+        let mut radiance = Color::BLACK;
+        let camera = || Ok(*ray);
+        while !tracing.step::<N, A, C, EFFECTS>(camera, &mut radiance, space, count) {}
+        let seen = radiance.displayable();
+        count.tell(|| Event::Seen {
+            place: None,
+            radiance: seen.told(),
+        });
+        seen.0.map(N::to_linear16)
     }
 
     /// One pixel in a display's form.

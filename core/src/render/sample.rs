@@ -3,11 +3,20 @@
 /// Steps a pixel is divided into on each axis.
 pub(crate) const SUBPIXELS: i32 = 256;
 
+/// The place of sample `index` of `count` of a pixel, in subpixels from the picture's upper left
+/// corner.
+#[inline(always)]
+pub(crate) fn place(pixel: [u16; 2], index: u16, count: u16) -> [i32; 2] {
+    let [dx, dy] = within(index, count);
+    let [x, y] = pixel.map(|corner| i32::from(corner) * SUBPIXELS);
+    [x + dx, y + dy]
+}
+
 /// The place of sample `index` of `count` in its pixel, in subpixels from its upper left corner.
 ///
 /// The first two dimensions of Sobol's sequence, which fill every binary division of the pixel
 /// evenly, moved to the middle of their cells; a single sample lies in the pixel's middle.
-pub(crate) fn place(index: u16, count: u16) -> [i32; 2] {
+fn within(index: u16, count: u16) -> [i32; 2] {
     if count == 1 {
         return [SUBPIXELS / 2; 2];
     }
@@ -40,7 +49,7 @@ mod tests {
             for axis in 0..2 {
                 let mut seen = vec![false; count.into()];
                 for index in 0..count {
-                    let place = place(index, count)[axis];
+                    let place = within(index, count)[axis];
                     assert!((0..SUBPIXELS).contains(&place));
                     let cell = (place * i32::from(count) / SUBPIXELS) as usize;
                     assert!(

@@ -14,6 +14,7 @@ use crate::accel::{Accel, Stack, StackView};
 use crate::blob::Scene;
 use crate::blob::record::{Light, Material};
 use crate::count::{Count, RayKind};
+use crate::event::{Event, Source};
 use crate::number::Number;
 use crate::query::{Hit, any_hit, closest_hit};
 use crate::ray::{Ray, RayError};
@@ -111,6 +112,11 @@ impl Loop<'_, '_> {
             None => (camera(), Color::WHITE, 0, RayKind::Primary),
         };
         // A direction that cannot be told brings nothing.
+        count.tell(|| Event::Taken {
+            kind,
+            depth,
+            weight: weight.told_ratios(),
+        });
         if let Ok(ray) = ray {
             count.ray(kind);
             self.add::<N, A, C, EFFECTS>(&ray, weight, depth, radiance, space, count);
@@ -134,12 +140,20 @@ impl Loop<'_, '_> {
         let hit = closest_hit::<N, A, C>(self.scene, ray, space.stack, count);
         let surface = hit.and_then(|hit| Some((hit, self.scene.material(hit.object)?)));
         let Some((hit, material)) = surface else {
-            *radiance = radiance.plus(Color::radiance(view.background).times(weight));
+            let brought = Color::radiance(view.background).times(weight);
+            *radiance = radiance.plus(brought);
+            count.tell(|| Event::Added {
+                source: Source::Background,
+                radiance: brought.told(),
+            });
             return;
         };
         let glass = effects.contains(Effects::GLASS) && material.transmit != [0; 3];
         if effects.contains(Effects::ABSORPTION) && glass && !hit.front {
             weight = weight.times(glass::absorb(material, path_length(ray, &hit)));
+            count.tell(|| Event::Absorbed {
+                weight: weight.told_ratios(),
+            });
         }
 
         let normal = if hit.front {
@@ -158,8 +172,9 @@ impl Loop<'_, '_> {
 
         let diffuse = material.diffuse_at::<N, EFFECTS>(&hit);
         let mut local = Color::radiance(view.ambient).times(diffuse);
-        for light in self.scene.lights {
+        for (number, light) in (0..).zip(self.scene.lights) {
             let lit = self.lit::<N, A, C, EFFECTS>(
+                number,
                 light,
                 material,
                 &hit,
@@ -170,10 +185,23 @@ impl Loop<'_, '_> {
                 count,
             );
             local = local.plus(lit);
+            count.tell(|| Event::Lit {
+                number,
+                radiance: lit.told(),
+            });
         }
-        *radiance = radiance.plus(local.times(weight));
+        let brought = local.times(weight);
+        *radiance = radiance.plus(brought);
+        count.tell(|| Event::Added {
+            source: Source::Surface,
+            radiance: brought.told(),
+        });
 
+        let mirror = effects.contains(Effects::MIRROR) && material.mirror != [0; 3];
         if depth >= self.depth {
+            if glass || mirror {
+                count.tell(|| Event::TooDeep);
+            }
             return;
         }
         let cos_in = -N::from_wide(N::dot(direction, normal));
@@ -188,6 +216,9 @@ impl Loop<'_, '_> {
                 reflected,
                 refracted,
             } = glass::split(k, hit.front, direction, normal, cos_in);
+            count.tell(|| Event::Split {
+                reflected: reflected.ratio_to_f64(),
+            });
             let transmit = Color::ratios(material.transmit);
             mirrored = mirrored.plus_up_to_one(transmit.scaled(reflected));
             let weight = weight.times(transmit.scaled(N::ONE - reflected));
@@ -200,6 +231,7 @@ impl Loop<'_, '_> {
                 weight,
                 depth,
                 kind,
+                count,
             );
         }
         if glass || effects.contains(Effects::MIRROR) {
@@ -215,6 +247,7 @@ impl Loop<'_, '_> {
                 weight.times(mirrored),
                 depth,
                 kind,
+                count,
             );
         }
     }
@@ -222,7 +255,7 @@ impl Loop<'_, '_> {
     /// Puts a ray on the work list unless it would bring too little.
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "one secondary ray is this much")]
-    fn send<N: Number>(
+    fn send<N: Number, C: Count>(
         &self,
         space: &mut WorkspaceView<'_, N>,
         hit: Hit<N>,
@@ -231,6 +264,7 @@ impl Loop<'_, '_> {
         weight: Color<N>,
         depth: u8,
         kind: RayKind,
+        count: &mut C,
     ) {
         let peak = weight.peak();
         if peak > N::ZERO && peak * N::radiance(1 << 20) > N::radiance(self.scene.view.cutoff) {
@@ -243,6 +277,15 @@ impl Loop<'_, '_> {
                 depth: depth + 1,
                 kind,
             });
+            count.tell(|| Event::Sent {
+                kind,
+                weight: weight.told_ratios(),
+            });
+        } else {
+            count.tell(|| Event::Dropped {
+                kind,
+                weight: weight.told_ratios(),
+            });
         }
     }
 
@@ -254,6 +297,7 @@ impl Loop<'_, '_> {
     )]
     fn lit<N: Number, A: Accel, C: Count, const EFFECTS: u32>(
         &self,
+        number: u32,
         light: &Light,
         material: &Material,
         hit: &Hit<N>,
@@ -271,6 +315,10 @@ impl Loop<'_, '_> {
         };
         let (to_light, _) = N::normalize(slopes);
         let cos = N::from_wide(N::dot(normal, to_light));
+        count.tell(|| Event::Light {
+            number,
+            cosine: cos.ratio_to_f64(),
+        });
         if cos <= N::ZERO {
             return Color::BLACK;
         }
@@ -351,6 +399,9 @@ impl Loop<'_, '_> {
             if effects.contains(Effects::ABSORPTION) && !hit.front {
                 left = left.times(glass::absorb(material, path_length(&ray, &hit)));
             }
+            count.tell(|| Event::Filtered {
+                left: left.told_ratios(),
+            });
             if left.peak() * N::radiance(1 << 20) <= N::radiance(self.scene.view.cutoff) {
                 return Color::BLACK;
             }

@@ -51,6 +51,23 @@ impl<N: Number> Color<N> {
         self.zip(other, |a, b| if a > N::ONE - b { N::ONE } else { a + b })
     }
 
+    /// What a display can show of radiance: each channel limited to 0 to 1.
+    #[inline(always)]
+    pub(crate) fn displayable(self) -> Self {
+        let white = N::radiance(1 << 20);
+        Self(self.0.map(|channel| channel.max(N::ZERO).min(white)))
+    }
+
+    /// Radiance, as events tell it.
+    pub(crate) fn told(self) -> [f64; 3] {
+        self.0.map(N::radiance_to_f64)
+    }
+
+    /// Ratios, as events tell them.
+    pub(crate) fn told_ratios(self) -> [f64; 3] {
+        self.0.map(N::ratio_to_f64)
+    }
+
     /// The largest channel.
     #[inline(always)]
     pub(crate) fn peak(self) -> N {
