@@ -8,12 +8,14 @@
 //! | hold a blob and check it | [`blob`] |
 //! | render a blob on all cores | [`render`], then [`picture`] to encode what comes out |
 //! | trace rays of one's own | [`trace`], and [`npy`] for NumPy's files |
+//! | tell the story of a ray or a pixel | [`explain`] |
 //! | tell where bytes and work go | [`report`] |
 //! | write a file whole or not at all | [`output`] |
 //!
 //! The program `gridel` is a thin layer over this library: what it does can be done from here.
 pub mod blob;
 pub mod compile;
+pub mod explain;
 pub mod npy;
 pub mod output;
 pub mod picture;

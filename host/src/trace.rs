@@ -146,6 +146,16 @@ impl Frame {
         }
     }
 
+    /// A point in scene coordinates, from units.
+    pub fn place(&self, units: [f64; 3]) -> DVec3 {
+        self.origin + DVec3::from_array(units) * self.unit
+    }
+
+    /// A length in scene units, from units.
+    pub fn length(&self, units: f64) -> f64 {
+        units * self.unit
+    }
+
     /// A ray in the core's form, and by how much its t is larger: `None` for what is no ray.
     pub fn ray<N: Number>(&self, scene: &Scene<'_>, ray: &SceneRay) -> Option<(Ray<N>, f64)> {
         // Multiples of the direction become lengths along its largest component.

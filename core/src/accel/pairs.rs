@@ -24,6 +24,15 @@ pub(super) trait PairRecord: bytemuck::Pod {
     /// The planes that are tested for the left and the right child.
     fn sides(&self) -> [Sides; 2];
 
+    /// The test of a child, as events tell it.
+    fn tested(&self, number: u32, side: u32, interval: Interval) -> Event {
+        Event::Tested {
+            place: self.child(number, side).place(),
+            sides: self.sides()[(side & 1) as usize],
+            span: interval.units(),
+        }
+    }
+
     /// The children's boxes, given their parent's.
     fn boxes(&self, parent: &UnitBox) -> [UnitBox; 2];
 }
@@ -106,13 +115,8 @@ where
                 count.planes(P::PLANES);
                 count.boxes(2);
                 let number = node.number();
-                for (side, interval) in (0..).zip([left, right]) {
-                    count.tell(|| Event::Tested {
-                        place: pair.child(number, side).place(),
-                        sides: pair.sides()[side as usize & 1],
-                        span: interval.units(),
-                    });
-                }
+                count.tell(|| pair.tested(number, 0, left));
+                count.tell(|| pair.tested(number, 1, right));
                 let meets_left = left.near <= left.far;
                 let meets_right = right.near <= right.far;
                 if meets_left && meets_right {

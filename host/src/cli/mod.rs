@@ -17,6 +17,7 @@ mod progress;
 mod source;
 
 mod build;
+mod explain;
 mod inspect;
 mod render;
 mod sample;
@@ -39,6 +40,7 @@ enum Verb {
     Inspect(inspect::Arguments),
     Render(render::Arguments),
     Trace(trace::Arguments),
+    Explain(explain::Arguments),
     Sample(sample::Arguments),
 }
 
@@ -61,6 +63,7 @@ pub fn run() -> ExitCode {
         Verb::Inspect(arguments) => inspect::run(&arguments),
         Verb::Render(arguments) => render::run(&arguments),
         Verb::Trace(arguments) => trace::run(&arguments),
+        Verb::Explain(arguments) => explain::run(&arguments),
         Verb::Sample(arguments) => sample::run(&arguments),
     };
     match done {

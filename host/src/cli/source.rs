@@ -9,6 +9,7 @@ use gridel_core::blob::record::MAGIC;
 use gridel_core::{BlobError, Kind, Scene, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{self, Compiled};
+use gridel_host::explain::Names;
 use gridel_host::scene;
 use std::fs::File;
 use std::io::{self, Read};
@@ -22,6 +23,8 @@ pub struct Source {
     pub report: Option<compile::Report>,
     /// What the importer told.
     pub warnings: Vec<String>,
+    /// What a scene file calls its objects.
+    pub names: Names,
 }
 
 impl Source {
@@ -52,6 +55,7 @@ impl Source {
             blob: Blob::read(path).map_err(|error| Failure::reading(path, &error))?,
             report: None,
             warnings: Vec::new(),
+            names: Names::default(),
         })
     }
 
@@ -86,6 +90,7 @@ impl Source {
             blob,
             report: Some(report),
             warnings: imported.warnings,
+            names: names(&imported.scene),
         })
     }
 
@@ -143,6 +148,14 @@ impl Source {
                 self.path.display()
             ));
         }
+    }
+}
+
+fn names(scene: &scene::Scene) -> Names {
+    let material = |object: &scene::Object| scene.materials[object.material].name.clone();
+    Names {
+        objects: scene.objects.iter().map(|o| o.name.clone()).collect(),
+        materials: scene.objects.iter().map(material).collect(),
     }
 }
 

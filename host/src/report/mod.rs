@@ -6,4 +6,4 @@ mod table;
 
 pub use heat_map::HeatMap;
 pub use memory::{MemoryMap, Part, WorkingMemory, working_memory};
-pub use table::{Align, Table, counted, grouped, power_of_two};
+pub use table::{Align, Table, counted, grouped, power_of_two, significant};

@@ -84,6 +84,26 @@ pub fn power_of_two(power: f64) -> String {
     format!("2^{} = {power:.3e}", power.log2().round())
 }
 
+/// A number with six digits that count, and without zeros that do not.
+pub fn significant(number: f64) -> String {
+    if number == 0.0 {
+        return String::from("0");
+    }
+    if !number.is_finite() {
+        return number.to_string();
+    }
+    let exponent = number.abs().log10().floor();
+    if !(-5.0..9.0).contains(&exponent) {
+        return format!("{number:.5e}");
+    }
+    let decimals = (5.0 - exponent).max(0.0) as usize;
+    let text = format!("{number:.decimals$}");
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -113,6 +133,18 @@ mod tests {
         assert_eq!(counted(1, "ray"), "1 ray");
         assert_eq!(counted(0, "ray"), "0 rays");
         assert_eq!(counted(4096, "ray"), "4,096 rays");
+    }
+
+    #[test]
+    fn six_digits_count() {
+        assert_eq!(significant(0.0), "0");
+        assert_eq!(significant(-0.0), "0");
+        assert_eq!(significant(12.5), "12.5");
+        assert_eq!(significant(-1.0 / 3.0), "-0.333333");
+        assert_eq!(significant(1234567.0), "1234567");
+        assert_eq!(significant(1.25e-7), "1.25000e-7");
+        assert_eq!(significant(f64::INFINITY), "inf");
+        assert_eq!(significant(f64::NEG_INFINITY), "-inf");
     }
 
     #[test]

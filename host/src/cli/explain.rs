@@ -1,0 +1,194 @@
+//! `gridel explain`: the story of a pixel or of a ray.
+
+use super::arguments::{self, SceneOptions};
+use super::failure::Failure;
+use super::output::{print, print_json};
+use super::source::Source;
+use clap::{ArgGroup, Args};
+use glam::DVec3;
+use gridel_core::render::{MAX_RAY_DEPTH, MAX_SAMPLES};
+use gridel_core::{Format, Settings, Structure};
+use gridel_host::explain::{ExplainError, Shown, Subject, explain};
+use gridel_host::trace::SceneRay;
+use std::path::PathBuf;
+
+/// Tell why a pixel looks as it does, or what a ray meets
+///
+/// Shows the rays of a pixel as a tree: what each met and how precisely that is known, which lights
+/// shine there and what blocks the others, what mirrors and glass add, and what every ray brings; the
+/// parts add up to the pixel. Then the way of the ray through the acceleration structure: which nodes
+/// it went into, which were left out and because of which planes, and every primitive that was tested.
+///
+/// It is told by the very code that renders. Points and distances are in scene units, distances
+/// along the ray; colours are linear, 1 being display white.
+#[derive(Args)]
+#[command(after_help = super::EXIT_CODES, group = ArgGroup::new("subject").required(true))]
+pub struct Arguments {
+    /// Blob or scene file
+    #[arg(value_name = "BLOB|SCENE")]
+    input: PathBuf,
+
+    /// The pixel to explain, counted from the upper left corner
+    #[arg(long, value_name = "X,Y", value_parser = pixel, group = "subject")]
+    pixel: Option<[u16; 2]>,
+
+    /// The ray to explain: origin, direction of any length, and the interval in multiples of the
+    /// direction that counts [default interval: 0,inf]
+    #[arg(
+        long,
+        value_name = "OX,OY,OZ,DX,DY,DZ[,TMIN,TMAX]",
+        value_parser = ray,
+        group = "subject",
+        allow_hyphen_values = true
+    )]
+    ray: Option<SceneRay>,
+
+    /// Arithmetic to trace in
+    #[arg(long, value_name = "NAME", value_parser = arguments::format(), default_value = "f32")]
+    format: Format,
+
+    /// Acceleration structure [default: the best that the blob holds]
+    #[arg(long, value_name = "NAME", value_parser = arguments::structure())]
+    accel: Option<Structure>,
+
+    /// Size of the picture that the pixel is of, such as 640x480
+    #[arg(long, value_name = "WxH", value_parser = arguments::size)]
+    size: Option<[u16; 2]>,
+
+    /// Samples a pixel, 1 to 256
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u16).range(1..=i64::from(MAX_SAMPLES))
+    )]
+    samples: Option<u16>,
+
+    /// How often a ray may be reflected or refracted, 0 to 16
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u8).range(0..=MAX_RAY_DEPTH as i64)
+    )]
+    depth: Option<u8>,
+
+    /// Show the way of every ray through the structure, those of shadow rays too
+    #[arg(long)]
+    all_walks: bool,
+
+    /// Print everything as JSON
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    scene_options: SceneOptions,
+}
+
+/// Tells a story.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let source = Source::open(&arguments.input, &arguments.scene_options, arguments.accel)?;
+    let scene = source.scene()?;
+    source.warn_of_collapsed(&scene);
+    let structure = source.structure(&scene, arguments.accel)?;
+    let stated = Settings::of(&scene);
+    let [width, height] = arguments.size.unwrap_or([stated.width, stated.height]);
+    let settings = Settings {
+        width,
+        height,
+        samples: arguments.samples.unwrap_or(stated.samples),
+        depth: arguments.depth.unwrap_or(stated.depth),
+        dither: false,
+    };
+    let subject = match (arguments.pixel, arguments.ray) {
+        (Some([x, y]), _) if x >= width || y >= height => {
+            return Err(Failure::usage(
+                format!("pixel {x},{y} is outside of the picture, which is {width} x {height}"),
+                format!(
+                    "pixels count from 0: ask for one of 0,0 to {},{}",
+                    width - 1,
+                    height - 1
+                ),
+            ));
+        }
+        (Some(pixel), _) => Subject::Pixel(pixel),
+        (None, Some(ray)) => Subject::Ray(ray),
+        // The command line asks for one of them.
+        (None, None) => return Ok(()),
+    };
+    let story = explain(&scene, arguments.format, structure, settings, subject)
+        .map_err(|error| failure(&error))?;
+    if arguments.json {
+        return print_json(&story);
+    }
+    print(Shown {
+        story: &story,
+        names: &source.names,
+        all_walks: arguments.all_walks,
+    })
+}
+
+fn failure(error: &ExplainError) -> Failure {
+    let remedy = match error {
+        ExplainError::Render(_) => "change the option, or the scene file's `[render]`",
+        ExplainError::NoRay => {
+            "give six finite numbers, of which the last three are not all 0, and tmin before tmax"
+        }
+    };
+    Failure::usage(error.to_string(), remedy)
+}
+
+/// Reads a pixel, such as `200,150`.
+fn pixel(text: &str) -> Result<[u16; 2], String> {
+    let numbers: Result<Vec<u16>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y]) => Ok([x, y]),
+        _ => Err(String::from("write column and row, such as 200,150")),
+    }
+}
+
+/// Reads a ray of six or eight numbers.
+pub fn ray(text: &str) -> Result<SceneRay, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    let (six, interval) = match numbers.as_deref() {
+        Ok(six @ &[_, _, _, _, _, _]) => (six, [0.0, f64::INFINITY]),
+        Ok(&[ref six @ .., tmin, tmax]) if six.len() == 6 => (six, [tmin, tmax]),
+        _ => {
+            return Err(String::from(
+                "write origin and direction, six numbers with commas between them, and perhaps tmin \
+                 and tmax",
+            ));
+        }
+    };
+    Ok(SceneRay {
+        origin: DVec3::from_slice(&six[..3]),
+        direction: DVec3::from_slice(&six[3..]),
+        tmin: interval[0],
+        tmax: interval[1],
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_and_rays_are_numbers_with_commas() {
+        assert_eq!(pixel("3, 4"), Ok([3, 4]));
+        for wrong in ["", "3", "3,4,5", "-1,2", "3;4", "70000,0"] {
+            assert!(pixel(wrong).is_err(), "{wrong}");
+        }
+        let short = ray("1,2,3,-0.5,0,1e-300").unwrap();
+        assert_eq!((short.tmin, short.tmax), (0.0, f64::INFINITY));
+        assert_eq!(short.direction, DVec3::new(-0.5, 0.0, 1e-300));
+        let long = ray("1,2,3,4,5,6,-inf,7").unwrap();
+        assert_eq!((long.tmin, long.tmax), (f64::NEG_INFINITY, 7.0));
+        for wrong in [
+            "",
+            "1,2,3,4,5",
+            "1,2,3,4,5,6,7",
+            "a,2,3,4,5,6",
+            "1,2,3,4,5,6,7,8,9",
+        ] {
+            assert!(ray(wrong).is_err(), "{wrong}");
+        }
+    }
+}

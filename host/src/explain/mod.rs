@@ -1,0 +1,148 @@
+//! The story of a ray or of a pixel: what was visited, what was met, what it brought.
+//!
+//! It is told by the code that renders, through [`Count::tell`], and only put in order here: `walk.rs`
+//! keeps a query's way through a structure, `story.rs` the rays of a pixel and what they add up to,
+//! `text.rs` writes it down for people.
+
+mod story;
+mod text;
+mod walk;
+
+pub use story::{Fall, Hit, Lighting, Ray, Sample, Story, Weighted};
+pub use text::{Names, Shown};
+pub use walk::{Candidate, Culled, Step, Tested, Verdict, Walk};
+
+use crate::trace::{Frame, SceneRay};
+use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::render::{MAX_RAY_DEPTH, RenderError};
+use gridel_core::{
+    Accel, Count, Effects, Event, Fixed, Format, Number, Renderer, Rgb888, Scene, Settings,
+    Structure, StructureVisitor, Workspace, render::Pixel,
+};
+use std::marker::PhantomData;
+
+/// What to explain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Subject {
+    /// A pixel of the picture that the settings ask for, from its upper left corner.
+    Pixel([u16; 2]),
+    /// A ray of one's own.
+    Ray(SceneRay),
+}
+
+/// Why there is no story.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum ExplainError {
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    #[error(
+        "this is no ray: its direction is zero, or a number is NaN or infinite, or tmin is above tmax"
+    )]
+    #[diagnostic(help("give a direction that is not 0 0 0, and tmin before tmax"))]
+    NoRay,
+}
+
+/// Tells the story of a pixel or of a ray.
+///
+/// The code that is watched is that of [`render`](crate::render), compiled for all effects, which
+/// gives the same bits as for fewer.
+///
+/// # Errors
+/// If the blob lacks the structure, a setting is out of its range, or the ray is none.
+pub fn explain(
+    scene: &Scene<'_>,
+    format: Format,
+    structure: Structure,
+    settings: Settings,
+    subject: Subject,
+) -> Result<Story, ExplainError> {
+    let watch = Watch {
+        scene,
+        settings,
+        subject,
+    };
+    let (linear, recorder) = match format {
+        Format::Fixed => structure.visit(watch.with::<Fixed>()),
+        Format::F32 => structure.visit(watch.with::<f32>()),
+        Format::F64 => structure.visit(watch.with::<f64>()),
+    }?;
+    let mut story = Story::of(&Frame::of(scene), &recorder.events);
+    story.format = format.name();
+    story.accel = structure.name();
+    story.linear = linear;
+    story.srgb = Rgb888::encode(linear, None).0;
+    Ok(story)
+}
+
+/// What is watched.
+#[derive(Clone, Copy)]
+struct Watch<'w> {
+    scene: &'w Scene<'w>,
+    settings: Settings,
+    subject: Subject,
+}
+
+impl<'w> Watch<'w> {
+    fn with<N: Number>(self) -> InFormat<'w, N> {
+        InFormat(self, PhantomData)
+    }
+}
+
+struct InFormat<'w, N>(Watch<'w>, PhantomData<N>);
+
+impl<N: Number> StructureVisitor for InFormat<'_, N> {
+    type Output = Result<([u16; 3], Recorder), ExplainError>;
+
+    fn visit<A: Accel>(self) -> Self::Output {
+        let Watch {
+            scene,
+            settings,
+            subject,
+        } = self.0;
+        let renderer = Renderer::<N, A, { Effects::ALL.0 }>::new(scene, settings)?;
+        let mut space = Box::new(Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new());
+        let mut space = space.as_view();
+        let mut recorder = Recorder::default();
+        let linear = match subject {
+            Subject::Pixel([x, y]) => renderer.linear(x, y, &mut space, &mut recorder),
+            Subject::Ray(ray) => {
+                let ready = Frame::of(scene).ray::<N>(scene, &ray);
+                let (ray, _) = ready.ok_or(ExplainError::NoRay)?;
+                renderer.linear_along(&ray, &mut space, &mut recorder)
+            }
+        };
+        Ok((linear, recorder))
+    }
+}
+
+/// Keeps what is told, but not every primitive of a long list that a ray passes by.
+#[derive(Default)]
+struct Recorder {
+    events: Vec<Event>,
+    /// Steps of the current query that were told.
+    steps: usize,
+}
+
+/// Steps of a query that are kept, candidates that are met apart: a walk through a hierarchy has some
+/// hundreds, a list as many as there are primitives.
+const MOST_STEPS: usize = 20_000;
+
+impl Count for Recorder {
+    fn tell(&mut self, event: impl FnOnce() -> Event) {
+        let event = event();
+        match event {
+            Event::Query { .. } => self.steps = 0,
+            Event::Tested { .. }
+            | Event::Opened(_)
+            | Event::GivenUp { .. }
+            | Event::Candidate { crossing: None, .. } => {
+                self.steps += 1;
+                if self.steps > MOST_STEPS {
+                    return;
+                }
+            }
+            _ => {}
+        }
+        self.events.push(event);
+    }
+}

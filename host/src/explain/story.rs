@@ -1,0 +1,314 @@
+//! The rays of a pixel as a tree, and what each adds to it.
+
+use super::walk::Walk;
+use crate::trace::Frame;
+use gridel_core::event::{Met, Source};
+use gridel_core::{Event, RayKind};
+use serde::Serialize;
+
+/// A pixel, or a ray of one's own, explained. Colours are linear, 1 being display white.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Story {
+    /// Number format.
+    pub format: &'static str,
+    /// Structure.
+    pub accel: &'static str,
+    pub samples: Vec<Sample>,
+    /// What comes out, 65535 being white.
+    pub linear: [u16; 3],
+    /// The same as a display takes it.
+    pub srgb: [u8; 3],
+}
+
+/// A ray from the camera, with all that it causes.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Sample {
+    /// In pixels from the picture's upper left corner; `None` for a ray of one's own.
+    pub place: Option<[f64; 2]>,
+    /// In the order in which they were traced; the first is the one from the camera.
+    pub rays: Vec<Ray>,
+    /// The sum of what the rays add, each channel limited to 0 to 1.
+    pub radiance: [f64; 3],
+}
+
+/// A ray of the tree.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ray {
+    pub kind: &'static str,
+    /// The ray that caused it, by its place among the sample's rays.
+    pub parent: Option<usize>,
+    pub depth: u8,
+    /// What its radiance is multiplied with.
+    pub weight: [f64; 3],
+    /// `None` where its direction vanished, so that it was not traced.
+    pub walk: Option<Walk>,
+    pub hit: Option<Hit>,
+    /// The weight that absorption on the way leaves.
+    pub absorbed: Option<[f64; 3]>,
+    pub lights: Vec<Lighting>,
+    /// What it adds to the sample, its weight included.
+    pub added: [f64; 3],
+    /// Whether that is the background.
+    pub background: bool,
+    /// The part that glass reflects.
+    pub reflected: Option<f64>,
+    /// Rays that it would cause if they could change anything.
+    pub dropped: Vec<Weighted>,
+    /// Whether the ray depth ended it at a mirror or at glass.
+    pub too_deep: bool,
+    /// Rays that it causes, by their places.
+    pub children: Vec<usize>,
+}
+
+/// A ray that was not cast.
+#[derive(Clone, Debug, Serialize)]
+pub struct Weighted {
+    pub kind: &'static str,
+    pub weight: [f64; 3],
+}
+
+/// A hit, in scene units.
+#[derive(Clone, Debug, Serialize)]
+pub struct Hit {
+    /// From where the ray starts, along it.
+    pub distance: f64,
+    pub point: [f64; 3],
+    pub normal: [f64; 3],
+    /// Whether the ray came from the side to which the normal points.
+    pub front: bool,
+    pub object: u32,
+    pub primitive: u32,
+    /// The surface lies within this distance of the point.
+    pub error: f64,
+}
+
+/// A light at a hit.
+#[derive(Clone, Debug, Serialize)]
+pub struct Lighting {
+    pub light: u32,
+    /// Of the angle between the surface's normal and the light.
+    pub cosine: f64,
+    /// The way to the light, surface of glass by surface of glass.
+    pub shadow: Vec<Walk>,
+    /// What is left of the light behind each.
+    pub filtered: Vec<[f64; 3]>,
+    /// What the light adds to the surface, the ray's weight apart.
+    pub radiance: [f64; 3],
+    pub fall: Fall,
+}
+
+/// What becomes of a light.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "fall", rename_all = "kebab-case")]
+pub enum Fall {
+    /// It shines on the surface.
+    Lit,
+    /// The surface is turned away from it.
+    Behind,
+    /// Something stands in between.
+    Blocked { kind: &'static str, primitive: u32 },
+    /// Glass in between leaves too little of it.
+    Faded,
+    /// The material reflects none of it.
+    Unreflected,
+}
+
+/// What a kind of ray is called.
+fn kind_name(kind: RayKind) -> &'static str {
+    match kind {
+        RayKind::Primary => "primary",
+        RayKind::Shadow => "shadow",
+        RayKind::Reflected => "reflected",
+        RayKind::Refracted => "refracted",
+    }
+}
+
+impl Story {
+    /// Puts events in order.
+    pub(super) fn of(frame: &Frame, events: &[Event]) -> Self {
+        let mut story = Story::default();
+        let mut teller = Teller::new(frame);
+        for event in events {
+            if let Event::Seen { radiance } = *event {
+                story.samples.push(teller.finish(radiance));
+            } else {
+                teller.take(event);
+            }
+        }
+        story
+    }
+}
+
+/// A sample as far as it is told.
+struct Teller<'f> {
+    frame: &'f Frame,
+    sample: Sample,
+    /// The rays that wait, by who sent them: the last is taken up first.
+    waiting: Vec<usize>,
+    /// Whether the query that is going on is a light's.
+    light: bool,
+}
+
+impl<'f> Teller<'f> {
+    fn new(frame: &'f Frame) -> Self {
+        Self {
+            frame,
+            sample: Sample::default(),
+            waiting: Vec::new(),
+            light: false,
+        }
+    }
+
+    fn finish(&mut self, radiance: [f64; 3]) -> Sample {
+        self.waiting.clear();
+        self.light = false;
+        let mut sample = std::mem::take(&mut self.sample);
+        sample.radiance = radiance;
+        sample
+    }
+
+    fn take(&mut self, event: &Event) {
+        match *event {
+            Event::Sample { place } => {
+                self.sample.place = Some(place.map(|subpixels| f64::from(subpixels) / 256.0));
+            }
+            Event::Taken {
+                kind,
+                depth,
+                weight,
+            } => self.ray(kind, depth, weight),
+            _ => {
+                let frame = *self.frame;
+                let current = self.sample.rays.len().wrapping_sub(1);
+                if matches!(event, Event::Sent { .. }) {
+                    self.waiting.push(current);
+                }
+                let light = &mut self.light;
+                if let Some(ray) = self.sample.rays.last_mut() {
+                    ray.take(&frame, event, light);
+                }
+            }
+        }
+    }
+
+    fn ray(&mut self, kind: RayKind, depth: u8, weight: [f64; 3]) {
+        let parent = self.waiting.pop();
+        let number = self.sample.rays.len();
+        if let Some(parent) = parent {
+            self.sample.rays[parent].children.push(number);
+        }
+        self.light = false;
+        self.sample.rays.push(Ray {
+            kind: kind_name(kind),
+            parent,
+            depth,
+            weight,
+            walk: None,
+            hit: None,
+            absorbed: None,
+            lights: Vec::new(),
+            added: [0.0; 3],
+            background: false,
+            reflected: None,
+            dropped: Vec::new(),
+            too_deep: false,
+            children: Vec::new(),
+        });
+    }
+}
+
+impl Ray {
+    fn take(&mut self, frame: &Frame, event: &Event, light: &mut bool) {
+        match *event {
+            Event::Query { .. } => {
+                let walk = Walk::begin(frame, event);
+                match self.lights.last_mut().filter(|_| *light) {
+                    Some(lighting) => lighting.shadow.extend(walk),
+                    None => self.walk = walk,
+                }
+            }
+            Event::Nearest(met) if !*light => {
+                let walk = self.walk.as_ref();
+                self.hit = met.zip(walk).map(|(met, walk)| Hit::of(frame, walk, &met));
+            }
+            Event::Light { number, cosine } => {
+                *light = true;
+                self.lights.push(Lighting {
+                    light: number,
+                    cosine,
+                    shadow: Vec::new(),
+                    filtered: Vec::new(),
+                    radiance: [0.0; 3],
+                    fall: Fall::Lit,
+                });
+            }
+            Event::Filtered { left } => {
+                if let Some(lighting) = self.lights.last_mut() {
+                    lighting.filtered.push(left);
+                }
+            }
+            Event::Lit { number, radiance } => {
+                *light = false;
+                if let Some(lighting) = self.lights.last_mut().filter(|l| l.light == number) {
+                    lighting.radiance = radiance;
+                    lighting.fall = lighting.fall();
+                }
+            }
+            Event::Absorbed { weight } => self.absorbed = Some(weight),
+            Event::Added { source, radiance } => {
+                self.added = radiance;
+                self.background = source == Source::Background;
+            }
+            Event::Split { reflected } => self.reflected = Some(reflected),
+            Event::Dropped { kind, weight } => self.dropped.push(Weighted {
+                kind: kind_name(kind),
+                weight,
+            }),
+            Event::TooDeep => self.too_deep = true,
+            _ => {
+                let shadow = self.lights.last_mut().and_then(|l| l.shadow.last_mut());
+                let walk = if *light { shadow } else { self.walk.as_mut() };
+                if let Some(walk) = walk {
+                    walk.take(event);
+                }
+            }
+        }
+    }
+}
+
+impl Hit {
+    fn of(frame: &Frame, walk: &Walk, met: &Met) -> Self {
+        Self {
+            distance: walk.distance(met.t),
+            point: frame.place(met.point).to_array(),
+            normal: met.normal,
+            front: met.front,
+            object: met.object,
+            primitive: met.primitive,
+            error: frame.length(met.error),
+        }
+    }
+}
+
+impl Lighting {
+    fn fall(&self) -> Fall {
+        if self.radiance != [0.0; 3] {
+            return Fall::Lit;
+        }
+        if self.cosine <= 0.0 {
+            return Fall::Behind;
+        }
+        let Some(last) = self.shadow.last() else {
+            return Fall::Unreflected;
+        };
+        // Glass that was met let the rest through, or too little of it.
+        match last.met() {
+            Some(_) if self.filtered.len() == self.shadow.len() => Fall::Faded,
+            Some(met) => Fall::Blocked {
+                kind: met.kind,
+                primitive: met.primitive,
+            },
+            None => Fall::Unreflected,
+        }
+    }
+}

@@ -1,0 +1,379 @@
+//! A story for people.
+
+use super::story::{Fall, Hit, Lighting, Ray, Sample, Story};
+use super::walk::{Culled, Plane, Step, Tested, Verdict, Walk};
+use crate::report::{counted, significant};
+use std::fmt::{self, Display, Formatter};
+
+/// What the scene file calls its objects and what they are made of; empty for a blob, which keeps no
+/// names.
+#[derive(Clone, Debug, Default)]
+pub struct Names {
+    /// Of each object.
+    pub objects: Vec<String>,
+    /// Of each object's material.
+    pub materials: Vec<String>,
+}
+
+impl Names {
+    fn object(&self, number: u32) -> String {
+        match self.objects.get(number as usize) {
+            Some(name) => format!("{name} (object {number})"),
+            None => format!("object {number}"),
+        }
+    }
+
+    fn material(&self, number: u32) -> String {
+        match self.materials.get(number as usize) {
+            Some(name) => format!(" of {name}"),
+            None => String::new(),
+        }
+    }
+}
+
+/// A story as text.
+pub struct Shown<'s> {
+    pub story: &'s Story,
+    pub names: &'s Names,
+    /// Whether the ways of all rays through the structure are shown, and not only the first one's.
+    pub all_walks: bool,
+}
+
+impl Display for Shown<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Story {
+            format,
+            accel,
+            samples,
+            linear,
+            srgb,
+        } = self.story;
+        let [r, g, b] = srgb;
+        let shares = linear.map(|channel| f64::from(channel) / 65535.0);
+        writeln!(
+            f,
+            "It is #{r:02x}{g:02x}{b:02x}: linear {}, in {format} through {accel}.",
+            color(shares)
+        )?;
+        for sentence in self.sentences() {
+            writeln!(f, "{sentence}")?;
+        }
+        for (number, sample) in samples.iter().enumerate() {
+            write!(f, "\nSample {} of {}", number + 1, samples.len())?;
+            if let Some([x, y]) = sample.place {
+                write!(f, " at {x:.3}, {y:.3}")?;
+            }
+            writeln!(f, ": {}", color(sample.radiance))?;
+            self.ray(f, sample, 0)?;
+        }
+        for (number, sample) in samples.iter().enumerate() {
+            for (place, ray) in sample.rays.iter().enumerate() {
+                if let Some(walk) = ray.walk.as_ref().filter(|_| place == 0 || self.all_walks) {
+                    writeln!(f, "\nThe way of ray {place} of sample {}", number + 1)?;
+                    self.walk(f, walk)?;
+                }
+                for lighting in ray.lights.iter().filter(|_| self.all_walks) {
+                    for walk in &lighting.shadow {
+                        let light = lighting.light;
+                        let sample = number + 1;
+                        writeln!(
+                            f,
+                            "\nThe way from ray {place} of sample {sample} to light {light}"
+                        )?;
+                        self.walk(f, walk)?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Shown<'_> {
+    /// What most likely answers the question that was asked.
+    fn sentences(&self) -> Vec<String> {
+        let mut sentences = Vec::new();
+        let rays = || self.story.samples.iter().flat_map(|sample| &sample.rays);
+        let primary = || self.story.samples.iter().filter_map(|s| s.rays.first());
+        let background = primary().filter(|ray| ray.background).count();
+        if background > 0 {
+            let all = primary().count();
+            sentences.push(if background == all {
+                String::from("Nothing is met: this is the background.")
+            } else {
+                format!("{background} of {all} samples meet nothing and bring the background.")
+            });
+        }
+        if let Some(unlit) = primary().find(|ray| {
+            let dark = ray.lights.iter().all(|light| light.fall != Fall::Lit);
+            ray.hit.is_some() && !ray.lights.is_empty() && dark
+        }) {
+            let reasons: Vec<_> = unlit.lights.iter().map(|l| self.fall(l)).collect();
+            sentences.push(format!(
+                "No light shines on what is met first: {}.",
+                reasons.join("; ")
+            ));
+        }
+        if rays().any(|ray| ray.hit.is_some() && ray.lights.is_empty()) {
+            sentences.push(String::from("The scene has no light but the ambient one."));
+        }
+        let too_deep: Vec<f64> = rays()
+            .filter(|ray| ray.too_deep)
+            .map(|ray| peak(ray.weight))
+            .collect();
+        if !too_deep.is_empty() {
+            let lost: f64 = too_deep.iter().sum::<f64>() / self.story.samples.len() as f64;
+            sentences.push(format!(
+                "{} ended by the ray depth, where black stands for up to {} of white; `--depth` \
+                 raises it.",
+                counted_were(too_deep.len(), "ray"),
+                significant(lost)
+            ));
+        }
+        let dropped: Vec<f64> = rays()
+            .flat_map(|ray| &ray.dropped)
+            .map(|dropped| peak(dropped.weight))
+            .filter(|&weight| weight > 0.0)
+            .collect();
+        if !dropped.is_empty() {
+            let lost: f64 = dropped.iter().sum::<f64>() / self.story.samples.len() as f64;
+            sentences.push(format!(
+                "{} left out, too light for the scene's cutoff: {} of white in all.",
+                counted_were(dropped.len(), "ray"),
+                significant(lost)
+            ));
+        }
+        sentences
+    }
+
+    /// A ray of the tree, and those that it causes.
+    fn ray(&self, f: &mut Formatter<'_>, sample: &Sample, place: usize) -> fmt::Result {
+        let Some(ray) = sample.rays.get(place) else {
+            return Ok(());
+        };
+        let indent = "  ".repeat(usize::from(ray.depth) + 1);
+        write!(f, "{indent}ray {place}, {}", ray.kind)?;
+        if ray.parent.is_some() {
+            write!(f, ", weighs {}", color(ray.weight))?;
+        }
+        writeln!(f, ": adds {}", color(ray.added))?;
+        if let Some(walk) = &ray.walk {
+            writeln!(
+                f,
+                "{indent}  from {} along {}: {} opened, {} left out, {} tested",
+                point(walk.origin),
+                point(walk.direction),
+                counted(walk.opened, "node"),
+                walk.culled,
+                counted(walk.candidates, "primitive"),
+            )?;
+        }
+        match &ray.hit {
+            Some(hit) => self.hit(f, &indent, ray, hit)?,
+            None if ray.background => writeln!(f, "{indent}  meets nothing: the background")?,
+            None => writeln!(f, "{indent}  has no direction, and is not traced")?,
+        }
+        ray.children
+            .iter()
+            .try_for_each(|&child| self.ray(f, sample, child))
+    }
+
+    fn hit(&self, f: &mut Formatter<'_>, indent: &str, ray: &Ray, hit: &Hit) -> fmt::Result {
+        let kind = ray.walk.as_ref().and_then(Walk::met).map_or("", |c| c.kind);
+        writeln!(
+            f,
+            "{indent}  meets the {} of {kind} {}, which is {}{}, at distance {} within {}",
+            if hit.front { "front" } else { "back" },
+            hit.primitive,
+            self.names.object(hit.object),
+            self.names.material(hit.object),
+            significant(hit.distance),
+            significant(hit.error)
+        )?;
+        writeln!(
+            f,
+            "{indent}  at {}, normal {}",
+            point(hit.point),
+            point(hit.normal)
+        )?;
+        if let Some(weight) = ray.absorbed {
+            writeln!(
+                f,
+                "{indent}  the glass it came through leaves a weight of {}",
+                color(weight)
+            )?;
+        }
+        for lighting in &ray.lights {
+            writeln!(f, "{indent}  {}", self.fall(lighting))?;
+        }
+        if let Some(reflected) = ray.reflected {
+            writeln!(
+                f,
+                "{indent}  its glass reflects {} and lets the rest through",
+                significant(reflected)
+            )?;
+        }
+        for dropped in ray.dropped.iter().filter(|d| peak(d.weight) > 0.0) {
+            writeln!(
+                f,
+                "{indent}  a {} ray is left out: it would weigh {}",
+                dropped.kind,
+                color(dropped.weight)
+            )?;
+        }
+        if ray.too_deep {
+            writeln!(
+                f,
+                "{indent}  it reflects or lets light through, but the ray depth ends here"
+            )?;
+        }
+        Ok(())
+    }
+
+    /// What becomes of a light, as a clause.
+    fn fall(&self, lighting: &Lighting) -> String {
+        let light = lighting.light;
+        let cosine = significant(lighting.cosine);
+        let glass = match lighting.filtered.last() {
+            Some(left) => format!(
+                ", through {} of glass that leave {}",
+                counted(lighting.filtered.len(), "surface"),
+                color(*left)
+            ),
+            None => String::new(),
+        };
+        match lighting.fall {
+            Fall::Lit => format!(
+                "light {light} shines on it at a cosine of {cosine}{glass}: {}",
+                color(lighting.radiance)
+            ),
+            Fall::Behind => format!("light {light} is behind the surface (cosine {cosine})"),
+            Fall::Blocked { kind, primitive } => {
+                format!("light {light} is blocked by {kind} {primitive}{glass}")
+            }
+            Fall::Faded => format!("light {light} fades away{glass}"),
+            Fall::Unreflected => {
+                format!("light {light} shines on it, and the material reflects none of it")
+            }
+        }
+    }
+
+    fn walk(&self, f: &mut Formatter<'_>, walk: &Walk) -> fmt::Result {
+        writeln!(
+            f,
+            "  Distances count from {}, {} from the ray's start; it counts from {} to {}{}",
+            point(walk.origin),
+            significant(walk.moved),
+            significant(walk.interval[0]),
+            significant(walk.interval[1]),
+            if walk.any {
+                ", and any hit will do"
+            } else {
+                ""
+            }
+        )?;
+        for step in &walk.steps {
+            match step {
+                Step::Opened { place } => writeln!(f, "  {place}")?,
+                Step::Tested(tested) => writeln!(f, "    {}", self.tested(tested))?,
+                Step::GivenUp { place, enters, hit } => writeln!(
+                    f,
+                    "  {place} is given up: it begins at {}, behind the hit at {}",
+                    significant(*enters),
+                    significant(*hit)
+                )?,
+                Step::Candidate(candidate) => {
+                    let crossing = candidate.crossing.map(|[enter, leave]| {
+                        if enter == leave {
+                            format!("is met at {}", significant(enter))
+                        } else {
+                            format!(
+                                "is met from {} to {}",
+                                significant(enter),
+                                significant(leave)
+                            )
+                        }
+                    });
+                    let crossing = crossing.unwrap_or_else(|| String::from("is missed"));
+                    let verdict = match candidate.verdict {
+                        Verdict::Missed => "",
+                        Verdict::NotInInterval => ", where the ray does not count",
+                        Verdict::Farther => ", behind the nearest hit",
+                        Verdict::Nearest => ": the nearest hit so far",
+                    };
+                    let (kind, primitive) = (candidate.kind, candidate.primitive);
+                    writeln!(f, "    {kind} {primitive} {crossing}{verdict}")?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn tested(&self, tested: &Tested) -> String {
+        let place = &tested.place;
+        match tested.culled {
+            None => format!(
+                "{place}: the ray is in it from {} to {}",
+                significant(tested.span[0]),
+                significant(tested.span[1])
+            ),
+            Some(Culled::Beside { leaves, enters }) => format!(
+                "{place} is left out: past {} the ray comes only to {}",
+                plane(&leaves),
+                plane(&enters)
+            ),
+            Some(Culled::Outside { along }) => format!(
+                "{place} is left out: the ray runs outside of it, along {} = {}",
+                along.axis,
+                significant(along.at)
+            ),
+            Some(Culled::BehindHit { enters, hit }) => format!(
+                "{place} is left out: {} lies behind the hit at {}",
+                plane(&enters),
+                significant(hit)
+            ),
+            Some(Culled::NotInInterval) => {
+                format!("{place} is left out: the ray does not count there")
+            }
+            Some(Culled::NotInParent {
+                plane: crossed,
+                around: [enter, leave],
+            }) => format!(
+                "{place} is left out: {} is not where the ray is in the node around it, from {} to {}",
+                plane(&crossed),
+                significant(enter),
+                significant(leave)
+            ),
+            Some(Culled::Margin) => {
+                format!("{place} is left out by less than the margin of rounding")
+            }
+        }
+    }
+}
+
+fn plane(plane: &Plane) -> String {
+    format!(
+        "{} = {} at {}",
+        plane.axis,
+        significant(plane.at),
+        significant(plane.distance)
+    )
+}
+
+fn counted_were(number: usize, thing: &str) -> String {
+    let verb = if number == 1 { "was" } else { "were" };
+    format!("{} {verb}", counted(number, thing))
+}
+
+fn peak(color: [f64; 3]) -> f64 {
+    color.into_iter().fold(0.0, f64::max)
+}
+
+fn color([red, green, blue]: [f64; 3]) -> String {
+    format!("{red:.5} {green:.5} {blue:.5}")
+}
+
+fn point(point: [f64; 3]) -> String {
+    let [x, y, z] = point.map(significant);
+    format!("({x}, {y}, {z})")
+}
