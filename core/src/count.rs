@@ -17,6 +17,9 @@ pub enum RayKind {
 
 /// Receives counts and events; every method does nothing unless it is overridden.
 pub trait Count {
+    /// Whether [`tell`](Self::tell) is called.
+    const TELLS: bool = false;
+
     /// Planes of boxes were tested.
     #[inline(always)]
     fn planes(&mut self, _: u32) {}
@@ -29,12 +32,9 @@ pub trait Count {
     /// A ray was cast.
     #[inline(always)]
     fn ray(&mut self, _: RayKind) {}
-    /// Something happened, and `event` says what. It is called only by those who listen, so that
-    /// nobody else pays for telling.
-    #[inline(always)]
-    fn tell(&mut self, event: impl FnOnce() -> Event) {
-        let _ = event;
-    }
+    /// Something happened. It is told only to those that say so by [`TELLS`](Self::TELLS), and the
+    /// code that tells is not even compiled for others.
+    fn tell(&mut self, _: Event) {}
 }
 
 /// Counts nothing, at no cost.

@@ -106,14 +106,16 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         crossing: Option<&Crossing<N>>,
         count: &mut C,
     ) {
-        count.tell(|| Event::Candidate {
-            kind,
-            primitive: self.scene.primitive(kind, index),
-            crossing: crossing.map(|c| [c.enter.0, c.leave.0].map(N::length_to_f64)),
-            nearest: self
-                .best
-                .is_some_and(|best| (best.kind, best.index) == (kind, index)),
-        });
+        if C::TELLS {
+            count.tell(Event::Candidate {
+                kind,
+                primitive: self.scene.primitive(kind, index),
+                crossing: crossing.map(|c| [c.enter.0, c.leave.0].map(N::length_to_f64)),
+                nearest: self
+                    .best
+                    .is_some_and(|best| (best.kind, best.index) == (kind, index)),
+            });
+        }
     }
 
     /// Tests the primitives of a leaf.
@@ -271,7 +273,9 @@ pub fn closest_primitive<N: Number, A: Accel, C: Count>(
 ) -> Option<Found<N>> {
     let cull = A::Cull::<N>::new(ray);
     let mut search = Search::new(scene, ray, &cull);
-    count.tell(|| ray.query(false));
+    if C::TELLS {
+        count.tell(ray.query(false));
+    }
     A::walk(scene, ray, &cull, stack, count, |leaf, count| {
         search.leaf(leaf, count);
         Some(search.tmax)
@@ -329,7 +333,9 @@ pub fn closest_hit<N: Number, A: Accel, C: Count>(
 ) -> Option<Hit<N>> {
     let found = closest_primitive::<N, A, C>(scene, ray, stack, count);
     let hit = found.and_then(|found| found.hit(scene, ray));
-    count.tell(|| Event::Nearest(hit.map(|hit| hit.met())));
+    if C::TELLS {
+        count.tell(Event::Nearest(hit.map(|hit| hit.met())));
+    }
     hit
 }
 
@@ -342,11 +348,15 @@ pub fn any_hit<N: Number, A: Accel, C: Count>(
 ) -> bool {
     let cull = A::Cull::<N>::new(ray);
     let mut search = Search::new(scene, ray, &cull);
-    count.tell(|| ray.query(true));
+    if C::TELLS {
+        count.tell(ray.query(true));
+    }
     A::walk(scene, ray, &cull, stack, count, |leaf, count| {
         search.leaf(leaf, count);
         search.best.is_none().then_some(search.tmax)
     });
-    count.tell(|| Event::Any(search.best.is_some()));
+    if C::TELLS {
+        count.tell(Event::Any(search.best.is_some()));
+    }
     search.best.is_some()
 }

@@ -87,18 +87,22 @@ where
         count.boxes(1);
         let mut limit = (self.limit)(tmax);
         let mut interval = (self.root)(limit);
-        count.tell(|| Event::Tested {
-            place: root(self.pairs).place(),
-            sides: self.scene.bounds().0.map(|axis| axis.map(Some)),
-            span: interval.units(),
-        });
+        if C::TELLS {
+            count.tell(Event::Tested {
+                place: root(self.pairs).place(),
+                sides: self.scene.bounds().0.map(|axis| axis.map(Some)),
+                span: interval.units(),
+            });
+        }
         if interval.near > interval.far {
             return;
         }
         let mut node = root(self.pairs);
         stack.clear();
         loop {
-            count.tell(|| Event::Opened(node.place()));
+            if C::TELLS {
+                count.tell(Event::Opened(node.place()));
+            }
             if node.is_leaf() {
                 let Some(range) = self.scene.leaf(node.number()) else {
                     return;
@@ -115,8 +119,12 @@ where
                 count.planes(P::PLANES);
                 count.boxes(2);
                 let number = node.number();
-                count.tell(|| pair.tested(number, 0, left));
-                count.tell(|| pair.tested(number, 1, right));
+                if C::TELLS {
+                    count.tell(pair.tested(number, 0, left));
+                }
+                if C::TELLS {
+                    count.tell(pair.tested(number, 1, right));
+                }
                 let meets_left = left.near <= left.far;
                 let meets_right = right.near <= right.far;
                 if meets_left && meets_right {
@@ -155,10 +163,12 @@ where
                     };
                     break;
                 }
-                count.tell(|| Event::GivenUp {
-                    place: Node(entry.node).place(),
-                    enters: f64::from(entry.near) / 2.0,
-                });
+                if C::TELLS {
+                    count.tell(Event::GivenUp {
+                        place: Node(entry.node).place(),
+                        enters: f64::from(entry.near) / 2.0,
+                    });
+                }
             }
         }
     }

@@ -143,10 +143,12 @@ impl<N: Number> Samples<N> {
         // Clamped before they are averaged, so that the edge of a highlight is smooth.
         let seen = self.radiance.displayable();
         self.sum = self.sum.plus(seen);
-        count.tell(|| Event::Seen {
-            place: Some(place([x, y], self.index, samples)),
-            radiance: seen.told(),
-        });
+        if C::TELLS {
+            count.tell(Event::Seen {
+                place: Some(place([x, y], self.index, samples)),
+                radiance: seen.told(),
+            });
+        }
         self.radiance = Color::BLACK;
         self.index = self.index.saturating_add(1);
         if self.index < samples {

@@ -258,10 +258,12 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         let camera = || Ok(*ray);
         while !tracing.step::<N, A, C, EFFECTS>(camera, &mut radiance, space, count) {}
         let seen = radiance.displayable();
-        count.tell(|| Event::Seen {
-            place: None,
-            radiance: seen.told(),
-        });
+        if C::TELLS {
+            count.tell(Event::Seen {
+                place: None,
+                radiance: seen.told(),
+            });
+        }
         seen.0.map(N::to_linear16)
     }
 

@@ -112,11 +112,13 @@ impl Loop<'_, '_> {
             None => (camera(), Color::WHITE, 0, RayKind::Primary),
         };
         // A direction that cannot be told brings nothing.
-        count.tell(|| Event::Taken {
-            kind,
-            depth,
-            weight: weight.told_ratios(),
-        });
+        if C::TELLS {
+            count.tell(Event::Taken {
+                kind,
+                depth,
+                weight: weight.told_ratios(),
+            });
+        }
         if let Ok(ray) = ray {
             count.ray(kind);
             self.add::<N, A, C, EFFECTS>(&ray, weight, depth, radiance, space, count);
@@ -142,18 +144,22 @@ impl Loop<'_, '_> {
         let Some((hit, material)) = surface else {
             let brought = Color::radiance(view.background).times(weight);
             *radiance = radiance.plus(brought);
-            count.tell(|| Event::Added {
-                source: Source::Background,
-                radiance: brought.told(),
-            });
+            if C::TELLS {
+                count.tell(Event::Added {
+                    source: Source::Background,
+                    radiance: brought.told(),
+                });
+            }
             return;
         };
         let glass = effects.contains(Effects::GLASS) && material.transmit != [0; 3];
         if effects.contains(Effects::ABSORPTION) && glass && !hit.front {
             weight = weight.times(glass::absorb(material, path_length(ray, &hit)));
-            count.tell(|| Event::Absorbed {
-                weight: weight.told_ratios(),
-            });
+            if C::TELLS {
+                count.tell(Event::Absorbed {
+                    weight: weight.told_ratios(),
+                });
+            }
         }
 
         let normal = if hit.front {
@@ -185,22 +191,28 @@ impl Loop<'_, '_> {
                 count,
             );
             local = local.plus(lit);
-            count.tell(|| Event::Lit {
-                number,
-                radiance: lit.told(),
-            });
+            if C::TELLS {
+                count.tell(Event::Lit {
+                    number,
+                    radiance: lit.told(),
+                });
+            }
         }
         let brought = local.times(weight);
         *radiance = radiance.plus(brought);
-        count.tell(|| Event::Added {
-            source: Source::Surface,
-            radiance: brought.told(),
-        });
+        if C::TELLS {
+            count.tell(Event::Added {
+                source: Source::Surface,
+                radiance: brought.told(),
+            });
+        }
 
         let mirror = effects.contains(Effects::MIRROR) && material.mirror != [0; 3];
         if depth >= self.depth {
             if glass || mirror {
-                count.tell(|| Event::TooDeep);
+                if C::TELLS {
+                    count.tell(Event::TooDeep);
+                }
             }
             return;
         }
@@ -216,9 +228,11 @@ impl Loop<'_, '_> {
                 reflected,
                 refracted,
             } = glass::split(k, hit.front, direction, normal, cos_in);
-            count.tell(|| Event::Split {
-                reflected: reflected.ratio_to_f64(),
-            });
+            if C::TELLS {
+                count.tell(Event::Split {
+                    reflected: reflected.ratio_to_f64(),
+                });
+            }
             let transmit = Color::ratios(material.transmit);
             mirrored = mirrored.plus_up_to_one(transmit.scaled(reflected));
             let weight = weight.times(transmit.scaled(N::ONE - reflected));
@@ -277,15 +291,19 @@ impl Loop<'_, '_> {
                 depth: depth + 1,
                 kind,
             });
-            count.tell(|| Event::Sent {
-                kind,
-                weight: weight.told_ratios(),
-            });
+            if C::TELLS {
+                count.tell(Event::Sent {
+                    kind,
+                    weight: weight.told_ratios(),
+                });
+            }
         } else {
-            count.tell(|| Event::Dropped {
-                kind,
-                weight: weight.told_ratios(),
-            });
+            if C::TELLS {
+                count.tell(Event::Dropped {
+                    kind,
+                    weight: weight.told_ratios(),
+                });
+            }
         }
     }
 
@@ -315,10 +333,12 @@ impl Loop<'_, '_> {
         };
         let (to_light, _) = N::normalize(slopes);
         let cos = N::from_wide(N::dot(normal, to_light));
-        count.tell(|| Event::Light {
-            number,
-            cosine: cos.ratio_to_f64(),
-        });
+        if C::TELLS {
+            count.tell(Event::Light {
+                number,
+                cosine: cos.ratio_to_f64(),
+            });
+        }
         if cos <= N::ZERO {
             return Color::BLACK;
         }
@@ -399,9 +419,11 @@ impl Loop<'_, '_> {
             if effects.contains(Effects::ABSORPTION) && !hit.front {
                 left = left.times(glass::absorb(material, path_length(&ray, &hit)));
             }
-            count.tell(|| Event::Filtered {
-                left: left.told_ratios(),
-            });
+            if C::TELLS {
+                count.tell(Event::Filtered {
+                    left: left.told_ratios(),
+                });
+            }
             if left.peak() * N::radiance(1 << 20) <= N::radiance(self.scene.view.cutoff) {
                 return Color::BLACK;
             }

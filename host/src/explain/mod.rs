@@ -44,8 +44,8 @@ pub enum ExplainError {
 
 /// Tells the story of a pixel or of a ray.
 ///
-/// The code that is watched is that of [`render`](crate::render), compiled for all effects, which
-/// gives the same bits as for fewer.
+/// The code that is watched is that of [`render`](crate::render), compiled for effects with glass or
+/// without: what else it is compiled for changes neither bits nor ways.
 ///
 /// # Errors
 /// If the blob lacks the structure, a setting is out of its range, or the ray is none.
@@ -94,12 +94,31 @@ impl<N: Number> StructureVisitor for InFormat<'_, N> {
     type Output = Result<([u16; 3], Recorder), ExplainError>;
 
     fn visit<A: Accel>(self) -> Self::Output {
+        let scene = self.0.scene;
+        if Effects(OPAQUE).contains(scene.effects()) {
+            self.0.tell::<N, A, OPAQUE>()
+        } else {
+            self.0.tell::<N, A, { Effects::ALL.0 }>()
+        }
+    }
+}
+
+/// Without glass a shadow ray stops at any hit.
+const OPAQUE: u32 = Effects::ALL
+    .without(Effects::GLASS)
+    .without(Effects::ABSORPTION)
+    .0;
+
+impl Watch<'_> {
+    fn tell<N: Number, A: Accel, const EFFECTS: u32>(
+        self,
+    ) -> Result<([u16; 3], Recorder), ExplainError> {
         let Watch {
             scene,
             settings,
             subject,
-        } = self.0;
-        let renderer = Renderer::<N, A, { Effects::ALL.0 }>::new(scene, settings)?;
+        } = self;
+        let renderer = Renderer::<N, A, EFFECTS>::new(scene, settings)?;
         let mut space = Box::new(Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new());
         let mut space = space.as_view();
         let mut recorder = Recorder::default();
@@ -128,8 +147,9 @@ struct Recorder {
 const MOST_STEPS: usize = 20_000;
 
 impl Count for Recorder {
-    fn tell(&mut self, event: impl FnOnce() -> Event) {
-        let event = event();
+    const TELLS: bool = true;
+
+    fn tell(&mut self, event: Event) {
         match event {
             Event::Query { .. } => self.steps = 0,
             Event::Tested { .. }

@@ -129,8 +129,8 @@ impl Story {
         let mut story = Story::default();
         let mut teller = Teller::new(frame);
         for event in events {
-            if let Event::Seen { radiance } = *event {
-                story.samples.push(teller.finish(radiance));
+            if let Event::Seen { place, radiance } = *event {
+                story.samples.push(teller.finish(place, radiance));
             } else {
                 teller.take(event);
             }
@@ -159,19 +159,17 @@ impl<'f> Teller<'f> {
         }
     }
 
-    fn finish(&mut self, radiance: [f64; 3]) -> Sample {
+    fn finish(&mut self, place: Option<[i32; 2]>, radiance: [f64; 3]) -> Sample {
         self.waiting.clear();
         self.light = false;
         let mut sample = std::mem::take(&mut self.sample);
+        sample.place = place.map(|place| place.map(|subpixels| f64::from(subpixels) / 256.0));
         sample.radiance = radiance;
         sample
     }
 
     fn take(&mut self, event: &Event) {
         match *event {
-            Event::Sample { place } => {
-                self.sample.place = Some(place.map(|subpixels| f64::from(subpixels) / 256.0));
-            }
             Event::Taken {
                 kind,
                 depth,
