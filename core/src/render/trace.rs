@@ -207,12 +207,9 @@ impl Loop<'_, '_> {
             });
         }
 
-        let mirror = effects.contains(Effects::MIRROR) && material.mirror != [0; 3];
         if depth >= self.depth {
-            if glass || mirror {
-                if C::TELLS {
-                    count.tell(Event::TooDeep);
-                }
+            if C::TELLS && (glass || material.mirror != [0; 3]) {
+                count.tell(Event::TooDeep);
             }
             return;
         }
