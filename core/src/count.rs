@@ -1,6 +1,8 @@
 //! Counters of work, and the story of a ray, which cost nothing where nobody asks for them.
 
 use crate::event::Event;
+use crate::number::Number;
+use crate::ray::Ray;
 
 /// What a ray was cast for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,9 +31,12 @@ pub trait Count {
     /// Primitives were tested.
     #[inline(always)]
     fn objects(&mut self, _: u32) {}
+    /// Cells of a subdivision of space were entered.
+    #[inline(always)]
+    fn cells(&mut self, _: u32) {}
     /// A ray was cast.
     #[inline(always)]
-    fn ray(&mut self, _: RayKind) {}
+    fn ray<N: Number>(&mut self, _: RayKind, _: &Ray<N>) {}
     /// Something happened. It is told only to those that say so by [`TELLS`](Self::TELLS), and the
     /// code that tells is not even compiled for others.
     fn tell(&mut self, _: Event) {}
@@ -52,6 +57,8 @@ pub struct Counters {
     pub boxes: u64,
     /// Primitives that were tested.
     pub objects: u64,
+    /// Cells of a subdivision of space that were entered.
+    pub cells: u64,
     /// Rays from the camera.
     pub primary: u64,
     /// Rays towards lights.
@@ -79,6 +86,7 @@ impl Counters {
             planes: self.planes + other.planes,
             boxes: self.boxes + other.boxes,
             objects: self.objects + other.objects,
+            cells: self.cells + other.cells,
             primary: self.primary + other.primary,
             shadow: self.shadow + other.shadow,
             reflected: self.reflected + other.reflected,
@@ -100,7 +108,11 @@ impl Count for Counters {
         self.objects = self.objects.wrapping_add(number.into());
     }
 
-    fn ray(&mut self, kind: RayKind) {
+    fn cells(&mut self, number: u32) {
+        self.cells = self.cells.wrapping_add(number.into());
+    }
+
+    fn ray<N: Number>(&mut self, kind: RayKind, _: &Ray<N>) {
         let counter = match kind {
             RayKind::Primary => &mut self.primary,
             RayKind::Shadow => &mut self.shadow,

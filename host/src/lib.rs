@@ -7,6 +7,7 @@
 //! | compile a scene into a blob | [`compile`] |
 //! | hold a blob and check it | [`blob`] |
 //! | render a blob on all cores | [`render`], then [`picture`] to encode what comes out |
+//! | compare structures on a scene | [`compare`] |
 //! | trace rays of one's own | [`trace`], and [`npy`] for NumPy's files |
 //! | tell the story of a ray or a pixel | [`explain`] |
 //! | tell where bytes and work go | [`report`] |
@@ -14,6 +15,7 @@
 //!
 //! The program `gridel` is a thin layer over this library: what it does can be done from here.
 pub mod blob;
+pub mod compare;
 pub mod compile;
 pub mod explain;
 pub mod npy;

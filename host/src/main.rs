@@ -1,7 +1,13 @@
-//! The program `gridel`: compiles scenes, tells what is in a blob, renders and traces.
+//! The program `gridel`: compiles scenes, tells what is in a blob, renders, traces and compares.
 
 mod cli;
 
+use peak_alloc::PeakAlloc;
+
+/// Knows at every moment how much memory is in use, for `gridel compare`.
+#[global_allocator]
+static MEMORY: PeakAlloc = PeakAlloc;
+
 fn main() -> std::process::ExitCode {
-    cli::run()
+    cli::run(&MEMORY)
 }

@@ -107,7 +107,7 @@ fn trace_through<N: Number, A: Accel, C: Count>(
         let Some((core_ray, scale)) = frame.ray::<N>(scene, ray) else {
             continue;
         };
-        count.ray(gridel_core::RayKind::Primary);
+        count.ray(gridel_core::RayKind::Primary, &core_ray);
         if any {
             if any_hit::<N, A, C>(scene, &core_ray, stack.as_view(), count) {
                 *hit = SceneHit {

@@ -120,7 +120,7 @@ impl Loop<'_, '_> {
             });
         }
         if let Ok(ray) = ray {
-            count.ray(kind);
+            count.ray(kind, &ray);
             self.add::<N, A, C, EFFECTS>(&ray, weight, depth, radiance, space, count);
         }
         !causes_rays || space.work.is_empty()
@@ -398,7 +398,7 @@ impl Loop<'_, '_> {
             else {
                 return left;
             };
-            count.ray(RayKind::Shadow);
+            count.ray(RayKind::Shadow, &ray);
             if !effects.contains(Effects::GLASS) {
                 let dark = any_hit::<N, A, C>(self.scene, &ray, stack, count);
                 return if dark { Color::BLACK } else { left };

@@ -17,6 +17,7 @@ mod progress;
 mod source;
 
 mod build;
+mod compare;
 mod explain;
 mod inspect;
 mod render;
@@ -24,6 +25,7 @@ mod sample;
 mod trace;
 
 use clap::{Parser, Subcommand};
+use peak_alloc::PeakAlloc;
 use std::process::ExitCode;
 
 /// Compiles scenes into blobs that are ray traced in place, on a microcontroller or on a host
@@ -37,6 +39,7 @@ struct Program {
 #[derive(Subcommand)]
 enum Verb {
     Build(build::Arguments),
+    Compare(compare::Arguments),
     Inspect(inspect::Arguments),
     Render(render::Arguments),
     Trace(trace::Arguments),
@@ -54,12 +57,15 @@ Exit codes:
   130  interrupted; no output is left half written";
 
 /// Runs the program.
-pub fn run() -> ExitCode {
+///
+/// `memory` is the program's allocator, which knows how much is in use.
+pub fn run(memory: &PeakAlloc) -> ExitCode {
     let program = Program::parse();
     // Without a handler an interrupt would only leave a temporary file behind.
     let _ = ctrlc::set_handler(|| gridel_host::output::abandon(130));
     let done = match program.verb {
         Verb::Build(arguments) => build::run(&arguments),
+        Verb::Compare(arguments) => compare::run(&arguments, memory),
         Verb::Inspect(arguments) => inspect::run(&arguments),
         Verb::Render(arguments) => render::run(&arguments),
         Verb::Trace(arguments) => trace::run(&arguments),

@@ -59,6 +59,11 @@ impl Progress {
         progress
     }
 
+    /// What happens now.
+    pub fn tell(&self, what: &str) {
+        self.bar.set_message(what.to_owned());
+    }
+
     /// One more step is done.
     pub fn step(&self) {
         self.bar.inc(1);

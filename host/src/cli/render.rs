@@ -121,6 +121,7 @@ struct Stats {
     refracted: u64,
     planes: u64,
     boxes: u64,
+    cells: u64,
     objects: u64,
     rays_per_second: f64,
 }
@@ -271,6 +272,7 @@ fn stats(arguments: &Arguments, picture: &Picture, time: Duration) -> Option<Sta
         planes,
         boxes,
         objects,
+        cells,
         primary,
         shadow,
         reflected,
@@ -284,6 +286,7 @@ fn stats(arguments: &Arguments, picture: &Picture, time: Duration) -> Option<Sta
         refracted,
         planes,
         boxes,
+        cells,
         objects,
         rays_per_second: counters.rays() as f64 / time.as_secs_f64(),
     })
@@ -338,6 +341,7 @@ impl Stats {
             ("  refracted", self.refracted),
             ("planes tested", self.planes),
             ("boxes tested", self.boxes),
+            ("cells entered", self.cells),
             ("primitives tested", self.objects),
         ] {
             table.row([what.to_owned(), grouped(count), a_ray(count)]);

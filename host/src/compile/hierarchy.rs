@@ -70,6 +70,11 @@ pub fn build(primitives: &mut [Primitive]) -> Option<Node> {
     Some(build_node(primitives, 0, MAX_STACK_DEPTH))
 }
 
+/// The box of all primitives; `None` without any.
+pub fn bounds(primitives: &[Primitive]) -> Option<UnitBox> {
+    (!primitives.is_empty()).then(|| union(primitives))
+}
+
 /// The surface area heuristic's cost of a hierarchy, the root's area being 1.
 pub fn sah_cost(root: &Node) -> f64 {
     fn sum(node: &Node) -> f64 {

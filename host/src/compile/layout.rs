@@ -17,6 +17,11 @@ pub struct Layout {
     pub stack_depth: usize,
 }
 
+/// Whether a structure is laid out over the hierarchy; the others leave primitives as they are.
+pub fn takes_hierarchy(structure: Structure) -> bool {
+    structure != Structure::List
+}
+
 impl Layout {
     /// Lays a structure out over the shared hierarchy.
     pub fn of(structure: Structure, flat: &Flat) -> Self {

@@ -17,6 +17,7 @@ use hierarchy::Primitive;
 use lattice::Lattice;
 use layout::Layout;
 use primitives::Primitives;
+use std::time::{Duration, Instant};
 
 /// What to put into a blob.
 #[derive(Clone, Debug)]
@@ -63,6 +64,9 @@ pub struct Report {
     pub effects: Vec<(String, Vec<String>)>,
     /// What the compiler supplied because the scene has none.
     pub supplied: Vec<String>,
+    /// What the structures took to build, from primitives on the lattice to records.
+    #[serde(skip)]
+    pub setup: Duration,
 }
 
 /// Why a scene cannot be compiled.
@@ -120,22 +124,28 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
     let (lowest, highest) = primitives::extent(scene);
     let lattice = Lattice::around(lowest, highest, options.lattice_bits)?;
     let snapped = Primitives::snap(scene, &lattice)?;
-    let mut order: Vec<Primitive> = snapped.boxes();
-    let root = hierarchy::build(&mut order);
-    let flat = root
-        .as_ref()
-        .map(|root| pairs::flatten(root, &order))
-        .unwrap_or_default();
-    let sah_cost = root.as_ref().map_or(0.0, hierarchy::sah_cost);
-    let bounds = root.map(|root| *root.bounds());
-    let surroundings = surroundings::Surroundings::of(scene, &lattice, (lowest, highest))?;
     let mut structures = options.structures.clone();
     structures.sort();
     structures.dedup();
+    let started = Instant::now();
+    let mut order: Vec<Primitive> = snapped.boxes();
+    let bounds = hierarchy::bounds(&order);
+    let root = if structures.iter().copied().any(layout::takes_hierarchy) {
+        hierarchy::build(&mut order)
+    } else {
+        None
+    };
+    let flat = match &root {
+        Some(root) => pairs::flatten(root, &order),
+        None => pairs::Flat::in_file_order(&order),
+    };
+    let sah_cost = root.as_ref().map_or(0.0, hierarchy::sah_cost);
     let layouts: Vec<Layout> = structures
         .iter()
         .map(|&structure| Layout::of(structure, &flat))
         .collect();
+    let setup = started.elapsed();
+    let surroundings = surroundings::Surroundings::of(scene, &lattice, (lowest, highest))?;
     let blob = writer::write(&writer::Parts {
         scene,
         lattice: &lattice,
@@ -162,6 +172,7 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
         bytes,
         effects: surroundings.called_for.clone(),
         supplied: surroundings.supplied.clone(),
+        setup,
     };
     Ok(Compiled { blob, report })
 }

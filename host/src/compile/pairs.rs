@@ -52,6 +52,15 @@ pub fn flatten(root: &Node, primitives: &[Primitive]) -> Flat {
 }
 
 impl Flat {
+    /// No hierarchy: the slots of each kind in scene-file order.
+    pub fn in_file_order(primitives: &[Primitive]) -> Self {
+        let mut flat = Self::default();
+        for primitive in primitives {
+            flat.slots[primitive.kind as usize].push(primitive.index);
+        }
+        flat
+    }
+
     fn leaf(&mut self, primitives: &[Primitive]) {
         let kind = primitives[0].kind;
         let slots = &mut self.slots[kind as usize];

@@ -1,5 +1,6 @@
 //! Where bytes and work go, as data and as tables and pictures for people.
 
+pub mod chart;
 mod heat_map;
 mod memory;
 mod table;

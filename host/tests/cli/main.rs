@@ -3,6 +3,7 @@
 mod program;
 
 mod build;
+mod compare;
 mod ending;
 mod inspect;
 mod render;

@@ -1,0 +1,230 @@
+//! `gridel compare`: structures side by side on a scene's own rays.
+
+use super::arguments::{self, SceneOptions};
+use super::failure::Failure;
+use super::output::{print, print_json, warn, write_file};
+use super::progress::Progress;
+use clap::Args;
+use gridel_core::{Format, Structure};
+use gridel_host::compare::{
+    Comparison, Growth, Options, Work, Works, charts, compare, findings, growth,
+};
+use gridel_host::report::{Align, Table, counted, grouped};
+use gridel_host::scene;
+use peak_alloc::PeakAlloc;
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Compare acceleration structures on a scene
+///
+/// Each structure is compiled into a blob of its own, and all trace the same rays: those of the
+/// scene's own picture, one sample a pixel, with the shadow, mirrored and refracted rays that it
+/// causes. All answers are compared with the list's, primitive and t to the last bit; a structure
+/// that differs is marked wrong and not measured, and the exit code is 1.
+///
+/// Times are medians on one thread, the structures taking turns. Only ratios within one run mean
+/// anything.
+#[derive(Args)]
+#[command(after_help = super::EXIT_CODES)]
+pub struct Arguments {
+    /// Scene file: .toml, .obj, .nff, .pdb, .ent, .cif or .mmcif
+    scene: PathBuf,
+
+    /// Acceleration structure, once for each that shall be compared [default: all]
+    #[arg(long, value_name = "NAME", value_parser = arguments::structure())]
+    accel: Vec<Structure>,
+
+    /// Arithmetic to trace in
+    #[arg(long, value_name = "NAME", value_parser = arguments::format(), default_value = "f32")]
+    format: Format,
+
+    /// Size of the picture whose rays are traced
+    #[arg(long, value_name = "WxH", value_parser = arguments::size, default_value = "256x256")]
+    size: [u16; 2],
+
+    /// How often everything is timed; 0 for counts alone, which take less time
+    #[arg(long, value_name = "N", default_value_t = 5,
+        value_parser = clap::value_parser!(u16).range(0..=1000))]
+    repeat: u16,
+
+    /// Write charts into a folder, as SVG: tests and rates, and how rates, set-up and bytes grow
+    /// over parts of the scene
+    #[arg(long, value_name = "DIR")]
+    plot: Option<PathBuf>,
+
+    /// Print everything as JSON
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    scene_options: SceneOptions,
+}
+
+#[derive(Serialize)]
+struct Report<'r> {
+    scene: String,
+    #[serde(flatten)]
+    comparison: &'r Comparison,
+    /// Where each structure is beaten.
+    findings: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    growth: Option<&'r Growth>,
+}
+
+/// Compares structures on a scene.
+pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
+    if let Some(folder) = &arguments.plot {
+        std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
+    }
+    let path = &arguments.scene;
+    let imported = scene::load(path, &arguments.scene_options.molecule())
+        .map_err(|error| Failure::Failed(miette::Report::new(error)))?;
+    for warning in &imported.warnings {
+        warn(warning);
+    }
+    let default = Options::default();
+    let options = Options {
+        structures: if arguments.accel.is_empty() {
+            default.structures.clone()
+        } else {
+            arguments.accel.clone()
+        },
+        format: arguments.format,
+        size: arguments.size,
+        lattice_bits: arguments
+            .scene_options
+            .lattice_bits
+            .unwrap_or(default.lattice_bits),
+        repeats: arguments.repeat.into(),
+        memory: Some(memory),
+        ..default
+    };
+    let progress = Progress::unknown("comparing");
+    let tell = |what: &str| progress.tell(what);
+    let comparison =
+        compare(&imported.scene, &options, &tell).map_err(|error| Failure::in_file(path, error))?;
+    let grown = match &arguments.plot {
+        Some(_) => Some(
+            growth(&imported.scene, &options, &tell)
+                .map_err(|error| Failure::in_file(path, error))?,
+        ),
+        None => None,
+    };
+    drop(progress);
+    if let (Some(folder), Some(growth)) = (&arguments.plot, &grown) {
+        let name = path.file_stem().unwrap_or_default().display().to_string();
+        let charts = charts(&name, &comparison, growth).map_err(|error| {
+            Failure::failed(error.to_string(), "report this as a fault of gridel")
+        })?;
+        for (file, svg) in charts {
+            write_file(&folder.join(file), |out| out.write_all(svg.as_bytes()))?;
+        }
+    }
+    let report = Report {
+        scene: path.display().to_string(),
+        comparison: &comparison,
+        findings: findings(&comparison),
+        growth: grown.as_ref(),
+    };
+    if arguments.json {
+        print_json(&report)?;
+    } else {
+        print(text(&report))?;
+    }
+    let steps = grown.iter().flat_map(|growth| &growth.steps);
+    let rows = comparison
+        .rows
+        .iter()
+        .chain(steps.flat_map(|step| &step.rows));
+    let wrong: Vec<_> = rows.filter(|row| row.wrong.is_some()).collect();
+    if let Some(first) = wrong.first() {
+        return Err(Failure::failed(
+            format!("{} has answers that are not the list's", first.structure),
+            "this is a fault of gridel: report it with the scene file",
+        ));
+    }
+    Ok(())
+}
+
+fn text(report: &Report<'_>) -> String {
+    let comparison = report.comparison;
+    let rays = comparison.rays;
+    let mut text = format!(
+        "{}: {}, {} by {} pixels, {}\n{} primary, {} shadow, {} mirrored and refracted rays; \
+         the list was asked about {}\n\n",
+        report.scene,
+        counted(comparison.primitives, "primitive"),
+        comparison.size[0],
+        comparison.size[1],
+        comparison.format,
+        grouped(rays.primary),
+        grouped(rays.shadow),
+        grouped(rays.bounced),
+        grouped(comparison.listed),
+    );
+    let mut makes = Table::new([
+        ("to make and hold", Align::Left),
+        ("set-up ms", Align::Right),
+        ("peak KiB", Align::Right),
+        ("own bytes", Align::Right),
+        ("blob bytes", Align::Right),
+        ("longest list", Align::Right),
+        ("stack bytes", Align::Right),
+    ]);
+    for row in &comparison.rows {
+        makes.row([
+            row.structure.to_owned(),
+            format!("{:.2}", 1e3 * row.setup_seconds),
+            row.peak_bytes
+                .map_or(String::from("-"), |bytes| grouped(bytes.div_ceil(1024))),
+            grouped(row.own_bytes),
+            grouped(row.blob_bytes),
+            grouped(row.longest_list),
+            grouped(row.stack_bytes),
+        ]);
+    }
+    text += &format!("{makes}\n");
+    text += &tests("a primary ray", comparison, |works| Some(works.primary));
+    if rays.shadow + rays.bounced > 0 {
+        text += &tests("a secondary ray", comparison, |works| works.secondary);
+    }
+    for finding in &report.findings {
+        text += finding;
+        text += ".\n";
+    }
+    text
+}
+
+/// The table of what rays of one sort take.
+fn tests(title: &str, comparison: &Comparison, of: fn(&Works) -> Option<Work>) -> String {
+    let mut table = Table::new([
+        (title, Align::Left),
+        ("planes", Align::Right),
+        ("boxes", Align::Right),
+        ("cells", Align::Right),
+        ("objects", Align::Right),
+        ("M rays/s", Align::Right),
+        ("answers", Align::Left),
+    ]);
+    for row in &comparison.rows {
+        let work = row.work.as_ref().and_then(of);
+        let figure = |of: fn(&Work) -> f64| {
+            work.as_ref()
+                .map_or(String::from("-"), |work| format!("{:.2}", of(work)))
+        };
+        let rate = work.and_then(|work| work.rays_per_second);
+        table.row([
+            row.structure.to_owned(),
+            figure(|work| work.planes),
+            figure(|work| work.boxes),
+            figure(|work| work.cells),
+            figure(|work| work.objects),
+            rate.map_or(String::from("-"), |rate| format!("{:.3}", rate / 1e6)),
+            match &row.wrong {
+                None => String::from("the list's"),
+                Some(wrong) => format!("WRONG for {}: {}", counted(wrong.rays, "ray"), wrong.first),
+            },
+        ]);
+    }
+    format!("{table}\n")
+}

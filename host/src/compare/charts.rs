@@ -1,0 +1,90 @@
+//! The charts of a comparison.
+
+use super::findings::{primary_rate, secondary_rate};
+use super::{Comparison, Growth, Row};
+use crate::report::chart::{ChartError, Curve, Series, bars, curves};
+
+/// Draws all charts: names of files, and what is in them. `name` is the scene's, for the titles.
+///
+/// # Errors
+/// If the drawing library has one.
+pub fn charts(
+    name: &str,
+    comparison: &Comparison,
+    growth: &Growth,
+) -> Result<Vec<(&'static str, String)>, ChartError> {
+    let groups: Vec<String> = comparison
+        .rows
+        .iter()
+        .map(|row| row.structure.to_owned())
+        .collect();
+    let bar = |name: &str, of: &dyn Fn(&Row) -> Option<f64>| Series {
+        name: name.to_owned(),
+        values: comparison.rows.iter().map(of).collect(),
+    };
+    let tests = [
+        bar("planes", &|row| Some(row.work?.all.planes)),
+        bar("boxes", &|row| Some(row.work?.all.boxes)),
+        bar("cells", &|row| Some(row.work?.all.cells)),
+        bar("objects", &|row| Some(row.work?.all.objects)),
+    ];
+    let rates = [
+        bar("primary", &primary_rate),
+        bar("secondary", &secondary_rate),
+    ];
+    let curve = |of: fn(&Row) -> Option<f64>| -> Vec<Curve> {
+        let curve = |(index, name): (usize, &String)| Curve {
+            name: name.clone(),
+            points: growth
+                .steps
+                .iter()
+                .filter_map(|step| Some((step.primitives as f64, of(step.rows.get(index)?)?)))
+                .collect(),
+        };
+        groups.iter().enumerate().map(curve).collect()
+    };
+    let title = |what: &str| format!("{name}: {what}");
+    let objects = "primitives";
+    Ok(vec![
+        (
+            "tests.svg",
+            bars(&title("tests a ray"), "tests", &groups, &tests)?,
+        ),
+        (
+            "rates.svg",
+            bars(
+                &title("rays a second on one thread"),
+                "rays a second",
+                &groups,
+                &rates,
+            )?,
+        ),
+        (
+            "growth-rates.svg",
+            curves(
+                &title("primary rays a second on one thread, over parts of the scene"),
+                objects,
+                "rays a second",
+                &curve(primary_rate),
+            )?,
+        ),
+        (
+            "growth-bytes.svg",
+            curves(
+                &title("bytes of the structure, over parts of the scene"),
+                objects,
+                "bytes",
+                &curve(|row| Some(row.own_bytes as f64)),
+            )?,
+        ),
+        (
+            "growth-setup.svg",
+            curves(
+                &title("seconds to set up, over parts of the scene"),
+                objects,
+                "seconds",
+                &curve(|row| Some(row.setup_seconds)),
+            )?,
+        ),
+    ])
+}

@@ -1,0 +1,159 @@
+//! How structures fare as a scene grows: the same comparison on ever larger parts of it.
+
+use super::{CompareError, Options, Row, compare};
+use crate::scene::{Object, Scene, Shape};
+use glam::DVec3;
+use serde::Serialize;
+
+/// The comparison at several sizes, the whole scene's last.
+#[derive(Clone, Debug, Serialize)]
+pub struct Growth {
+    pub steps: Vec<Step>,
+}
+
+/// One size.
+#[derive(Clone, Debug, Serialize)]
+pub struct Step {
+    pub primitives: usize,
+    pub rows: Vec<Row>,
+}
+
+/// The smallest part that is compared.
+const SMALLEST: usize = 100;
+
+/// Compares structures on parts of a scene: the 100, 300, 1000 and so on primitives nearest to its
+/// middle, and all of them. The compiler frames each part, so that it fills the picture.
+///
+/// # Errors
+/// As [`compare`].
+pub fn growth(
+    scene: &Scene,
+    options: &Options<'_>,
+    progress: &dyn Fn(&str),
+) -> Result<Growth, CompareError> {
+    let nearest = by_distance(scene);
+    let mut steps = Vec::new();
+    for size in sizes(nearest.len()) {
+        let part = part(scene, &nearest[..size]);
+        let about = |what: &str| progress(&format!("{size} primitives: {what}"));
+        let comparison = compare(&part, options, &about)?;
+        steps.push(Step {
+            primitives: size,
+            rows: comparison.rows,
+        });
+    }
+    Ok(Growth { steps })
+}
+
+/// About three sizes in every two powers of ten, and the whole.
+fn sizes(whole: usize) -> Vec<usize> {
+    let tens = std::iter::successors(Some(SMALLEST), |size| size.checked_mul(10));
+    tens.flat_map(|size| [size, 3 * size])
+        .take_while(|&size| size < whole)
+        .chain([whole])
+        .collect()
+}
+
+/// A primitive: its object, and its triangle where that is a mesh.
+type Part = (usize, usize);
+
+/// All primitives, those nearest to the middle of the scene first.
+fn by_distance(scene: &Scene) -> Vec<Part> {
+    let mut places: Vec<(Part, DVec3)> = Vec::new();
+    for (number, object) in scene.objects.iter().enumerate() {
+        let place = match &object.shape {
+            Shape::Mesh {
+                vertices,
+                triangles,
+            } => {
+                places.extend(triangles.iter().enumerate().map(|(index, corners)| {
+                    let corners = corners.map(|corner| vertices[corner as usize]);
+                    (
+                        (number, index),
+                        (corners[0] + corners[1] + corners[2]) / 3.0,
+                    )
+                }));
+                continue;
+            }
+            Shape::Sphere { center, .. } | Shape::Disc { center, .. } => *center,
+            Shape::Box { min, max } => min.midpoint(*max),
+            Shape::Cone { base, apex, .. } => base.midpoint(*apex),
+        };
+        places.push(((number, 0), place));
+    }
+    let (low, high) = places.iter().fold(
+        (DVec3::INFINITY, DVec3::NEG_INFINITY),
+        |(low, high), (_, place)| (low.min(*place), high.max(*place)),
+    );
+    let middle = low.midpoint(high);
+    places.sort_by(|a, b| {
+        let distance = |place: &(Part, DVec3)| place.1.distance_squared(middle);
+        distance(a).total_cmp(&distance(b)).then(a.0.cmp(&b.0))
+    });
+    places.into_iter().map(|(part, _)| part).collect()
+}
+
+/// The scene with some of its primitives, in scene-file order, and without its camera.
+fn part(scene: &Scene, primitives: &[Part]) -> Scene {
+    let mut primitives = primitives.to_vec();
+    primitives.sort_unstable();
+    let objects = primitives.chunk_by(|a, b| a.0 == b.0).map(|same| {
+        let object = &scene.objects[same[0].0];
+        let shape = match &object.shape {
+            Shape::Mesh {
+                vertices,
+                triangles,
+            } => Shape::Mesh {
+                vertices: vertices.clone(),
+                triangles: same.iter().map(|&(_, index)| triangles[index]).collect(),
+            },
+            shape => shape.clone(),
+        };
+        Object {
+            shape,
+            ..object.clone()
+        }
+    });
+    Scene {
+        camera: None,
+        objects: objects.collect(),
+        lights: scene.lights.clone(),
+        materials: scene.materials.clone(),
+        ..*scene
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_end_with_the_whole() {
+        assert_eq!(sizes(7), [7]);
+        assert_eq!(sizes(100), [100]);
+        assert_eq!(sizes(2833), [100, 300, 1000, 2833]);
+        assert_eq!(
+            sizes(300_000),
+            [100, 300, 1000, 3000, 10_000, 30_000, 100_000, 300_000]
+        );
+    }
+
+    #[test]
+    fn parts_are_the_nearest_primitives() {
+        let whole = crate::sample::diamond(8.0);
+        let nearest = by_distance(&whole);
+        assert_eq!(nearest.len(), whole.objects.len());
+        let some = part(&whole, &nearest[..40]);
+        assert_eq!(some.objects.len(), 40);
+        let center = |object: &Object| match object.shape {
+            Shape::Sphere { center, .. } => center.length(),
+            _ => panic!("a diamond is made of spheres"),
+        };
+        let farthest = some.objects.iter().map(center).fold(0.0, f64::max);
+        let nearer = whole
+            .objects
+            .iter()
+            .filter(|object| center(object) < farthest - 1e-9);
+        assert!(nearer.count() <= 40);
+    }
+}

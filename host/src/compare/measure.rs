@@ -1,0 +1,227 @@
+//! Tracing with counters, and tracing against the clock.
+
+use super::{Options, PictureRays, Works};
+use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::{
+    Accel, Count, Counters, NoCount, Number, Ray, Scene, Stack, Structure, StructureVisitor,
+    any_hit, closest_primitive,
+};
+use serde::Serialize;
+use std::hint::black_box;
+use std::time::Instant;
+
+/// What a ray is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Question {
+    /// What it meets first, and where.
+    Closest,
+    /// Whether it meets anything.
+    Any,
+}
+
+/// The rays of a picture and what each is asked.
+#[derive(Clone, Copy, Debug)]
+pub struct Questions<'q, N: Number> {
+    pub rays: &'q PictureRays<N>,
+    pub shadow: Question,
+}
+
+/// Rays that are measured together, by what they are asked.
+type Group<'r, N> = Vec<(Question, &'r [Ray<N>])>;
+
+/// An answer to the last bit: the primitive and t, or whether anything was met.
+pub type Answer = (u32, u64);
+/// Nothing was met.
+const NOTHING: Answer = (u32::MAX, 0);
+
+impl<N: Number> Questions<'_, N> {
+    /// Rays from the camera, and all others.
+    fn groups(&self) -> [Group<'_, N>; 2] {
+        let PictureRays {
+            primary,
+            shadow,
+            bounced,
+        } = self.rays;
+        [
+            vec![(Question::Closest, primary)],
+            vec![(self.shadow, shadow), (Question::Closest, bounced)],
+        ]
+    }
+
+    /// All rays in one order.
+    pub fn all(&self) -> impl Iterator<Item = (Question, &Ray<N>)> {
+        let groups = self.groups().into_iter().flatten();
+        groups.flat_map(|(question, rays)| rays.iter().map(move |ray| (question, ray)))
+    }
+}
+
+/// Asks one ray after the other through one structure, and hands over what comes of it.
+pub struct Ask<'a, N: Number, R, C, S> {
+    pub scene: &'a Scene<'a>,
+    pub rays: R,
+    pub question: Question,
+    pub count: &'a mut C,
+    pub sink: S,
+    pub format: std::marker::PhantomData<N>,
+}
+
+impl<'r, N: Number, R: Iterator<Item = &'r Ray<N>>, C: Count, S: FnMut(Answer)> StructureVisitor
+    for Ask<'_, N, R, C, S>
+{
+    type Output = ();
+
+    fn visit<A: Accel>(mut self) {
+        let mut stack = Stack::<MAX_STACK_DEPTH>::new();
+        for ray in self.rays {
+            (self.sink)(match self.question {
+                Question::Closest => {
+                    closest_primitive::<N, A, C>(self.scene, ray, stack.as_view(), self.count)
+                        .map_or(NOTHING, |found| {
+                            (found.primitive, N::far_to_f64(found.t).to_bits())
+                        })
+                }
+                Question::Any => {
+                    let any = any_hit::<N, A, C>(self.scene, ray, stack.as_view(), self.count);
+                    (u32::from(any), 0)
+                }
+            });
+        }
+    }
+}
+
+/// Asks rays through a structure.
+pub fn ask<'r, N: Number, C: Count>(
+    (scene, structure): (&Scene<'_>, Structure),
+    question: Question,
+    rays: impl Iterator<Item = &'r Ray<N>>,
+    count: &mut C,
+    sink: impl FnMut(Answer),
+) {
+    structure.visit(Ask {
+        scene,
+        rays,
+        question,
+        count,
+        sink,
+        format: std::marker::PhantomData::<N>,
+    });
+}
+
+/// What some rays took.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Work {
+    /// Rays that were traced.
+    pub rays: usize,
+    /// Planes tested a ray.
+    pub planes: f64,
+    /// Boxes and other bounding volumes tested a ray.
+    pub boxes: f64,
+    /// Cells entered a ray.
+    pub cells: f64,
+    /// Primitives tested a ray.
+    pub objects: f64,
+    /// On one thread; `None` where nothing was timed.
+    pub rays_per_second: Option<f64>,
+}
+
+impl Work {
+    fn of(rays: usize, counters: &Counters, seconds: Option<f64>) -> Self {
+        let each = |count: u64| count as f64 / rays.max(1) as f64;
+        Self {
+            rays,
+            planes: each(counters.planes),
+            boxes: each(counters.boxes),
+            cells: each(counters.cells),
+            objects: each(counters.objects),
+            rays_per_second: seconds.map(|seconds| rays as f64 / seconds.max(1e-9)),
+        }
+    }
+}
+
+/// Counts and times contenders, which take turns.
+pub fn measure<N: Number>(
+    questions: &Questions<'_, N>,
+    contenders: &[(&Scene<'_>, &Structure)],
+    options: &Options<'_>,
+    primitives: usize,
+    progress: &dyn Fn(&str),
+) -> Vec<Works> {
+    let groups = questions.groups();
+    let strides: Vec<usize> = contenders
+        .iter()
+        .map(|&(_, &structure)| {
+            stride(structure, questions.rays.count(), primitives, options.tests)
+        })
+        .collect();
+    let mut counts = Vec::new();
+    for (&(scene, &structure), &stride) in contenders.iter().zip(&strides) {
+        progress(&format!("counting {}", structure.name()));
+        counts.push([0, 1].map(|group: usize| {
+            let (mut counters, mut rays) = (Counters::default(), 0);
+            for &(question, all) in &groups[group] {
+                let some = all.iter().step_by(stride);
+                rays += some.len();
+                ask(
+                    (scene, structure),
+                    question,
+                    some,
+                    &mut counters,
+                    |answer| {
+                        black_box(answer);
+                    },
+                );
+            }
+            (counters, rays)
+        }));
+    }
+    let mut seconds = vec![[const { Vec::new() }; 2]; contenders.len()];
+    for repeat in 0..options.repeats {
+        for ((&(scene, &structure), &stride), seconds) in
+            contenders.iter().zip(&strides).zip(&mut seconds)
+        {
+            progress(&format!(
+                "timing {}, {} of {}",
+                structure.name(),
+                repeat + 1,
+                options.repeats
+            ));
+            for (group, seconds) in groups.iter().zip(seconds) {
+                let started = Instant::now();
+                for &(question, all) in group {
+                    let some = all.iter().step_by(stride);
+                    ask((scene, structure), question, some, &mut NoCount, |answer| {
+                        black_box(answer);
+                    });
+                }
+                seconds.push(started.elapsed().as_secs_f64());
+            }
+        }
+    }
+    let works = counts.into_iter().zip(seconds).map(|(counts, seconds)| {
+        let [primary, secondary] = counts;
+        let [primary_seconds, secondary_seconds] = seconds.map(median);
+        let both = primary_seconds.zip(secondary_seconds).map(|(a, b)| a + b);
+        Works {
+            primary: Work::of(primary.1, &primary.0, primary_seconds),
+            secondary: (secondary.1 > 0)
+                .then(|| Work::of(secondary.1, &secondary.0, secondary_seconds)),
+            all: Work::of(primary.1 + secondary.1, &primary.0.plus(&secondary.0), both),
+        }
+    });
+    works.collect()
+}
+
+/// Every how many rays a structure traces, so that no row takes forever: only the list would.
+pub fn stride(structure: Structure, rays: usize, primitives: usize, tests: u64) -> usize {
+    if structure == Structure::List {
+        let all = rays as u64 * primitives as u64;
+        all.div_ceil(tests.max(1)).max(1) as usize
+    } else {
+        1
+    }
+}
+
+fn median(mut seconds: Vec<f64>) -> Option<f64> {
+    seconds.sort_by(f64::total_cmp);
+    seconds.get(seconds.len() / 2).copied()
+}

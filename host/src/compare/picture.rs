@@ -1,0 +1,90 @@
+//! The rays of a scene's own picture, as the ray loop casts them.
+
+use super::CompareError;
+use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::render::MAX_RAY_DEPTH;
+use gridel_core::{
+    Count, Effects, Flagged, Number, Ray, RayKind, Renderer, Scene, Settings, Workspace,
+};
+use rayon::prelude::*;
+use std::any::Any;
+
+/// Most rays of one picture.
+pub const MOST_RAYS: usize = 1 << 22;
+
+/// The rays of a picture, in the order of its pixels.
+#[derive(Clone, Debug, Default)]
+pub struct PictureRays<N: Number> {
+    /// From the camera.
+    pub primary: Vec<Ray<N>>,
+    /// Towards lights.
+    pub shadow: Vec<Ray<N>>,
+    /// Off mirrors and glass, and through glass.
+    pub bounced: Vec<Ray<N>>,
+}
+
+/// Keeps every ray that is cast.
+impl<N: Number> Count for PictureRays<N> {
+    fn ray<M: Number>(&mut self, kind: RayKind, ray: &Ray<M>) {
+        let Some(&ray) = (ray as &dyn Any).downcast_ref::<Ray<N>>() else {
+            return;
+        };
+        match kind {
+            RayKind::Primary => self.primary.push(ray),
+            RayKind::Shadow => self.shadow.push(ray),
+            RayKind::Reflected | RayKind::Refracted => self.bounced.push(ray),
+        }
+    }
+}
+
+impl<N: Number> PictureRays<N> {
+    /// Casts the rays of a picture. The scene must hold flagged pairs.
+    ///
+    /// Through glass a shadow ray goes on behind every surface as a new one; each is kept.
+    ///
+    /// # Errors
+    /// If there are more than [`MOST_RAYS`], or the settings are out of their range.
+    pub fn of(scene: &Scene<'_>, settings: Settings) -> Result<Self, CompareError> {
+        let renderer = Renderer::<N, Flagged, { Effects::ALL.0 }>::new(scene, settings)?;
+        let pixels = usize::from(settings.width) * usize::from(settings.height);
+        let mut rays = Self::default();
+        // So many rows at a time that what they cast cannot exceed memory before it is counted.
+        let rows_at_once = (MOST_RAYS / (usize::from(settings.width) << 8)).max(1) as u16;
+        let mut first = 0;
+        while first < settings.height {
+            let end = first.saturating_add(rows_at_once).min(settings.height);
+            let rows: Vec<Self> = (first..end)
+                .into_par_iter()
+                .map(|y| Self::of_row(&renderer, y))
+                .collect();
+            for row in rows {
+                rays.primary.extend(row.primary);
+                rays.shadow.extend(row.shadow);
+                rays.bounced.extend(row.bounced);
+            }
+            if rays.count() > MOST_RAYS {
+                return Err(CompareError::TooManyRays {
+                    pixels,
+                    most: MOST_RAYS,
+                });
+            }
+            first = end;
+        }
+        Ok(rays)
+    }
+
+    fn of_row(renderer: &Renderer<'_, '_, N, Flagged, { Effects::ALL.0 }>, y: u16) -> Self {
+        let mut rays = Self::default();
+        let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+        let mut space = space.as_view();
+        for x in 0..renderer.settings().width {
+            renderer.linear(x, y, &mut space, &mut rays);
+        }
+        rays
+    }
+
+    /// All rays.
+    pub fn count(&self) -> usize {
+        self.primary.len() + self.shadow.len() + self.bounced.len()
+    }
+}

@@ -1,0 +1,82 @@
+//! `gridel compare`.
+
+use crate::program::Folder;
+
+#[test]
+fn every_structure_has_a_row_with_the_lists_answers() {
+    let folder = Folder::with_quick();
+    let report = folder.json(&["compare", "quick.toml", "--size", "32x24", "--repeat", "1"]);
+    assert_eq!(report["primitives"], 17);
+    assert_eq!(report["rays"]["primary"], 32 * 24);
+    let rows = report["rows"].as_array().unwrap();
+    assert!(rows.len() >= 3);
+    for row in rows {
+        assert!(row["wrong"].is_null(), "{row}");
+        let primary = &row["work"]["primary"];
+        assert_eq!(primary["rays"], 32 * 24);
+        assert!(primary["rays_per_second"].as_f64().unwrap() > 0.0, "{row}");
+        assert!(row["peak_bytes"].as_u64().unwrap() > 0, "{row}");
+    }
+    let list = &rows[0];
+    assert_eq!(list["structure"], "list");
+    assert_eq!(list["own_bytes"], 0);
+    assert_eq!(list["work"]["all"]["objects"], 17.0);
+    assert_eq!(report["findings"].as_array().unwrap().len(), rows.len());
+}
+
+#[test]
+fn rows_are_those_asked_for_and_counts_repeat() {
+    let folder = Folder::with_quick();
+    let compare = ["compare", "quick.toml", "--size", "32x24", "--repeat", "0"];
+    let named = [&compare[..], &["--accel", "flagged", "--format", "fixed"]].concat();
+    let report = folder.json(&named);
+    let rows = report["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 1);
+    assert_eq!(rows[0]["structure"], "flagged");
+    assert!(rows[0]["work"]["all"]["rays_per_second"].is_null());
+    assert_eq!(
+        report["rows"][0]["work"],
+        folder.json(&named)["rows"][0]["work"]
+    );
+    let text = folder.done(&named);
+    for word in ["17 primitives", "32 by 24", "fixed", "the list's"] {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+}
+
+#[test]
+fn charts_are_written_whole() {
+    let folder = Folder::with_quick();
+    let compare = ["compare", "quick.toml", "--size", "16x12", "--repeat", "1"];
+    folder.done(&[&compare[..], &["--plot", "charts"]].concat());
+    for chart in [
+        "tests",
+        "rates",
+        "growth-rates",
+        "growth-bytes",
+        "growth-setup",
+    ] {
+        let svg = String::from_utf8(folder.read(&format!("charts/{chart}.svg"))).unwrap();
+        assert!(
+            svg.starts_with("<svg") && svg.contains("flagged"),
+            "{chart}"
+        );
+    }
+    folder.write("file", b"");
+    let into_file = [&compare[..], &["--plot", "file"]].concat();
+    folder.fails(1, &into_file, &["file cannot be written"]);
+}
+
+#[test]
+fn too_many_rays_are_refused() {
+    let folder = Folder::with_quick();
+    let large = [
+        "compare",
+        "quick.toml",
+        "--size",
+        "4096x4096",
+        "--repeat",
+        "0",
+    ];
+    folder.fails(1, &large, &["more than", "rays", "--size"]);
+}
