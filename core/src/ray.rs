@@ -168,6 +168,11 @@ impl<N: Number> Ray<N> {
         self.moved
     }
 
+    /// The interval that counts, from [`start`](Self::start).
+    pub fn interval(&self) -> [N; 2] {
+        [self.tmin, self.tmax]
+    }
+
     /// A query along this ray, as events tell it.
     pub(crate) fn query(&self, any: bool) -> Event {
         Event::Query {

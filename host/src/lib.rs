@@ -10,6 +10,7 @@
 //! | compare structures on a scene | [`compare`] |
 //! | trace rays of one's own | [`trace`], and [`npy`] for NumPy's files |
 //! | tell the story of a ray or a pixel | [`explain`] |
+//! | hold a scene to what is promised | [`verify`] |
 //! | tell where bytes and work go | [`report`] |
 //! | write a file whole or not at all | [`output`] |
 //!
@@ -26,3 +27,4 @@ pub mod report;
 pub mod sample;
 pub mod scene;
 pub mod trace;
+pub mod verify;

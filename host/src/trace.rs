@@ -156,6 +156,19 @@ impl Frame {
         units * self.unit
     }
 
+    /// A ray in scene units, from one in units.
+    pub fn scene_ray(&self, ray: &crate::verify::UnitRay) -> SceneRay {
+        let direction = DVec3::from_array(ray.direction);
+        let scale = direction.abs().max_element() / self.unit;
+        let along = |t: f64| if t == 0.0 { 0.0 } else { t / scale };
+        SceneRay {
+            origin: self.place(ray.origin),
+            tmin: along(ray.tmin),
+            direction,
+            tmax: along(ray.tmax),
+        }
+    }
+
     /// A ray in the core's form, and by how much its t is larger: `None` for what is no ray.
     pub fn ray<N: Number>(&self, scene: &Scene<'_>, ray: &SceneRay) -> Option<(Ray<N>, f64)> {
         // Multiples of the direction become lengths along its largest component.

@@ -3,12 +3,10 @@
 pub mod agreement;
 pub mod bounds;
 pub mod cases;
-pub mod exact;
 pub mod query;
-pub mod random;
-pub mod rays;
 pub mod scenes;
-pub mod solid;
+
+pub use gridel_host::verify::{exact, random, rays, solid};
 
 /// Calls a function that is generic over the number format for each of them.
 #[macro_export]

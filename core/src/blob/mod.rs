@@ -16,7 +16,7 @@ pub(crate) use section::Sections;
 use crate::accel::{Held, Leaf, Structure};
 use crate::shade::Effects;
 use crate::shape::{Kind, Shapes};
-use record::{Header, Light, Material, UnitBox, View};
+use record::{Cone, Cuboid, Disc, Header, Light, Material, UnitBox, View};
 
 /// A checked view of a blob: a few hundred bytes that borrow from it.
 ///
@@ -111,6 +111,21 @@ impl<'a> Scene<'a> {
         self.shapes.triangle(slot)
     }
 
+    /// A primitive as it lies on the lattice, given by its kind and its slot among those of that kind.
+    pub fn geometry(&self, kind: Kind, slot: usize) -> Option<Geometry> {
+        let shapes = &self.shapes;
+        Some(match kind {
+            Kind::Triangle => Geometry::Triangle(shapes.triangle(slot)?),
+            Kind::Sphere => {
+                let (center, radius) = shapes.spheres.get(slot)?;
+                Geometry::Sphere { center, radius }
+            }
+            Kind::Box => Geometry::Box(*shapes.boxes.get(slot)?),
+            Kind::Disc => Geometry::Disc(*shapes.discs.get(slot)?),
+            Kind::Cone => Geometry::Cone(*shapes.cones.get(slot)?),
+        })
+    }
+
     /// The number, in scene-file order, of a primitive given by kind and slot.
     #[inline]
     pub fn primitive(&self, kind: Kind, slot: u32) -> u32 {
@@ -152,6 +167,26 @@ impl<'a> Scene<'a> {
             .get(number as usize)
             .and_then(|&word| Leaf::from_word(word))
     }
+}
+
+/// A primitive of any kind, in 1/256 unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Geometry {
+    /// Its corners, counter-clockwise as seen from the front.
+    Triangle([[i32; 3]; 3]),
+    /// A sphere.
+    Sphere {
+        /// Its centre.
+        center: [i32; 3],
+        /// Its radius.
+        radius: i32,
+    },
+    /// A box.
+    Box(Cuboid),
+    /// A disc.
+    Disc(Disc),
+    /// A cylinder, cone or frustum.
+    Cone(Cone),
 }
 
 /// The checksum of a blob: FNV-1a over its 32-bit words, the checksum's own taken as 0.

@@ -23,6 +23,7 @@ mod inspect;
 mod render;
 mod sample;
 mod trace;
+mod verify;
 
 use clap::{Parser, Subcommand};
 use peak_alloc::PeakAlloc;
@@ -43,6 +44,7 @@ enum Verb {
     Inspect(inspect::Arguments),
     Render(render::Arguments),
     Trace(trace::Arguments),
+    Verify(verify::Arguments),
     Explain(explain::Arguments),
     Sample(sample::Arguments),
 }
@@ -69,6 +71,7 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
         Verb::Inspect(arguments) => inspect::run(&arguments),
         Verb::Render(arguments) => render::run(&arguments),
         Verb::Trace(arguments) => trace::run(&arguments),
+        Verb::Verify(arguments) => verify::run(&arguments),
         Verb::Explain(arguments) => explain::run(&arguments),
         Verb::Sample(arguments) => sample::run(&arguments),
     };

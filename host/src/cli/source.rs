@@ -34,11 +34,20 @@ impl Source {
         options: &SceneOptions,
         structure: Option<Structure>,
     ) -> Result<Self, Failure> {
+        let mut compiling = compile::Options::default();
+        if let Some(structure) = structure {
+            compiling.structures = vec![structure];
+        }
+        Self::open_or_compile(path, options, compiling)
+    }
+
+    /// Reads a blob, or compiles a scene file; the lattice's bits are those of `options`.
+    pub fn open_or_compile(
+        path: &Path,
+        options: &SceneOptions,
+        compiling: compile::Options,
+    ) -> Result<Self, Failure> {
         if !is_blob(path)? {
-            let mut compiling = compile::Options::default();
-            if let Some(structure) = structure {
-                compiling.structures = vec![structure];
-            }
             return Self::compile(path, options, compiling);
         }
         if let Some(option) = options.given() {

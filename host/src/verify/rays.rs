@@ -1,19 +1,50 @@
 //! Rays of every sort that a structure can go wrong on, aimed at one scene.
 
-use crate::query::UnitRay;
-use crate::random::Random;
+use super::random::Random;
 use gridel_core::blob::record::UnitBox;
-use gridel_core::{Kind, Scene};
+use gridel_core::{Kind, Number, Ray, Scene};
+
+/// A ray in the core's units, not yet in a number format.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnitRay {
+    pub origin: [f64; 3],
+    pub direction: [f64; 3],
+    pub tmin: f64,
+    pub tmax: f64,
+}
+
+impl UnitRay {
+    /// A ray with tmin 0 and without an end.
+    pub fn new(origin: [f64; 3], direction: [f64; 3]) -> Self {
+        Self {
+            origin,
+            direction,
+            tmin: 0.0,
+            tmax: f64::INFINITY,
+        }
+    }
+
+    /// The ray as the core takes it; `None` if it is none.
+    pub fn ready<N: Number>(&self, scene: &Scene<'_>) -> Option<Ray<N>> {
+        let Self {
+            origin,
+            direction,
+            tmin,
+            tmax,
+        } = *self;
+        Ray::from_f64(scene.bounds(), origin, direction, tmin, tmax).ok()
+    }
+}
 
 /// Places of a scene that rays are aimed at: some of its boxes, and some of its triangles.
-struct Targets {
+pub struct Targets {
     bounds: UnitBox,
     boxes: Vec<UnitBox>,
     triangles: Vec<[[f64; 3]; 3]>,
 }
 
 /// Sorts of rays, in turn.
-const SORTS: [fn(&Targets, &mut Random) -> UnitRay; 10] = [
+const SORTS: [fn(&Targets, &mut Random) -> UnitRay; 13] = [
     primary,
     random_ray,
     along_an_axis,
@@ -24,17 +55,31 @@ const SORTS: [fn(&Targets, &mut Random) -> UnitRay; 10] = [
     of_any_length,
     nearly_parallel,
     with_a_window,
+    grazing,
+    from_on_a_surface,
+    in_a_cells_plane,
 ];
 
 /// Endless rays through a scene, all sorts in turn; the same for the same seed.
 pub fn rays(scene: &Scene<'_>, seed: u64) -> impl Iterator<Item = UnitRay> + use<> {
     let targets = Targets::of(scene);
     let mut random = Random(seed);
-    (0..).map(move |number: usize| SORTS[number % SORTS.len()](&targets, &mut random))
+    (0..).map(move |number: usize| targets.ray(number, &mut random))
 }
 
 impl Targets {
-    fn of(scene: &Scene<'_>) -> Self {
+    /// Endless rays, all sorts in turn; the same for the same seed.
+    pub fn rays(&self, seed: u64) -> impl Iterator<Item = UnitRay> {
+        let mut random = Random(seed);
+        (0..).map(move |number: usize| self.ray(number, &mut random))
+    }
+
+    fn ray(&self, number: usize, random: &mut Random) -> UnitRay {
+        SORTS[number % SORTS.len()](self, random)
+    }
+
+    /// The targets of a scene: of many primitives of a kind, some thousands.
+    pub fn of(scene: &Scene<'_>) -> Self {
         const MOST: usize = 4000;
         let chosen = |kind: Kind| {
             let count = scene.count(kind);
@@ -232,4 +277,68 @@ fn with_a_window(targets: &Targets, random: &mut Random) -> UnitRay {
         _ => {}
     }
     ray
+}
+
+/// Along the side of what a box holds, at the distance of its round or flat side.
+fn grazing(targets: &Targets, random: &mut Random) -> UnitRay {
+    let bounds = targets.a_box(random).0.map(|side| side.map(f64::from));
+    let axis = random.below(3);
+    let mut target = bounds.map(|[low, high]| 0.5 * (low + high));
+    target[axis] = bounds[axis][random.below(2)];
+    let off = [0.0, 0.0, 1.0, -1.0][random.below(4)] * random.magnitude(1e-12, 1e-2);
+    let [low, high] = bounds[axis];
+    target[axis] += off * (high - low).max(1.0);
+    let mut direction = random.direction();
+    // In the side's plane, or nearly.
+    direction[axis] = if random.one_in(2) {
+        0.0
+    } else {
+        random.magnitude(1e-15, 1e-3)
+    };
+    let back = random.unit() * 1e5;
+    let origin = [0, 1, 2].map(|k| target[k] - back * direction[k]);
+    UnitRay::new(origin, direction)
+}
+
+/// From a vertex, an edge or a face of a triangle, or else of a box, in any direction.
+fn from_on_a_surface(targets: &Targets, random: &mut Random) -> UnitRay {
+    let origin = if targets.triangles.is_empty() {
+        let mut place = targets.target(random);
+        let bounds = targets.a_box(random);
+        let axis = random.below(3);
+        place[axis] = f64::from(bounds.0[axis][random.below(2)]);
+        place
+    } else {
+        let [a, b, c] = targets.triangles[random.below(targets.triangles.len())];
+        let (mut u, mut v) = (random.unit(), random.unit());
+        if u + v > 1.0 {
+            (u, v) = (1.0 - u, 1.0 - v);
+        }
+        let (u, v) = [(0.0, 0.0), (0.5, 0.0), (u, v)][random.below(3)];
+        [0, 1, 2].map(|k| a[k] + u * (b[k] - a[k]) + v * (c[k] - a[k]))
+    };
+    UnitRay::new(origin, random.direction())
+}
+
+/// In a plane between two cells of the scene's box cut evenly, along it, across an edge of cells, or
+/// from corner to corner.
+fn in_a_cells_plane(targets: &Targets, random: &mut Random) -> UnitRay {
+    let cells = [2, 3, 4, 8, 16, 64][random.below(6)];
+    let corner = |random: &mut Random| {
+        targets.bounds.0.map(|[low, high]| {
+            let (low, high) = (f64::from(low), f64::from(high));
+            low + (high - low) * random.below(cells + 1) as f64 / cells as f64
+        })
+    };
+    let (mut origin, target) = (corner(random), corner(random));
+    let axis = random.below(3);
+    match random.below(3) {
+        0 => origin[axis] = target[axis],
+        1 => {
+            origin[axis] = target[axis];
+            origin[(axis + 1) % 3] = target[(axis + 1) % 3];
+        }
+        _ => {}
+    }
+    at(origin, target)
 }

@@ -4,7 +4,7 @@
 //! an answer is off by no more than a length if some shape that differs by no more than that length
 //! gives it. So a ray that barely touches is judged as fairly as one that strikes head on.
 
-use crate::exact::{Real, Vector, along, cross, dot, minus, norm, scaled, unit, vector};
+use super::exact::{Real, Vector, along, cross, dot, minus, norm, scaled, unit, vector};
 
 /// A shape in units, all of its numbers on the lattice.
 #[derive(Clone, Debug)]

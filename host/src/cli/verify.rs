@@ -1,0 +1,164 @@
+//! `gridel verify`: whether a scene keeps every promise.
+
+use super::arguments::{self, SceneOptions};
+use super::failure::Failure;
+use super::output::{print, print_json};
+use super::progress::Progress;
+use super::source::Source;
+use clap::Args;
+use gridel_core::Structure;
+use gridel_host::compile;
+use gridel_host::report::{Align, Table, counted, grouped, significant};
+use gridel_host::verify::{Report, judge, steps, verify};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// Throw hard rays at a scene and check that every promise is kept
+///
+/// Rays at every sort of vertex, along edges, in the faces of boxes, cells and gridels, along axes with
+/// both signs of zero, grazing, from far away, from inside, from on a surface, with huge and tiny
+/// directions, with windows of t. Every structure of the blob in every number format is compared
+/// with the list, the list with double precision, and where they disagree, and now and then where
+/// they do not, with arithmetic of 320 bits that shares no code with the kernels. The rays are the
+/// same every time.
+///
+/// Promises: every structure gives the list's bits; any hit and nearest hit agree; hits are those
+/// of exact arithmetic, for a shape that is larger or smaller by at most 8 steps; their numbers are
+/// finite; secondary rays do not meet the surface that they leave; no ray leaves a closed mesh unseen.
+///
+/// A step is a rounding of the largest coordinate (2^-24 of it in f32, 2^-53 in f64), or 2^-13
+/// unit in fixed.
+#[derive(Args)]
+#[command(after_help = super::EXIT_CODES)]
+pub struct Arguments {
+    /// Blob or scene file
+    #[arg(value_name = "BLOB|SCENE")]
+    input: PathBuf,
+
+    /// Rays of all sorts, and as many more from inside of closed meshes; each is put to the list, so
+    /// large scenes take long
+    #[arg(long, value_name = "N", default_value_t = 10_000,
+        value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    rays: u64,
+
+    /// Acceleration structure that a scene file is compiled with, once for each [default: all]
+    #[arg(long, value_name = "NAME", value_parser = arguments::structure())]
+    accel: Vec<Structure>,
+
+    /// Print the report as JSON
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    scene_options: SceneOptions,
+}
+
+/// Verifies a scene.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let input = &arguments.input;
+    let compiling = compile::Options {
+        structures: match &arguments.accel[..] {
+            [] => Structure::ALL.to_vec(),
+            asked => asked.to_vec(),
+        },
+        ..compile::Options::default()
+    };
+    let source = Source::open_or_compile(input, &arguments.scene_options, compiling)?;
+    let scene = source.scene()?;
+    source.warn_of_collapsed(&scene);
+    let progress = Progress::steps("verifying", steps(arguments.rays));
+    let report = verify(&scene, arguments.rays, &|| progress.step());
+    drop(progress);
+    if arguments.json {
+        print_json(&report)?;
+    } else {
+        print(text(input, &report))?;
+    }
+    match report.broken() {
+        0 => Ok(()),
+        broken => Err(Failure::failed(
+            format!(
+                "{}: promises were broken {} times",
+                input.display(),
+                grouped(broken)
+            ),
+            "`gridel explain` shows what the rays above meet; please report them with the scene",
+        )),
+    }
+}
+
+fn text(input: &Path, report: &Report) -> String {
+    let mut text = format!(
+        "{}: {} and as many from inside of {}, through {}\n\n",
+        input.display(),
+        counted(report.rays as usize, "ray"),
+        counted(report.closed_meshes, "closed mesh").replace("meshs", "meshes"),
+        report.structures.join(", ")
+    );
+    let mut table = Table::new([
+        ("format", Align::Left),
+        ("hits", Align::Right),
+        ("judged exactly", Align::Right),
+        ("t off by at most", Align::Right),
+    ]);
+    for format in &report.formats {
+        table.row([
+            format.format.to_owned(),
+            grouped(format.hits),
+            grouped(format.judged),
+            format!("{} steps", significant(format.worst_error)),
+        ]);
+    }
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{table}");
+    for format in report
+        .formats
+        .iter()
+        .filter(|f| f.worst_error > judge::STEPS)
+    {
+        if let Some(ray) = &format.worst_ray {
+            let _ = writeln!(
+                text,
+                "In {}, t is off by the most, and rightly so for a surface within {} steps, for\n  {}",
+                format.format,
+                judge::STEPS,
+                explain(input, ray, format.format, Structure::List.name())
+            );
+        }
+    }
+    let mut table = Table::new([
+        ("promise", Align::Left),
+        ("checked", Align::Right),
+        ("broken", Align::Right),
+    ]);
+    for promise in &report.promises {
+        table.row([
+            promise.text.to_owned(),
+            grouped(promise.checked),
+            grouped(promise.broken),
+        ]);
+    }
+    let _ = write!(text, "\n{table}");
+    for promise in report.promises.iter().filter(|p| p.broken > 0) {
+        let _ = writeln!(text, "\nBroken: {}", promise.text);
+        for example in &promise.examples {
+            let _ = writeln!(
+                text,
+                "  {} {}: {}\n    {}",
+                example.format,
+                example.structure,
+                example.what,
+                explain(input, &example.ray, example.format, example.structure)
+            );
+        }
+    }
+    text
+}
+
+/// The command that tells a ray's story.
+fn explain(input: &Path, ray: &str, format: &str, structure: &str) -> String {
+    format!(
+        "gridel explain {} --ray={ray} --format {format} --accel {structure}",
+        input.display()
+    )
+}

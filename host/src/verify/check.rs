@@ -1,0 +1,337 @@
+//! Puts one ray to every structure in one number format, and holds the answers to the promises.
+
+use super::judge::{Answer, Judge, RoundedRay, STEPS, Wrong, step};
+use super::random::Random;
+use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::{
+    Accel, Format, Hit, Kind, List, NoCount, Number, Ray, Scene, Stack, Structure,
+    StructureVisitor, any_hit, closest_hit,
+};
+
+/// What a scene promises.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Promise {
+    /// Every structure gives the list's answer, bit for bit.
+    Structures,
+    /// Whether anything is met does not depend on how it is asked.
+    AnyHit,
+    /// What is met is what exact arithmetic meets first, where it meets it, within [`STEPS`].
+    Answers,
+    /// Numbers of a hit are finite, its t lies in the interval, its normal has the length 1.
+    Numbers,
+    /// A ray that starts beside a hit does not meet the same surface again.
+    SelfHits,
+    /// No ray leaves a closed mesh unseen.
+    Leaks,
+}
+
+impl Promise {
+    /// What the promise says, for reports.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Promise::Structures => "every structure gives the list's answer, bit for bit",
+            Promise::AnyHit => "any hit and nearest hit agree on whether there is one",
+            Promise::Answers => "hits are those of exact arithmetic",
+            Promise::Numbers => "hits are finite, in the interval, with a normal of length 1",
+            Promise::SelfHits => "secondary rays do not meet the surface that they leave",
+            Promise::Leaks => "no ray leaves a closed mesh unseen",
+        }
+    }
+}
+
+/// A promise that was broken.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    pub promise: Promise,
+    pub format: Format,
+    pub structure: Structure,
+    /// What happened, as a clause.
+    pub what: String,
+}
+
+/// What one structure answers.
+#[derive(Clone, Copy, Debug)]
+pub struct Heard<N: Number> {
+    pub structure: Structure,
+    pub hit: Option<Hit<N>>,
+    pub any: bool,
+}
+
+/// What a ray's answers come to.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    pub faults: Vec<Fault>,
+    /// By how many steps t is off, against the same ray in double precision.
+    pub error: f64,
+    /// Whether exact arithmetic was asked.
+    pub judged: bool,
+}
+
+/// Asks one structure.
+pub fn ask<N: Number, A: Accel>(scene: &Scene<'_>, ray: &Ray<N>) -> Heard<N> {
+    let mut stack = Stack::<MAX_STACK_DEPTH>::new();
+    Heard {
+        structure: A::STRUCTURE,
+        hit: closest_hit::<N, A, _>(scene, ray, stack.as_view(), &mut NoCount),
+        any: any_hit::<N, A, _>(scene, ray, stack.as_view(), &mut NoCount),
+    }
+}
+
+/// Asks the list and then every structure that a scene holds.
+pub fn ask_all<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Heard<N>> {
+    struct Ask<'q, N: Number>(&'q Scene<'q>, &'q Ray<N>);
+    impl<N: Number> StructureVisitor for Ask<'_, N> {
+        type Output = Heard<N>;
+
+        fn visit<A: Accel>(self) -> Heard<N> {
+            ask::<N, A>(self.0, self.1)
+        }
+    }
+    let list = ask::<N, List>(scene, ray);
+    let others = Structure::ALL
+        .into_iter()
+        .filter(|&structure| structure != Structure::List && scene.holds(structure))
+        .map(|structure| structure.visit(Ask(scene, ray)));
+    std::iter::once(list).chain(others).collect()
+}
+
+/// Holds what was heard to the promises. The first is the list's answer. `control` asks exact
+/// arithmetic even where nothing seems to be wrong.
+pub fn check<N: Number>(
+    scene: &Scene<'_>,
+    judge: &Judge,
+    ray: &Ray<N>,
+    heard: &[Heard<N>],
+    control: bool,
+) -> Outcome {
+    let mut outcome = Outcome::default();
+    let Some(list) = heard.first() else {
+        return outcome;
+    };
+    let mut fault = |promise, structure, what: String| {
+        outcome.faults.push(Fault {
+            promise,
+            format: N::FORMAT,
+            structure,
+            what,
+        });
+    };
+    let told = |hit: &Option<Hit<N>>| match hit {
+        Some(hit) => format!("primitive {} at {:?}", hit.primitive, N::far_to_f64(hit.t)),
+        None => String::from("nothing"),
+    };
+    for other in heard {
+        if bits(&other.hit) != bits(&list.hit) {
+            let what = format!("meets {}, the list {}", told(&other.hit), told(&list.hit));
+            fault(Promise::Structures, other.structure, what);
+        }
+        if other.any != other.hit.is_some() {
+            let what = format!(
+                "any hit says {}, and the nearest is {}",
+                other.any,
+                told(&other.hit)
+            );
+            fault(Promise::AnyHit, other.structure, what);
+        }
+    }
+    let rounded = RoundedRay::of(ray);
+    if let Some(what) = list.hit.as_ref().and_then(|hit| numbers(&rounded, hit)) {
+        fault(Promise::Numbers, list.structure, what);
+    }
+
+    let answer = list.hit.as_ref().map(|hit| Answer {
+        t: N::far_to_f64(hit.t) - rounded.moved,
+        primitive: hit.primitive,
+    });
+    let reference = rounded.in_f64(scene.bounds());
+    let reference = reference.and_then(|ray| ask::<f64, List>(scene, &ray).hit);
+    let close = match (answer, reference) {
+        (None, None) => true,
+        (Some(answer), Some(reference)) if answer.primitive == reference.primitive => {
+            let extent = reference.point.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            let start = rounded.start.iter().fold(extent, |m, x| m.max(x.abs()));
+            let magnitude = start.max(reference.t.abs()).max(rounded.moved.abs());
+            outcome.error = (answer.t - reference.t).abs() / step(N::FORMAT, magnitude);
+            outcome.error <= STEPS
+        }
+        _ => false,
+    };
+    if !close || control {
+        outcome.judged = true;
+        if let Err(wrong) = judge.check(N::FORMAT, &rounded, answer) {
+            let what = match wrong {
+                Wrong::NotThere => format!(
+                    "meets {}, where exact arithmetic does not meet it",
+                    told(&list.hit)
+                ),
+                Wrong::Missed { primitive, t } => format!(
+                    "meets {}, where exact arithmetic meets primitive {primitive} before, at {:?}",
+                    told(&list.hit),
+                    t + rounded.moved
+                ),
+            };
+            outcome.faults.push(Fault {
+                promise: Promise::Answers,
+                format: N::FORMAT,
+                structure: list.structure,
+                what,
+            });
+        }
+    }
+    outcome
+}
+
+/// A hit to the last bit.
+fn bits<N: Number>(hit: &Option<Hit<N>>) -> Option<(u32, u32, bool, [u64; 8])> {
+    hit.as_ref().map(|hit| {
+        let [px, py, pz] = hit.point.map(|x| x.length_to_f64().to_bits());
+        let [nx, ny, nz] = hit.normal.map(|x| x.ratio_to_f64().to_bits());
+        let error = hit.error.length_to_f64().to_bits();
+        let t = N::far_to_f64(hit.t).to_bits();
+        (
+            hit.primitive,
+            hit.object,
+            hit.front,
+            [t, px, py, pz, nx, ny, nz, error],
+        )
+    })
+}
+
+/// What is wrong with the numbers of a hit.
+fn numbers<N: Number>(ray: &RoundedRay, hit: &Hit<N>) -> Option<String> {
+    let t = N::far_to_f64(hit.t);
+    let point = hit.point.map(N::length_to_f64);
+    let normal = hit.normal.map(N::ratio_to_f64);
+    let error = hit.error.length_to_f64();
+    if !(t.is_finite() && error.is_finite() && point.iter().chain(&normal).all(|x| x.is_finite())) {
+        return Some(format!(
+            "t {t:?}, point {point:?}, normal {normal:?}, error {error:?}"
+        ));
+    }
+    let norm = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let ulps = match N::FORMAT {
+        Format::Fixed => f64::powi(2.0, -28),
+        Format::F32 => f64::powi(2.0, -21),
+        Format::F64 => f64::powi(2.0, -50),
+    };
+    if (norm - 1.0).abs() > ulps {
+        return Some(format!("the normal {normal:?} has the length {norm:?}"));
+    }
+    // Hits count from the ray's own start, which rounds once more.
+    let slack = 2.0 * step(N::FORMAT, t.abs().max(ray.moved.abs()));
+    let [first, last] = ray.interval.map(|t| t + ray.moved);
+    if t < first - slack || t > last + slack {
+        return Some(format!("t {t:?} lies outside of {first:?} to {last:?}"));
+    }
+    None
+}
+
+/// Lets rays leave a hit on both sides, as the ray loop does, and tells which of them meet the same
+/// surface again.
+pub fn leave<N: Number>(
+    scene: &Scene<'_>,
+    judge: &Judge,
+    hit: &Hit<N>,
+    random: &mut Random,
+) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    let Some(solid) = judge.solid(hit.primitive) else {
+        return faults;
+    };
+    for outward in [true, false] {
+        let sign = if outward { 1.0 } else { -1.0 };
+        let beside = |axis: usize| {
+            let shift = hit.error * hit.normal[axis];
+            hit.point[axis] + if outward { shift } else { -shift }
+        };
+        let from = [beside(0), beside(1), beside(2)];
+        let normal = hit.normal.map(|x| sign * x.ratio_to_f64());
+        let direction = random.direction();
+        let cosine: f64 = (0..3).map(|k| normal[k] * direction[k]).sum();
+        // Into the half space of this side; often grazing.
+        let lift = if random.one_in(3) {
+            1e-3 * random.unit()
+        } else {
+            cosine.abs()
+        };
+        let direction = [0, 1, 2].map(|k| direction[k] + (lift - cosine) * normal[k]);
+        let exact_from = from.map(N::length_to_f64);
+        let ray = Ray::<N>::from_f64(scene.bounds(), exact_from, direction, 0.0, f64::INFINITY);
+        let Ok(ray) = ray else { continue };
+        let Some(again) = ask::<N, List>(scene, &ray).hit else {
+            continue;
+        };
+        // Through a solid it is met again, from the inside.
+        let through = !outward && !solid.is_flat() && !again.front;
+        if again.primitive != hit.primitive || through {
+            continue;
+        }
+        // A solid may be thinner than the bound, and a tip's normal may lead back.
+        let inside = solid.excesses(exact_from)[0] <= 0.0;
+        let excused = !solid.is_flat()
+            && (inside != outward)
+            && (!outward || judge.meets(hit.primitive, &RoundedRay::of(&ray)));
+        if !excused {
+            faults.push(Fault {
+                promise: Promise::SelfHits,
+                format: N::FORMAT,
+                structure: Structure::List,
+                what: format!(
+                    "the ray that leaves primitive {} from {exact_from:?} along {direction:?} (in \
+                     units) meets it again at {:?}",
+                    hit.primitive,
+                    N::far_to_f64(again.t)
+                ),
+            });
+        }
+    }
+    faults
+}
+
+/// Follows a ray that starts inside of a closed mesh until it meets the mesh; a fault if it never
+/// does.
+pub fn sealed<N: Number, A: Accel>(
+    scene: &Scene<'_>,
+    judge: &Judge,
+    object: u32,
+    origin: [f64; 3],
+    direction: [f64; 3],
+) -> Option<Fault> {
+    /// Surfaces of other objects that a ray is followed through.
+    const MOST: usize = 256;
+    let mut tmin = 0.0;
+    let mut passed: Vec<f64> = Vec::new();
+    let whole = Ray::<N>::from_f64(scene.bounds(), origin, direction, 0.0, f64::INFINITY).ok()?;
+    let rounded = RoundedRay::of(&whole);
+    for _ in 0..MOST {
+        let ray =
+            Ray::<N>::from_f64(scene.bounds(), origin, direction, tmin, f64::INFINITY).ok()?;
+        let Some(hit) = ask::<N, A>(scene, &ray).hit else {
+            // Where surfaces coincide, only one of them was told.
+            let crosses = |t: &f64| {
+                let mesh = (0..scene.count(Kind::Triangle)).filter_map(|slot| {
+                    let primitive = scene.primitive(Kind::Triangle, slot as u32);
+                    (scene.object(primitive) == object).then_some(primitive)
+                });
+                let t = t - rounded.moved;
+                mesh.into_iter()
+                    .any(|primitive| judge.crosses(N::FORMAT, primitive, &rounded, t))
+            };
+            let hidden = passed.iter().any(crosses);
+            return (!hidden).then(|| Fault {
+                promise: Promise::Leaks,
+                format: N::FORMAT,
+                structure: A::STRUCTURE,
+                what: format!("leaves the closed mesh of object {object} unseen"),
+            });
+        };
+        if hit.object == object {
+            return None;
+        }
+        let t = N::far_to_f64(hit.t);
+        passed.push(t);
+        tmin = t + 4.0 * step(N::FORMAT, t.abs().max(1.0)).max(hit.error.length_to_f64());
+    }
+    None
+}

@@ -1,0 +1,406 @@
+//! Throws hard rays at a scene and holds every structure and number format to what is promised.
+//!
+//! `rays.rs` makes the rays, `check.rs` puts one to all structures of a blob and compares, `judge.rs`
+//! decides by 320-bit arithmetic where they disagree, from the textbook's formulas in `solid.rs`.
+//! Every format is asked with the ray that it can hold, so what is judged is the kernels' arithmetic
+//! and not the rounding of the question.
+
+mod check;
+mod closed;
+pub mod exact;
+pub mod judge;
+pub mod random;
+pub mod rays;
+pub mod solid;
+
+pub use check::{Fault, Heard, Outcome, Promise, ask, ask_all, check, leave, sealed};
+pub use closed::ClosedMesh;
+pub use rays::{Targets, UnitRay};
+
+use crate::trace::{Frame, SceneRay};
+use gridel_core::{Accel, Fixed, Format, List, Number, Scene, Structure, StructureVisitor};
+use judge::Judge;
+use random::Random;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::marker::PhantomData;
+
+/// What was found.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Report {
+    /// Rays that were put to every structure in every format.
+    pub rays: u64,
+    pub structures: Vec<&'static str>,
+    pub formats: Vec<FormatReport>,
+    /// Meshes whose every edge has its two triangles.
+    pub closed_meshes: usize,
+    pub promises: Vec<PromiseReport>,
+}
+
+/// What was found in one format.
+#[derive(Clone, Debug, Serialize)]
+pub struct FormatReport {
+    pub format: &'static str,
+    pub hits: u64,
+    /// Answers that exact arithmetic was asked about.
+    pub judged: u64,
+    /// By how many steps t was off at worst: units of rounding times the largest coordinate, and
+    /// sub-steps of `fixed`. Beyond [`judge::STEPS`] only where the ray grazes, so that a surface
+    /// that is off by less is met that much later.
+    pub worst_error: f64,
+    /// The ray with that error, as `explain --ray` takes it.
+    pub worst_ray: Option<String>,
+}
+
+/// How a promise was kept.
+#[derive(Clone, Debug, Serialize)]
+pub struct PromiseReport {
+    pub promise: Promise,
+    pub text: &'static str,
+    /// Answers that were held to it.
+    pub checked: u64,
+    pub broken: u64,
+    /// The first that broke it.
+    pub examples: Vec<Example>,
+}
+
+/// A promise that was broken.
+#[derive(Clone, Debug, Serialize)]
+pub struct Example {
+    pub format: &'static str,
+    pub structure: &'static str,
+    /// As `explain --ray` takes it.
+    pub ray: String,
+    pub what: String,
+}
+
+impl Report {
+    /// How often a promise was broken.
+    pub fn broken(&self) -> u64 {
+        self.promises.iter().map(|promise| promise.broken).sum()
+    }
+}
+
+/// Rays of a chunk of work.
+const CHUNK: u64 = 128;
+/// Of so many rays one is judged by exact arithmetic whatever was answered, and one hit in so many is
+/// left by secondary rays.
+const CONTROL: u64 = 16;
+/// Examples that are kept of each promise.
+const EXAMPLES: usize = 5;
+
+/// Steps of the work, for progress: [`verify`] tells of each.
+pub fn steps(rays: u64) -> u64 {
+    2 * rays.div_ceil(CHUNK)
+}
+
+/// Verifies a scene with so many rays of all sorts, and as many at the vertices and edges of closed
+/// meshes. `progress` is told of every step, from any thread. The same rays are thrown every time.
+pub fn verify(scene: &Scene<'_>, rays: u64, progress: &(dyn Fn() + Sync)) -> Report {
+    let judge = Judge::of(scene);
+    let targets = Targets::of(scene);
+    let frame = Frame::of(scene);
+    let work = Work {
+        scene,
+        judge: &judge,
+        frame: &frame,
+    };
+    let chunks = rays.div_ceil(CHUNK);
+    let tally = |chunk: u64| {
+        let mut tally = Tally::default();
+        let count = CHUNK.min(rays - chunk * CHUNK);
+        let mut random = Random(!chunk);
+        for (number, ray) in (0..count).zip(targets.rays(chunk)) {
+            let ray = frame.scene_ray(&ray);
+            let control = number % CONTROL == 0;
+            work.ray::<Fixed>(&ray, control, &mut random, &mut tally);
+            work.ray::<f32>(&ray, control, &mut random, &mut tally);
+            work.ray::<f64>(&ray, control, &mut random, &mut tally);
+        }
+        progress();
+        tally
+    };
+    let all = (0..chunks).into_par_iter().map(tally);
+    let mut all = all.reduce(Tally::default, Tally::plus);
+
+    let meshes = ClosedMesh::all(scene);
+    let aims = aims(&work, &meshes, rays);
+    let leaks = aims.par_chunks(CHUNK as usize).map(|aims| {
+        let mut tally = Tally::default();
+        for aim in aims {
+            work.leak::<Fixed>(aim, &mut tally);
+            work.leak::<f32>(aim, &mut tally);
+            work.leak::<f64>(aim, &mut tally);
+        }
+        progress();
+        tally
+    });
+    all = all.plus(leaks.reduce(Tally::default, Tally::plus));
+    all.report(scene, rays, meshes.len())
+}
+
+/// A ray from the inside of a closed mesh, in units.
+struct Aim {
+    object: u32,
+    origin: [f64; 3],
+    direction: [f64; 3],
+}
+
+/// Rays at the vertices, along the edges and at the faces of meshes, from their inside.
+fn aims(work: &Work<'_>, meshes: &[ClosedMesh], rays: u64) -> Vec<Aim> {
+    let mut random = Random(0x1ea5);
+    let mut aims = Vec::new();
+    let inside: Vec<_> = meshes
+        .iter()
+        .filter_map(|mesh| Some((mesh, work.inside(mesh)?)))
+        .collect();
+    if inside.is_empty() {
+        return aims;
+    }
+    for number in 0..rays {
+        let (mesh, origin) = &inside[number as usize % inside.len()];
+        // All triangles in turn, then all again with other targets.
+        let turn = number as usize / inside.len();
+        let [a, b, c] = mesh.triangles[turn % mesh.triangles.len()];
+        let mix = |a: [f64; 3], b: [f64; 3], part: f64| {
+            [0, 1, 2].map(|axis| a[axis] + part * (b[axis] - a[axis]))
+        };
+        let target = match (turn / mesh.triangles.len() + turn) % 4 {
+            0 => a,
+            1 => mix(a, b, 0.5),
+            2 => mix(b, c, random.unit()),
+            _ => mix(a, mix(b, c, random.unit()), random.unit()),
+        };
+        let direction = [0, 1, 2].map(|axis| target[axis] - origin[axis]);
+        if direction != [0.0; 3] {
+            aims.push(Aim {
+                object: mesh.object,
+                origin: *origin,
+                direction,
+            });
+        }
+    }
+    aims
+}
+
+/// What checking a ray needs.
+struct Work<'w> {
+    scene: &'w Scene<'w>,
+    judge: &'w Judge,
+    frame: &'w Frame,
+}
+
+impl Work<'_> {
+    /// Puts a ray to all structures in one format.
+    fn ray<N: Number>(
+        &self,
+        ray: &SceneRay,
+        control: bool,
+        random: &mut Random,
+        tally: &mut Tally,
+    ) {
+        let Some((ready, _)) = self.frame.ray::<N>(self.scene, ray) else {
+            return;
+        };
+        let heard = ask_all::<N>(self.scene, &ready);
+        let outcome = check(self.scene, self.judge, &ready, &heard, control);
+        let hit = heard.first().and_then(|list| list.hit);
+        let entry = tally.format(N::FORMAT);
+        entry.hits += u64::from(hit.is_some());
+        entry.judged += u64::from(outcome.judged);
+        entry.worse(outcome.error, ray);
+        let structures = heard.len() as u64;
+        tally.checked(Promise::Structures, structures - 1);
+        tally.checked(Promise::AnyHit, structures);
+        tally.checked(Promise::Answers, 1);
+        tally.checked(Promise::Numbers, u64::from(hit.is_some()));
+        for fault in outcome.faults {
+            tally.fault(fault, ray);
+        }
+        if let Some(hit) = hit.filter(|_| random.one_in(CONTROL as usize)) {
+            tally.checked(Promise::SelfHits, 2);
+            for fault in leave(self.scene, self.judge, &hit, random) {
+                tally.fault(fault, ray);
+            }
+        }
+    }
+
+    /// A point inside of a closed mesh, in units: halfway from a face to what is opposite of it.
+    fn inside(&self, mesh: &ClosedMesh) -> Option<[f64; 3]> {
+        const TRIED: usize = 64;
+        let step = mesh.triangles.len().div_ceil(TRIED);
+        let places = mesh.triangles.iter().step_by(step).filter_map(|corners| {
+            let [a, b, c] = corners.map(glam::DVec3::from_array);
+            let middle = (a + b + c) / 3.0;
+            let inward = -(b - a).cross(c - a);
+            let ray = |tmin| {
+                gridel_core::Ray::<f64>::from_f64(
+                    self.scene.bounds(),
+                    middle.to_array(),
+                    inward.to_array(),
+                    tmin,
+                    f64::INFINITY,
+                )
+            };
+            // Past the face itself, and past surfaces of other objects.
+            let mut tmin = 1.0 / 1024.0;
+            for _ in 0..64 {
+                let hit = ask::<f64, List>(self.scene, &ray(tmin).ok()?).hit?;
+                if hit.object == mesh.object {
+                    let depth = 0.5 * hit.t / inward.abs().max_element();
+                    return (!hit.front).then(|| (hit.t, (middle + inward * depth).to_array()));
+                }
+                tmin = hit.t + 1.0 / 1024.0;
+            }
+            None
+        });
+        places
+            .max_by(|(a, _), (b, _)| a.total_cmp(b))
+            .map(|(_, place)| place)
+    }
+
+    /// Follows a ray from inside of a closed mesh through every structure.
+    fn leak<N: Number>(&self, aim: &Aim, tally: &mut Tally) {
+        struct Follow<'f, N>(&'f Work<'f>, &'f Aim, PhantomData<N>);
+        impl<N: Number> StructureVisitor for Follow<'_, N> {
+            type Output = Option<Fault>;
+
+            fn visit<A: Accel>(self) -> Self::Output {
+                let (work, aim) = (self.0, self.1);
+                let (origin, direction) = (aim.origin, aim.direction);
+                sealed::<N, A>(work.scene, work.judge, aim.object, origin, direction)
+            }
+        }
+        for structure in held(self.scene) {
+            tally.checked(Promise::Leaks, 1);
+            let ray = UnitRay::new(aim.origin, aim.direction);
+            if let Some(fault) = structure.visit(Follow::<N>(self, aim, PhantomData)) {
+                tally.fault(fault, &self.frame.scene_ray(&ray));
+            }
+        }
+    }
+}
+
+/// The structures that a scene holds.
+fn held(scene: &Scene<'_>) -> impl Iterator<Item = Structure> {
+    let all = Structure::ALL.into_iter();
+    all.filter(|&structure| structure == Structure::List || scene.holds(structure))
+}
+
+/// What was found so far.
+#[derive(Clone, Debug, Default)]
+struct Tally {
+    formats: [FormatTally; 3],
+    checked: BTreeMap<Promise, u64>,
+    broken: BTreeMap<Promise, (u64, Vec<Example>)>,
+}
+
+#[derive(Clone, Debug, Default)]
+struct FormatTally {
+    hits: u64,
+    judged: u64,
+    worst: f64,
+    ray: Option<SceneRay>,
+}
+
+impl FormatTally {
+    fn worse(&mut self, error: f64, ray: &SceneRay) {
+        if error > self.worst {
+            self.worst = error;
+            self.ray = Some(*ray);
+        }
+    }
+}
+
+impl Tally {
+    fn format(&mut self, format: Format) -> &mut FormatTally {
+        &mut self.formats[format as usize]
+    }
+
+    fn checked(&mut self, promise: Promise, count: u64) {
+        *self.checked.entry(promise).or_default() += count;
+    }
+
+    fn fault(&mut self, fault: Fault, ray: &SceneRay) {
+        let (count, examples) = self.broken.entry(fault.promise).or_default();
+        *count += 1;
+        if examples.len() < EXAMPLES {
+            examples.push(Example {
+                format: fault.format.name(),
+                structure: fault.structure.name(),
+                ray: as_argument(ray),
+                what: fault.what,
+            });
+        }
+    }
+
+    fn plus(mut self, other: Self) -> Self {
+        for (mine, theirs) in self.formats.iter_mut().zip(other.formats) {
+            mine.hits += theirs.hits;
+            mine.judged += theirs.judged;
+            if let Some(ray) = theirs.ray {
+                mine.worse(theirs.worst, &ray);
+            }
+        }
+        for (promise, count) in other.checked {
+            self.checked(promise, count);
+        }
+        for (promise, (count, examples)) in other.broken {
+            let mine = self.broken.entry(promise).or_default();
+            mine.0 += count;
+            mine.1.extend(examples);
+            mine.1.truncate(EXAMPLES);
+        }
+        self
+    }
+
+    fn report(mut self, scene: &Scene<'_>, rays: u64, closed_meshes: usize) -> Report {
+        let formats = Format::ALL.map(|format| {
+            let tally = self.formats[format as usize].clone();
+            FormatReport {
+                format: format.name(),
+                hits: tally.hits,
+                judged: tally.judged,
+                worst_error: tally.worst,
+                worst_ray: tally.ray.as_ref().map(as_argument),
+            }
+        });
+        let promises = [
+            Promise::Structures,
+            Promise::AnyHit,
+            Promise::Answers,
+            Promise::Numbers,
+            Promise::SelfHits,
+            Promise::Leaks,
+        ];
+        let promises = promises.map(|promise| {
+            let (broken, examples) = self.broken.remove(&promise).unwrap_or_default();
+            PromiseReport {
+                promise,
+                text: promise.text(),
+                checked: self.checked.get(&promise).copied().unwrap_or(0),
+                broken,
+                examples,
+            }
+        });
+        Report {
+            rays,
+            structures: held(scene).map(Structure::name).collect(),
+            formats: formats.to_vec(),
+            closed_meshes,
+            promises: promises.to_vec(),
+        }
+    }
+}
+
+/// A ray as `explain --ray` takes it.
+pub fn as_argument(ray: &SceneRay) -> String {
+    let [ox, oy, oz] = ray.origin.to_array();
+    let [dx, dy, dz] = ray.direction.to_array();
+    let mut text = format!("{ox:?},{oy:?},{oz:?},{dx:?},{dy:?},{dz:?}");
+    if (ray.tmin, ray.tmax) != (0.0, f64::INFINITY) {
+        text.push_str(&format!(",{:?},{:?}", ray.tmin, ray.tmax));
+    }
+    text
+}

@@ -1,0 +1,189 @@
+//! `verify` finds nothing wrong with what is right, and everything that is made wrong on purpose.
+
+use gridel_core::accel::cull::Cull;
+use gridel_core::accel::{Leaf, StackView};
+use gridel_core::{Accel, Count, Flagged, Hit, List, Number, Ray, Scene, Structure};
+use gridel_host::blob::Blob;
+use gridel_host::verify::judge::Judge;
+use gridel_host::verify::random::Random;
+use gridel_host::verify::{
+    ClosedMesh, Heard, Promise, Targets, ask, ask_all, check, leave, sealed, verify,
+};
+use gridel_tests::scenes;
+
+fn mesh(subdivisions: usize) -> Blob {
+    let (vertices, triangles) = scenes::icosphere(subdivisions);
+    let shape = gridel_host::scene::Shape::Mesh {
+        vertices,
+        triangles,
+    };
+    scenes::blob(&scenes::of([shape]), 24)
+}
+
+#[test]
+fn right_scenes_are_right() {
+    let soup = scenes::blob(&scenes::soup(21, 60, 0.4), 24);
+    let coarse = scenes::blob(&scenes::soup(22, 60, 0.4), 10);
+    for (name, blob) in [("soup", soup), ("coarse", coarse), ("mesh", mesh(2))] {
+        let scene = blob.scene().expect("a scene");
+        let report = verify(&scene, 1500, &|| ());
+        eprintln!("{name}: {report:#?}");
+        assert_eq!(report.broken(), 0, "{name}");
+        assert_eq!(report.closed_meshes, usize::from(name == "mesh"));
+        let leaks = report.promises.last().expect("promises").checked;
+        assert_eq!(leaks > 0, name == "mesh");
+    }
+}
+
+/// Changes the answers of one structure and returns which promises are found broken.
+fn broken_by(change: impl Fn(&mut Heard<f64>)) -> Vec<Promise> {
+    let blob = mesh(2);
+    let scene = blob.scene().expect("a scene");
+    let judge = Judge::of(&scene);
+    let mut promises = Vec::new();
+    for ray in Targets::of(&scene).rays(3).take(400) {
+        let Some(ready) = ray.ready::<f64>(&scene) else {
+            continue;
+        };
+        let mut heard = ask_all::<f64>(&scene, &ready);
+        heard.iter_mut().for_each(&change);
+        let outcome = check(&scene, &judge, &ready, &heard, true);
+        promises.extend(outcome.faults.iter().map(|fault| fault.promise));
+    }
+    promises.sort();
+    promises.dedup();
+    promises
+}
+
+fn with_hit(change: impl Fn(&mut Hit<f64>)) -> impl Fn(&mut Heard<f64>) {
+    move |heard| {
+        if let Some(hit) = &mut heard.hit {
+            change(hit);
+        }
+    }
+}
+
+#[test]
+fn mutated_answers_are_caught() {
+    assert_eq!(broken_by(|_| ()), []);
+    // Of one structure.
+    let flagged = |heard: &Heard<f64>| heard.structure == Structure::Flagged;
+    let lost = broken_by(|heard| {
+        if flagged(heard) {
+            heard.hit = None;
+        }
+    });
+    assert_eq!(lost, [Promise::Structures, Promise::AnyHit]);
+    let last_bit = broken_by(|heard| {
+        if let (true, Some(hit)) = (flagged(heard), &mut heard.hit) {
+            hit.normal[1] = f64::from_bits(hit.normal[1].to_bits() ^ 1);
+        }
+    });
+    assert_eq!(last_bit, [Promise::Structures]);
+    let no_shadow = broken_by(|heard| heard.any = false);
+    assert_eq!(no_shadow, [Promise::AnyHit]);
+    // Of all of them.
+    let blind = broken_by(|heard| (heard.hit, heard.any) = (None, false));
+    assert_eq!(blind, [Promise::Answers]);
+    assert_eq!(broken_by(with_hit(|hit| hit.t += 1e-3)), [Promise::Answers]);
+    let farther = broken_by(with_hit(|hit| hit.primitive ^= 1));
+    assert_eq!(farther, [Promise::Answers]);
+    let nan = broken_by(with_hit(|hit| hit.point[2] = f64::NAN));
+    assert!(nan.contains(&Promise::Numbers), "{nan:?}");
+    let short = broken_by(with_hit(|hit| hit.normal = hit.normal.map(|x| 0.999 * x)));
+    assert_eq!(short, [Promise::Numbers]);
+}
+
+/// A structure that forgets some of its leaves.
+enum Forgetful {}
+
+impl Accel for Forgetful {
+    const STRUCTURE: Structure = Structure::Flagged;
+    type Cull<N: Number> = Cull;
+
+    fn walk<N: Number, C: Count>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        cull: &Cull,
+        stack: &mut StackView,
+        count: &mut C,
+        mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+    ) {
+        Flagged::walk(scene, ray, cull, stack, count, |found, count| {
+            if found.first.is_multiple_of(5) {
+                return Some(ray_end(ray));
+            }
+            leaf(found, count)
+        });
+    }
+}
+
+fn ray_end<N: Number>(_: &Ray<N>) -> N {
+    N::FAR
+}
+
+#[test]
+fn a_broken_structure_is_caught() {
+    let blob = mesh(3);
+    let scene = blob.scene().expect("a scene");
+    let judge = Judge::of(&scene);
+    let mut caught = 0;
+    for ray in Targets::of(&scene).rays(4).take(2000) {
+        let Some(ready) = ray.ready::<f32>(&scene) else {
+            continue;
+        };
+        let heard = [
+            ask::<f32, List>(&scene, &ready),
+            ask::<f32, Forgetful>(&scene, &ready),
+        ];
+        let outcome = check(&scene, &judge, &ready, &heard, false);
+        assert!(
+            outcome
+                .faults
+                .iter()
+                .all(|fault| fault.promise == Promise::Structures)
+        );
+        caught += usize::from(!outcome.faults.is_empty());
+    }
+    assert!(caught > 20, "{caught}");
+
+    // And rays get out of a mesh through it.
+    let [closed] = &ClosedMesh::all(&scene)[..] else {
+        panic!("one closed mesh");
+    };
+    let mut leaks = [0; 2];
+    for corners in &closed.triangles {
+        let middle = [0, 1, 2].map(|k| (corners[0][k] + corners[1][k] + corners[2][k]) / 3.0);
+        let from = [0.0; 3];
+        let object = closed.object;
+        let whole = sealed::<f32, Flagged>(&scene, &judge, object, from, middle);
+        let holed = sealed::<f32, Forgetful>(&scene, &judge, object, from, middle);
+        leaks[0] += usize::from(whole.is_some());
+        leaks[1] += usize::from(holed.is_some());
+    }
+    assert_eq!(leaks[0], 0);
+    assert!(leaks[1] > 20, "{}", leaks[1]);
+}
+
+/// Where the error bound of a hit is a lie, secondary rays meet their own surface.
+#[test]
+fn a_bound_that_is_too_small_is_caught() {
+    let blob = scenes::blob(&scenes::soup(23, 30, 0.4), 24);
+    let scene = blob.scene().expect("a scene");
+    let judge = Judge::of(&scene);
+    let mut random = Random(9);
+    let (mut honest, mut lying) = (0, 0);
+    for ray in Targets::of(&scene).rays(5).take(3000) {
+        let Some(ready) = ray.ready::<f32>(&scene) else {
+            continue;
+        };
+        let Some(mut hit) = ask::<f32, List>(&scene, &ready).hit else {
+            continue;
+        };
+        honest += leave(&scene, &judge, &hit, &mut random).len();
+        hit.error = 0.0;
+        lying += leave(&scene, &judge, &hit, &mut random).len();
+    }
+    assert_eq!(honest, 0);
+    assert!(lying > 20, "{lying}");
+}
