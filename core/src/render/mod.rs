@@ -5,10 +5,13 @@
 //! | where in the pixel, and in which direction | `sample.rs`, `camera.rs` |
 //! | what the ray and those it causes bring | `trace.rs` |
 //! | where rendering is between two calls | `cursor.rs` |
+//! | onto a display of `embedded-graphics`, where the feature is on | `display.rs` |
 //! | from radiance to the bytes of a display | `pixel.rs` |
 
 mod camera;
 mod cursor;
+#[cfg(feature = "embedded-graphics-core")]
+mod display;
 mod pixel;
 mod renderer;
 mod sample;

@@ -40,8 +40,15 @@ impl Pixel for Rgb565 {
     }
 }
 
+/// How bright a colour looks (IEC 61966-2-1's weights, which add up to 1 here).
+#[cfg(feature = "embedded-graphics-core")]
+pub(crate) fn luminance([red, green, blue]: Linear) -> u16 {
+    let weighted = 13_933 * u32::from(red) + 46_871 * u32::from(green) + 4_732 * u32::from(blue);
+    (weighted >> 16) as u16
+}
+
 /// An sRGB code of 0 to `most` for a linear value.
-fn quantize(linear: u16, most: u32, dither: Option<[u16; 2]>) -> u32 {
+pub(crate) fn quantize(linear: u16, most: u32, dither: Option<[u16; 2]>) -> u32 {
     // In units of 1 / (256 * 255) of a code step of the display.
     let scaled = srgb(linear) * most;
     let threshold = dither.map_or(128, |[x, y]| u32::from(bayer(x, y)) * 4 + 2);

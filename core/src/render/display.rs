@@ -1,0 +1,135 @@
+//! Pictures on displays that `embedded-graphics` drives, whatever their colours.
+//!
+//! [`Renderer::draw`] streams a rectangle to the display without a buffer. With a
+//! [`Cursor`](super::Cursor), pixels go there as they become ready, a bounded number of rays at a
+//! time: hand each to [`DrawTarget::draw_iter`] as a `Pixel`.
+
+use super::pixel::{Pixel, luminance, quantize};
+use super::renderer::Renderer;
+use super::trace::WorkspaceView;
+use crate::accel::Accel;
+use crate::count::Count;
+use crate::number::Number;
+use embedded_graphics_core::geometry::{Point, Size};
+use embedded_graphics_core::pixelcolor::{
+    Bgr555, Bgr565, Bgr666, Bgr888, BinaryColor, Gray2, Gray4, Gray8, Rgb555, Rgb565, Rgb666,
+    Rgb888, RgbColor,
+};
+use embedded_graphics_core::prelude::{DrawTarget, GrayColor, PixelColor};
+use embedded_graphics_core::primitives::Rectangle;
+
+/// Colours of three channels, in whatever order and width.
+macro_rules! pixels_of_rgb {
+    ($($color:ident),*) => {$(
+        impl Pixel for $color {
+            fn encode([red, green, blue]: [u16; 3], dither: Option<[u16; 2]>) -> Self {
+                let channel = |linear, most: u8| quantize(linear, most.into(), dither) as u8;
+                Self::new(
+                    channel(red, Self::MAX_R),
+                    channel(green, Self::MAX_G),
+                    channel(blue, Self::MAX_B),
+                )
+            }
+        }
+    )*};
+}
+
+pixels_of_rgb!(
+    Rgb555, Bgr555, Rgb565, Bgr565, Rgb666, Bgr666, Rgb888, Bgr888
+);
+
+/// Greys, by the luminance of the colour.
+macro_rules! pixels_of_grey {
+    ($($color:ident),*) => {$(
+        impl Pixel for $color {
+            fn encode(linear: [u16; 3], dither: Option<[u16; 2]>) -> Self {
+                let white = Self::WHITE.luma();
+                Self::new(quantize(luminance(linear), white.into(), dither) as u8)
+            }
+        }
+    )*};
+}
+
+pixels_of_grey!(Gray2, Gray4, Gray8);
+
+/// On where a grey would be nearer to white; wants dithering.
+impl Pixel for BinaryColor {
+    fn encode(linear: [u16; 3], dither: Option<[u16; 2]>) -> Self {
+        Self::from(quantize(luminance(linear), 1, dither) > 0)
+    }
+}
+
+impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
+    /// Draws a rectangle of the picture at the same place of a display, row by row and without a
+    /// buffer; what lies outside of the picture or of the display is not traced. To draw
+    /// elsewhere, give a translated display.
+    ///
+    /// # Errors
+    /// Those of the display.
+    pub fn draw<D, C>(
+        &self,
+        area: &Rectangle,
+        display: &mut D,
+        space: &mut WorkspaceView<'_, N>,
+        count: &mut C,
+    ) -> Result<(), D::Error>
+    where
+        D: DrawTarget<Color: Pixel + PixelColor>,
+        C: Count,
+    {
+        let settings = self.settings();
+        let size = Size::new(settings.width.into(), settings.height.into());
+        let area = area
+            .intersection(&Rectangle::new(Point::zero(), size))
+            .intersection(&display.bounding_box());
+        // Inside the picture, so 0 to 65535.
+        let pixels = area
+            .rows()
+            .flat_map(|y| area.columns().map(move |x| [x as u16, y as u16]));
+        let colors = pixels.map(|[x, y]| self.pixel::<D::Color, C>(x, y, space, count));
+        display.fill_contiguous(&area, colors)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use embedded_graphics_core::pixelcolor::raw::RawU16;
+
+    /// The display's own type holds the bits that this crate's type holds.
+    #[test]
+    fn colors_are_those_of_plain_pixels() {
+        for step in 0..=1000_u32 {
+            let channel = |factor: u32| (step * factor * 13 % 65_536) as u16;
+            let linear = [channel(1), channel(3), channel(5)];
+            for dither in [None, Some([3, 5])] {
+                let crate::Rgb565(plain) = crate::Rgb565::encode(linear, dither);
+                assert_eq!(
+                    RawU16::from(Rgb565::encode(linear, dither)),
+                    RawU16::new(plain)
+                );
+                let color = Bgr565::encode(linear, dither);
+                let expected = [plain >> 11, plain >> 5 & 63, plain & 31];
+                assert_eq!([color.r(), color.g(), color.b()].map(u16::from), expected);
+                let crate::Rgb888(plain) = crate::Rgb888::encode(linear, dither);
+                let color = Bgr888::encode(linear, dither);
+                assert_eq!([color.r(), color.g(), color.b()], plain);
+            }
+        }
+    }
+
+    /// Grey stays grey, and half of a dithered surface of middle grey is on.
+    #[test]
+    fn greys_go_by_luminance() {
+        for linear in (0..=u16::MAX).step_by(7) {
+            let crate::Rgb888([code, ..]) = crate::Rgb888::encode([linear; 3], None);
+            assert_eq!(Gray8::encode([linear; 3], None).luma(), code);
+        }
+        assert!(Gray8::encode([0, u16::MAX, 0], None) > Gray8::encode([u16::MAX, 0, 0], None));
+        // The linear value of sRGB code 127.5.
+        let middle = 14_032;
+        let places = (0..64).map(|place| [place & 7, place >> 3]);
+        let on = places.filter(|&place| BinaryColor::encode([middle; 3], Some(place)).is_on());
+        assert_eq!(on.count(), 32);
+    }
+}

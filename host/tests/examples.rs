@@ -1,0 +1,132 @@
+//! The examples, run: displays show the pixels that `render` makes.
+
+#[allow(dead_code)]
+#[path = "../examples/display.rs"]
+mod display;
+#[allow(dead_code)]
+#[path = "../examples/spi_display.rs"]
+mod spi_display;
+
+use embedded_graphics::geometry::{OriginDimensions, Point, Size};
+use embedded_graphics::pixelcolor::{BinaryColor, IntoStorage};
+use embedded_graphics::prelude::DrawTargetExt;
+use embedded_graphics::primitives::Rectangle;
+use embedded_graphics_simulator::SimulatorDisplay;
+use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::render::{MAX_RAY_DEPTH, Pixel};
+use gridel_core::{
+    Counters, Effects, Flagged, Format, Renderer, Rgb565, Settings, Structure, Workspace,
+};
+use gridel_host::blob::Blob;
+use gridel_host::compile::{Options, compile};
+use gridel_host::render::{Job, render};
+use gridel_host::scene::{MoleculeOptions, load};
+use std::path::{Path, PathBuf};
+
+fn fixture(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../fixtures")
+        .join(name)
+}
+
+fn blob(name: &str) -> Blob {
+    let imported = load(&fixture(name), &MoleculeOptions::default()).expect("a scene");
+    compile(&imported.scene, &Options::default())
+        .expect("compiles")
+        .blob
+}
+
+/// What `gridel render` makes, as the pixels of a display.
+fn rendered(blob: &Blob, [width, height]: [u16; 2]) -> Vec<u16> {
+    let scene = blob.scene().expect("the compiler's blob");
+    let job = Job {
+        format: Format::F32,
+        structure: Structure::Flagged,
+        settings: Settings {
+            width,
+            height,
+            ..Settings::of(&scene)
+        },
+        rows: 0..height,
+        count: false,
+    };
+    let picture = render(&scene, &job, &|| ()).expect("a picture");
+    let pixels = picture.pixels.iter().enumerate().map(|(place, &linear)| {
+        let place = [place as u16 % width, place as u16 / width];
+        Rgb565::encode(linear, Some(place)).0
+    });
+    pixels.collect()
+}
+
+#[test]
+fn a_display_shows_the_picture_and_the_caption() {
+    let blob = blob("glass-chess.toml");
+    let scene = blob.scene().expect("the compiler's blob");
+    let [width, height] = display::SIZE;
+    let mut screen = SimulatorDisplay::new(Size::new(width.into(), height.into()));
+    display::draw(&scene, "chess", &mut screen).expect("the display takes everything");
+    let above = height - display::CAPTION as u16;
+    let expected = rendered(&blob, [width, above]);
+    for y in 0..above {
+        for x in 0..width {
+            let found = screen
+                .get_pixel(Point::new(x.into(), y.into()))
+                .into_storage();
+            let place = usize::from(y) * usize::from(width) + usize::from(x);
+            assert_eq!(found, expected[place], "{x}, {y}");
+        }
+    }
+    let mut caption = (above..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+    assert!(caption.any(|[x, y]| {
+        screen
+            .get_pixel(Point::new(x.into(), y.into()))
+            .into_storage()
+            == 0xffff
+    }));
+}
+
+/// Only pixels that can be seen are traced, wherever the display lies.
+#[test]
+fn what_a_display_does_not_show_is_not_traced() {
+    let blob = blob("quick.toml");
+    let scene = blob.scene().expect("the compiler's blob");
+    let settings = Settings {
+        width: 100,
+        height: 60,
+        samples: 1,
+        dither: true,
+        ..Settings::of(&scene)
+    };
+    let renderer = Renderer::<f32, Flagged, { Effects::ALL.0 }>::new(&scene, settings);
+    let renderer = renderer.expect("a renderer");
+    let mut space = Workspace::<f32, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let mut space = space.as_view();
+    let mut screen = SimulatorDisplay::<BinaryColor>::new(Size::new(64, 48));
+    let everything = Rectangle::new(Point::new(-5, -5), Size::new(1000, 1000));
+    for (corner, seen) in [
+        ([0, 0], 64 * 48),
+        ([10, 20], 54 * 28),
+        ([-50, -30], 50 * 30),
+        ([64, 0], 0),
+    ] {
+        let mut counters = Counters::default();
+        let mut moved = screen.translated(corner.into());
+        renderer
+            .draw(&everything, &mut moved, &mut space, &mut counters)
+            .expect("a display that cannot fail");
+        assert_eq!(counters.primary, seen, "{corner:?}");
+    }
+    assert_eq!(screen.size(), Size::new(64, 48));
+}
+
+#[test]
+fn a_panel_on_a_bus_shows_the_picture() {
+    let panel = spi_display::panel(&fixture("quick.toml")).expect("a picture");
+    assert_eq!((panel.width, panel.height), (160, 128));
+    let expected = rendered(&blob("quick.toml"), [160, 128]);
+    let shown: Vec<_> = panel.memory.iter().map(|pixel| pixel.0).collect();
+    assert!(shown == expected);
+    let (last, full) = panel.chunks.split_last().expect("chunks");
+    assert!(full.iter().all(|&bytes| bytes == spi_display::CHUNK));
+    assert_eq!(full.len() * spi_display::CHUNK + last, 2 * 160 * 128);
+}
