@@ -58,7 +58,18 @@ pub(super) fn triangulate(vertices: &[DVec3]) -> Option<Triangulation> {
     if vertices.len() > MAX_CONCAVE {
         return None;
     }
-    Some(Clipper::new(vertices, &flat).run())
+    let crossed = crosses_itself(&flat);
+    let clipped = Clipper::new(vertices, &flat).run();
+    Some(Triangulation {
+        exact: clipped.exact && !crossed,
+        ..clipped
+    })
+}
+
+/// Whether a polygon has an area, as seen along the dominant axis of its normal. One that crosses
+/// itself may have none because its parts cancel out.
+pub(super) fn has_area(vertices: &[DVec3]) -> bool {
+    project(vertices).is_some()
 }
 
 /// The polygon seen along the dominant axis of its normal, counter-clockwise; `None` if it has no
@@ -112,6 +123,33 @@ fn is_strictly_convex(flat: &[Coord<f64>]) -> bool {
             .filter(|&i| goes_right(i) && !goes_right(i + 1))
             .count()
             == 1
+}
+
+/// Whether two sides cross inside both. Cutting alone does not tell: of a pentagram every corner can
+/// be cut off.
+fn crosses_itself(flat: &[Coord<f64>]) -> bool {
+    let n = flat.len();
+    let side = |i: usize| (flat[i], flat[(i + 1) % n]);
+    let extent = |i: usize| {
+        let (a, b) = side(i);
+        (a.x.min(b.x), a.x.max(b.x))
+    };
+    let mut sides: Vec<usize> = (0..n).collect();
+    sides.sort_by(|&i, &j| extent(i).0.total_cmp(&extent(j).0));
+    let apart = |(a, b), c, d| {
+        let (left, right) = (orient2d(a, b, c), orient2d(a, b, d));
+        left > 0.0 && right < 0.0 || left < 0.0 && right > 0.0
+    };
+    sides.iter().enumerate().any(|(place, &i)| {
+        // Those that begin before this one ends.
+        sides[place + 1..]
+            .iter()
+            .take_while(|&&j| extent(j).0 <= extent(i).1)
+            .any(|&j| {
+                let (one, other) = (side(i), side(j));
+                apart(one, other.0, other.1) && apart(other, one.0, one.1)
+            })
+    })
 }
 
 /// The outline that is left while ears are cut off, as a ring of indices.

@@ -54,6 +54,27 @@ fn convex_is_a_fan() {
     );
 }
 
+/// Outlines that cross themselves are told from those that only touch, even where every corner of
+/// them can be cut off.
+#[test]
+fn crossing_outlines_are_not_exact() {
+    let star = |step: usize| -> Vec<(f64, f64)> {
+        let corner = |i: usize| (1.256_637 * (i * step) as f64).sin_cos();
+        (0..5).map(corner).collect()
+    };
+    let bow = [(0.0, 0.0), (3.0, 2.0), (3.0, 0.0), (0.0, 1.0)];
+    // A square with a tooth that reaches out beyond the opposite side.
+    let tooth = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, -1.0), (0.0, 4.0)];
+    for crossing in [&star(2)[..], &bow, &tooth] {
+        for start in 0..crossing.len() {
+            let mut turned = crossing.to_vec();
+            turned.rotate_left(start);
+            assert!(!triangulate(&polygon(&turned)).unwrap().exact, "{turned:?}");
+        }
+    }
+    assert!(triangulate(&polygon(&star(1))).unwrap().exact);
+}
+
 #[test]
 fn concave_arrow() {
     check(&[(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (3.0, 1.0)], 2);

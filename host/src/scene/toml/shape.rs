@@ -1,9 +1,13 @@
 //! The kinds of objects that are shapes.
 
-use super::polygon::{self, Flaw, MAX_CORNERS};
 use super::value::{Fields, Value};
+use crate::scene::polygon::{self, MAX_CONCAVE};
 use crate::scene::{SceneError, Shape};
 use glam::DVec3;
+
+/// The most vertices that a face may have; that they differ is checked in quadratic time.
+const MAX_CORNERS: usize = 1024;
+const _: () = assert!(MAX_CORNERS <= MAX_CONCAVE);
 
 /// The keys of a kind of shape, apart from those of every object.
 pub(super) fn keys(kind: &str) -> &'static [&'static str] {
@@ -100,16 +104,16 @@ fn triangle(fields: &Fields<'_>) -> Result<Shape, SceneError> {
             "`vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]`",
         ));
     }
-    match polygon::triangulate(&vertices) {
-        Ok(_) => Ok(Shape::Mesh {
-            vertices,
-            triangles: vec![[0, 1, 2]],
-        }),
-        Err(_) => Err(value.error(
+    if !polygon::has_area(&vertices) {
+        return Err(value.error(
             "the triangle has no area: its vertices lie on one line",
             "move one of the vertices off that line",
-        )),
+        ));
     }
+    Ok(Shape::Mesh {
+        vertices,
+        triangles: vec![[0, 1, 2]],
+    })
 }
 
 fn mesh(fields: &Fields<'_>) -> Result<Shape, SceneError> {
@@ -122,20 +126,22 @@ fn mesh(fields: &Fields<'_>) -> Result<Shape, SceneError> {
             .iter()
             .map(|&corner| vertices[corner as usize])
             .collect();
-        let cut = polygon::triangulate(&points).map_err(|flaw| match flaw {
-            Flaw::NoArea => face.error(
+        if !polygon::has_area(&points) {
+            return Err(face.error(
                 "this face has no area",
                 "remove the face, or move its vertices off their line",
-            ),
-            Flaw::CrossesItself => face.error(
+            ));
+        }
+        // It has few enough vertices to be cut, whatever its shape.
+        let cut = polygon::triangulate(&points).filter(|cut| cut.exact);
+        let cut = cut.ok_or_else(|| {
+            face.error(
                 "the outline of this face crosses itself",
                 "list its vertices in the order in which they follow around the face",
-            ),
+            )
         })?;
-        triangles.extend(
-            cut.into_iter()
-                .map(|triangle| triangle.map(|corner| corners[corner])),
-        );
+        let named = |triangle: [u32; 3]| triangle.map(|corner| corners[corner as usize]);
+        triangles.extend(cut.triangles.into_iter().map(named));
     }
     if triangles.is_empty() {
         return Err(faces.error("this mesh has no face", "add faces, or remove the mesh"));
