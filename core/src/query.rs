@@ -43,6 +43,14 @@ struct Best<N> {
     part: Part,
 }
 
+impl<N> Best<N> {
+    /// Decides between primitives of one number, which only a forged blob has: its answers do not
+    /// depend on the structure either.
+    fn slot(&self) -> (u8, u32) {
+        (self.kind as u8, self.index)
+    }
+}
+
 /// The search for hits, one leaf at a time.
 struct Search<'s, 'a, N: Number, K> {
     scene: &'s Scene<'a>,
@@ -82,9 +90,10 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             return;
         };
         let primitive = self.scene.primitive(kind, index);
+        let slot = (kind as u8, index);
         if self
             .best
-            .is_none_or(|best| t < best.t || primitive < best.primitive)
+            .is_none_or(|best| t < best.t || (primitive, slot) < (best.primitive, best.slot()))
         {
             self.best = Some(Best {
                 t,

@@ -126,7 +126,8 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// The number, in scene-file order, of a primitive given by kind and slot.
+    /// The number, in scene-file order, of a primitive given by kind and slot. Below the number of
+    /// primitives; only a forged blob has two slots of one number.
     #[inline]
     pub fn primitive(&self, kind: Kind, slot: u32) -> u32 {
         let slot = self.shapes.slot(kind, slot);

@@ -1,9 +1,14 @@
 //! Headers, section tables and hierarchies that lie, with a checksum that fits.
 
 use super::{Fate, sealed, small_blob, speaks, works};
+use glam::DVec3;
 use gridel_core::accel::Link;
 use gridel_core::blob::SectionKind;
 use gridel_core::blob::record::{FlaggedPair, Header, Pair, SectionEntry};
+use gridel_core::{Number, Scene, Structure};
+use gridel_host::scene::Shape;
+use gridel_tests::query::{UnitRay, held, through};
+use gridel_tests::scenes;
 use std::mem::offset_of;
 
 /// A forged header must be refused.
@@ -208,4 +213,53 @@ fn cycles_and_orphans_are_refused() {
     eprintln!("forged links: {fate:?}");
     // A leaf's pair may count no pairs before it and mean the same.
     assert!(fate.refused > 20 * fate.accepted);
+}
+
+/// A roof of many gables. All its triangles claim to be primitive 0; rays along the edges that two
+/// of them share must meet the same one through every structure.
+#[test]
+fn slots_of_one_primitive_do_not_divide_structures() {
+    let gables = 24;
+    let corner = |number: u32| {
+        let (row, side) = (number / 2, number % 2);
+        DVec3::new(row.into(), f64::from(row % 2), 4.0 * f64::from(side))
+    };
+    let roof = scenes::of([Shape::Mesh {
+        vertices: (0..2 * gables + 2).map(corner).collect(),
+        triangles: (0..gables)
+            .flat_map(|row| {
+                let first = 2 * row;
+                [[0, 1, 2], [1, 3, 2]].map(|face| face.map(|vertex| first + vertex))
+            })
+            .collect(),
+    }]);
+    let mut bytes = scenes::blob(&roof, 24).bytes().to_vec();
+    let (_, order) = section(&bytes, SectionKind::Order);
+    let place = order.offset as usize;
+    bytes[place..place + order.count as usize * usize::from(order.stride)].fill(0);
+    let blob = sealed(&bytes);
+    let scene = blob.scene().expect("nothing in it is out of range");
+
+    fn agree<N: Number>(scene: &Scene<'_>) -> usize {
+        let [x, _, z] = scene.bounds().0.map(|sides| sides.map(f64::from));
+        let mut met = 0;
+        for step in 0..=480 {
+            for along in [0.25, 0.5, 0.7] {
+                let across = f64::from(step) / 480.0;
+                let point = [x[0] + across * (x[1] - x[0]), z[0] + along * (z[1] - z[0])];
+                let ray = UnitRay::new([point[0], 32_000.0, point[1]], [0.0, -1.0, 0.0]);
+                let ray = ray.ready::<N>(scene).expect("a ray");
+                let list = through(Structure::List, scene, &ray);
+                met += usize::from(list.1);
+                for structure in held(scene) {
+                    let found = through(structure, scene, &ray);
+                    assert_eq!(found, list, "{}, {}", N::FORMAT.name(), structure.name());
+                }
+            }
+        }
+        met
+    }
+    assert!(agree::<gridel_core::Fixed>(&scene) > 1400);
+    assert!(agree::<f32>(&scene) > 1400);
+    assert!(agree::<f64>(&scene) > 1400);
 }
