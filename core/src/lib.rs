@@ -12,6 +12,8 @@
 //! floating-point unit, `f32`, `f64`; and over the acceleration structure ([`List`], [`Bvh`],
 //! [`Flagged`]). The structure never changes a bit of an answer.
 //!
+//! The page [`boards`] leads from a scene file to a picture on your own board.
+//!
 //! # Memory
 //! The blob stays where it is. The caller owns the two things that are written to: a [`Stack`] of
 //! 12 bytes an entry, whose depth the blob's header states and `from_bytes` proves, and, for
@@ -25,6 +27,9 @@
 #![deny(missing_docs)]
 // A build without some structures leaves tools unused that they share.
 #![cfg_attr(not(feature = "all-structures"), allow(dead_code))]
+
+#[doc = include_str!("../BOARDS.md")]
+pub mod boards {}
 
 pub mod accel;
 pub mod blob;
