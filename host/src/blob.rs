@@ -1,8 +1,9 @@
 //! Blobs in memory and on disk.
 
-use gridel_core::Scene;
-use gridel_core::blob::record::ALIGNMENT;
-use std::io;
+use gridel_core::blob::record::{ALIGNMENT, MAGIC};
+use gridel_core::{Scene, Structure};
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 
 /// A blob's bytes, aligned as the core asks.
@@ -39,4 +40,30 @@ impl Blob {
     pub fn scene(&self) -> Result<Scene<'_>, gridel_core::BlobError> {
         Scene::from_bytes(self.bytes())
     }
+}
+
+/// Whether a file begins as a blob does, or is named like one and so was meant as one. The last two
+/// bytes of the magic do not count, so that a blob that was mangled as text is called a broken blob.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn is_blob(path: &Path) -> io::Result<bool> {
+    let file = File::open(path)?;
+    if !file.metadata()?.is_file() {
+        return Err(io::Error::other("it is not a file"));
+    }
+    let mut start = Vec::new();
+    file.take(6).read_to_end(&mut start)?;
+    let named = path
+        .extension()
+        .is_some_and(|extension| extension == "gridel");
+    Ok(named || start == MAGIC[..6])
+}
+
+/// The structures that a scene holds, the one that a verb takes unless it is told first.
+pub fn best_structures(scene: &Scene<'_>) -> impl Iterator<Item = Structure> {
+    const BEST_FIRST: [Structure; 3] = [Structure::Flagged, Structure::Bvh, Structure::List];
+    BEST_FIRST
+        .into_iter()
+        .filter(|&structure| scene.holds(structure))
 }

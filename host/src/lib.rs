@@ -6,6 +6,7 @@
 //! | make a sample scene | [`sample`] |
 //! | compile a scene into a blob | [`compile`] |
 //! | hold a blob and check it | [`blob`] |
+//! | hold scenes to recorded pictures and to budgets | [`check`] |
 //! | render a blob on all cores | [`render`], then [`picture`] to encode what comes out |
 //! | compare structures on a scene | [`compare`] |
 //! | trace rays of one's own | [`trace`], and [`npy`] for NumPy's files |
@@ -16,6 +17,7 @@
 //!
 //! The program `gridel` is a thin layer over this library: what it does can be done from here.
 pub mod blob;
+pub mod check;
 pub mod compare;
 pub mod compile;
 pub mod explain;

@@ -6,6 +6,17 @@ use gridel_core::{Rgb565, Rgb888};
 use std::io::{self, Write};
 use std::path::Path;
 
+/// A hash of a picture: FNV-1a with 64 bits over its linear channels of 16 bits, the lower byte
+/// first, red before green before blue, row by row; in hexadecimal.
+pub fn hash(pixels: &[[u16; 3]]) -> String {
+    let channels = pixels.iter().flatten();
+    let bytes = channels.flat_map(|channel| channel.to_le_bytes());
+    let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    });
+    format!("{hash:016x}")
+}
+
 /// How a picture is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureFormat {

@@ -46,6 +46,11 @@ pub fn fixture_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures")
 }
 
+/// What the fixtures are held to.
+pub fn manifest() -> PathBuf {
+    fixture_folder().join("check.toml")
+}
+
 /// All scenes in the project's folder of fixtures, by name.
 pub fn fixtures() -> Vec<(String, Scene)> {
     let folder = fixture_folder();
@@ -53,6 +58,7 @@ pub fn fixtures() -> Vec<(String, Scene)> {
         .expect("the folder of fixtures")
         .map(|entry| entry.expect("an entry").path())
         .filter(|path| path.extension().is_some_and(|e| e == "toml" || e == "pdb"))
+        .filter(|path| *path != manifest())
         .collect();
     paths.sort();
     assert!(paths.len() >= 10, "{} fixtures", paths.len());

@@ -1,8 +1,8 @@
 //! Pictures: the same bytes however they are made, and what physics demands of them.
 //!
-//! `fixtures/recorded/hashes.toml` holds a hash of a small picture of every fixture in every number format.
-//! After a change that is meant to change pictures, `GRIDEL_BLESS=1 cargo test -p gridel-tests
-//! --test render` writes them anew; the difference belongs into the same commit.
+//! `fixtures/check.toml` holds a hash of a small picture of every fixture in every number format,
+//! and what it costs. After a change that is meant to change these, `gridel check --bless
+//! fixtures/check.toml` writes them anew; the difference belongs into the same commit.
 
 use glam::DVec3;
 use gridel_core::accel::MAX_STACK_DEPTH;
@@ -12,10 +12,10 @@ use gridel_core::{
     Structure, Workspace,
 };
 use gridel_host::blob::Blob;
+use gridel_host::check::{self, Manifest};
 use gridel_host::render::{Job, Picture, render};
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Scene as SceneFile, Shape};
 use gridel_tests::{every_format, scenes};
-use std::collections::BTreeMap;
 
 fn small(scene: &Scene<'_>) -> Settings {
     Settings {
@@ -40,50 +40,22 @@ fn picture(scene: &Scene<'_>, job: &Job) -> Picture {
     render(scene, job, &|| ()).expect("a picture")
 }
 
-/// FNV-1a with 64 bits over the channels.
-fn hash(pixels: &[[u16; 3]]) -> String {
-    let bytes = pixels
-        .iter()
-        .flatten()
-        .flat_map(|channel| channel.to_le_bytes());
-    let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    });
-    format!("{hash:016x}")
-}
-
-type Hashes = BTreeMap<String, BTreeMap<String, String>>;
-
 #[test]
-fn fixtures_have_their_recorded_hashes() {
-    let path = scenes::fixture_folder().join("recorded/hashes.toml");
-    let mut hashes = Hashes::new();
-    for (name, scene) in scenes::fixtures() {
-        let blob = scenes::blob(&scene, 24);
-        let scene = blob.scene().expect("a scene");
-        let of = |format: Format| {
-            let hash = hash(&picture(&scene, &job(format, small(&scene))).pixels);
-            (String::from(format.name()), hash)
-        };
-        hashes.insert(name, Format::ALL.map(of).into());
+fn fixtures_are_as_recorded() {
+    let manifest = Manifest::read(&scenes::manifest()).expect("fixtures/check.toml");
+    for (name, _) in scenes::fixtures() {
+        let listed = manifest.checks.iter().find(|check| check.name == name);
+        let check = listed.unwrap_or_else(|| panic!("fixtures/check.toml has no check {name}"));
+        assert_eq!(check.formats, Format::ALL, "{name}");
+        assert!(check.hash.is_some(), "{name}");
     }
-    if std::env::var_os("GRIDEL_BLESS").is_some() {
-        let mut text = String::from("# Written by the test `render`, which says how and when.\n");
-        for (name, formats) in &hashes {
-            text += &format!("\n[{name}]\n");
-            text.extend(
-                formats
-                    .iter()
-                    .map(|(format, hash)| format!("{format} = \"{hash}\"\n")),
-            );
-        }
-        std::fs::write(&path, text).expect("the hashes were written");
-    }
-    let text = std::fs::read_to_string(&path).expect("fixtures/recorded/hashes.toml");
-    let recorded: Hashes = toml::from_str(&text).expect("hashes");
+    let report = check::run(&manifest, &|| ());
+    eprintln!("{}", report.table());
+    let (broken, not_run) = (report.broken(), report.not_run());
     assert_eq!(
-        hashes, recorded,
-        "set GRIDEL_BLESS=1 if pictures were meant to change"
+        (broken, not_run),
+        (0, 0),
+        "see `gridel check --help` if that was meant to change"
     );
 }
 

@@ -15,6 +15,8 @@ pub enum Failure {
     Usage(Report),
     /// A budget would be exceeded.
     Refused(Report),
+    /// A check does not hold, as the report says that was printed.
+    Broken,
     /// Nobody reads standard output any more, which is nobody's fault.
     ClosedPipe,
 }
@@ -90,6 +92,7 @@ impl Failure {
     pub fn report(self) -> ExitCode {
         let (report, code) = match self {
             Self::ClosedPipe => return ExitCode::SUCCESS,
+            Self::Broken => return ExitCode::from(1),
             Self::Failed(report) => (report, 1),
             Self::Usage(report) => (report, 2),
             Self::Refused(report) => (report, 3),

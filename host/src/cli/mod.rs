@@ -17,6 +17,7 @@ mod progress;
 mod source;
 
 mod build;
+mod check;
 mod compare;
 mod explain;
 mod inspect;
@@ -47,13 +48,14 @@ enum Verb {
     Verify(verify::Arguments),
     Explain(explain::Arguments),
     Sample(sample::Arguments),
+    Check(check::Arguments),
 }
 
 /// What scripts can rely on; every verb's help shows it.
 const EXIT_CODES: &str = "\
 Exit codes:
   0  done
-  1  failed: an input is broken, or a file cannot be read or written
+  1  failed: an input is broken, a file cannot be read or written, or a check does not hold
   2  the command line is wrong, by itself or for this input
   3  refused: the blob would be larger than --max-bytes
   130  interrupted; no output is left half written";
@@ -74,6 +76,7 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
         Verb::Verify(arguments) => verify::run(&arguments),
         Verb::Explain(arguments) => explain::run(&arguments),
         Verb::Sample(arguments) => sample::run(&arguments),
+        Verb::Check(arguments) => check::run(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

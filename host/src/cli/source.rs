@@ -5,14 +5,11 @@ use super::arguments::SceneOptions;
 use super::failure::Failure;
 use super::output::warn;
 use super::progress::Progress;
-use gridel_core::blob::record::MAGIC;
 use gridel_core::{BlobError, Kind, Scene, Structure};
-use gridel_host::blob::Blob;
+use gridel_host::blob::{self, Blob};
 use gridel_host::compile::{self, Compiled};
 use gridel_host::explain::Names;
 use gridel_host::scene;
-use std::fs::File;
-use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 /// A blob, from wherever it came.
@@ -126,8 +123,7 @@ impl Source {
         scene: &Scene<'_>,
         asked: Option<Structure>,
     ) -> Result<Structure, Failure> {
-        const BEST_FIRST: [Structure; 3] = [Structure::Flagged, Structure::Bvh, Structure::List];
-        let mut held = BEST_FIRST.into_iter().filter(|&s| scene.holds(s));
+        let mut held = blob::best_structures(scene);
         match asked {
             Some(structure) if scene.holds(structure) => Ok(structure),
             None => Ok(held.next().unwrap_or(Structure::List)),
@@ -168,21 +164,6 @@ fn names(scene: &scene::Scene) -> Names {
     }
 }
 
-/// Whether a file begins as a blob does, or is named like one and so was meant as one. The last two
-/// bytes of the magic do not count, so that a blob that was mangled as text is called a broken blob.
 fn is_blob(path: &Path) -> Result<bool, Failure> {
-    let begins = || -> io::Result<bool> {
-        let file = File::open(path)?;
-        if !file.metadata()?.is_file() {
-            return Err(io::Error::other("it is not a file"));
-        }
-        let mut start = Vec::new();
-        file.take(6).read_to_end(&mut start)?;
-        Ok(start == MAGIC[..6])
-    };
-    let begins = begins().map_err(|error| Failure::reading(path, &error))?;
-    Ok(begins
-        || path
-            .extension()
-            .is_some_and(|extension| extension == "gridel"))
+    blob::is_blob(path).map_err(|error| Failure::reading(path, &error))
 }

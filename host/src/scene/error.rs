@@ -3,7 +3,7 @@
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 use std::path::{Path, PathBuf};
 
-/// An error in a scene file (or in one that it imports).
+/// An error in a scene file (or in one that it imports), or in a manifest of checks.
 #[derive(Debug)]
 pub struct SceneError {
     /// The file that is at fault.

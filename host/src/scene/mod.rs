@@ -20,6 +20,7 @@ pub use error::SceneError;
 
 use glam::DVec3;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A linear RGB colour; components at or above 0, 1.0 being display white.
 pub type Color = [f64; 3];
@@ -264,7 +265,8 @@ pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneEr
 /// A place in a scene file, for messages.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
-    pub file: PathBuf,
+    /// Shared by all objects of the file.
+    pub file: Arc<PathBuf>,
     /// Line, counted from 1; 0 where the format has no lines.
     pub line: usize,
 }

@@ -4,11 +4,12 @@
 use super::{Place, SceneError};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A text file in memory. Bytes that are not UTF-8 become U+FFFD: harmless in a comment or a
 /// name, and an error with its line wherever a number or a keyword is expected.
 pub(super) struct Source {
-    pub(super) path: PathBuf,
+    pub(super) path: Arc<PathBuf>,
     pub(super) text: String,
 }
 
@@ -34,7 +35,7 @@ impl Source {
             text = text.replace('\r', "\n");
         }
         Self {
-            path: path.to_owned(),
+            path: Arc::new(path.to_owned()),
             text,
         }
     }
@@ -49,7 +50,7 @@ impl Source {
 
     pub(super) fn place(&self, line: usize) -> Place {
         Place {
-            file: self.path.clone(),
+            file: Arc::clone(&self.path),
             line,
         }
     }

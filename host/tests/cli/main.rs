@@ -3,6 +3,7 @@
 mod program;
 
 mod build;
+mod check;
 mod compare;
 mod ending;
 mod inspect;

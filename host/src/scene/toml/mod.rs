@@ -230,11 +230,10 @@ mod import;
 mod material;
 mod object;
 mod place;
-mod polygon;
 mod shape;
-mod source;
+pub(crate) mod source;
 mod transform;
-mod value;
+pub(crate) mod value;
 mod view;
 
 #[cfg(test)]

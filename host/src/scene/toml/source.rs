@@ -1,17 +1,18 @@
-//! The text of a scene file, and errors and places in it.
+//! The text of a TOML file, and errors and places in it.
 
 use crate::scene::{Place, SceneError};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use toml::Spanned;
 use toml::de::DeTable;
 
 /// Byte offsets into the text of a scene file.
-pub(super) type Span = Range<usize>;
+pub(crate) type Span = Range<usize>;
 
-/// A scene file that was read.
-pub(super) struct Source {
-    pub(super) path: PathBuf,
+/// A file that was read.
+pub(crate) struct Source {
+    pub(crate) path: Arc<PathBuf>,
     text: String,
     /// The offset at which each line starts; counting lines anew for every object would make long
     /// files quadratic.
@@ -20,17 +21,17 @@ pub(super) struct Source {
 
 /// A name that refers to something else in the file, and where it stands.
 #[derive(Clone, Debug)]
-pub(super) struct Name {
-    pub(super) text: String,
-    pub(super) span: Span,
+pub(crate) struct Name {
+    pub(crate) text: String,
+    pub(crate) span: Span,
 }
 
 impl Source {
-    pub(super) fn read(path: &Path) -> Result<Self, SceneError> {
+    pub(crate) fn read(path: &Path) -> Result<Self, SceneError> {
         let bytes = std::fs::read(path).map_err(|error| {
             SceneError::new(
                 path,
-                format!("the scene file cannot be read: {error}"),
+                format!("the file cannot be read: {error}"),
                 "check the path and the permissions of the file",
             )
         })?;
@@ -50,13 +51,17 @@ impl Source {
         let newlines = text.match_indices('\n').map(|(offset, _)| offset + 1);
         let line_starts = std::iter::once(0).chain(newlines).collect();
         Ok(Self {
-            path: path.to_owned(),
+            path: Arc::new(path.to_owned()),
             text,
             line_starts,
         })
     }
 
-    pub(super) fn parse(&self) -> Result<Spanned<DeTable<'_>>, SceneError> {
+    pub(crate) fn text(&self) -> &str {
+        &self.text
+    }
+
+    pub(crate) fn parse(&self) -> Result<Spanned<DeTable<'_>>, SceneError> {
         DeTable::parse(&self.text).map_err(|error| {
             self.error(
                 &error.span().unwrap_or(0..0),
@@ -67,7 +72,7 @@ impl Source {
         })
     }
 
-    pub(super) fn error(
+    pub(crate) fn error(
         &self,
         span: &Span,
         cause: impl Into<String>,
@@ -80,19 +85,19 @@ impl Source {
         )
     }
 
-    pub(super) fn place(&self, span: &Span) -> Place {
+    pub(crate) fn place(&self, span: &Span) -> Place {
         let line = self
             .line_starts
             .partition_point(|&start| start <= span.start);
         Place {
-            file: self.path.clone(),
+            file: Arc::clone(&self.path),
             line,
         }
     }
 }
 
 /// The name among `known` that is most like `wanted`.
-pub(super) fn nearest<'k>(wanted: &str, known: impl Iterator<Item = &'k str>) -> Option<&'k str> {
+pub(crate) fn nearest<'k>(wanted: &str, known: impl Iterator<Item = &'k str>) -> Option<&'k str> {
     let likeness = |name: &str| strsim::jaro_winkler(wanted, name);
     known.max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
 }

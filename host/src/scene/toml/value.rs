@@ -9,32 +9,32 @@ use toml::de::{DeTable, DeValue};
 
 /// A value, and the key under which it stands.
 #[derive(Clone, Copy)]
-pub(super) struct Value<'a> {
-    pub(super) source: &'a Source,
-    pub(super) key: &'a str,
+pub(crate) struct Value<'a> {
+    pub(crate) source: &'a Source,
+    pub(crate) key: &'a str,
     node: &'a Spanned<DeValue<'a>>,
 }
 
 /// A table whose keys are known to be valid ones.
-pub(super) struct Fields<'a> {
-    pub(super) source: &'a Source,
-    pub(super) span: Span,
+pub(crate) struct Fields<'a> {
+    pub(crate) source: &'a Source,
+    pub(crate) span: Span,
     /// What the table describes, for messages.
     what: &'a str,
     table: &'a DeTable<'a>,
 }
 
 impl<'a> Value<'a> {
-    pub(super) fn span(self) -> Span {
+    pub(crate) fn span(self) -> Span {
         self.node.span()
     }
 
-    pub(super) fn error(self, cause: impl Into<String>, remedy: impl Into<String>) -> SceneError {
+    pub(crate) fn error(self, cause: impl Into<String>, remedy: impl Into<String>) -> SceneError {
         self.source.error(&self.span(), cause, remedy)
     }
 
     /// The error of a value of another type than `expected`, which reads like "three numbers".
-    pub(super) fn mistyped(self, expected: &str, example: &str) -> SceneError {
+    pub(crate) fn mistyped(self, expected: &str, example: &str) -> SceneError {
         let found = match self.node.get_ref() {
             DeValue::Array(items) => format!("an array of {}", items.len()),
             DeValue::Integer(_) => "an integer".into(),
@@ -48,7 +48,7 @@ impl<'a> Value<'a> {
     }
 
     /// A finite number; an integer will do.
-    pub(super) fn number(self) -> Result<f64, SceneError> {
+    pub(crate) fn number(self) -> Result<f64, SceneError> {
         let number = match self.node.get_ref() {
             DeValue::Float(float) => float.as_str().parse().ok(),
             DeValue::Integer(integer) => i128::from_str_radix(integer.as_str(), integer.radix())
@@ -68,7 +68,7 @@ impl<'a> Value<'a> {
     }
 
     /// A number above 0.
-    pub(super) fn positive(self) -> Result<f64, SceneError> {
+    pub(crate) fn positive(self) -> Result<f64, SceneError> {
         let number = self.number()?;
         if number > 0.0 {
             return Ok(number);
@@ -80,7 +80,7 @@ impl<'a> Value<'a> {
     }
 
     /// A number within `range`.
-    pub(super) fn number_in(self, range: RangeInclusive<f64>) -> Result<f64, SceneError> {
+    pub(crate) fn number_in(self, range: RangeInclusive<f64>) -> Result<f64, SceneError> {
         let number = self.number()?;
         if range.contains(&number) {
             return Ok(number);
@@ -89,7 +89,7 @@ impl<'a> Value<'a> {
     }
 
     /// An integer within `range`.
-    pub(super) fn integer_in(self, range: RangeInclusive<u32>) -> Result<u32, SceneError> {
+    pub(crate) fn integer_in(self, range: RangeInclusive<u32>) -> Result<u32, SceneError> {
         let DeValue::Integer(integer) = self.node.get_ref() else {
             let example = format!("`{} = {}`", self.key, range.start());
             return Err(self.mistyped("an integer", &example));
@@ -98,6 +98,15 @@ impl<'a> Value<'a> {
             Ok(number) if range.contains(&number) => Ok(number),
             _ => Err(self.out_of_range(integer, range.start(), range.end())),
         }
+    }
+
+    /// A whole number at or above 0.
+    pub(crate) fn count(self) -> Result<u64, SceneError> {
+        let DeValue::Integer(integer) = self.node.get_ref() else {
+            return Err(self.mistyped("a whole number", &format!("`{} = 1024`", self.key)));
+        };
+        u64::from_str_radix(integer.as_str(), integer.radix())
+            .map_err(|_| self.out_of_range(integer, 0, i64::MAX))
     }
 
     fn out_of_range<T: std::fmt::Display>(
@@ -113,7 +122,7 @@ impl<'a> Value<'a> {
     }
 
     /// Three numbers.
-    pub(super) fn vector(self) -> Result<DVec3, SceneError> {
+    pub(crate) fn vector(self) -> Result<DVec3, SceneError> {
         let mistyped = || self.mistyped("three numbers", &format!("`{} = [0, 1, 0]`", self.key));
         let DeValue::Array(items) = self.node.get_ref() else {
             return Err(mistyped());
@@ -126,7 +135,7 @@ impl<'a> Value<'a> {
     }
 
     /// Three numbers that are not all 0.
-    pub(super) fn direction(self) -> Result<DVec3, SceneError> {
+    pub(crate) fn direction(self) -> Result<DVec3, SceneError> {
         let vector = self.vector()?;
         if vector == DVec3::ZERO {
             let cause = format!("`{}` is [0, 0, 0], which points nowhere", self.key);
@@ -136,7 +145,7 @@ impl<'a> Value<'a> {
     }
 
     /// A linear colour: three numbers, one number for grey, or an sRGB string.
-    pub(super) fn color(self) -> Result<Color, SceneError> {
+    pub(crate) fn color(self) -> Result<Color, SceneError> {
         match self.node.get_ref() {
             DeValue::String(text) => srgb(text).ok_or_else(|| {
                 self.error(
@@ -149,7 +158,7 @@ impl<'a> Value<'a> {
     }
 
     /// Three numbers at or above 0, or one for all three channels.
-    pub(super) fn coefficients(self) -> Result<Color, SceneError> {
+    pub(crate) fn coefficients(self) -> Result<Color, SceneError> {
         let color = match self.node.get_ref() {
             DeValue::Array(items) if items.len() == 3 => self.vector()?.to_array(),
             DeValue::Float(_) | DeValue::Integer(_) => [self.number()?; 3],
@@ -167,14 +176,14 @@ impl<'a> Value<'a> {
         Ok(color)
     }
 
-    pub(super) fn boolean(self) -> Result<bool, SceneError> {
+    pub(crate) fn boolean(self) -> Result<bool, SceneError> {
         match self.node.get_ref() {
             DeValue::Boolean(value) => Ok(*value),
             _ => Err(self.mistyped("true or false", &format!("`{} = true`", self.key))),
         }
     }
 
-    pub(super) fn text(self) -> Result<&'a str, SceneError> {
+    pub(crate) fn text(self) -> Result<&'a str, SceneError> {
         match self.node.get_ref() {
             DeValue::String(text) => Ok(text),
             _ => Err(self.mistyped("text", &format!("`{} = \"...\"`", self.key))),
@@ -182,7 +191,7 @@ impl<'a> Value<'a> {
     }
 
     /// Text that is not empty.
-    pub(super) fn filled(self) -> Result<&'a str, SceneError> {
+    pub(crate) fn filled(self) -> Result<&'a str, SceneError> {
         match self.text()? {
             "" => Err(self.error(
                 format!("`{}` is empty", self.key),
@@ -192,7 +201,7 @@ impl<'a> Value<'a> {
         }
     }
 
-    pub(super) fn name(self) -> Result<Name, SceneError> {
+    pub(crate) fn name(self) -> Result<Name, SceneError> {
         Ok(Name {
             text: self.filled()?.to_owned(),
             span: self.span(),
@@ -200,7 +209,7 @@ impl<'a> Value<'a> {
     }
 
     /// One of a few words.
-    pub(super) fn word(self, words: &[&'static str]) -> Result<&'static str, SceneError> {
+    pub(crate) fn word(self, words: &[&'static str]) -> Result<&'static str, SceneError> {
         let text = self.text()?;
         words
             .iter()
@@ -216,7 +225,7 @@ impl<'a> Value<'a> {
     }
 
     /// The values of an array; `example` shows one.
-    pub(super) fn items(
+    pub(crate) fn items(
         self,
         example: &str,
     ) -> Result<impl ExactSizeIterator<Item = Value<'a>>, SceneError> {
@@ -226,11 +235,11 @@ impl<'a> Value<'a> {
         }
     }
 
-    pub(super) fn is_array(self) -> bool {
+    pub(crate) fn is_array(self) -> bool {
         self.node.get_ref().is_array()
     }
 
-    pub(super) fn is_table(self) -> bool {
+    pub(crate) fn is_table(self) -> bool {
         self.node.get_ref().is_table()
     }
 
@@ -245,12 +254,12 @@ impl<'a> Value<'a> {
     }
 
     /// The table's fields, all of whose keys must be in one of the lists in `keys`.
-    pub(super) fn fields(self, what: &'a str, keys: &[&[&str]]) -> Result<Fields<'a>, SceneError> {
+    pub(crate) fn fields(self, what: &'a str, keys: &[&[&str]]) -> Result<Fields<'a>, SceneError> {
         Fields::new(self.source, self.span(), self.table()?, what, keys)
     }
 
     /// The value of one key of a table, whatever its other keys are.
-    pub(super) fn member(self, what: &'a str, key: &str) -> Result<Value<'a>, SceneError> {
+    pub(crate) fn member(self, what: &'a str, key: &str) -> Result<Value<'a>, SceneError> {
         let (source, span, table) = (self.source, self.span(), self.table()?);
         Fields {
             source,
@@ -262,7 +271,7 @@ impl<'a> Value<'a> {
     }
 
     /// The named tables inside this one, in the order of the file.
-    pub(super) fn entries(self) -> Result<Vec<(Name, Value<'a>)>, SceneError> {
+    pub(crate) fn entries(self) -> Result<Vec<(Name, Value<'a>)>, SceneError> {
         let entries = self.table()?.iter().map(|(key, node)| {
             let name = Name {
                 text: key.get_ref().to_string(),
@@ -284,7 +293,7 @@ impl<'a> Value<'a> {
 }
 
 impl<'a> Fields<'a> {
-    pub(super) fn new(
+    pub(crate) fn new(
         source: &'a Source,
         span: Span,
         table: &'a DeTable<'a>,
@@ -313,7 +322,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    pub(super) fn get(&self, key: &str) -> Option<Value<'a>> {
+    pub(crate) fn get(&self, key: &str) -> Option<Value<'a>> {
         let (key, node) = self.table.get_key_value(key)?;
         Some(Value {
             source: self.source,
@@ -322,7 +331,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    pub(super) fn require(&self, key: &str) -> Result<Value<'a>, SceneError> {
+    pub(crate) fn require(&self, key: &str) -> Result<Value<'a>, SceneError> {
         self.get(key).ok_or_else(|| {
             self.source.error(
                 &self.span,
@@ -333,7 +342,7 @@ impl<'a> Fields<'a> {
     }
 
     /// What `read` makes of the key's value, or `default` without one.
-    pub(super) fn or<T>(
+    pub(crate) fn or<T>(
         &self,
         key: &str,
         default: T,

@@ -56,7 +56,7 @@ fn bytes_that_are_no_text() {
         missing
             .unwrap_err()
             .cause
-            .starts_with("the scene file cannot be read")
+            .starts_with("the file cannot be read")
     );
 }
 

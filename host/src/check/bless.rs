@@ -1,0 +1,153 @@
+//! Records what was found in place of what was expected, where that is broken.
+
+use super::manifest::Manifest;
+use super::report::{Figure, Key, Record, Report};
+use crate::output::write_whole;
+use std::collections::BTreeSet;
+use std::io;
+use std::path::PathBuf;
+use toml_edit::{DocumentMut, InlineTable, Item, Value};
+
+/// What a manifest becomes.
+#[derive(Clone, Debug)]
+pub struct Blessed {
+    path: PathBuf,
+    old: String,
+    new: String,
+    references: Vec<(PathBuf, super::Image)>,
+    /// What is broken and nothing that can be recorded: names of checks and what of them.
+    pub left: Vec<String>,
+}
+
+/// Puts the figures that were found where the manifest has others that are broken. What holds
+/// stays as it is, and so do comments and layout.
+pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
+    let mut blessed = Blessed {
+        path: manifest.path.clone(),
+        old: manifest.text.clone(),
+        new: manifest.text.clone(),
+        references: Vec::new(),
+        left: Vec::new(),
+    };
+    // It was read before, so it is TOML.
+    let Ok(mut document) = manifest.text.parse::<DocumentMut>() else {
+        return blessed;
+    };
+    let mut values = Vec::<((usize, &[Key]), &Figure)>::new();
+    let mut pictures = BTreeSet::new();
+    for finding in &report.findings {
+        match &finding.record {
+            Some(Record::Value {
+                check,
+                keys,
+                figure,
+            }) => {
+                // The formats of a check share its budgets: the largest figure counts.
+                let place = (*check, keys.as_slice());
+                match values.iter_mut().find(|(other, _)| *other == place) {
+                    Some((_, recorded)) if recorded.within(figure) => *recorded = figure,
+                    Some(_) => {}
+                    None => values.push((place, figure)),
+                }
+            }
+            // The first format's picture becomes the reference of all.
+            Some(Record::Picture(path, image)) if pictures.insert(path) => {
+                blessed.references.push((path.clone(), image.clone()));
+            }
+            None if matches!(finding.outcome, super::Outcome::Broken(_)) => {
+                blessed
+                    .left
+                    .push(format!("{}: {}", finding.check, finding.what));
+            }
+            Some(Record::Picture(..)) | None => {}
+        }
+    }
+    if values.is_empty() {
+        return blessed;
+    }
+    for ((check, keys), figure) in values {
+        let checks = document.get_mut("check");
+        if let Some(table) = checks.and_then(|checks| checks.get_mut(check)) {
+            set(table, keys, value(figure));
+        }
+    }
+    blessed.new = document.to_string();
+    blessed
+}
+
+impl Blessed {
+    /// The change of the manifest as a unified diff, and the references that are written; empty if
+    /// nothing changes.
+    pub fn diff(&self) -> String {
+        let name = self.path.display().to_string();
+        let diff = similar::TextDiff::from_lines(&self.old, &self.new);
+        let mut text = diff
+            .unified_diff()
+            .context_radius(2)
+            .header(&name, &name)
+            .to_string();
+        for (path, _) in &self.references {
+            text += &format!("new reference {}\n", path.display());
+        }
+        text
+    }
+
+    /// Writes the references and the manifest, each whole or not at all.
+    ///
+    /// # Errors
+    /// If a file cannot be written, with its path.
+    pub fn write(&self) -> Result<(), (PathBuf, io::Error)> {
+        for (path, image) in &self.references {
+            write_whole(path, |out| image.write(out)).map_err(|error| (path.clone(), error))?;
+        }
+        if self.old != self.new {
+            write_whole(&self.path, |out| out.write_all(self.new.as_bytes()))
+                .map_err(|error| (self.path.clone(), error))?;
+        }
+        Ok(())
+    }
+}
+
+fn value(figure: &Figure) -> Value {
+    match figure {
+        // Above what TOML's integers hold there are no files either.
+        Figure::Count(count) => i64::try_from(*count).unwrap_or(i64::MAX).into(),
+        // Rounded up, so that the figure itself is within.
+        Figure::Mean(mean) => ((mean * 1000.0).ceil() / 1000.0).into(),
+        Figure::Hash(hash) => hash.as_str().into(),
+    }
+}
+
+/// Sets a value below a table. What is around it stays.
+fn set(table: &mut Item, keys: &[Key], new: Value) {
+    let [key, rest @ ..] = keys else {
+        // Comments and spaces around the old value.
+        let decor = table.as_value().map(|old| old.decor().clone());
+        *table = Item::Value(new);
+        if let (Some(decor), Some(value)) = (decor, table.as_value_mut()) {
+            *value.decor_mut() = decor;
+        }
+        return;
+    };
+    match key {
+        Key::Item(index) => {
+            if let Some(item) = table.get_mut(*index) {
+                set(item, rest, new);
+            }
+        }
+        Key::Name(name) => {
+            if let Some(item) = table.get_mut(name.as_str()) {
+                set(item, rest, new);
+            } else if let Some(table) = table.as_table_like_mut() {
+                let mut item = match rest {
+                    [] => Item::Value(new.clone()),
+                    _ => Item::Value(InlineTable::new().into()),
+                };
+                if !rest.is_empty() {
+                    set(&mut item, rest, new);
+                }
+                table.insert(name, item);
+            }
+        }
+    }
+}

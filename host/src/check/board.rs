@@ -1,0 +1,231 @@
+//! Programs on emulated boards.
+
+use super::manifest::{Board, Program};
+use crate::blob::Blob;
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+/// How a program ran.
+pub(super) enum Ran {
+    /// It printed these figures, and wrote a picture if it should.
+    Printed(BTreeMap<String, u64>, Result<Vec<u8>, String>),
+    /// What it needs is not installed.
+    NotRun(String),
+    /// It could not be built, or it failed.
+    Failed(String),
+}
+
+/// The figures and the picture of a program that ran.
+type Output = (BTreeMap<String, u64>, Result<Vec<u8>, String>);
+
+/// Why a program did not run to its end.
+enum Obstacle {
+    Missing(String),
+    Failure(String),
+}
+
+/// Longest text of a failing program that is shown: its end.
+const SHOWN: usize = 2000;
+
+/// Builds a program if it must be built, and runs it.
+pub(super) fn run(board: &Board, blob: &Blob) -> Ran {
+    match try_run(board, blob) {
+        Ok((figures, picture)) => Ran::Printed(figures, picture),
+        Err(Obstacle::Missing(why)) => Ran::NotRun(why),
+        Err(Obstacle::Failure(why)) => Ran::Failed(why),
+    }
+}
+
+fn try_run(board: &Board, blob: &Blob) -> Result<Output, Obstacle> {
+    let version = Command::new(&board.emulator).arg("--version").output();
+    if version.is_err() {
+        return Err(Obstacle::Missing(format!(
+            "{} is not installed",
+            board.emulator
+        )));
+    }
+    let folder = tempfile::tempdir().map_err(failed("a temporary folder cannot be made"))?;
+    let program = match &board.program {
+        Program::Elf(path) => path
+            .canonicalize()
+            .map_err(|error| Obstacle::Missing(format!("{}: {error}", path.display())))?,
+        Program::Firmware {
+            folder: package,
+            program,
+            target,
+            features,
+        } => build(
+            board,
+            package,
+            program,
+            target,
+            features,
+            blob,
+            folder.path(),
+        )?,
+    };
+    let printed = emulate(board, &program, folder.path())?;
+    let pairs = printed.lines().filter_map(|line| line.split_once(' '));
+    let figures = pairs.filter_map(|(name, value)| Some((name.into(), value.trim().parse().ok()?)));
+    let picture = match &board.picture {
+        Some(name) => fs::read(folder.path().join(name))
+            .map_err(|error| format!("the program's file {name:?} cannot be read: {error}")),
+        None => Ok(Vec::new()),
+    };
+    Ok((figures.collect(), picture))
+}
+
+/// Builds the program of a Cargo package for a blob.
+fn build(
+    board: &Board,
+    package: &Path,
+    program: &str,
+    target: &str,
+    features: &[String],
+    blob: &Blob,
+    folder: &Path,
+) -> Result<PathBuf, Obstacle> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    if Command::new(&cargo).arg("--version").output().is_err() {
+        return Err(Obstacle::Missing(String::from("cargo is not installed")));
+    }
+    let library = Command::new("rustc")
+        .args(["--print", "target-libdir", "--target", target])
+        .current_dir(package)
+        .output()
+        .map_err(failed(format!(
+            "{}: rustc cannot be run there",
+            package.display()
+        )))?;
+    if !Path::new(String::from_utf8_lossy(&library.stdout).trim()).exists() {
+        return Err(Obstacle::Missing(format!(
+            "the Rust target {target} is not installed (`rustup target add {target}`)"
+        )));
+    }
+    let scene = folder.join("scene.gridel");
+    fs::write(&scene, blob.bytes()).map_err(failed("the blob cannot be written"))?;
+    let mut command = Command::new(cargo);
+    command
+        .current_dir(package)
+        .args([
+            "build",
+            "--release",
+            "--message-format",
+            "json-render-diagnostics",
+        ])
+        .args(["--target", target, "--bin", program])
+        .args(["--features", &features.join(",")])
+        .env("GRIDEL_BLOB", &scene)
+        .env("GRIDEL_BOARD", &board.machine);
+    // What is meant for the host's programs would change what is measured.
+    for (variable, _) in std::env::vars_os() {
+        let name = variable.to_string_lossy();
+        if name.ends_with("RUSTFLAGS") || name.starts_with("CARGO_PROFILE_") {
+            command.env_remove(&variable);
+        }
+    }
+    let output = command
+        .stdin(Stdio::null())
+        .output()
+        .map_err(failed("cargo cannot be run"))?;
+    if !output.status.success() {
+        let text = end_of(&output.stderr);
+        let package = package.display();
+        return Err(Obstacle::Failure(format!(
+            "{package} cannot be built: {text}"
+        )));
+    }
+    let mut built = output
+        .stdout
+        .split(|&byte| byte == b'\n')
+        .filter_map(|line| {
+            let message: serde_json::Value = serde_json::from_slice(line).ok()?;
+            let named = message["target"]["name"] == program;
+            named.then(|| message["executable"].as_str().map(PathBuf::from))?
+        });
+    let built = built.next_back().ok_or_else(|| {
+        Obstacle::Failure(format!(
+            "cargo built no program {program:?} in {}",
+            package.display()
+        ))
+    })?;
+    // Out of the way of other builds.
+    let program = folder.join("firmware.elf");
+    fs::copy(built, &program).map_err(failed("the program cannot be copied"))?;
+    Ok(program)
+}
+
+/// Runs a program in the emulator; what it printed.
+fn emulate(board: &Board, program: &Path, folder: &Path) -> Result<String, Obstacle> {
+    let [printed, complaints] = ["stdout", "stderr"].map(|name| folder.join(name));
+    let file = |path: &Path| File::create(path).map_err(failed("a temporary file cannot be made"));
+    let child = Command::new(&board.emulator)
+        .args([
+            "-M",
+            &board.machine,
+            "-nographic",
+            "-monitor",
+            "none",
+            "-serial",
+            "none",
+        ])
+        // The clock counts instructions.
+        .args(["-icount", &format!("shift={}", board.shift)])
+        .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
+        .arg(program)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(file(&printed)?)
+        .stderr(file(&complaints)?)
+        .spawn()
+        .map_err(failed(format!("{} cannot be run", board.emulator)))?;
+    let ended = wait(child, Duration::from_secs(board.seconds.into()))
+        .map_err(failed(format!("{} cannot be run", board.emulator)))?;
+    let text = |path: &Path| fs::read(path).unwrap_or_default();
+    let Some(status) = ended else {
+        return Err(Obstacle::Failure(format!(
+            "the program has not ended after {} s (`seconds`)",
+            board.seconds
+        )));
+    };
+    if !status.success() {
+        let said = [text(&printed), text(&complaints)].concat();
+        return Err(Obstacle::Failure(format!(
+            "the program failed ({status}): {}",
+            end_of(&said)
+        )));
+    }
+    // QEMU prints on standard error what a program prints letter by letter.
+    let lines = [text(&printed), text(&complaints)].join(&b'\n');
+    Ok(String::from_utf8_lossy(&lines).into_owned())
+}
+
+/// Waits for a process; ends it after a time, and returns `None` then.
+fn wait(mut child: Child, time: Duration) -> io::Result<Option<ExitStatus>> {
+    let begun = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(Some(status));
+        }
+        if begun.elapsed() > time {
+            child.kill()?;
+            child.wait()?;
+            return Ok(None);
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+fn failed(what: impl Into<String>) -> impl FnOnce(io::Error) -> Obstacle {
+    move |error| Obstacle::Failure(format!("{}: {error}", what.into()))
+}
+
+/// The end of a program's text.
+fn end_of(text: &[u8]) -> String {
+    let text = &text[text.len().saturating_sub(SHOWN)..];
+    String::from_utf8_lossy(text).trim().to_owned()
+}

@@ -1,0 +1,348 @@
+//! The manifest, read: every key is known, every value in its range.
+
+use crate::scene::SceneError;
+use crate::scene::toml::source::{Source, nearest};
+use crate::scene::toml::value::{Fields, Value};
+use gridel_core::render::MAX_SAMPLES;
+use gridel_core::{Format, Structure};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// A manifest, and the text that it was read from.
+#[derive(Clone, Debug)]
+pub struct Manifest {
+    pub path: PathBuf,
+    pub(super) text: String,
+    pub checks: Vec<Check>,
+}
+
+/// One scene, and what is expected of it.
+#[derive(Clone, Debug)]
+pub struct Check {
+    pub name: String,
+    pub scene: PathBuf,
+    pub accel: Option<Structure>,
+    pub lattice_bits: Option<u8>,
+    pub formats: Vec<Format>,
+    pub size: Option<[u16; 2]>,
+    pub samples: Option<u16>,
+    /// The recorded hash of each format; `None` where pictures are not hashed.
+    pub hash: Option<BTreeMap<String, String>>,
+    pub reference: Option<Reference>,
+    pub budget: Budget,
+    pub boards: Vec<Board>,
+}
+
+/// A picture that others must look like.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    pub path: PathBuf,
+    /// Codes of 255 that a channel may differ.
+    pub channel: u8,
+    /// Pixels that may differ by more.
+    pub pixels: u64,
+}
+
+/// The most of each that is allowed.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Budget {
+    pub blob_bytes: Option<u64>,
+    pub working_bytes: Option<u64>,
+    pub stack_entries: Option<u64>,
+    pub tests_per_ray: Option<f64>,
+}
+
+/// A program on an emulated board.
+#[derive(Clone, Debug)]
+pub struct Board {
+    pub machine: String,
+    pub emulator: String,
+    pub program: Program,
+    /// The file with the picture that the program writes.
+    pub picture: Option<String>,
+    pub format: Format,
+    /// Of `-icount`: an instruction takes 2^shift ns on the board's clock.
+    pub shift: u32,
+    pub seconds: u32,
+    /// The most for each figure that the program prints.
+    pub budget: BTreeMap<String, u64>,
+}
+
+/// Where a board's program comes from.
+#[derive(Clone, Debug)]
+pub enum Program {
+    /// It was built before.
+    Elf(PathBuf),
+    /// It is built from a Cargo package.
+    Firmware {
+        folder: PathBuf,
+        program: String,
+        target: String,
+        features: Vec<String>,
+    },
+}
+
+impl Manifest {
+    /// Reads a manifest.
+    ///
+    /// # Errors
+    /// If it cannot be read, is not TOML, or holds a key or a value that means nothing; the error
+    /// shows file, line and remedy.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        let source = Source::read(path)?;
+        let document = source.parse()?;
+        let (span, table) = (document.span(), document.get_ref());
+        let root = Fields::new(&source, span, table, "manifest", &[&["check"]])?;
+        let list = root.require("check")?;
+        let tables = list.items("`[[check]]` above the keys of each")?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut names = BTreeSet::new();
+        let checks = tables.map(|table| {
+            let check = Check::read(table, folder)?;
+            if !names.insert(check.name.clone()) {
+                return Err(table.error(
+                    format!("two checks have the name {:?}", check.name),
+                    "give one of them another `name`",
+                ));
+            }
+            Ok(check)
+        });
+        let checks = checks.collect::<Result<_, _>>()?;
+        Ok(Self {
+            path: path.to_owned(),
+            text: source.text().to_owned(),
+            checks,
+        })
+    }
+
+    /// How many steps [`run`](super::run) takes: pictures, and programs on boards.
+    pub fn steps(&self) -> usize {
+        let steps = |check: &Check| check.formats.len() + check.boards.len();
+        self.checks.iter().map(steps).sum()
+    }
+}
+
+impl Check {
+    fn read(table: Value<'_>, folder: &Path) -> Result<Self, SceneError> {
+        let keys = [
+            "name",
+            "scene",
+            "accel",
+            "lattice_bits",
+            "formats",
+            "size",
+            "samples",
+            "hash",
+            "reference",
+            "tolerance",
+            "budget",
+            "board",
+        ];
+        let fields = table.fields("check", &[&keys])?;
+        let scene = folder.join(fields.require("scene")?.filled()?);
+        let stem = || scene.file_stem().unwrap_or_default().display().to_string();
+        let formats = fields.or("formats", vec![Format::F32], formats)?;
+        let tolerance = fields.get("tolerance");
+        let reference = match fields.get("reference") {
+            Some(path) => Some(Reference::read(path, tolerance, folder)?),
+            None => match tolerance {
+                Some(value) => {
+                    return Err(value.error(
+                        "a tolerance without a `reference` allows nothing",
+                        "add the path of a picture as `reference`, or remove the tolerance",
+                    ));
+                }
+                None => None,
+            },
+        };
+        Ok(Self {
+            name: match fields.get("name") {
+                Some(name) => name.filled()?.to_owned(),
+                None => stem(),
+            },
+            accel: fields.or("accel", None, |value| structure(value).map(Some))?,
+            lattice_bits: fields.or("lattice_bits", None, |value| {
+                Ok(Some(value.integer_in(10..=24)? as u8))
+            })?,
+            size: fields.or("size", None, |value| size(value).map(Some))?,
+            samples: fields.or("samples", None, |value| {
+                Ok(Some(value.integer_in(1..=MAX_SAMPLES.into())? as u16))
+            })?,
+            hash: fields.or("hash", None, |value| hashes(value, &formats).map(Some))?,
+            reference,
+            budget: fields.or("budget", Budget::default(), Budget::read)?,
+            boards: fields.or("board", Vec::new(), |list| {
+                list.items("`[[check.board]]` above the keys of each")?
+                    .map(|table| Board::read(table, folder))
+                    .collect()
+            })?,
+            formats,
+            scene,
+        })
+    }
+}
+
+impl Reference {
+    fn read(
+        path: Value<'_>,
+        tolerance: Option<Value<'_>>,
+        folder: &Path,
+    ) -> Result<Self, SceneError> {
+        let mut reference = Self {
+            path: folder.join(path.filled()?),
+            channel: 0,
+            pixels: 0,
+        };
+        if let Some(table) = tolerance {
+            let fields = table.fields("tolerance", &[&["channel", "pixels"]])?;
+            let channel = |value: Value<'_>| Ok(value.integer_in(0..=255)? as u8);
+            reference.channel = fields.or("channel", 0, channel)?;
+            reference.pixels = fields.or("pixels", 0, Value::count)?;
+        }
+        Ok(reference)
+    }
+}
+
+impl Budget {
+    fn read(table: Value<'_>) -> Result<Self, SceneError> {
+        let keys = [
+            "blob_bytes",
+            "working_bytes",
+            "stack_entries",
+            "tests_per_ray",
+        ];
+        let fields = table.fields("budget", &[&keys])?;
+        let count = |value: Value<'_>| value.count().map(Some);
+        Ok(Self {
+            blob_bytes: fields.or("blob_bytes", None, count)?,
+            working_bytes: fields.or("working_bytes", None, count)?,
+            stack_entries: fields.or("stack_entries", None, count)?,
+            tests_per_ray: fields.or("tests_per_ray", None, |value| {
+                value.number_in(0.0..=1e15).map(Some)
+            })?,
+        })
+    }
+}
+
+impl Board {
+    fn read(table: Value<'_>, folder: &Path) -> Result<Self, SceneError> {
+        let keys = [
+            "machine", "emulator", "elf", "firmware", "program", "target", "features", "picture",
+            "format", "shift", "seconds", "budget",
+        ];
+        let fields = table.fields("board", &[&keys])?;
+        let text = |value: Value<'_>| value.filled().map(str::to_owned);
+        let program = match (fields.get("elf"), fields.get("firmware")) {
+            (Some(path), None) => {
+                let foreign = ["program", "target", "features"];
+                if let Some(value) = foreign.into_iter().find_map(|key| fields.get(key)) {
+                    return Err(value.error(
+                        format!("a program that was built before needs no `{}`", value.key),
+                        "remove the key, or give a `firmware` folder in place of `elf`",
+                    ));
+                }
+                Program::Elf(folder.join(path.filled()?))
+            }
+            (None, Some(path)) => Program::Firmware {
+                folder: folder.join(path.filled()?),
+                program: text(fields.require("program")?)?,
+                target: text(fields.require("target")?)?,
+                features: fields.or("features", Vec::new(), |list| {
+                    list.items("`features = [\"f32\"]`")?.map(text).collect()
+                })?,
+            },
+            (Some(elf), Some(_)) => {
+                return Err(elf.error(
+                    "this board has both an `elf` and a `firmware`",
+                    "remove one: a program is built before, or from a folder",
+                ));
+            }
+            (None, None) => {
+                return Err(table.error(
+                    "this board has no program",
+                    "add a line `elf = ...` with the path of an ELF file, or `firmware = ...` with \
+                     the folder of a Cargo package",
+                ));
+            }
+        };
+        Ok(Self {
+            machine: text(fields.require("machine")?)?,
+            emulator: fields.or("emulator", String::from("qemu-system-arm"), text)?,
+            program,
+            picture: fields.or("picture", None, |value| text(value).map(Some))?,
+            format: fields.or("format", Format::F32, format)?,
+            shift: fields.or("shift", 4, |value| value.integer_in(0..=10))?,
+            seconds: fields.or("seconds", 300, |value| value.integer_in(1..=86_400))?,
+            budget: fields.or("budget", BTreeMap::new(), |table| {
+                let entries = table.entries()?.into_iter();
+                entries
+                    .map(|(name, value)| Ok((name.text, value.count()?)))
+                    .collect()
+            })?,
+        })
+    }
+}
+
+fn format(value: Value<'_>) -> Result<Format, SceneError> {
+    let name = value.word(&Format::ALL.map(Format::name))?;
+    Ok(Format::ALL
+        .into_iter()
+        .find(|format| format.name() == name)
+        .unwrap_or(Format::F32))
+}
+
+fn formats(value: Value<'_>) -> Result<Vec<Format>, SceneError> {
+    let items = value.items("`formats = [\"fixed\", \"f32\"]`")?;
+    let formats: Vec<Format> = items.map(format).collect::<Result<_, _>>()?;
+    let twice = (1..formats.len()).any(|last| formats[..last].contains(&formats[last]));
+    if formats.is_empty() || twice {
+        return Err(value.error(
+            "`formats` must name one format or several, none of them twice",
+            "write `formats = [\"f32\"]`, or more",
+        ));
+    }
+    Ok(formats)
+}
+
+fn structure(value: Value<'_>) -> Result<Structure, SceneError> {
+    let name = value.text()?;
+    let named = Structure::ALL
+        .into_iter()
+        .find(|structure| structure.name() == name);
+    named.ok_or_else(|| {
+        let names = || Structure::ALL.into_iter().map(Structure::name);
+        let near = nearest(name, names()).unwrap_or_default();
+        let all: Vec<_> = names().collect();
+        value.error(
+            format!("there is no acceleration structure {name:?}"),
+            format!("did you mean {near:?}? There are {}", all.join(", ")),
+        )
+    })
+}
+
+fn size(value: Value<'_>) -> Result<[u16; 2], SceneError> {
+    let example = "`size = [640, 480]`";
+    let sides: Vec<_> = value.items(example)?.collect();
+    let [width, height] = sides[..] else {
+        return Err(value.mistyped("a width and a height", example));
+    };
+    let side = |value: Value<'_>| Ok(value.integer_in(1..=u16::MAX.into())? as u16);
+    let (width, height) = (side(width)?, side(height)?);
+    if u32::from(width) > 64 * u32::from(height) {
+        return Err(value.error(
+            "the picture is more than 64 times as wide as high",
+            "write a smaller width or a larger height",
+        ));
+    }
+    Ok([width, height])
+}
+
+fn hashes(value: Value<'_>, formats: &[Format]) -> Result<BTreeMap<String, String>, SceneError> {
+    let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
+    let fields = value.fields("hash table", &[&names])?;
+    let held = names
+        .iter()
+        .filter_map(|name| Some((name, fields.get(name)?)));
+    held.map(|(name, hash)| Ok((String::from(*name), hash.text()?.to_owned())))
+        .collect()
+}

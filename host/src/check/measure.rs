@@ -1,0 +1,427 @@
+//! Measures what a manifest asks for.
+
+use super::board::{self, Ran};
+use super::image::Image;
+use super::manifest::{Board, Check, Manifest, Reference};
+use super::report::{Evidence, Figure, Finding, Key, Outcome, Record, Report};
+use crate::blob::{Blob, best_structures, is_blob};
+use crate::compile::{self, Options};
+use crate::picture::hash;
+use crate::render::{Job, Picture, render};
+use crate::report::working_memory;
+use crate::scene::{self, MoleculeOptions};
+use gridel_core::{Format, Scene, Settings, Structure};
+use miette::Diagnostic;
+
+/// Measures everything. `progress` is told of each of the [steps](Manifest::steps).
+pub fn run(manifest: &Manifest, progress: &dyn Fn()) -> Report {
+    let mut report = Report::default();
+    for (index, check) in manifest.checks.iter().enumerate() {
+        let findings = &mut report.findings;
+        let mut run = Run {
+            index,
+            check,
+            findings,
+        };
+        if let Err(why) = run.all(progress) {
+            run.push(None, "scene", None, None, Outcome::Broken(why));
+        }
+    }
+    report
+}
+
+/// One check that is being run.
+struct Run<'r> {
+    index: usize,
+    check: &'r Check,
+    findings: &'r mut Vec<Finding>,
+}
+
+impl Run<'_> {
+    /// Everything; an error is one that leaves nothing to measure.
+    fn all(&mut self, progress: &dyn Fn()) -> Result<(), String> {
+        let check = self.check;
+        let blob = self.blob()?;
+        let scene = blob
+            .scene()
+            .map_err(|error| format!("{}: {error}", check.scene.display()))?;
+        let structure = structure(check, &scene)?;
+        let budget = check.budget;
+        let bytes = Figure::Count(blob.bytes().len() as u64);
+        self.budget(
+            None,
+            "blob_bytes",
+            bytes,
+            budget.blob_bytes.map(Figure::Count),
+        );
+        let entries = Figure::Count(scene.stack_depth() as u64);
+        self.budget(
+            None,
+            "stack_entries",
+            entries,
+            budget.stack_entries.map(Figure::Count),
+        );
+        for &format in &check.formats {
+            self.format(&scene, structure, format)?;
+            progress();
+        }
+        for (number, board) in check.boards.iter().enumerate() {
+            self.board(number, board, &blob, &scene, structure)?;
+            progress();
+        }
+        Ok(())
+    }
+
+    /// Reads the blob, or compiles the scene for it.
+    fn blob(&self) -> Result<Blob, String> {
+        let check = self.check;
+        let path = &check.scene;
+        let unreadable = |error| format!("{} cannot be read: {error}", path.display());
+        if is_blob(path).map_err(unreadable)? {
+            if check.lattice_bits.is_some() {
+                return Err(format!(
+                    "`lattice_bits` is for scene files, and {} is a blob",
+                    path.display()
+                ));
+            }
+            return Blob::read(path).map_err(unreadable);
+        }
+        let imported =
+            scene::load(path, &MoleculeOptions::default()).map_err(|error| explained(&error))?;
+        let mut scene = imported.scene;
+        // As part of the blob, so that a board renders the same picture.
+        if let Some([width, height]) = check.size {
+            (scene.render.width, scene.render.height) = (width.into(), height.into());
+        }
+        scene.render.samples = check.samples.unwrap_or(scene.render.samples);
+        let mut options = Options::default();
+        if let Some(structure) = check.accel {
+            options.structures = vec![structure];
+        }
+        options.lattice_bits = check.lattice_bits.unwrap_or(options.lattice_bits);
+        let compiled = compile::compile(&scene, &options)
+            .map_err(|error| format!("{}: {}", path.display(), explained(&error)))?;
+        Ok(compiled.blob)
+    }
+
+    /// What is measured in one number format.
+    fn format(
+        &mut self,
+        scene: &Scene<'_>,
+        structure: Structure,
+        format: Format,
+    ) -> Result<(), String> {
+        let check = self.check;
+        let on = Some(format.name().to_owned());
+        if let Some(most) = check.budget.working_bytes {
+            let memory = working_memory(scene)
+                .into_iter()
+                .find(|memory| memory.word_bits == 32 && memory.format == format.name());
+            let bytes = memory.map_or(0, |memory| memory.workspace as u64);
+            let (found, most) = (Figure::Count(bytes), Some(Figure::Count(most)));
+            self.budget(on.clone(), "working_bytes", found, most);
+        }
+        let tests = check.budget.tests_per_ray;
+        if check.hash.is_none() && check.reference.is_none() && tests.is_none() {
+            return Ok(());
+        }
+        let settings = self.settings(scene);
+        let picture = self.render(scene, structure, format, settings, tests.is_some())?;
+        if let (Some(most), Some(counters)) = (tests, picture.counters) {
+            let tests = counters.boxes + counters.objects;
+            let mean = Figure::Mean(tests as f64 / counters.rays().max(1) as f64);
+            self.budget(on.clone(), "tests_per_ray", mean, Some(Figure::Mean(most)));
+        }
+        let image = Image::of(&picture);
+        let reference = check
+            .reference
+            .as_ref()
+            .map(|reference| (reference, Image::read(&reference.path)));
+        if let Some(hashes) = &check.hash {
+            let expected = reference
+                .as_ref()
+                .and_then(|(_, image)| image.as_ref().ok().cloned());
+            let recorded = hashes.get(format.name()).cloned().map(Figure::Hash);
+            self.hash(format, &picture, recorded, &image, expected);
+        }
+        if let Some((reference, expected)) = reference {
+            self.reference(format, reference, expected, image);
+        }
+        Ok(())
+    }
+
+    fn settings(&self, scene: &Scene<'_>) -> Settings {
+        let mut settings = Settings::of(scene);
+        if let Some([width, height]) = self.check.size {
+            (settings.width, settings.height) = (width, height);
+        }
+        settings.samples = self.check.samples.unwrap_or(settings.samples);
+        settings
+    }
+
+    fn render(
+        &self,
+        scene: &Scene<'_>,
+        structure: Structure,
+        format: Format,
+        settings: Settings,
+        count: bool,
+    ) -> Result<Picture, String> {
+        let job = Job {
+            format,
+            structure,
+            settings,
+            rows: 0..settings.height,
+            count,
+        };
+        render(scene, &job, &|| ())
+            .map_err(|error| format!("{}: {error}", self.check.scene.display()))
+    }
+
+    fn hash(
+        &mut self,
+        format: Format,
+        picture: &Picture,
+        recorded: Option<Figure>,
+        image: &Image,
+        expected: Option<Image>,
+    ) {
+        let found = Figure::Hash(hash(&picture.pixels));
+        let outcome = match &recorded {
+            Some(recorded) if found.within(recorded) => Outcome::Held,
+            Some(_) => Outcome::Broken(String::from("the picture is not the recorded one")),
+            None => Outcome::Broken(String::from("no hash is recorded for this format")),
+        };
+        let keys = vec![Key::Name("hash".into()), Key::Name(format.name().into())];
+        let broken = outcome != Outcome::Held;
+        let (record, evidence) = (
+            self.value(keys, &found),
+            self.evidence(format.name(), image, expected),
+        );
+        let on = Some(format.name().to_owned());
+        let finding = self.push(on, "hash", Some(found), recorded, outcome);
+        if broken {
+            finding.record = Some(record);
+            finding.evidence = Some(evidence);
+        }
+    }
+
+    fn reference(
+        &mut self,
+        format: Format,
+        reference: &Reference,
+        expected: Result<Image, String>,
+        image: Image,
+    ) {
+        let difference = expected
+            .as_ref()
+            .map(|expected| image.difference(expected, reference.channel));
+        let (found, outcome) = match difference {
+            Err(why) => (None, Outcome::Broken(why.clone())),
+            Ok(None) => {
+                let [width, height] = image.size;
+                let why = format!("the reference is not {width} by {height} pixels large");
+                (None, Outcome::Broken(why))
+            }
+            Ok(Some(difference)) => {
+                let outcome = if difference.beyond <= reference.pixels {
+                    Outcome::Held
+                } else {
+                    Outcome::Broken(format!(
+                        "{} pixels differ by more than {} of 255, and the largest difference is {}",
+                        difference.beyond, reference.channel, difference.largest
+                    ))
+                };
+                (Some(Figure::Count(difference.beyond)), outcome)
+            }
+        };
+        let broken = outcome != Outcome::Held;
+        let evidence = self.evidence(format.name(), &image, expected.ok());
+        let (on, allowed) = (
+            Some(format.name().to_owned()),
+            Some(Figure::Count(reference.pixels)),
+        );
+        let finding = self.push(on, "reference", found, allowed, outcome);
+        if broken {
+            finding.record = Some(Record::Picture(reference.path.clone(), image));
+            finding.evidence = Some(evidence);
+        }
+    }
+
+    /// What a program finds on a board.
+    fn board(
+        &mut self,
+        number: usize,
+        board: &Board,
+        blob: &Blob,
+        scene: &Scene<'_>,
+        structure: Structure,
+    ) -> Result<(), String> {
+        let on = || Some(board.machine.clone());
+        let ran = board::run(board, blob);
+        let figures = board.budget.iter();
+        let broken = match &ran {
+            Ran::Printed(..) => None,
+            Ran::NotRun(why) => Some(Outcome::NotRun(why.clone())),
+            Ran::Failed(why) => Some(Outcome::Broken(why.clone())),
+        };
+        let mut printed = None;
+        if let Ran::Printed(figures, picture) = ran {
+            printed = Some((figures, picture));
+        }
+        for (name, &most) in figures {
+            let most = Some(Figure::Count(most));
+            let found = printed
+                .as_ref()
+                .map(|(figures, _)| figures.get(name).copied());
+            match (found, &broken) {
+                (Some(Some(found)), _) => {
+                    let found = Figure::Count(found);
+                    let keys = [
+                        Key::Name("board".into()),
+                        Key::Item(number),
+                        Key::Name("budget".into()),
+                    ];
+                    let keys = keys.into_iter().chain([Key::Name(name.clone())]).collect();
+                    self.held_to(on(), name, found, most, keys);
+                }
+                (Some(None), _) => {
+                    let why = format!("the program prints no figure {name:?}");
+                    self.push(on(), name, None, most, Outcome::Broken(why));
+                }
+                (None, Some(outcome)) => {
+                    let outcome = outcome.clone();
+                    self.push(on(), name, None, most, outcome);
+                }
+                (None, None) => {}
+            }
+        }
+        if board.picture.is_none() {
+            return Ok(());
+        }
+        let Some((_, bytes)) = printed else {
+            let outcome = broken.unwrap_or(Outcome::Held);
+            self.push(on(), "picture", None, None, outcome);
+            return Ok(());
+        };
+        // As the blob says, because that is all that the board knows.
+        let picture = self.render(scene, structure, board.format, Settings::of(scene), false)?;
+        let expected = Image::of(&picture);
+        if bytes.as_ref().is_ok_and(|bytes| *bytes == expected.pixels) {
+            self.push(on(), "picture", None, None, Outcome::Held);
+            return Ok(());
+        }
+        let (why, evidence) = match bytes {
+            Ok(pixels) if pixels.len() == expected.pixels.len() => {
+                let size = expected.size;
+                let rendered = Image { size, pixels };
+                let why = "the board's picture is not the host's";
+                let evidence = self.evidence(&board.machine, &rendered, Some(expected));
+                (String::from(why), Some(evidence))
+            }
+            Ok(pixels) => {
+                let (found, expected) = (pixels.len(), expected.pixels.len());
+                (
+                    format!("the board's picture has {found} bytes and the host's {expected}"),
+                    None,
+                )
+            }
+            Err(why) => (why, None),
+        };
+        self.push(on(), "picture", None, None, Outcome::Broken(why))
+            .evidence = evidence;
+        Ok(())
+    }
+
+    /// Compares a figure with a key of `[check.budget]`, if that is there.
+    fn budget(&mut self, on: Option<String>, what: &str, found: Figure, most: Option<Figure>) {
+        if most.is_some() {
+            let keys = vec![Key::Name("budget".into()), Key::Name(what.into())];
+            self.held_to(on, what, found, most, keys);
+        }
+    }
+
+    fn held_to(
+        &mut self,
+        on: Option<String>,
+        what: &str,
+        found: Figure,
+        most: Option<Figure>,
+        keys: Vec<Key>,
+    ) {
+        let within = most.as_ref().is_none_or(|most| found.within(most));
+        let record = (!within).then(|| self.value(keys, &found));
+        let outcome = if within {
+            Outcome::Held
+        } else {
+            let most = most.as_ref().map(Figure::to_string).unwrap_or_default();
+            Outcome::Broken(format!("{what} is {found}, and at most {most} is allowed"))
+        };
+        self.push(on, what, Some(found), most, outcome).record = record;
+    }
+
+    fn value(&self, keys: Vec<Key>, figure: &Figure) -> Record {
+        Record::Value {
+            check: self.index,
+            keys,
+            figure: figure.clone(),
+        }
+    }
+
+    fn evidence(&self, on: &str, rendered: &Image, expected: Option<Image>) -> Evidence {
+        let name = format!("{}-{on}", self.check.name);
+        let plain = |c: char| {
+            if c.is_alphanumeric() || c == '-' || c == '_' {
+                c
+            } else {
+                '-'
+            }
+        };
+        Evidence {
+            name: name.chars().map(plain).collect(),
+            rendered: rendered.clone(),
+            expected,
+        }
+    }
+
+    fn push(
+        &mut self,
+        on: Option<String>,
+        what: &str,
+        found: Option<Figure>,
+        allowed: Option<Figure>,
+        outcome: Outcome,
+    ) -> &mut Finding {
+        self.findings.push_mut(Finding {
+            check: self.check.name.clone(),
+            on,
+            what: what.to_owned(),
+            found,
+            allowed,
+            outcome,
+            record: None,
+            evidence: None,
+        })
+    }
+}
+
+/// The structure asked for, or else the best that the blob holds.
+fn structure(check: &Check, scene: &Scene<'_>) -> Result<Structure, String> {
+    match check.accel {
+        None => Ok(best_structures(scene).next().unwrap_or(Structure::List)),
+        Some(structure) if scene.holds(structure) => Ok(structure),
+        Some(structure) => Err(format!(
+            "{} holds no structure {name}: build it with `--accel {name}`",
+            check.scene.display(),
+            name = structure.name()
+        )),
+    }
+}
+
+/// An error and its remedy in one sentence.
+fn explained(error: &(impl Diagnostic + std::fmt::Display)) -> String {
+    match error.help() {
+        Some(help) => format!("{error}; {help}"),
+        None => error.to_string(),
+    }
+}

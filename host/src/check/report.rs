@@ -1,0 +1,226 @@
+//! What a run found, for people and for programs.
+
+use super::image::Image;
+use crate::report::{Align, Table, grouped};
+use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
+use serde::{Serialize, Serializer};
+use std::fmt;
+use std::io::{self, Write};
+
+/// All findings, in the order of the manifest.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Report {
+    pub findings: Vec<Finding>,
+}
+
+/// One thing that was compared with what the manifest says.
+#[derive(Clone, Debug, Serialize)]
+pub struct Finding {
+    /// Name of the check.
+    pub check: String,
+    /// Number format, or board: where the figure is from, if it depends on that.
+    pub on: Option<String>,
+    /// The manifest's key, or the name that the board's program gives the figure.
+    pub what: String,
+    pub found: Option<Figure>,
+    /// The most that is allowed; for hashes the only one.
+    pub allowed: Option<Figure>,
+    #[serde(flatten)]
+    pub outcome: Outcome,
+    /// What would have to be recorded for this to hold.
+    #[serde(skip)]
+    pub(super) record: Option<Record>,
+    /// The picture that is not as it should be.
+    #[serde(skip)]
+    pub evidence: Option<Evidence>,
+}
+
+/// How a comparison ended.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(tag = "outcome", content = "why", rename_all = "kebab-case")]
+pub enum Outcome {
+    /// It is as the manifest says, or better.
+    Held,
+    /// It is not, and why.
+    Broken(String),
+    /// It could not be measured here, and why.
+    NotRun(String),
+}
+
+/// A figure of a finding.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Figure {
+    Count(u64),
+    Mean(f64),
+    Hash(String),
+}
+
+/// A change of the manifest, or of a reference beside it.
+#[derive(Clone, Debug)]
+pub(super) enum Record {
+    /// A value in the manifest, below the check of this number.
+    Value {
+        check: usize,
+        keys: Vec<Key>,
+        figure: Figure,
+    },
+    /// A reference picture.
+    Picture(std::path::PathBuf, Image),
+}
+
+/// A step on the way to a value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Key {
+    Name(String),
+    Item(usize),
+}
+
+/// Pictures that show what is wrong.
+#[derive(Clone, Debug)]
+pub struct Evidence {
+    /// A name for the file, without extension.
+    pub name: String,
+    pub rendered: Image,
+    pub expected: Option<Image>,
+}
+
+impl Report {
+    fn count(&self, kind: impl Fn(&Outcome) -> bool) -> usize {
+        self.findings
+            .iter()
+            .filter(|finding| kind(&finding.outcome))
+            .count()
+    }
+
+    /// How many findings hold.
+    pub fn held(&self) -> usize {
+        self.count(|outcome| *outcome == Outcome::Held)
+    }
+
+    /// How many do not.
+    pub fn broken(&self) -> usize {
+        self.count(|outcome| matches!(outcome, Outcome::Broken(_)))
+    }
+
+    /// How many could not be measured.
+    pub fn not_run(&self) -> usize {
+        self.count(|outcome| matches!(outcome, Outcome::NotRun(_)))
+    }
+
+    /// A line for each finding.
+    pub fn table(&self) -> Table {
+        let mut table = Table::new([
+            ("check", Align::Left),
+            ("on", Align::Left),
+            ("what", Align::Left),
+            ("found", Align::Right),
+            ("allowed", Align::Right),
+            ("", Align::Left),
+        ]);
+        let figure =
+            |figure: &Option<Figure>| figure.as_ref().map_or(String::from("-"), Figure::to_string);
+        for finding in &self.findings {
+            table.row([
+                finding.check.clone(),
+                finding.on.clone().unwrap_or_default(),
+                finding.what.clone(),
+                figure(&finding.found),
+                figure(&finding.allowed),
+                match &finding.outcome {
+                    Outcome::Held => String::from("held"),
+                    Outcome::Broken(_) => String::from("BROKEN"),
+                    Outcome::NotRun(_) => String::from("NOT RUN"),
+                },
+            ]);
+        }
+        table
+    }
+
+    /// Writes the findings as JUnit XML: a suite for each check, a case for each finding.
+    ///
+    /// # Errors
+    /// If `out` has one.
+    pub fn write_junit(&self, out: &mut dyn Write) -> io::Result<()> {
+        let mut report = quick_junit::Report::new("gridel check");
+        for findings in self.findings.chunk_by(|a, b| a.check == b.check) {
+            let Some(first) = findings.first() else {
+                continue;
+            };
+            let mut suite = TestSuite::new(&first.check);
+            suite.add_test_cases(findings.iter().map(Finding::case));
+            report.add_test_suite(suite);
+        }
+        report.serialize(out).map_err(io::Error::other)
+    }
+}
+
+impl Finding {
+    fn case(&self) -> TestCase {
+        let status = match &self.outcome {
+            Outcome::Held => TestCaseStatus::success(),
+            Outcome::Broken(why) => {
+                let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+                status.set_message(why.as_str());
+                status
+            }
+            Outcome::NotRun(why) => {
+                let mut status = TestCaseStatus::skipped();
+                status.set_message(why.as_str());
+                status
+            }
+        };
+        let name = match &self.on {
+            Some(on) => format!("{} on {on}", self.what),
+            None => self.what.clone(),
+        };
+        let mut case = TestCase::new(name, status);
+        case.set_classname(self.check.as_str());
+        let figures = [("found", &self.found), ("allowed", &self.allowed)];
+        for (name, figure) in figures {
+            if let Some(figure) = figure {
+                case.add_property((name, figure.plain().as_str()));
+            }
+        }
+        case
+    }
+}
+
+impl Figure {
+    /// Whether this is within a budget, or the same hash.
+    pub(super) fn within(&self, allowed: &Self) -> bool {
+        match (self, allowed) {
+            (Self::Count(found), Self::Count(most)) => found <= most,
+            (Self::Mean(found), Self::Mean(most)) => found <= most,
+            (found, allowed) => found == allowed,
+        }
+    }
+
+    /// Without separators.
+    fn plain(&self) -> String {
+        match self {
+            Self::Count(count) => count.to_string(),
+            Self::Mean(mean) => mean.to_string(),
+            Self::Hash(hash) => hash.clone(),
+        }
+    }
+}
+
+impl fmt::Display for Figure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Count(count) => f.write_str(&grouped(count)),
+            Self::Mean(mean) => write!(f, "{mean:.3}"),
+            Self::Hash(hash) => f.write_str(hash),
+        }
+    }
+}
+
+impl Serialize for Figure {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Count(count) => serializer.serialize_u64(*count),
+            Self::Mean(mean) => serializer.serialize_f64(*mean),
+            Self::Hash(hash) => serializer.serialize_str(hash),
+        }
+    }
+}

@@ -1,0 +1,404 @@
+use super::*;
+use crate::scene::SceneError;
+use std::fs;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// A ball, and a manifest beside it.
+struct Folder(TempDir);
+
+const BALL: &str = r#"
+background = 0.5
+camera = { eye = [0, 0, 4], target = [0, 0, 0] }
+render = { width = 16, height = 12 }
+light = [{ kind = "point", position = [3, 4, 5] }]
+object = [{ kind = "sphere", center = [0, 0, 0], radius = 1 }]
+"#;
+
+impl Folder {
+    fn new() -> Self {
+        let folder = Self(tempfile::tempdir().unwrap());
+        fs::write(folder.path("ball.toml"), BALL).unwrap();
+        folder
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn manifest(&self, text: &str) -> Result<Manifest, SceneError> {
+        fs::write(self.path("check.toml"), text).unwrap();
+        Manifest::read(&self.path("check.toml"))
+    }
+
+    fn run(&self, text: &str) -> (Manifest, Report) {
+        let manifest = self.manifest(text).unwrap();
+        let steps = std::cell::Cell::new(0);
+        let report = run(&manifest, &|| steps.set(steps.get() + 1));
+        assert!(steps.get() <= manifest.steps());
+        (manifest, report)
+    }
+
+    /// The manifest as it is now.
+    fn text(&self) -> String {
+        fs::read_to_string(self.path("check.toml")).unwrap()
+    }
+}
+
+fn why(finding: &Finding) -> &str {
+    match &finding.outcome {
+        Outcome::Held => "",
+        Outcome::Broken(why) | Outcome::NotRun(why) => why,
+    }
+}
+
+#[test]
+fn mistakes_name_line_cause_and_remedy() {
+    let folder = Folder::new();
+    for (text, line, cause, remedy) in [
+        ("", 1, "this manifest has no `check`", "add a line"),
+        (
+            "[[check]]\nname = \"a\"",
+            1,
+            "has no `scene`",
+            "add a line `scene",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\nbugdet = {}",
+            3,
+            "this check has no key `bugdet`",
+            "did you mean `budget`?",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\n[check.budget]\nblob_byte = 3",
+            4,
+            "this budget has no key `blob_byte`",
+            "did you mean `blob_bytes`?",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\nbudget = { blob_bytes = -3 }",
+            3,
+            "`blob_bytes` is -3",
+            "write a number from 0",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\nformats = [\"f33\"]",
+            3,
+            "`formats` is \"f33\"",
+            "did you mean \"f32\"?",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\nformats = [\"f32\", \"f32\"]",
+            3,
+            "none of them twice",
+            "",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\nhash = { fixed = \"\" }",
+            3,
+            "this hash table has no key `fixed`",
+            "The keys are f32",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\naccel = \"flaged\"",
+            3,
+            "no acceleration structure \"flaged\"",
+            "did you mean \"flagged\"?",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\nsize = [1]",
+            3,
+            "a width and a height",
+            "[640, 480]",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\nsize = [0, 1]",
+            3,
+            "it must be from 1",
+            "",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\nsize = [999, 1]",
+            3,
+            "64 times",
+            "",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\ntolerance = {}",
+            3,
+            "without a `reference`",
+            "",
+        ),
+        (
+            "[[check]]\nscene = \"x/a.toml\"\n[[check]]\nscene = \"a.obj\"",
+            3,
+            "two checks have the name \"a\"",
+            "another `name`",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\n[[check.board]]\nmachine = \"m\"",
+            3,
+            "this board has no program",
+            "`elf = ...`",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\n[[check.board]]\nmachine = \"m\"\nelf = \"e\"\ntarget = \"t\"",
+            6,
+            "needs no `target`",
+            "remove the key",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\n[[check.board]]\nmachine = \"m\"\nelf = \"e\"\nfirmware = \"f\"",
+            5,
+            "both",
+            "remove one",
+        ),
+    ] {
+        let error = folder.manifest(text).unwrap_err();
+        assert_eq!(error.line, Some(line), "{text}: {error}");
+        assert!(error.cause.contains(cause), "{text}: {error}");
+        assert!(error.remedy.contains(remedy), "{text}: {}", error.remedy);
+    }
+}
+
+#[test]
+fn broken_figures_are_recorded_and_nothing_else_changes() {
+    let folder = Folder::new();
+    let text = r#"# The ball.
+[[check]]
+scene = "ball.toml" # in this folder
+formats = ["fixed", "f64"]
+samples = 2
+hash = {}
+
+[check.budget] # of the board
+blob_bytes = 1_000_000 # plenty
+stack_entries = 0
+working_bytes = 1 # too small
+tests_per_ray = 0.25
+"#;
+    let (manifest, report) = folder.run(text);
+    assert_eq!(
+        (report.held(), report.broken(), report.not_run()),
+        (2, 6, 0)
+    );
+    let blessed = bless(&manifest, &report);
+    assert!(blessed.left.is_empty());
+    assert_eq!(folder.text(), text);
+    blessed.write().unwrap();
+    let new = folder.text();
+    let diff = blessed.diff();
+    assert!(diff.contains("-working_bytes = 1 # too small\n"), "{diff}");
+    assert!(
+        new.contains("blob_bytes = 1_000_000 # plenty\nstack_entries = 0\n"),
+        "{new}"
+    );
+    for line in new
+        .lines()
+        .zip(text.lines())
+        .filter(|(new, old)| new != old)
+    {
+        let changes = [
+            "hash = { fixed = \"",
+            "working_bytes = ",
+            "tests_per_ray = ",
+        ];
+        assert!(
+            changes.iter().any(|change| line.0.starts_with(change)),
+            "{line:?}"
+        );
+        assert_eq!(
+            line.0.split_once('#').map(|(_, comment)| comment),
+            line.1.split_once('#').map(|(_, comment)| comment)
+        );
+    }
+    // And now everything holds, in both formats.
+    let (manifest, report) = folder.run(&new);
+    assert_eq!(
+        (report.held(), report.broken()),
+        (8, 0),
+        "{}",
+        report.table()
+    );
+    assert_eq!(bless(&manifest, &report).diff(), "");
+}
+
+/// The picture changes, and nothing else does.
+#[test]
+fn another_picture_is_broken_and_shown() {
+    let folder = Folder::new();
+    let text = "[[check]]\nscene = \"ball.toml\"\nhash = {}\nreference = \"ball.png\"\n";
+    let (manifest, report) = folder.run(text);
+    assert_eq!(report.broken(), 2);
+    assert!(why(&report.findings[1]).contains("ball.png cannot be read"));
+    bless(&manifest, &report).write().unwrap();
+    let (_, report) = folder.run(&folder.text());
+    assert_eq!((report.held(), report.broken()), (2, 0));
+
+    fs::write(folder.path("ball.toml"), BALL.replace("= 0.5", "= 0.51")).unwrap();
+    let (_, report) = folder.run(&folder.text());
+    assert_eq!(report.broken(), 2, "{}", report.table());
+    for finding in &report.findings {
+        let evidence = finding.evidence.as_ref().unwrap();
+        assert_eq!(evidence.name, "ball-f32");
+        let mut png = Vec::new();
+        let expected = evidence.expected.as_ref().unwrap();
+        evidence.rendered.write_beside(expected, &mut png).unwrap();
+        let path = folder.path("beside.png");
+        fs::write(&path, png).unwrap();
+        let beside = Image::read(&path).unwrap();
+        assert_eq!(beside.size, [48, 12]);
+        // The first pixel is background in all three; it is what differs.
+        let panel = |number: usize| beside.pixels[3 * 16 * number];
+        assert_eq!((panel(0), panel(1), panel(2)), (188, 189, 255));
+    }
+    // Within a tolerance the reference holds again.
+    let text = folder.text();
+    let tolerant = format!("{text}tolerance = {{ channel = 1 }}\n");
+    let (_, report) = folder.run(&tolerant);
+    assert_eq!(
+        (report.held(), report.broken()),
+        (1, 1),
+        "{}",
+        report.table()
+    );
+    let tolerant = format!("{text}tolerance = {{ pixels = 191 }}\n");
+    let (_, report) = folder.run(&tolerant);
+    let found = match report.findings[1].found {
+        Some(Figure::Count(found)) => found,
+        _ => panic!("{:?}", report.findings[1]),
+    };
+    assert!((1..=191).contains(&found));
+    assert_eq!(report.findings[1].outcome, Outcome::Held);
+}
+
+#[test]
+fn what_cannot_be_read_is_broken_and_the_rest_goes_on() {
+    let folder = Folder::new();
+    fs::write(folder.path("broken.gridel"), "GRIDEL, or not").unwrap();
+    fs::write(folder.path("bad.toml"), "object = 3").unwrap();
+    let text = "
+        [[check]]\nscene = \"missing.toml\"\nhash = {}
+        [[check]]\nscene = \"broken.gridel\"\nhash = {}
+        [[check]]\nscene = \"bad.toml\"\nhash = {}
+        [[check]]\nname = \"blob\"\nscene = \"broken.gridel\"\nlattice_bits = 16
+        [[check]]\nscene = \"ball.toml\"\nbudget = { blob_bytes = 5000 }";
+    let (manifest, report) = folder.run(text);
+    assert_eq!((report.held(), report.broken()), (1, 4));
+    for (finding, cause) in report.findings.iter().zip([
+        "missing.toml cannot be read",
+        "broken.gridel: ",
+        "bad.toml:1: `object` holds an integer",
+        "`lattice_bits` is for scene files",
+    ]) {
+        assert!(why(finding).contains(cause), "{}", why(finding));
+    }
+    // None of that can be recorded.
+    let blessed = bless(&manifest, &report);
+    assert_eq!((blessed.left.len(), blessed.diff().as_str()), (4, ""));
+}
+
+#[cfg(unix)]
+mod boards {
+    use super::*;
+    use std::os::unix::fs::PermissionsExt;
+
+    /// A program in place of the emulator.
+    fn emulator(folder: &Folder, script: &str) -> String {
+        let path = folder.path("emulator");
+        let version = "if [ \"$1\" = --version ]; then exit 0; fi";
+        fs::write(&path, format!("#!/bin/sh\n{version}\n{script}\n")).unwrap();
+        fs::set_permissions(&path, PermissionsExt::from_mode(0o755)).unwrap();
+        path.display().to_string()
+    }
+
+    fn board(emulator: &str, rest: &str) -> String {
+        format!(
+            "[[check]]\nscene = \"ball.toml\"\n[[check.board]]\nmachine = \"toy\"\n\
+             emulator = \"{emulator}\"\nelf = \"program.elf\"\n{rest}\n"
+        )
+    }
+
+    #[test]
+    fn figures_are_held_and_recorded() {
+        let folder = Folder::new();
+        fs::write(folder.path("program.elf"), "").unwrap();
+        let toy = emulator(
+            &folder,
+            "echo noise; echo loops 12; echo bytes 500; printf abc >p",
+        );
+        let text = board(
+            &toy,
+            "budget = { loops = 12, bytes = 400, lost = 1 } # all\npicture = \"p\"",
+        );
+        let (manifest, report) = folder.run(&text);
+        assert_eq!(
+            (report.held(), report.broken(), report.not_run()),
+            (1, 3, 0)
+        );
+        let whys: Vec<_> = report.findings.iter().map(why).collect();
+        assert!(
+            whys[0].contains("bytes is 500, and at most 400"),
+            "{whys:?}"
+        );
+        assert!(whys[2].contains("prints no figure \"lost\""), "{whys:?}");
+        assert!(
+            whys[3].contains("has 3 bytes and the host's 576"),
+            "{whys:?}"
+        );
+        let blessed = bless(&manifest, &report);
+        assert_eq!(blessed.left, ["ball: lost", "ball: picture"]);
+        blessed.write().unwrap();
+        let recorded = "budget = { loops = 12, bytes = 500, lost = 1 } # all";
+        assert!(folder.text().contains(recorded), "{}", folder.text());
+    }
+
+    #[test]
+    fn failures_are_broken_and_what_is_missing_is_not_run() {
+        let folder = Folder::new();
+        let first = |text: &str| folder.run(text).1.findings.remove(0);
+        let budget = "budget = { loops = 1 }\nseconds = 1";
+        let toy = emulator(&folder, "echo no luck >&2; exit 3");
+        let missing = first(&board(&toy, budget));
+        assert!(matches!(&missing.outcome, Outcome::NotRun(why) if why.contains("program.elf")));
+        fs::write(folder.path("program.elf"), "").unwrap();
+        let missing = first(&board("no-such-emulator", budget));
+        assert!(matches!(&missing.outcome, Outcome::NotRun(why) if why.contains("not installed")));
+        let failed = first(&board(&toy, budget));
+        assert!(matches!(&failed.outcome, Outcome::Broken(why) if why.contains("no luck")));
+        let toy = emulator(&folder, "exec sleep 60");
+        let endless = first(&board(&toy, budget));
+        assert!(matches!(&endless.outcome, Outcome::Broken(why) if why.contains("after 1 s")));
+    }
+}
+
+#[test]
+fn junit_names_suites_cases_and_reasons() {
+    let folder = Folder::new();
+    let text = "[[check]]\nname = \"a <ball>\"\nscene = \"ball.toml\"\n\
+                budget = { blob_bytes = 1, stack_entries = 9 }";
+    let (_, report) = folder.run(text);
+    let mut xml = Vec::new();
+    report.write_junit(&mut xml).unwrap();
+    let xml = String::from_utf8(xml).unwrap();
+    let parsed = quick_junit::Report::deserialize_from_str(&xml).unwrap();
+    assert_eq!((parsed.tests, parsed.failures), (2, 1), "{xml}");
+    assert_eq!(parsed.test_suites[0].name.as_str(), "a <ball>");
+    assert!(xml.contains("blob_bytes is"), "{xml}");
+}
+
+/// The example of the documentation is a manifest.
+#[test]
+fn the_documented_example_reads() {
+    let source = fs::read_to_string(Path::new(file!()).with_file_name("mod.rs"));
+    // Tests run in the package's folder, and the path is the workspace's.
+    let source = source
+        .or_else(|_| fs::read_to_string("src/check/mod.rs"))
+        .unwrap();
+    let (_, block) = source.split_once("//! ```toml\n").unwrap();
+    let (block, _) = block.split_once("//! ```").unwrap();
+    let lines = block.lines().map(|line| line.trim_start_matches("//!"));
+    let text: Vec<_> = lines.collect();
+    let manifest = Folder::new().manifest(&text.join("\n")).unwrap();
+    assert_eq!(manifest.checks[0].boards[0].budget.len(), 2);
+}
