@@ -107,7 +107,15 @@ fn damage(extension: &str, bytes: &[u8], cuts: usize, flips: usize) {
 
 #[test]
 fn damaged_files() {
-    for (extension, text) in [("obj", OBJ), ("nff", NFF), ("pdb", PDB), ("cif", CIF)] {
+    for (extension, text) in [
+        ("obj", OBJ),
+        ("nff", NFF),
+        ("pdb", PDB),
+        ("cif", CIF),
+        ("stl", super::stl::tests::TWO_SOLIDS),
+        ("ply", super::ply::tests::SQUARE),
+        ("gltf", super::gltf::tests::TRIANGLE),
+    ] {
         damage(extension, text.as_bytes(), text.len(), 3000);
     }
 }
@@ -120,7 +128,7 @@ fn bad_files_of_other_projects() {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-        if ["obj", "nff", "pdb"].contains(&extension) {
+        if ["obj", "nff", "pdb", "gltf", "glb", "stl", "ply"].contains(&extension) {
             damage(extension, &std::fs::read(&path).unwrap(), 100, 100);
         }
     }
@@ -137,6 +145,18 @@ fn counts_and_indices_that_lie() {
             "v 0 0 0\nf 1 18446744073709551615 9223372036854775807\n",
         ),
         ("obj", "v 0 0 0\nf 1 -9223372036854775808 1\n"),
+        (
+            "ply",
+            "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nend_header\n",
+        ),
+        (
+            "ply",
+            "ply\nformat ascii 1.0\nelement vertex 18446744073709551615\nproperty float x\nend_header\n1\n",
+        ),
+        (
+            "ply",
+            "ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list uint int vertex_indices\nend_header\n\u{7f}\u{7f}\u{7f}\u{7f}",
+        ),
         ("obj", "mtllib /dev/zero\nv 0 0 0\nf 1 1 1\n"),
     ];
     let folder = tempfile::tempdir().unwrap();

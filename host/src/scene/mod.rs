@@ -7,10 +7,13 @@
 #[cfg(test)]
 mod damaged;
 mod error;
+mod gltf;
 pub(crate) mod molecule;
 mod nff;
 mod obj;
+mod ply;
 mod polygon;
+mod stl;
 #[cfg(test)]
 mod test_scenes;
 mod text;
@@ -252,12 +255,15 @@ pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneEr
     match extension.as_str() {
         "toml" => toml::load(path, molecule),
         "obj" => obj::load(path),
+        "gltf" | "glb" => gltf::load(path),
+        "stl" => stl::load(path),
+        "ply" => ply::load(path),
         "nff" => nff::load(path),
         "pdb" | "ent" | "cif" | "mmcif" => molecule::load(path, molecule),
         _ => Err(SceneError::new(
             path,
             format!("the extension {extension:?} names no scene format"),
-            "use .toml, .obj, .nff, .pdb, .ent, .cif or .mmcif",
+            "use .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif",
         )),
     }
 }
@@ -269,6 +275,16 @@ pub struct Place {
     pub file: Arc<PathBuf>,
     /// Line, counted from 1; 0 where the format has no lines.
     pub line: usize,
+}
+
+impl Place {
+    /// A whole file.
+    fn of(path: &Path) -> Self {
+        Self {
+            file: Arc::new(path.to_owned()),
+            line: 0,
+        }
+    }
 }
 
 impl std::fmt::Display for Place {

@@ -15,14 +15,7 @@ pub(super) struct Source {
 
 impl Source {
     pub(super) fn read(path: &Path) -> Result<Self, SceneError> {
-        let bytes = read_bytes(path).map_err(|error| {
-            SceneError::new(
-                path,
-                format!("cannot be read: {error}"),
-                "check that the path names a file you may read",
-            )
-        })?;
-        Ok(Self::from_bytes(path, &bytes))
+        Ok(Self::from_bytes(path, &read_file(path)?))
     }
 
     pub(super) fn from_bytes(path: &Path, bytes: &[u8]) -> Self {
@@ -91,11 +84,18 @@ impl Source {
 }
 
 /// Reads a file; not a device, which may have no end.
-fn read_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
-    if !std::fs::metadata(path)?.is_file() {
-        return Err(std::io::Error::other("it is not a file"));
-    }
-    std::fs::read(path)
+pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
+    let bytes = std::fs::metadata(path).and_then(|metadata| match metadata.is_file() {
+        true => std::fs::read(path),
+        false => Err(std::io::Error::other("it is not a file")),
+    });
+    bytes.map_err(|error| {
+        SceneError::new(
+            path,
+            format!("cannot be read: {error}"),
+            "check that the path names a file you may read",
+        )
+    })
 }
 
 /// What an importer passed over. The same sentence is kept once, with the first line it applies

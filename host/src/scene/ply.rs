@@ -1,0 +1,242 @@
+//! Reads PLY, binary and text: the vertices and faces of a mesh.
+//!
+//! Faces are cut into triangles. Colours, normals and elements of other names are passed over.
+
+use super::polygon::{self, MAX_CONCAVE};
+use super::text::read_file;
+use super::{Imported, Material, Object, Place, Scene, SceneError, Shape};
+use glam::DVec3;
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
+use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyAccessResult};
+use std::path::Path;
+
+/// Reads a PLY file. It has no camera and no lights; the compiler adds them.
+///
+/// # Errors
+/// If the file cannot be read, has no faces, or its content is broken; the error names the line
+/// where there are lines, else the vertex or the face.
+pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
+    let bytes = read_file(path)?;
+    let broken = |error: ParseError| {
+        let cause = error.to_string();
+        let cause = cause.split_once(": ").filter(|_| error.line().is_some());
+        let cause = cause.map_or_else(|| error.to_string(), |(_, cause)| cause.to_owned());
+        let sentence: Vec<_> = cause.split_whitespace().collect();
+        let error_at = SceneError::new(
+            path,
+            sentence.join(" "),
+            "export the file again; text and both orders of bytes are understood",
+        );
+        match error.line() {
+            Some(line) => error_at.at_line(line),
+            None => error_at,
+        }
+    };
+    let mut reader = Reader::new(&bytes[..]);
+    let header = Parser::<Skipped>::new()
+        .read_header(&mut reader)
+        .map_err(broken)?;
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    let mut warnings = Vec::new();
+    for element in header.elements.values() {
+        announced(path, element, bytes.len())?;
+        match element.name.as_str() {
+            "vertex" => {
+                let parser = Parser::<Vertex>::new();
+                let read = parser.read_payload_for_element(&mut reader, element, &header);
+                vertices = read.map_err(broken)?;
+            }
+            "face" => {
+                let parser = Parser::<Face>::new();
+                let read = parser.read_payload_for_element(&mut reader, element, &header);
+                faces = read.map_err(broken)?;
+            }
+            name => {
+                let parser = Parser::<Skipped>::new();
+                let read = parser.read_payload_for_element(&mut reader, element, &header);
+                read.map_err(broken)?;
+                let place = Place::of(path);
+                warnings.push(format!("{place}: elements {name:?} are passed over"));
+            }
+        }
+    }
+    let shape = mesh(path, &vertices, &faces, &mut warnings)?;
+    let scene = Scene {
+        materials: vec![Material::default()],
+        objects: vec![Object {
+            name: path.file_stem().unwrap_or_default().display().to_string(),
+            material: 0,
+            shape,
+            place: Place::of(path),
+        }],
+        ..Scene::default()
+    };
+    Ok(Imported { scene, warnings })
+}
+
+/// Refuses a number of elements that the file cannot hold: each takes a byte at least.
+fn announced(path: &Path, element: &ElementDef, bytes: usize) -> Result<(), SceneError> {
+    if element.count <= bytes && (!element.properties.is_empty() || element.count == 0) {
+        return Ok(());
+    }
+    Err(SceneError::new(
+        path,
+        format!(
+            "the header announces {} elements {:?} of {} properties, and the file has {bytes} bytes",
+            element.count,
+            element.name,
+            element.properties.len()
+        ),
+        "copy the file again, as binary, or export it again",
+    ))
+}
+
+fn mesh(
+    path: &Path,
+    read: &[Vertex],
+    faces: &[Face],
+    warnings: &mut Vec<String>,
+) -> Result<Shape, SceneError> {
+    let wrong = |cause: String, remedy: &str| SceneError::new(path, cause, remedy);
+    if faces.is_empty() {
+        return Err(wrong(
+            String::from("the file has no faces"),
+            "export a mesh; points alone cannot be rendered",
+        ));
+    }
+    let vertices: Vec<DVec3> = read
+        .iter()
+        .map(|vertex| DVec3::from_array(vertex.0))
+        .collect();
+    if let Some(number) = vertices.iter().position(|vertex| !vertex.is_finite()) {
+        return Err(wrong(
+            format!("vertex {number} (from 0) has no x, y and z that are finite numbers"),
+            "export the file again, or repair the vertex",
+        ));
+    }
+    let mut triangles = Vec::new();
+    let (mut short, mut crossing) = (0_usize, 0_usize);
+    let mut points = Vec::new();
+    for (number, face) in faces.iter().enumerate() {
+        points.clear();
+        for &corner in &face.0 {
+            let vertex = usize::try_from(corner)
+                .ok()
+                .and_then(|corner| vertices.get(corner));
+            points.push(*vertex.ok_or_else(|| {
+                wrong(
+                    format!(
+                        "face {number} (from 0) uses vertex {corner}, and there are {} vertices",
+                        vertices.len()
+                    ),
+                    "export the file again; vertices count from 0",
+                )
+            })?);
+        }
+        if points.len() < 3 {
+            short += 1;
+            continue;
+        }
+        let cut = polygon::triangulate(&points).ok_or_else(|| {
+            wrong(
+                format!(
+                    "face {number} (from 0) is concave and has {} vertices",
+                    points.len()
+                ),
+                &format!("split it into faces of at most {MAX_CONCAVE} vertices"),
+            )
+        })?;
+        crossing += usize::from(!cut.exact);
+        let named = |triangle: [u32; 3]| triangle.map(|corner| face.0[corner as usize] as u32);
+        triangles.extend(cut.triangles.into_iter().map(named));
+    }
+    let place = Place::of(path);
+    for (count, what) in [
+        (short, "have fewer than three vertices and are left out"),
+        (
+            crossing,
+            "cross themselves; their triangles cover more than they enclose",
+        ),
+    ] {
+        if count > 0 {
+            warnings.push(format!("{place}: {count} faces {what}"));
+        }
+    }
+    if triangles.is_empty() {
+        return Err(wrong(
+            String::from("no face of the file has three vertices"),
+            "export a mesh; points and lines cannot be rendered",
+        ));
+    }
+    Ok(Shape::Mesh {
+        vertices,
+        triangles,
+    })
+}
+
+/// A vertex; NaN where it says nothing.
+struct Vertex([f64; 3]);
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self([f64::NAN; 3])
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == name) else {
+            return PropertyAccessResult::Ignored;
+        };
+        self.0[axis] = match property {
+            Property::Float(value) => value.into(),
+            Property::Double(value) => value,
+            Property::Char(value) => value.into(),
+            Property::UChar(value) => value.into(),
+            Property::Short(value) => value.into(),
+            Property::UShort(value) => value.into(),
+            Property::Int(value) => value.into(),
+            Property::UInt(value) => value.into(),
+            _ => return PropertyAccessResult::UnsupportedType,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+/// The corners of a face: numbers of vertices, as they are written.
+struct Face(Vec<i64>);
+
+impl PropertyAccess for Face {
+    fn new() -> Self {
+        Self(Vec::new())
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        if !["vertex_indices", "vertex_index"].contains(&name) {
+            return PropertyAccessResult::Ignored;
+        }
+        fn wide<T: Into<i64>>(list: Vec<T>) -> Vec<i64> {
+            list.into_iter().map(Into::into).collect()
+        }
+        self.0 = match property {
+            Property::ListChar(list) => wide(list),
+            Property::ListUChar(list) => wide(list),
+            Property::ListShort(list) => wide(list),
+            Property::ListUShort(list) => wide(list),
+            Property::ListInt(list) => wide(list),
+            Property::ListUInt(list) => wide(list),
+            _ => return PropertyAccessResult::UnsupportedType,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+/// An element that nothing is taken from.
+struct Skipped;
+
+impl PropertyAccess for Skipped {
+    fn new() -> Self {
+        Self
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests;

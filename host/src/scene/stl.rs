@@ -1,0 +1,219 @@
+//! Reads STL, binary and text: triangles, and nothing else.
+//!
+//! The parser is our own. The crate `stl_io` was looked at first, but of a text file with several
+//! solids it reads one and says nothing of the rest, and it never says in which line anything is.
+//!
+//! Every solid of a text file is an object. Vertices are shared by their coordinates, so that
+//! triangles meet without a gap. Normals are passed over, since the order of the corners says the
+//! same, and so are the colours that some programs put into binary files.
+
+use super::text::{Source, Warnings, read_file};
+use super::{Imported, Material, Object, Place, Scene, SceneError, Shape};
+use glam::DVec3;
+use std::collections::HashMap;
+use std::path::Path;
+
+/// Bytes in front of the triangles of a binary file: a text that means nothing, and their number.
+const HEAD: usize = 84;
+/// Bytes of a triangle: normal, three corners, attributes.
+const TRIANGLE: usize = 50;
+
+/// Reads an STL file. It has no camera and no lights; the compiler adds them.
+///
+/// # Errors
+/// If the file cannot be read, is cut off, has no triangles, or its content is broken; the error
+/// names the line or the triangle.
+pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
+    let bytes = read_file(path)?;
+    // Binary files may begin with "solid" as well; their length tells.
+    let announced = bytes
+        .get(HEAD - 4..HEAD)
+        .and_then(|count| count.try_into().ok());
+    let announced = announced.map(u32::from_le_bytes);
+    let length = |count: u32| HEAD as u64 + TRIANGLE as u64 * u64::from(count);
+    let found = bytes.len() as u64;
+    let is_text = bytes
+        .trim_ascii_start()
+        .get(..5)
+        .is_some_and(|it| it.eq_ignore_ascii_case(b"solid"));
+    match announced {
+        Some(count) if length(count) == found => binary(path, &bytes, Vec::new()),
+        _ if is_text => text(&Source::from_bytes(path, &bytes)),
+        Some(count) if length(count) < found => {
+            let more = found - length(count);
+            let place = Place::of(path);
+            let sentence =
+                format!("{place}: {more} bytes behind the last triangle are passed over");
+            binary(path, &bytes, vec![sentence])
+        }
+        Some(count) => Err(SceneError::new(
+            path,
+            format!(
+                "the file announces {count} triangles, which take {} bytes, and has {found}",
+                length(count)
+            ),
+            "copy the file again, as binary, or export it again",
+        )),
+        None => Err(SceneError::new(
+            path,
+            "this is neither a binary STL file nor one of text",
+            "export it again; a text begins with `solid`, and a binary file has at least 84 bytes",
+        )),
+    }
+}
+
+fn binary(path: &Path, bytes: &[u8], warnings: Vec<String>) -> Result<Imported, SceneError> {
+    let announced = bytes
+        .get(HEAD - 4..HEAD)
+        .and_then(|count| count.try_into().ok());
+    let count = u32::from_le_bytes(announced.unwrap_or_default()) as usize;
+    let mut soup = Soup::default();
+    for (number, triangle) in bytes[HEAD..].chunks_exact(TRIANGLE).take(count).enumerate() {
+        let mut corners = [DVec3::ZERO; 3];
+        // The normal comes first.
+        for (corner, bytes) in corners.iter_mut().zip(triangle[12..48].chunks_exact(12)) {
+            let coordinate = |axis: usize| {
+                let bytes = bytes[4 * axis..4 * axis + 4].try_into().unwrap_or_default();
+                f64::from(f32::from_le_bytes(bytes))
+            };
+            *corner = DVec3::new(coordinate(0), coordinate(1), coordinate(2));
+            if !corner.is_finite() {
+                return Err(SceneError::new(
+                    path,
+                    format!("triangle {number} (from 0) has a corner that is not finite"),
+                    "export the file again, or repair the triangle",
+                ));
+            }
+        }
+        soup.push(corners);
+    }
+    let name = path.file_stem().unwrap_or_default().display().to_string();
+    let place = Place::of(path);
+    let objects = soup.object(name, place).into_iter().collect();
+    scene(path, objects, warnings)
+}
+
+fn text(source: &Source) -> Result<Imported, SceneError> {
+    let mut warnings = Warnings::default();
+    let mut objects = Vec::new();
+    let mut solid = (String::new(), source.place(1));
+    let mut soup = Soup::default();
+    // The corners of the facet that is open.
+    let mut facet: Option<Vec<DVec3>> = None;
+    for (number, line) in source.lines() {
+        let mut words = line.split_whitespace();
+        let Some(word) = words.next() else { continue };
+        let misplaced = |cause: &str| {
+            source.error_at(
+                word,
+                cause,
+                "write `facet`, `outer loop`, three times `vertex`, `endloop`, `endfacet`",
+            )
+        };
+        match word.to_ascii_lowercase().as_str() {
+            "solid" | "endsolid" | "facet" if facet.is_some() => {
+                return Err(misplaced("the facet before this line has no `endfacet`"));
+            }
+            "solid" => {
+                let (name, place) = std::mem::replace(
+                    &mut solid,
+                    (
+                        line.trim()[word.len()..].trim().to_owned(),
+                        source.place(number),
+                    ),
+                );
+                objects.extend(std::mem::take(&mut soup).object(name, place));
+            }
+            "facet" => facet = Some(Vec::with_capacity(3)),
+            "vertex" => {
+                let Some(corners) = facet.as_mut().filter(|corners| corners.len() < 3) else {
+                    return Err(misplaced("this vertex is none of the three of a facet"));
+                };
+                let mut coordinate = || match words.next() {
+                    Some(word) => source.number(word, "a coordinate"),
+                    None => Err(misplaced("this vertex has fewer than three coordinates")),
+                };
+                corners.push(DVec3::new(coordinate()?, coordinate()?, coordinate()?));
+            }
+            "endfacet" => match facet.take().as_deref() {
+                Some(&[a, b, c]) => soup.push([a, b, c]),
+                _ => return Err(misplaced("this facet has not three vertices")),
+            },
+            "outer" | "endloop" | "endsolid" => {}
+            _ => {
+                let sentence = format!("lines that begin with {word:?} are passed over");
+                warnings.add(source, number, sentence);
+            }
+        }
+    }
+    if facet.is_some() {
+        return Err(source.error(
+            "the file ends inside a facet",
+            "copy the file again, or export it again",
+        ));
+    }
+    let (name, place) = solid;
+    objects.extend(soup.object(name, place));
+    for (number, object) in objects.iter_mut().enumerate() {
+        if object.name.is_empty() {
+            object.name = format!("solid {}", number + 1);
+        }
+    }
+    scene(&source.path, objects, warnings.into_sentences())
+}
+
+fn scene(path: &Path, objects: Vec<Object>, warnings: Vec<String>) -> Result<Imported, SceneError> {
+    if objects.is_empty() {
+        return Err(SceneError::new(
+            path,
+            "the file has no triangles",
+            "export a surface or a solid",
+        ));
+    }
+    let scene = Scene {
+        materials: vec![Material::default()],
+        objects,
+        ..Scene::default()
+    };
+    Ok(Imported { scene, warnings })
+}
+
+/// Triangles whose vertices find each other by their coordinates.
+#[derive(Default)]
+struct Soup {
+    vertices: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    numbers: HashMap<[u64; 3], u32>,
+}
+
+impl Soup {
+    fn push(&mut self, corners: [DVec3; 3]) {
+        let triangle = corners.map(|corner| {
+            // Adding 0 makes -0 the same as 0.
+            let key = (corner + 0.0).to_array().map(f64::to_bits);
+            *self.numbers.entry(key).or_insert_with(|| {
+                self.vertices.push(corner);
+                self.vertices.len() as u32 - 1
+            })
+        });
+        self.triangles.push(triangle);
+    }
+
+    /// The mesh of the triangles, if there are any.
+    fn object(self, name: String, place: Place) -> Option<Object> {
+        let shape = Shape::Mesh {
+            vertices: self.vertices,
+            triangles: self.triangles,
+        };
+        let any = !self.numbers.is_empty();
+        any.then_some(Object {
+            name,
+            material: 0,
+            shape,
+            place,
+        })
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests;

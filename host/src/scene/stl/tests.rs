@@ -1,0 +1,181 @@
+use super::*;
+use crate::scene::test_scenes;
+
+/// Two solids, the second with a name of two words and keywords in capitals.
+pub(in crate::scene) const TWO_SOLIDS: &str = "\
+solid tip
+facet normal 0 0 1
+  outer loop
+    vertex 0 0 0
+    vertex 1 0 0
+    vertex 0 1 -0
+  endloop
+endfacet
+endsolid tip
+SOLID The Other
+FACET NORMAL 0 0 1
+ OUTER LOOP
+  VERTEX 0 0 2
+  VERTEX 1e0 0 2
+  VERTEX 0 1 2
+ ENDLOOP
+ENDFACET
+FACET NORMAL 0 0 1
+ OUTER LOOP
+  VERTEX 1 0 2
+  VERTEX 1 1 2
+  VERTEX 0 1 2
+ ENDLOOP
+ENDFACET
+ENDSOLID The Other
+";
+
+fn read(bytes: &[u8]) -> Result<Imported, SceneError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("thing.stl");
+    std::fs::write(&path, bytes).unwrap();
+    load(&path)
+}
+
+fn mesh(object: &Object) -> (&[DVec3], &[[u32; 3]]) {
+    match &object.shape {
+        Shape::Mesh {
+            vertices,
+            triangles,
+        } => (vertices, triangles),
+        _ => panic!("not a mesh"),
+    }
+}
+
+/// A binary file of triangles.
+fn file(triangles: &[[[f32; 3]; 3]]) -> Vec<u8> {
+    let mut bytes = b"solid is how even binary files begin".to_vec();
+    bytes.resize(80, b' ');
+    bytes.extend((triangles.len() as u32).to_le_bytes());
+    for corners in triangles {
+        let floats = [0.0; 3].iter().chain(corners.iter().flatten());
+        bytes.extend(floats.flat_map(|float: &f32| float.to_le_bytes()));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+#[test]
+fn every_solid_of_a_text_is_an_object() {
+    let imported = read(TWO_SOLIDS.as_bytes()).unwrap();
+    let [tip, other] = &imported.scene.objects[..] else {
+        panic!("{:?}", imported.scene.objects)
+    };
+    assert_eq!((tip.name.as_str(), tip.place.line), ("tip", 1));
+    assert_eq!((other.name.as_str(), other.place.line), ("The Other", 10));
+    assert_eq!(mesh(tip).1, [[0, 1, 2]]);
+    // Corners at the same place are one vertex.
+    assert_eq!(mesh(other).0.len(), 4);
+    assert_eq!(mesh(other).1, [[0, 1, 2], [1, 3, 2]]);
+    assert_eq!(imported.warnings, [""; 0]);
+}
+
+#[test]
+fn binary_files_share_vertices_and_say_what_is_too_much() {
+    let [a, b, c, d] = [
+        [0.0, 0.0, 0.0],
+        [1.5, -0.0, 0.0],
+        [0.0, 1.5, 0.0],
+        [1.5, 1.5, 0.0],
+    ];
+    let mut bytes = file(&[[a, b, c], [[1.5, 0.0, 0.0], d, c]]);
+    let imported = read(&bytes).unwrap();
+    let (vertices, triangles) = mesh(&imported.scene.objects[0]);
+    assert_eq!(
+        (vertices.len(), triangles),
+        (4, &[[0, 1, 2], [1, 3, 2]][..])
+    );
+    assert_eq!(imported.scene.objects[0].name, "thing");
+    bytes[..5].copy_from_slice(b"thing");
+    bytes.extend([7; 3]);
+    let imported = read(&bytes).unwrap();
+    assert!(imported.warnings[0].contains("3 bytes behind the last triangle"));
+}
+
+#[test]
+fn faults_name_line_or_triangle() {
+    let cut = &file(&[[[0.0; 3]; 3]; 2])[..150];
+    let mut named = cut.to_vec();
+    named[..5].copy_from_slice(b"thing");
+    let nan = file(&[[[0.0; 3]; 3], [[0.0; 3], [f32::NAN; 3], [0.0; 3]]]);
+    let text = |from: &str, to: &str| TWO_SOLIDS.replacen(from, to, 1).into_bytes();
+    for (bytes, line, cause) in [
+        (
+            named,
+            None,
+            "announces 2 triangles, which take 184 bytes, and has 150",
+        ),
+        (
+            nan,
+            None,
+            "triangle 1 (from 0) has a corner that is not finite",
+        ),
+        (file(&[]), None, "has no triangles"),
+        (b"solid\nendsolid\n".to_vec(), None, "has no triangles"),
+        (
+            b"short".to_vec(),
+            None,
+            "neither a binary STL file nor one of text",
+        ),
+        (
+            text("vertex 1 0 0", "vertex 1 0"),
+            Some(5),
+            "fewer than three coordinates",
+        ),
+        (
+            text("vertex 1 0 0", "vertex 1 0 x"),
+            Some(5),
+            "\"x\", which is not a number",
+        ),
+        (
+            text("vertex 1 0 0", "vertex 1 0 inf"),
+            Some(5),
+            "not a finite number",
+        ),
+        (
+            text("    vertex 1 0 0\n", ""),
+            Some(7),
+            "has not three vertices",
+        ),
+        (text("  endloop\nendfacet\n", ""), Some(7), "no `endfacet`"),
+        (
+            text("facet normal 0 0 1\n", ""),
+            Some(3),
+            "none of the three of a facet",
+        ),
+        (
+            b"solid a\nfacet\nvertex 0 0 0".to_vec(),
+            None,
+            "ends inside a facet",
+        ),
+    ] {
+        let error = read(&bytes).unwrap_err();
+        assert!(error.cause.contains(cause), "{cause}: {error}");
+        assert_eq!(error.line, line, "{error}");
+    }
+}
+
+#[test]
+fn real_files() {
+    for (name, objects, triangles) in [
+        ("meshes/cylinder.stl", 1, 416),
+        ("meshes/two_objects_mixed_case_names.stl", 2, 24),
+        ("meshes/featuretype.STL", 1, 3476),
+    ] {
+        let Some(path) = test_scenes::find(name) else {
+            continue;
+        };
+        let scene = load(&path).unwrap().scene;
+        let count: usize = scene
+            .objects
+            .iter()
+            .map(|object| mesh(object).1.len())
+            .sum();
+        assert_eq!((scene.objects.len(), count), (objects, triangles), "{name}");
+    }
+}
