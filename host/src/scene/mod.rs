@@ -7,7 +7,6 @@
 #[cfg(test)]
 mod damaged;
 mod error;
-mod gltf;
 pub(crate) mod molecule;
 mod nff;
 mod obj;
@@ -255,7 +254,6 @@ pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneEr
     match extension.as_str() {
         "toml" => toml::load(path, molecule),
         "obj" => obj::load(path),
-        "gltf" | "glb" => gltf::load(path),
         "stl" => stl::load(path),
         "ply" => ply::load(path),
         "nff" => nff::load(path),
@@ -263,7 +261,7 @@ pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneEr
         _ => Err(SceneError::new(
             path,
             format!("the extension {extension:?} names no scene format"),
-            "use .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif",
+            "use .toml, .obj, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif",
         )),
     }
 }
