@@ -80,21 +80,33 @@ const SHADOWED: u32 = Effects::SHADOW.0;
 const GLOSSY: u32 = SHADOWED | Effects::HIGHLIGHT.0 | Effects::CHECKER.0;
 const ALL: u32 = Effects::ALL.0;
 
+/// Whether pictures are made through a structure day by day. The others are there to be compared:
+/// they have one ray loop, for all effects, because this program has to be compiled, too.
+const fn is_for_pictures(structure: Structure) -> bool {
+    matches!(structure, Structure::Bvh | Structure::Flagged)
+}
+
 fn with_structure<N: Number, A: Accel>(
     scene: &Scene<'_>,
     job: &Job,
     progress: &(dyn Fn() + Sync),
 ) -> Result<Picture, RenderError> {
-    let fits = |set| Effects(set).contains(scene.effects());
-    if fits(0) {
-        rows::<N, A, 0>(scene, job, progress)
-    } else if fits(SHADOWED) {
-        rows::<N, A, SHADOWED>(scene, job, progress)
-    } else if fits(GLOSSY) {
-        rows::<N, A, GLOSSY>(scene, job, progress)
-    } else {
-        rows::<N, A, ALL>(scene, job, progress)
+    if job.count {
+        let renderer = Renderer::<N, A, ALL>::new(scene, job.settings)?;
+        let row = |y, pixels: &mut _| Some(counted_row(&renderer, y, pixels));
+        return Ok(spread(job, progress, &row));
     }
+    if const { is_for_pictures(A::STRUCTURE) } {
+        let fits = |set| Effects(set).contains(scene.effects());
+        if fits(0) {
+            return rows::<N, A, 0>(scene, job, progress);
+        } else if fits(SHADOWED) {
+            return rows::<N, A, SHADOWED>(scene, job, progress);
+        } else if fits(GLOSSY) {
+            return rows::<N, A, GLOSSY>(scene, job, progress);
+        }
+    }
+    rows::<N, A, ALL>(scene, job, progress)
 }
 
 fn rows<N: Number, A: Accel, const EFFECTS: u32>(
@@ -103,50 +115,61 @@ fn rows<N: Number, A: Accel, const EFFECTS: u32>(
     progress: &(dyn Fn() + Sync),
 ) -> Result<Picture, RenderError> {
     let renderer = Renderer::<N, A, EFFECTS>::new(scene, job.settings)?;
-    let width = job.settings.width;
-    let mut picture = Picture {
-        width,
-        rows: job.rows.clone(),
-        pixels: vec![[0; 3]; usize::from(width) * job.rows.len()],
-        counters: None,
-        work: Vec::new(),
+    let row = |y, pixels: &mut _| {
+        render_row(&renderer, y, pixels, || NoCount, |_| ());
+        None
     };
-    let rows = job
+    Ok(spread(job, progress, &row))
+}
+
+/// What a row cost in all, and each of its pixels.
+type Cost = (Counters, Vec<u32>);
+
+/// Fills a row, given its number, and may tell what it cost.
+type Row<'r> = dyn Fn(u16, &mut [[u16; 3]]) -> Option<Cost> + Sync + 'r;
+
+/// Spreads rows over all threads.
+fn spread(job: &Job, progress: &(dyn Fn() + Sync), row: &Row<'_>) -> Picture {
+    let width = job.settings.width;
+    let mut pixels = vec![[0; 3]; usize::from(width) * job.rows.len()];
+    let costs: Vec<Option<Cost>> = job
         .rows
         .clone()
         .into_par_iter()
-        .zip(picture.pixels.par_chunks_mut(width.into()));
-    if job.count {
-        let counted: Vec<(Counters, Vec<u32>)> = rows
-            .map(|(y, pixels)| {
-                let mut work = Vec::with_capacity(width.into());
-                let mut total = Counters::default();
-                render_row(
-                    &renderer,
-                    y,
-                    pixels,
-                    Counters::default,
-                    |counters: Counters| {
-                        work.push((counters.boxes + counters.objects).min(u32::MAX.into()) as u32);
-                        total = total.plus(&counters);
-                    },
-                );
-                progress();
-                (total, work)
-            })
-            .collect();
-        let total = counted
-            .iter()
-            .fold(Counters::default(), |sum, (row, _)| sum.plus(row));
-        picture.counters = Some(total);
-        picture.work = counted.into_iter().flat_map(|(_, work)| work).collect();
-    } else {
-        rows.for_each(|(y, pixels)| {
-            render_row(&renderer, y, pixels, || NoCount, |_| ());
+        .zip(pixels.par_chunks_mut(width.into()))
+        .map(|(y, pixels)| {
+            let cost = row(y, pixels);
             progress();
-        });
+            cost
+        })
+        .collect();
+    let costs: Vec<Cost> = costs.into_iter().flatten().collect();
+    let sum = |sum: Counters, (row, _): &Cost| sum.plus(row);
+    Picture {
+        width,
+        rows: job.rows.clone(),
+        pixels,
+        counters: job
+            .count
+            .then(|| costs.iter().fold(Counters::default(), sum)),
+        work: costs.into_iter().flat_map(|(_, work)| work).collect(),
     }
-    Ok(picture)
+}
+
+/// One row, and what it cost.
+fn counted_row<N: Number, A: Accel, const EFFECTS: u32>(
+    renderer: &Renderer<'_, '_, N, A, EFFECTS>,
+    y: u16,
+    pixels: &mut [[u16; 3]],
+) -> Cost {
+    let mut work = Vec::with_capacity(pixels.len());
+    let mut total = Counters::default();
+    let counted = |counters: Counters| {
+        work.push((counters.boxes + counters.objects).min(u32::MAX.into()) as u32);
+        total = total.plus(&counters);
+    };
+    render_row(renderer, y, pixels, Counters::default, counted);
+    (total, work)
 }
 
 /// One row; every pixel is counted on its own.
