@@ -10,7 +10,7 @@
 //!
 //! Both are generic over the number format (see [`Number`]): [`Fixed`] for cores without a
 //! floating-point unit, `f32`, `f64`; and over the acceleration structure ([`List`], [`Bvh`],
-//! [`Flagged`]). The structure never changes a bit of an answer.
+//! [`Flagged`], [`DualSplit`]). The structure never changes a bit of an answer.
 //!
 //! The page [`boards`] leads from a scene file to a picture on your own board.
 //!
@@ -46,6 +46,8 @@ mod shape;
 
 #[cfg(feature = "bvh")]
 pub use accel::Bvh;
+#[cfg(feature = "dual-split")]
+pub use accel::DualSplit;
 #[cfg(feature = "flagged")]
 pub use accel::Flagged;
 pub use accel::{Accel, List, Stack, StackView, Structure, StructureVisitor};
@@ -54,7 +56,7 @@ pub use count::{Count, Counters, NoCount, RayKind};
 pub use event::Event;
 pub use number::{Fixed, Format, Number};
 pub use query::{Found, Hit, any_hit, closest_hit, closest_primitive};
-pub use ray::{Ray, RayError};
+pub use ray::{Pencil, Ray, RayError};
 pub use render::{Renderer, Rgb565, Rgb888, Settings, Workspace};
 pub use shade::Effects;
 pub use shape::Kind;

@@ -36,19 +36,9 @@ pub struct Hit<N: Number> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Best<N> {
     t: N,
-    /// The primitive in scene-file order.
-    primitive: u32,
     kind: Kind,
     index: u32,
     part: Part,
-}
-
-impl<N> Best<N> {
-    /// Decides between primitives of one number, which only a forged blob has: its answers do not
-    /// depend on the structure either.
-    fn slot(&self) -> (u8, u32) {
-        (self.kind as u8, self.index)
-    }
 }
 
 /// The search for hits, one leaf at a time.
@@ -57,7 +47,6 @@ struct Search<'s, 'a, N: Number, K> {
     ray: &'s Ray<N>,
     cull: &'s K,
     recip_norm2: N,
-    projection: Projection<N>,
     /// No hit beyond this counts.
     tmax: N,
     best: Option<Best<N>>,
@@ -75,7 +64,6 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             } else {
                 N::ZERO
             },
-            projection: Projection::of(ray),
             tmax: ray.tmax,
             best: None,
         }
@@ -89,21 +77,24 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         let Some((t, part)) = accept(self.ray, self.cull, crossing, bounds, self.tmax) else {
             return;
         };
-        let primitive = self.scene.primitive(kind, index);
-        let slot = (kind as u8, index);
-        if self
-            .best
-            .is_none_or(|best| t < best.t || (primitive, slot) < (best.primitive, best.slot()))
-        {
-            self.best = Some(Best {
-                t,
-                primitive,
-                kind,
-                index,
-                part,
-            });
-            self.tmax = t;
+        // No hit lies beyond the best one, so this one is nearer, or as near.
+        let tie = self.best.filter(|best| t >= best.t);
+        if tie.is_some_and(|best| self.rank(best.kind, best.index) <= self.rank(kind, index)) {
+            return;
         }
+        self.tmax = t;
+        self.best = Some(Best {
+            t,
+            kind,
+            index,
+            part,
+        });
+    }
+
+    /// What decides between hits at the same t: the number in scene-file order, and then the slot,
+    /// because a forged blob may give one number to two primitives.
+    fn rank(&self, kind: Kind, index: u32) -> (u32, u8, u32) {
+        (self.scene.primitive(kind, index), kind as u8, index)
     }
 
     /// Tells of a primitive that was just tested, and considered if it was met.
@@ -231,7 +222,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         leaf: Leaf,
         count: &mut C,
     ) {
-        let projection = self.projection;
+        let projection = Projection::of::<MAJOR, V>(self.ray);
         for (index, record) in (leaf.first..).zip(triangles.unwrap_or_default()) {
             let [a, b, c] = record.corners();
             let corners = (vertices.get(a), vertices.get(b), vertices.get(c));
@@ -239,8 +230,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                 continue;
             };
             if projection.meets::<MAJOR, V>(a, b, c) {
-                let corners = [a.position(), b.position(), c.position()];
-                self.triangle(corners, index, count);
+                self.triangle(index, count);
             } else {
                 self.tell(Kind::Triangle, index, None, count);
             }
@@ -249,7 +239,10 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
 
     /// Takes a triangle that the ray meets somewhere on its line.
     #[inline(never)]
-    fn triangle<C: Count>(&mut self, corners: [[i32; 3]; 3], index: u32, count: &mut C) {
+    fn triangle<C: Count>(&mut self, index: u32, count: &mut C) {
+        let Some(corners) = self.scene.triangle(index as usize) else {
+            return;
+        };
         let crossing = triangle::cross(self.ray, corners);
         if let Some(crossing) = crossing {
             let bounds = triangle::bounds(corners);
@@ -292,7 +285,7 @@ pub fn closest_primitive<N: Number, A: Accel, C: Count>(
     let best = search.best?;
     Some(Found {
         t: best.t.widen() + ray.moved,
-        primitive: best.primitive,
+        primitive: scene.primitive(best.kind, best.index),
         best,
     })
 }
@@ -311,8 +304,8 @@ impl<N: Number> Found<N> {
             point,
             normal: surface.normal,
             front: N::dot(surface.normal, ray.slope) < N::Wide::default(),
-            object: scene.object(best.primitive),
-            primitive: best.primitive,
+            object: scene.object(self.primitive),
+            primitive: self.primitive,
             error: N::error_bound(scale),
         })
     }

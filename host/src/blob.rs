@@ -62,7 +62,12 @@ pub fn is_blob(path: &Path) -> io::Result<bool> {
 
 /// The structures that a scene holds, the one that a verb takes unless it is told first.
 pub fn best_structures(scene: &Scene<'_>) -> impl Iterator<Item = Structure> {
-    const BEST_FIRST: [Structure; 3] = [Structure::Flagged, Structure::Bvh, Structure::List];
+    const BEST_FIRST: [Structure; 4] = [
+        Structure::DualSplit,
+        Structure::Flagged,
+        Structure::Bvh,
+        Structure::List,
+    ];
     BEST_FIRST
         .into_iter()
         .filter(|&structure| scene.holds(structure))

@@ -1,5 +1,6 @@
 //! What the documents show is what the project has: examples and dumps cannot fall behind.
 
+use gridel_core::Structure;
 use gridel_host::compile::{Options, compile};
 use gridel_tests::scenes;
 use std::fs;
@@ -48,6 +49,7 @@ fn the_formats_dump_is_what_the_compiler_writes() {
     fs::write(&path, block(&format, heading, "toml")).expect("the file can be written to");
     let options = Options {
         lattice_bits: 16,
+        structures: vec![Structure::Flagged],
         ..Options::default()
     };
     let compiled = compile(&scenes::read(&path), &options).expect("compiles");

@@ -29,7 +29,7 @@ fn small(scene: &Scene<'_>) -> Settings {
 fn job(format: Format, settings: Settings) -> Job {
     Job {
         format,
-        structure: Structure::Flagged,
+        structure: Structure::DualSplit,
         settings,
         rows: 0..settings.height,
         count: false,

@@ -22,7 +22,7 @@
 //! Values are monotone in `p`, so a child's interval lies in its parent's, whatever was rounded.
 
 use crate::blob::record::{Pair, UnitBox, plane_word};
-use crate::number::Number;
+use crate::number::{CullAxis, Number};
 use crate::ray::Ray;
 
 /// The steps at which a ray enters and leaves something; it misses where `near > far`.
@@ -58,34 +58,20 @@ pub trait Culling<N: Number>: Copy + core::fmt::Debug + Default + Send + Sync {
 /// The culling form of a ray in integers: 52 bytes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cull {
-    /// Steps a unit with 16 fraction bits, a value an axis, with the slope's sign.
-    inverse: [i32; 3],
-    /// What the near plane's product lacks to the entry's step.
-    near: [i32; 3],
-    /// What the far plane's product lacks to the exit's step.
-    far: [i32; 3],
-    /// 16 where the ray runs down the axis and the planes of a word change roles, else 0.
-    rotation: [u32; 3],
+    pub(crate) axes: [CullAxis; 3],
     /// The step at or below the ray's tmin.
     start: i32,
 }
 
 impl<N: Number> Culling<N> for Cull {
-    /// Costs two divisions and some twenty operations.
+    /// Costs three divisions and some fifty operations.
     #[inline(always)]
     fn new(ray: &Ray<N>) -> Self {
-        let mut cull = Self {
+        let axis = |k: usize| N::cull_axis(ray.slope[k], ray.origin[k]);
+        Self {
+            axes: [axis(0), axis(1), axis(2)],
             start: ray.tmin.to_cull(),
-            ..Self::default()
-        };
-        for axis in 0..3 {
-            let form = N::cull_axis(ray.slope[axis], ray.origin[axis]);
-            cull.inverse[axis] = form.inverse;
-            cull.near[axis] = form.near;
-            cull.far[axis] = form.far;
-            cull.rotation[axis] = (form.inverse >> 31) as u32 & 16;
         }
-        cull
     }
 
     #[inline(always)]
@@ -113,59 +99,93 @@ impl<N: Number> Culling<N> for Cull {
             near: self.start,
             far: limit,
         }; 2];
-        for axis in 0..3 {
-            let [lower, upper] = pair.planes[axis];
-            let descending = self.rotation[axis] != 0;
-            let (near, far) = if descending {
+        for (axis, [lower, upper]) in self.axes.iter().zip(pair.planes) {
+            let (near, far) = if axis.rotation != 0 {
                 (upper, lower)
             } else {
                 (lower, upper)
             };
             for (child, interval) in children.iter_mut().enumerate() {
-                let near = self.step(axis, near[child]).wrapping_add(self.near[axis]);
-                let far = self.step(axis, far[child]).wrapping_add(self.far[axis]);
-                interval.near = interval.near.max(near);
-                interval.far = interval.far.min(far);
+                interval.near = interval.near.max(axis.entry(near[child]));
+                interval.far = interval.far.min(axis.exit(far[child]));
             }
         }
         children
     }
 }
 
+/// Where the upper half of a product comes for nothing, and there is no instruction for the upper
+/// 32 of 48 bits, as the extension for signal processing has it: small cores without floats.
+const UPPER_HALF: bool = cfg!(any(
+    all(target_arch = "arm", not(target_abi = "eabihf")),
+    target_arch = "riscv32"
+));
+
+impl CullAxis {
+    /// The step at which the ray enters through a plane.
+    #[inline(always)]
+    pub(crate) fn entry(&self, plane: i16) -> i32 {
+        self.step(plane).wrapping_add(self.near)
+    }
+
+    /// The step at which the ray leaves through a plane.
+    #[inline(always)]
+    pub(crate) fn exit(&self, plane: i16) -> i32 {
+        self.step(plane).wrapping_add(self.far)
+    }
+
+    /// A plane's product: the upper bits of 48.
+    #[inline(always)]
+    fn step(&self, plane: i16) -> i32 {
+        if UPPER_HALF {
+            ((self.inverse as i64 * ((plane as i32) << 16) as i64) >> 32) as i32
+        } else {
+            ((self.inverse as i64 * plane as i64) >> 16) as i32
+        }
+    }
+
+    /// The two planes of a word in the order in which the ray comes to them.
+    #[inline(always)]
+    pub(crate) fn ordered(&self, planes: u32) -> [i16; 2] {
+        let ordered = planes.rotate_right(self.rotation);
+        [ordered as i16, (ordered >> 16) as i16]
+    }
+
+    /// The steps at which the ray enters and leaves between the two planes of a word.
+    #[inline(always)]
+    pub(crate) fn between(&self, planes: u32) -> Interval {
+        let [near, far] = self.ordered(planes);
+        Interval {
+            near: self.entry(near),
+            far: self.exit(far),
+        }
+    }
+}
+
+impl Interval {
+    /// What two intervals share.
+    #[inline(always)]
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            near: self.near.max(other.near),
+            far: self.far.min(other.far),
+        }
+    }
+}
+
 impl Cull {
-    /// A plane's product.
-    #[inline(always)]
-    fn step(&self, axis: usize, plane: i16) -> i32 {
-        ((self.inverse[axis] as i64 * plane as i64) >> 16) as i32
-    }
-
-    /// The steps at which the ray reaches the near and the far plane of a word of two.
-    #[inline(always)]
-    pub(crate) fn planes(&self, axis: usize, planes: u32) -> (i32, i32) {
-        let ordered = planes.rotate_right(self.rotation[axis]);
-        let (near, far) = (ordered as i16, (ordered >> 16) as i16);
-        (
-            self.step(axis, near).wrapping_add(self.near[axis]),
-            self.step(axis, far).wrapping_add(self.far[axis]),
-        )
-    }
-
     /// One bit an axis, set where the ray runs down it.
     #[inline(always)]
     pub(crate) fn descending(&self) -> u32 {
-        (self.rotation[0] | self.rotation[1] << 1 | self.rotation[2] << 2) >> 4 & 7
+        let [x, y, z] = self.axes.map(|axis| axis.rotation);
+        (x | y << 1 | z << 2) >> 4 & 7
     }
 
     /// The interval of a box, the ray's own aside.
     #[inline(always)]
     pub(crate) fn interval(&self, bounds: &UnitBox) -> Interval {
-        let (near_x, far_x) = self.planes(0, plane_word(bounds.0[0]));
-        let (near_y, far_y) = self.planes(1, plane_word(bounds.0[1]));
-        let (near_z, far_z) = self.planes(2, plane_word(bounds.0[2]));
-        Interval {
-            near: near_x.max(near_y).max(near_z),
-            far: far_x.min(far_y).min(far_z),
-        }
+        let axis = |k: usize| self.axes[k].between(plane_word(bounds.0[k]));
+        axis(0).and(axis(1)).and(axis(2))
     }
 }
 

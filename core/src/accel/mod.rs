@@ -11,6 +11,8 @@
 #[cfg(feature = "bvh")]
 pub mod bvh;
 pub mod cull;
+#[cfg(feature = "dual-split")]
+pub mod dual_split;
 #[cfg(feature = "flagged")]
 pub mod flagged;
 #[cfg(any(
@@ -28,6 +30,8 @@ mod registry;
 
 #[cfg(feature = "bvh")]
 pub use bvh::Bvh;
+#[cfg(feature = "dual-split")]
+pub use dual_split::DualSplit;
 #[cfg(feature = "flagged")]
 pub use flagged::Flagged;
 #[cfg(any(feature = "bvh", feature = "flagged"))]

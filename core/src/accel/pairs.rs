@@ -187,7 +187,8 @@ fn root<P>(pairs: &[P]) -> Node {
 /// every node is reached once), boxes inside their parents', primitives inside their leaves, and
 /// every leaf used. Returns the stack that a walk needs.
 ///
-/// Linear in pairs and primitives; uses [`MAX_STACK_DEPTH`] times 16 bytes of stack.
+/// Costs the depth of each leaf, and [`MAX_STACK_DEPTH`] words of stack.
+#[inline(never)]
 fn check_pairs<P: PairRecord>(
     pairs: &[P],
     leaves: &[u32],
@@ -208,17 +209,10 @@ fn check_pairs<P: PairRecord>(
         return Ok(depth);
     }
 
-    let mut waiting: Vec<(Node, UnitBox), MAX_STACK_DEPTH> = Vec::new();
-    let mut current = (
-        if pairs.is_empty() {
-            Node::leaf(0)
-        } else {
-            Node::pair(0)
-        },
-        *bounds,
-    );
+    // The pairs above the current node: twice their number, and 1 where it is the right child's.
+    let mut path: Vec<u32, MAX_STACK_DEPTH> = Vec::new();
+    let (mut node, mut parent) = (root(pairs), *bounds);
     loop {
-        let (node, parent) = current;
         let number = node.number() as usize;
         if node.is_leaf() {
             let leaf = leaves.get(number).and_then(|&word| Leaf::from_word(word));
@@ -245,15 +239,26 @@ fn check_pairs<P: PairRecord>(
                     });
                 }
             }
-            let child = |side| pair.child(node.number(), side);
             // The depth was proved to fit.
-            let _ = waiting.push((child(1), right));
-            current = (child(0), left);
+            let _ = path.push(node.number() << 1);
+            (node, parent) = (pair.child(node.number(), 0), left);
             continue;
         }
-        match waiting.pop() {
-            Some(next) => current = next,
-            None => return Ok(depth),
+        while path.last().is_some_and(|step| step & 1 == 1) {
+            path.pop();
+        }
+        let Some(step) = path.last_mut() else {
+            return Ok(depth);
+        };
+        *step |= 1;
+        // Boxes on the way are computed again, which takes less room than to keep them.
+        parent = *bounds;
+        for &step in &path {
+            if let Some(pair) = pairs.get((step >> 1) as usize) {
+                let side = step & 1;
+                node = pair.child(step >> 1, side);
+                parent = pair.boxes(&parent)[(side & 1) as usize];
+            }
         }
     }
 }

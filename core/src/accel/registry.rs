@@ -119,6 +119,8 @@ structures! {
     Bvh = 1, "bvh", bvh, if feature = "bvh";
     /// The same hierarchy without the sides that coincide with the parent's, 16 bytes a pair.
     Flagged = 2, "flagged", flagged, if feature = "flagged";
+    /// A hierarchy of nodes with a split and at most two carves, 16 bytes each.
+    DualSplit = 3, "dual-split", dual_split, if feature = "dual-split";
 }
 
 impl Structure {

@@ -272,6 +272,20 @@ pub struct FlaggedPair {
     pub link: u32,
 }
 
+/// A dual-split node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct DualNode {
+    /// On the split's axis: the first child's upper side in the low half, the second child's lower
+    /// side in the high half. Zero in a leaf.
+    pub split: u32,
+    /// The node's lower side in the low half and its upper side in the high half, on each carve's
+    /// axis; zero where there is no carve.
+    pub carves: [u32; 2],
+    /// Axes, and the children or the leaf: see [`Way`](crate::accel::dual_split::Way).
+    pub way: u32,
+}
+
 /// Two 16-bit planes as one word, the way pairs hold them.
 pub const fn plane_word(planes: [i16; 2]) -> u32 {
     planes[0] as u16 as u32 | (planes[1] as u16 as u32) << 16
@@ -281,8 +295,10 @@ pub const fn plane_word(planes: [i16; 2]) -> u32 {
 pub trait Vertex: Pod {
     /// A coordinate in 1/256 unit.
     fn lattice(&self, axis: usize) -> i32;
-    /// A coordinate as a length; exact.
-    fn length<N: Number>(&self, axis: usize) -> N;
+    /// A coordinate in the measure of projections; exact.
+    fn measure<N: Number>(&self, axis: usize) -> N;
+    /// A length in that measure.
+    fn to_measure<N: Number>(length: N) -> N;
     /// All three coordinates in 1/256 unit.
     #[inline(always)]
     fn position(&self) -> [i32; 3] {
@@ -297,8 +313,13 @@ impl Vertex for Vertex16 {
     }
 
     #[inline(always)]
-    fn length<N: Number>(&self, axis: usize) -> N {
+    fn measure<N: Number>(&self, axis: usize) -> N {
         N::from_unit(self.0[axis])
+    }
+
+    #[inline(always)]
+    fn to_measure<N: Number>(length: N) -> N {
+        length
     }
 }
 
@@ -310,8 +331,13 @@ impl Vertex for Vertex24 {
     }
 
     #[inline(always)]
-    fn length<N: Number>(&self, axis: usize) -> N {
-        N::from_lattice(self.lattice(axis))
+    fn measure<N: Number>(&self, axis: usize) -> N {
+        N::steps(self.lattice(axis))
+    }
+
+    #[inline(always)]
+    fn to_measure<N: Number>(length: N) -> N {
+        length.to_steps()
     }
 }
 
@@ -383,4 +409,5 @@ const _: () = {
     assert!(offset_of!(Disc, radius) == 24 && offset_of!(Disc, bounds) == 28);
     assert!(offset_of!(Cone, base_radius) == 24 && offset_of!(Cone, bounds) == 32);
     assert!(size_of::<Pair>() == 32 && size_of::<FlaggedPair>() == 16);
+    assert!(size_of::<DualNode>() == 16);
 };

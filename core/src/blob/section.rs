@@ -60,6 +60,8 @@ kinds! {
     Pairs = 14, "pairs";
     /// [`FlaggedPair`](super::record::FlaggedPair)s.
     FlaggedPairs = 15, "flagged-pairs";
+    /// [`DualNode`](super::record::DualNode)s.
+    DualNodes = 16, "dual-nodes";
 }
 
 impl SectionKind {

@@ -96,6 +96,50 @@ fn reciprocal(d: u32) -> u32 {
     coarse.wrapping_sub(((coarse as i64 * excess as i64) >> 32) as u32)
 }
 
+/// [`Number::slopes`] of a vector beyond 31 bits.
+#[cold]
+fn slopes_of_wide(v: [i64; 3]) -> Option<([Fixed; 3], usize)> {
+    let bits = excess_bits(v, 31);
+    slopes_of_narrow(v.map(|component| shift_magnitude(component, bits)))
+}
+
+/// [`Number::slopes`] of a vector of at most 31 bits and a sign.
+#[inline(always)]
+fn slopes_of_narrow(v: [i32; 3]) -> Option<([Fixed; 3], usize)> {
+    let [x, y, z] = v.map(i32::unsigned_abs);
+    let (largest, axis) = if x >= y && x >= z {
+        (x, 0)
+    } else if y >= z {
+        (y, 1)
+    } else {
+        (z, 2)
+    };
+    if largest == 0 {
+        return None;
+    }
+    let up = largest.leading_zeros().wrapping_sub(1) & 31;
+    let inverse = reciprocal(largest << up);
+    let minor = |component: i32| {
+        let scaled = component.unsigned_abs() << up;
+        let magnitude = ((scaled as u64 * inverse as u64) >> 31) as u32;
+        let magnitude = magnitude.min(1 << RATIO_BITS) as i32;
+        Fixed(if component < 0 { -magnitude } else { magnitude })
+    };
+    let one = |component: i32| {
+        if component < 0 {
+            -Fixed::ONE
+        } else {
+            Fixed::ONE
+        }
+    };
+    let slopes = match axis {
+        0 => [one(v[0]), minor(v[1]), minor(v[2])],
+        1 => [minor(v[0]), one(v[1]), minor(v[2])],
+        _ => [minor(v[0]), minor(v[1]), one(v[2])],
+    };
+    Some((slopes, axis))
+}
+
 impl Add for Fixed {
     type Output = Self;
     #[inline(always)]
@@ -173,6 +217,16 @@ impl Number for Fixed {
     #[inline(always)]
     fn from_lattice(steps: i32) -> Self {
         Fixed(steps.wrapping_shl(LENGTH_BITS - 8))
+    }
+
+    #[inline(always)]
+    fn steps(steps: i32) -> Self {
+        Self::from_lattice(steps)
+    }
+
+    #[inline(always)]
+    fn to_steps(self) -> Self {
+        self
     }
 
     #[inline(always)]
@@ -344,12 +398,21 @@ impl Number for Fixed {
     }
 
     #[inline(always)]
+    fn coarse(wide: Product) -> Product {
+        Product(wide.0 >> 23)
+    }
+
+    #[inline(always)]
     fn from_wide(product: Product) -> Self {
         saturate(round_off(product.0, RATIO_BITS))
     }
 
     #[inline(always)]
     fn wide_scale(wide: Product, ratio: Self) -> Product {
+        let narrow = wide.0 as i32;
+        if i64::from(narrow) == wide.0 {
+            return Product((i64::from(narrow) * i64::from(ratio.0)) >> RATIO_BITS);
+        }
         let high = (wide.0 >> 32).wrapping_mul(ratio.0 as i64);
         let low = (wide.0 & 0xffff_ffff).wrapping_mul(ratio.0 as i64);
         Product((high << (32 - RATIO_BITS)).wrapping_add(low >> RATIO_BITS))
@@ -411,8 +474,17 @@ impl Number for Fixed {
     }
 
     #[inline(always)]
-    fn cross2(a: [Self; 2], b: [Self; 2]) -> Product {
-        a[0].wide(b[1]) - a[1].wide(b[0])
+    fn surround(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool {
+        let cross = |a: [Self; 2], b: [Self; 2]| (a[0].wide(b[1]) - a[1].wide(b[0])).0;
+        let (u, v) = (cross(b, c), cross(c, a));
+        // Few triangles come further.
+        if u ^ v < 0 && u != 0 && v != 0 {
+            return false;
+        }
+        let w = cross(a, b);
+        let negative = u < 0 || v < 0 || w < 0;
+        let positive = u > 0 || v > 0 || w > 0;
+        negative != positive
     }
 
     #[inline(always)]
@@ -421,34 +493,16 @@ impl Number for Fixed {
         v.map(|component| Fixed(shift_magnitude(component, bits)))
     }
 
+    #[inline(always)]
     fn slopes(v: [Product; 3]) -> Option<([Self; 3], usize)> {
         let v = v.map(|product| product.0);
-        let magnitude = v.map(i64::unsigned_abs);
-        let largest = magnitude[0].max(magnitude[1]).max(magnitude[2]);
-        if largest == 0 {
-            return None;
+        let narrow = v.map(|component| component as i32);
+        let same = |k: usize| i64::from(narrow[k]) == v[k] && narrow[k] != i32::MIN;
+        if same(0) && same(1) && same(2) {
+            slopes_of_narrow(narrow)
+        } else {
+            slopes_of_wide(v)
         }
-        let axis = if magnitude[0] == largest {
-            0
-        } else if magnitude[1] == largest {
-            1
-        } else {
-            2
-        };
-        let bits = excess_bits(v, 31);
-        let inverse = reciprocal(shift_magnitude(largest as i64, bits).unsigned_abs());
-        let mut slopes = v.map(|component| {
-            let scaled = shift_magnitude(component, bits);
-            let magnitude = ((scaled.unsigned_abs() as u64 * inverse as u64) >> 31) as u32;
-            let magnitude = magnitude.min(1 << RATIO_BITS) as i32;
-            Fixed(if scaled < 0 { -magnitude } else { magnitude })
-        });
-        slopes[axis] = Fixed(if v[axis] < 0 {
-            -Self::ONE.0
-        } else {
-            Self::ONE.0
-        });
-        Some((slopes, axis))
     }
 
     #[inline(always)]
@@ -522,11 +576,7 @@ impl Number for Fixed {
         let inverse = if slope.0 < 0 { -steepness } else { steepness };
         let offset = ((origin.0 as i64 * inverse as i64) >> (16 + LENGTH_BITS)) as i32;
         let margin = (steepness >> 18) + 3;
-        CullAxis {
-            inverse,
-            near: -offset - margin,
-            far: -offset + margin + parallel,
-        }
+        CullAxis::new(inverse, -offset - margin, -offset + margin + parallel)
     }
 }
 

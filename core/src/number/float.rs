@@ -3,38 +3,28 @@
 //! Only operations whose result is the same on every machine: no fused multiply-add, no `min` and
 //! `max` of the standard library (they differ on signed zeros), square roots by libm.
 
-use super::{CullAxis, Format, Number};
+use super::{CullAxis, Format, Number, pick};
 use crate::accel::cull::FloatCulling;
 use crate::shape::extent;
+use core::cmp::Ordering;
 
-/// The sign of `a b - c d`, exactly, for `f32` factors: their products fit `f64`.
-#[cold]
-fn product_difference_f32(a: f32, b: f32, c: f32, d: f32) -> f32 {
-    let difference = f64::from(a) * f64::from(b) - f64::from(c) * f64::from(d);
-    if difference > 0.0 {
-        f32::MIN_POSITIVE
-    } else if difference < 0.0 {
-        -f32::MIN_POSITIVE
-    } else {
-        0.0
-    }
+/// How `a b` compares to `c d`, exactly: products of `f32` fit `f64`.
+fn compare_products_f32(a: f32, b: f32, c: f32, d: f32) -> Ordering {
+    let (left, right) = (f64::from(a) * f64::from(b), f64::from(c) * f64::from(d));
+    left.partial_cmp(&right).unwrap_or(Ordering::Equal)
 }
 
-/// The sign of `a b - c d`, exactly, for `f64` factors whose rounded products are equal.
+/// How `a b` compares to `c d`, exactly: where the rounded products are equal, by their errors.
 ///
 /// Dekker's product gives the rounding error of each (T. J. Dekker, "A floating-point technique
 /// for extending the available precision", 1971). Exact as long as nothing underflows, which the
 /// ray's set-up sees to: the origin's coordinates and the slopes are 0 or at least 2^-100.
-#[cold]
-fn product_difference_f64(a: f64, b: f64, c: f64, d: f64) -> f64 {
-    let difference = product_error(a, b) - product_error(c, d);
-    if difference > 0.0 {
-        f64::MIN_POSITIVE
-    } else if difference < 0.0 {
-        -f64::MIN_POSITIVE
-    } else {
-        0.0
-    }
+fn compare_products_f64(a: f64, b: f64, c: f64, d: f64) -> Ordering {
+    let rounded = (a * b).partial_cmp(&(c * d)).unwrap_or(Ordering::Equal);
+    rounded.then_with(|| {
+        let (left, right) = (product_error(a, b), product_error(c, d));
+        left.partial_cmp(&right).unwrap_or(Ordering::Equal)
+    })
 }
 
 /// `a b` minus its rounded product.
@@ -47,6 +37,20 @@ fn product_error(a: f64, b: f64) -> f64 {
     let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
     let product = a * b;
     ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
+}
+
+/// [`Number::surround`] by the exact signs of the edges, given how two products compare.
+#[cold]
+#[inline(never)]
+fn surround_exactly<F: Copy>(
+    a: [F; 2],
+    b: [F; 2],
+    c: [F; 2],
+    compare: impl Fn(F, F, F, F) -> Ordering,
+) -> bool {
+    let side = |p: [F; 2], q: [F; 2]| compare(p[0], q[1], p[1], q[0]);
+    let sides = [side(b, c), side(c, a), side(a, b)];
+    sides.contains(&Ordering::Less) != sides.contains(&Ordering::Greater)
 }
 
 /// 2^-60 and 2^-100: smaller numbers need care.
@@ -78,9 +82,26 @@ fn slopes_of_extremes<N: Number<Wide = N>>(v: [N; 3]) -> Option<([N; 3], usize)>
     N::slopes(scaled)
 }
 
+/// The largest inverse slope in culling.
+const STEEPEST: f64 = 536_870_912.0;
+
+/// [`Number::cull_axis`] of an axis along which the ray hardly moves, given what the steepest slope
+/// makes of the origin.
+#[cold]
+fn parallel_axis(offset: i32, descending: bool) -> CullAxis {
+    const INVERSE: i32 = STEEPEST as i32;
+    const MARGIN: i32 = (INVERSE >> 18) + 3;
+    let (inverse, offset) = if descending {
+        (-INVERSE, offset)
+    } else {
+        (INVERSE, -offset)
+    };
+    CullAxis::new(inverse, offset - MARGIN, offset + MARGIN + (1 << 17))
+}
+
 macro_rules! float_number {
     ($float:ident, $format:expr, $precision:expr, $smallest:expr, $sqrt:path, $exp:path, $floor:path,
-     $product_difference:path, $settle:expr, $direction:expr) => {
+     $compare_products:path, $settle:expr, $direction:expr) => {
         impl Number for $float {
             type Wide = $float;
             type Cull = FloatCulling;
@@ -97,6 +118,16 @@ macro_rules! float_number {
             #[inline(always)]
             fn from_lattice(steps: i32) -> Self {
                 steps as $float * (1.0 / 256.0)
+            }
+
+            #[inline(always)]
+            fn steps(steps: i32) -> Self {
+                steps as $float
+            }
+
+            #[inline(always)]
+            fn to_steps(self) -> Self {
+                self * 256.0
             }
 
             #[inline(always)]
@@ -231,6 +262,11 @@ macro_rules! float_number {
             }
 
             #[inline(always)]
+            fn coarse(wide: Self) -> Self {
+                wide
+            }
+
+            #[inline(always)]
             fn from_wide(product: Self) -> Self {
                 product
             }
@@ -259,15 +295,21 @@ macro_rules! float_number {
             }
 
             #[inline(always)]
-            fn cross2(a: [Self; 2], b: [Self; 2]) -> Self {
+            fn surround(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool {
                 // Rounding is monotone, so the difference of the rounded products has the right
                 // sign unless it is zero.
-                let difference = a[0] * b[1] - a[1] * b[0];
-                if difference == 0.0 {
-                    $product_difference(a[0], b[1], a[1], b[0])
-                } else {
-                    difference
+                let cross = |a: [Self; 2], b: [Self; 2]| a[0] * b[1] - a[1] * b[0];
+                let differ = |x: $float, y: $float| x.is_sign_negative() != y.is_sign_negative();
+                let (u, v) = (cross(b, c), cross(c, a));
+                // Few triangles come further.
+                if differ(u, v) && u != 0.0 && v != 0.0 {
+                    return false;
                 }
+                let w = cross(a, b);
+                if u == 0.0 || v == 0.0 || w == 0.0 {
+                    return surround_exactly(a, b, c, $compare_products);
+                }
+                !differ(u, v) && !differ(v, w)
             }
 
             #[inline(always)]
@@ -277,29 +319,31 @@ macro_rules! float_number {
 
             #[inline(always)]
             fn slopes(v: [Self; 3]) -> Option<([Self; 3], usize)> {
-                let [x, y, z] = v.map($float::abs);
-                // NaN and infinities fail the comparisons too.
-                let sum = x + y + z;
-                if !($smallest..=1.0 / $smallest).contains(&sum) {
+                // Magnitudes order like integers, NaN above all.
+                let magnitude = |x: $float| x.to_bits() << 1;
+                let [x, y, z] = v.map(magnitude);
+                let axis = if x >= y && x >= z {
+                    0
+                } else if y >= z {
+                    1
+                } else {
+                    2
+                };
+                let largest = pick(v, axis);
+                let (low, high) = (magnitude($smallest), magnitude(1.0 / $smallest));
+                if magnitude(largest).wrapping_sub(low) > high - low {
                     return slopes_of_extremes(v);
                 }
-                let (largest, axis) = if x >= y && x >= z {
-                    (x, 0)
-                } else if y >= z {
-                    (y, 1)
-                } else {
-                    (z, 2)
+                let inverse = 1.0 / largest.abs();
+                let one = |x: $float| (1.0 as $float).copysign(x);
+                // Adding zero turns -0.0 into 0.0.
+                let minor = |x: $float| $settle(x * inverse + 0.0);
+                let slopes = match axis {
+                    0 => [one(v[0]), minor(v[1]), minor(v[2])],
+                    1 => [minor(v[0]), one(v[1]), minor(v[2])],
+                    _ => [minor(v[0]), minor(v[1]), one(v[2])],
                 };
-                let inverse = 1.0 / largest;
-                let slope = |k: usize| {
-                    if k == axis {
-                        if v[k] < 0.0 { -1.0 } else { 1.0 }
-                    } else {
-                        // Adding zero turns -0.0 into 0.0.
-                        $settle(v[k] * inverse + 0.0)
-                    }
-                };
-                Some(([slope(0), slope(1), slope(2)], axis))
+                Some((slopes, axis))
             }
 
             #[inline(always)]
@@ -335,20 +379,21 @@ macro_rules! float_number {
 
             #[inline(always)]
             fn cull_axis(slope: Self, origin: Self) -> CullAxis {
-                const LIMIT: $float = 536_870_912.0;
                 let inverse = 131_072.0 / slope;
                 let steepness = inverse.abs();
-                let (inverse, steepness, parallel) = if steepness < LIMIT {
-                    (inverse, steepness, 0.0)
+                if steepness < STEEPEST as $float {
+                    let offset = -(origin * inverse * (1.0 / 65_536.0));
+                    let margin = steepness * (1.0 / 262_144.0) + 3.0;
+                    CullAxis::new(
+                        inverse as i32,
+                        (offset - margin) as i32,
+                        (offset + margin) as i32,
+                    )
                 } else {
-                    (LIMIT.copysign(slope), LIMIT, 131_072.0)
-                };
-                let offset = -(origin * inverse * (1.0 / 65_536.0));
-                let margin = steepness * (1.0 / 262_144.0) + 3.0;
-                CullAxis {
-                    inverse: inverse as i32,
-                    near: (offset - margin) as i32,
-                    far: (offset + margin + parallel) as i32,
+                    parallel_axis(
+                        (origin * (STEEPEST / 65_536.0) as $float) as i32,
+                        slope < 0.0,
+                    )
                 }
             }
         }
@@ -363,7 +408,7 @@ float_number!(
     libm::sqrtf,
     libm::expf,
     libm::floorf,
-    product_difference_f32,
+    compare_products_f32,
     // No product of two coordinates in single precision underflows in double precision.
     |x: f32| x,
     |v: [i64; 3]| {
@@ -385,7 +430,7 @@ float_number!(
     libm::sqrt,
     libm::exp,
     libm::floor,
-    product_difference_f64,
+    compare_products_f64,
     |x: f64| if x.abs() < SMALLEST_F64 { 0.0 } else { x },
     |v: [i64; 3]| v.map(|component| component as f64)
 );

@@ -120,6 +120,11 @@ pub trait Number:
 
     /// A length from a coordinate of the storage lattice, in 1/256 unit; exact for 24 bits.
     fn from_lattice(steps: i32) -> Self;
+    /// A coordinate of the storage lattice in [steps](Self::to_steps); exact for 24 bits.
+    fn steps(steps: i32) -> Self;
+    /// A length in the steps of the storage lattice, 256 a unit, where conversions are cheaper so:
+    /// in floats. [`Fixed`] stays with units.
+    fn to_steps(self) -> Self;
     /// A length from whole units; exact.
     fn from_unit(unit: i16) -> Self;
     /// A ratio from an integer with 30 fraction bits.
@@ -200,6 +205,9 @@ pub trait Number:
     fn wide_over(wide: Self::Wide, divisor: i32) -> Self::Wide;
     /// A far coordinate from an integer with 13 fraction bits.
     fn far(q13: i64) -> Self::Wide;
+    /// A wide number without the 23 lowest of its bits, which are more than a direction needs;
+    /// floats keep theirs.
+    fn coarse(wide: Self::Wide) -> Self::Wide;
     /// Three products added: `a . b`.
     #[inline(always)]
     fn dot(a: [Self; 3], b: [Self; 3]) -> Self::Wide {
@@ -221,8 +229,9 @@ pub trait Number:
 
     // Vectors
 
-    /// Cross product of two plane vectors, `a.x b.y - a.y b.x`: its sign is exact, always.
-    fn cross2(a: [Self; 2], b: [Self; 2]) -> Self::Wide;
+    /// Whether the triangle of three points of the plane holds the origin, edges included; not if
+    /// all edges lead through it. Whichever way the points run, and always exact.
+    fn surround(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool;
     /// A vector of integers (below 2^62) as ratios: exact up to one common factor and one rounding
     /// each; the largest magnitude in \[1/4, 1\] in [`Fixed`], unscaled in floats.
     fn direction(v: [i64; 3]) -> [Self; 3];
@@ -248,12 +257,27 @@ pub trait Number:
 }
 
 /// The culling form of one axis: see [`Number::cull_axis`].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub struct CullAxis {
-    /// The inverse slope.
-    pub inverse: i32,
-    /// What a near plane's product lacks.
-    pub near: i32,
-    /// What a far plane's product lacks.
-    pub far: i32,
+    /// Steps a unit with 16 fraction bits, with the slope's sign.
+    pub(crate) inverse: i32,
+    /// What a near plane's product lacks to the step of entry.
+    pub(crate) near: i32,
+    /// What a far plane's product lacks to the step of exit.
+    pub(crate) far: i32,
+    /// 16 where the ray runs down the axis and the planes of a word change roles, else 0.
+    pub(crate) rotation: u32,
+}
+
+impl CullAxis {
+    #[inline(always)]
+    fn new(inverse: i32, near: i32, far: i32) -> Self {
+        Self {
+            inverse,
+            near,
+            far,
+            rotation: (inverse >> 31) as u32 & 16,
+        }
+    }
 }

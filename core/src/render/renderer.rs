@@ -120,7 +120,7 @@ impl core::error::Error for RenderError {}
 /// Renders pixels of a scene in the number format `N`, through the structure `A`, compiled for the
 /// effects in `EFFECTS` (an [`Effects`] as its bits; those of the scene must be among them).
 ///
-/// Holds the camera for one picture size, some 100 bytes; everything that changes lies in the
+/// Holds the camera for one picture size, some 200 bytes; everything that changes lies in the
 /// caller's [`Workspace`](super::Workspace). Pixels do not depend on each other, so any number of
 /// renderers can share a picture.
 #[derive(Clone, Copy, Debug)]
@@ -161,7 +161,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         if missing != Effects::NONE {
             return Err(RenderError::Effects(missing));
         }
-        let camera = Camera::new(scene.view(), width, height);
+        let camera = Camera::new(scene.bounds(), scene.view(), width, height);
         Ok(Self {
             scene,
             settings,
@@ -223,9 +223,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     /// The ray from the eye through a point given in subpixels from the upper left corner.
     #[inline(always)]
     pub(super) fn ray_through(&self, x: i32, y: i32) -> Result<Ray<N>, RayError> {
-        let direction = self.camera.direction(&self.camera.row(y), x);
-        let (eye, zero, far) = (self.camera.eye(), N::Wide::default(), N::far(1 << 60));
-        Ray::new(self.scene.bounds(), eye, direction, zero, far)
+        self.camera.ray(&self.camera.row(y), x)
     }
 
     /// One pixel, linear, 65535 being white. Outside of the picture pixels go on.

@@ -127,38 +127,51 @@ fn nearly_parallel(random: &mut Random, bits: u32) -> ([i64; 2], [i64; 2]) {
     ([x * p + jitter[0], y * p], [x * q, y * q + jitter[1]])
 }
 
-fn exact_sign(a: [i64; 2], b: [i64; 2]) -> i128 {
-    let [ax, ay] = a.map(i128::from);
-    let [bx, by] = b.map(i128::from);
-    (ax * by - ay * bx).signum()
+/// A triangle of integers, one of whose edges leads past the origin closely, or through it.
+fn triangle(random: &mut Random, bits: u32) -> [[i64; 2]; 3] {
+    let (a, b) = nearly_parallel(random, bits);
+    let c = [0, 1].map(|k| -(a[k] / 2) - b[k] / 2);
+    if random.integer(1) == 0 {
+        [a, b, c]
+    } else {
+        [b, c, a]
+    }
+}
+
+fn surrounds_exactly([a, b, c]: [[i64; 2]; 3]) -> bool {
+    let side = |p: [i64; 2], q: [i64; 2]| {
+        let ([px, py], [qx, qy]) = (p.map(i128::from), q.map(i128::from));
+        px * qy - py * qx
+    };
+    let sides = [side(a, b), side(b, c), side(c, a)];
+    sides.iter().any(|&side| side > 0) != sides.iter().any(|&side| side < 0)
 }
 
 pub(super) fn fixed_signs(checks: &mut Checks<'_>) {
     let mut random = Random(3);
     for _ in 0..ROUNDS {
-        let (a, b) = nearly_parallel(&mut random, 31);
-        let vector = |v: [i64; 2]| v.map(|x| Fixed(x as i32));
-        let sign = Fixed::cross2(vector(a), vector(b)).value().signum();
-        checks.equal(format_args!("{a:?} x {b:?}"), sign.into(), exact_sign(a, b));
+        let corners = triangle(&mut random, 31);
+        let [a, b, c] = corners.map(|v| v.map(|x| Fixed(x as i32)));
+        let found = Fixed::surround(a, b, c);
+        let expected = surrounds_exactly(corners);
+        checks.equal(format_args!("{corners:?}"), found, expected);
     }
 }
 
 pub(super) fn float_signs(checks: &mut Checks<'_>) {
     let mut random = Random(4);
     for _ in 0..ROUNDS {
-        let (a, b) = nearly_parallel(&mut random, 24);
-        let vector = |v: [i64; 2]| v.map(|x| x as f32 / 256.0);
-        let sign = sign_of(f32::cross2(vector(a), vector(b)).into());
-        checks.equal(format_args!("f32 {a:?} x {b:?}"), sign, exact_sign(a, b));
-        let (a, b) = nearly_parallel(&mut random, 52);
-        let vector = |v: [i64; 2]| v.map(|x| x as f64 / 256.0);
-        let sign = sign_of(f64::cross2(vector(a), vector(b)));
-        checks.equal(format_args!("f64 {a:?} x {b:?}"), sign, exact_sign(a, b));
+        let corners = triangle(&mut random, 24);
+        let [a, b, c] = corners.map(|v| v.map(|x| x as f32 / 256.0));
+        let found = f32::surround(a, b, c);
+        let expected = surrounds_exactly(corners);
+        checks.equal(format_args!("f32 {corners:?}"), found, expected);
+        let corners = triangle(&mut random, 52);
+        let [a, b, c] = corners.map(|v| v.map(|x| x as f64 / 256.0));
+        let found = f64::surround(a, b, c);
+        let expected = surrounds_exactly(corners);
+        checks.equal(format_args!("f64 {corners:?}"), found, expected);
     }
-}
-
-fn sign_of(x: f64) -> i128 {
-    i128::from(x > 0.0) - i128::from(x < 0.0)
 }
 
 pub(super) fn vectors(checks: &mut Checks<'_>) {

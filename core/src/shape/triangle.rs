@@ -2,7 +2,7 @@
 //!
 //! A vertex is projected along the ray onto the plane of the two minor axes, by arithmetic that
 //! depends on the vertex and the ray alone; so every triangle at a vertex computes the same point.
-//! The signs of the edge tests on those points are exact ([`Number::cross2`]). Whatever the
+//! The signs of the edge tests on those points are exact ([`Number::surround`]). Whatever the
 //! projection rounded, the projected mesh is a mesh, and no ray slips between two triangles of it
 //! (after Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013). `t` is not
 //! interpolated, which goes wrong on stretched triangles, but taken from the plane, whose normal is
@@ -22,29 +22,31 @@ pub(crate) struct Projection<N> {
 }
 
 impl<N: Number> Projection<N> {
+    /// The projection along a ray whose major axis is `MAJOR`, in the measure of vertices `V`.
     #[inline(always)]
-    pub(crate) fn of(ray: &Ray<N>) -> Self {
-        let (o, s) = (ray.origin, ray.slope);
-        let (origin, slope) = match ray.major {
-            0 => ([o[1], o[2], o[0]], [s[1], s[2], s[0]]),
-            1 => ([o[2], o[0], o[1]], [s[2], s[0], s[1]]),
-            _ => (o, s),
+    pub(crate) fn of<const MAJOR: usize, V: Vertex>(ray: &Ray<N>) -> Self {
+        let role = |role: usize| (MAJOR + 1 + role) % 3;
+        let origin = |axis: usize| V::to_measure(ray.origin[axis]);
+        let forward = ray.slope[MAJOR] > N::ZERO;
+        let shear = |axis: usize| {
+            if forward {
+                ray.slope[axis]
+            } else {
+                -ray.slope[axis]
+            }
         };
-        let forward = slope[2] > N::ZERO;
-        let shear = if forward {
-            [slope[0], slope[1]]
-        } else {
-            [-slope[0], -slope[1]]
-        };
-        Self { origin, shear }
+        Self {
+            origin: [origin(role(0)), origin(role(1)), origin(MAJOR)],
+            shear: [shear(role(0)), shear(role(1))],
+        }
     }
 
     /// A vertex, projected.
     #[inline(always)]
     fn project<const MAJOR: usize, V: Vertex>(&self, vertex: &V) -> [N; 2] {
-        let depth = vertex.length::<N>(MAJOR) - self.origin[2];
+        let depth = vertex.measure::<N>(MAJOR) - self.origin[2];
         let across = |role: usize| {
-            let coordinate = vertex.length::<N>((MAJOR + 1 + role) % 3);
+            let coordinate = vertex.measure::<N>((MAJOR + 1 + role) % 3);
             coordinate - self.origin[role] - depth * self.shear[role]
         };
         [across(0), across(1)]
@@ -59,15 +61,7 @@ impl<N: Number> Projection<N> {
         let a = self.project::<MAJOR, V>(a);
         let b = self.project::<MAJOR, V>(b);
         let c = self.project::<MAJOR, V>(c);
-        let zero = N::Wide::default();
-        let (u, v) = (N::cross2(b, c), N::cross2(c, a));
-        if u < zero && v > zero || u > zero && v < zero {
-            return false;
-        }
-        let w = N::cross2(a, b);
-        let negative = u < zero || v < zero || w < zero;
-        let positive = u > zero || v > zero || w > zero;
-        negative != positive
+        N::surround(a, b, c)
     }
 }
 

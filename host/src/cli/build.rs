@@ -32,9 +32,18 @@ pub struct Arguments {
         long,
         value_name = "NAME",
         value_parser = arguments::structure(),
-        default_value = Structure::Flagged.name()
+        default_value = Structure::DualSplit.name()
     )]
     accel: Vec<Structure>,
+
+    /// Make leaves of up to N primitives, 1 to 31, for fewer nodes and slower rays; where this is
+    /// not given, what rays pay decides
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u8).range(1..=compile::LARGEST_LEAF as i64)
+    )]
+    leaf_size: Option<u8>,
 
     /// Refuse to write a blob of more bytes, and say what to change; 64K and 1M are understood
     #[arg(long, value_name = "N", value_parser = arguments::bytes)]
@@ -77,6 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     refuse_same(&arguments.scene, &arguments.output)?;
     let compiling = compile::Options {
         structures: arguments.accel.clone(),
+        leaf_size: arguments.leaf_size.map_or(0, usize::from),
         max_bytes: arguments.max_bytes,
         ..compile::Options::default()
     };

@@ -62,12 +62,15 @@ const BINS: usize = 32;
 const PARALLEL_SIZE: usize = 4096;
 
 /// Builds a hierarchy and puts the primitives in the order of its leaves. `None` without primitives.
-pub fn build(primitives: &mut [Primitive]) -> Option<Node> {
+///
+/// With `leaf_size` not 0, so many primitives of one kind make a leaf, whatever rays pay for it;
+/// the heuristic decides about more than that.
+pub fn build(primitives: &mut [Primitive], leaf_size: usize) -> Option<Node> {
     if primitives.is_empty() {
         return None;
     }
     // A leaf is reached after at most this many pairs.
-    Some(build_node(primitives, 0, MAX_STACK_DEPTH))
+    Some(build_node(primitives, 0, MAX_STACK_DEPTH, leaf_size))
 }
 
 /// The box of all primitives; `None` without any.
@@ -88,7 +91,7 @@ pub fn sah_cost(root: &Node) -> f64 {
     sum(root) / area(root.bounds()).max(1.0)
 }
 
-fn build_node(primitives: &mut [Primitive], first: usize, levels: usize) -> Node {
+fn build_node(primitives: &mut [Primitive], first: usize, levels: usize, leaf_size: usize) -> Node {
     let bounds = union(primitives);
     let count = primitives.len();
     let leaf = Node::Leaf {
@@ -96,10 +99,10 @@ fn build_node(primitives: &mut [Primitive], first: usize, levels: usize) -> Node
         first,
         count,
     };
-    if count == 1 {
+    let one_kind = primitives.iter().all(|p| p.kind == primitives[0].kind);
+    if count == 1 || one_kind && count <= leaf_size {
         return leaf;
     }
-    let one_kind = primitives.iter().all(|p| p.kind == primitives[0].kind);
     // Halving needs as many levels as the count has bits; kinds may have to be told apart below.
     let halvings = usize::BITS as usize - count.leading_zeros() as usize + Kind::ALL.len();
     let split = if levels <= halvings {
@@ -126,8 +129,8 @@ fn build_node(primitives: &mut [Primitive], first: usize, levels: usize) -> Node
         None => halve(primitives, &bounds),
     };
     let (left, right) = primitives.split_at_mut(middle);
-    let build_left = |left| build_node(left, first, levels - 1);
-    let build_right = |right| build_node(right, first + middle, levels - 1);
+    let build_left = |left| build_node(left, first, levels - 1, leaf_size);
+    let build_right = |right| build_node(right, first + middle, levels - 1, leaf_size);
     let children = if count >= PARALLEL_SIZE {
         rayon::join(|| build_left(left), || build_right(right))
     } else {
@@ -291,7 +294,7 @@ fn join(a: Option<UnitBox>, b: Option<UnitBox>) -> Option<UnitBox> {
 }
 
 /// Half the surface area in units.
-fn area(bounds: &UnitBox) -> f64 {
+pub fn area(bounds: &UnitBox) -> f64 {
     let side = |axis: usize| f64::from(i32::from(bounds.0[axis][1]) - i32::from(bounds.0[axis][0]));
     let (x, y, z) = (side(0), side(1), side(2));
     x * y + y * z + z * x

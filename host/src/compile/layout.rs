@@ -44,6 +44,12 @@ impl Layout {
                 uses_leaves: true,
                 stack_depth: flat.depth,
             },
+            Structure::DualSplit => Self {
+                structure,
+                sections: vec![section(SectionKind::DualNodes, &flat.dual)],
+                uses_leaves: true,
+                stack_depth: flat.depth,
+            },
         }
     }
 

@@ -1,5 +1,6 @@
 //! Compiles a scene into a blob: lattice, primitives, hierarchy, effects, bytes.
 
+mod dual_split;
 mod hierarchy;
 mod lattice;
 mod layout;
@@ -19,6 +20,9 @@ use layout::Layout;
 use primitives::Primitives;
 use std::time::{Duration, Instant};
 
+/// Most primitives of a leaf.
+pub const LARGEST_LEAF: usize = gridel_core::accel::Leaf::MAX_COUNT as usize;
+
 /// What to put into a blob.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -26,6 +30,9 @@ pub struct Options {
     pub structures: Vec<Structure>,
     /// Bits that coordinates are snapped to: see [`LATTICE_BITS`].
     pub lattice_bits: u8,
+    /// Primitives that make a leaf of a hierarchy whatever rays pay for it, at most
+    /// [`LARGEST_LEAF`]: fewer nodes and more tests. With 0 the costs alone decide.
+    pub leaf_size: usize,
     /// Refuse a blob that would be larger.
     pub max_bytes: Option<u64>,
 }
@@ -33,8 +40,9 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            structures: vec![Structure::Flagged],
+            structures: vec![Structure::DualSplit],
             lattice_bits: 24,
+            leaf_size: 0,
             max_bytes: None,
         }
     }
@@ -130,15 +138,21 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
     let started = Instant::now();
     let mut order: Vec<Primitive> = snapped.boxes();
     let bounds = hierarchy::bounds(&order);
-    let root = if structures.iter().copied().any(layout::takes_hierarchy) {
-        hierarchy::build(&mut order)
+    let mut root = if structures.iter().copied().any(layout::takes_hierarchy) {
+        hierarchy::build(&mut order, options.leaf_size.min(LARGEST_LEAF))
     } else {
         None
+    };
+    // First, because it decides which child is the first.
+    let dual = match &mut root {
+        Some(root) if structures.contains(&Structure::DualSplit) => dual_split::lay_out(root),
+        _ => Vec::new(),
     };
     let flat = match &root {
         Some(root) => pairs::flatten(root, &order),
         None => pairs::Flat::in_file_order(&order),
     };
+    let flat = pairs::Flat { dual, ..flat };
     let sah_cost = root.as_ref().map_or(0.0, hierarchy::sah_cost);
     let layouts: Vec<Layout> = structures
         .iter()
@@ -185,6 +199,11 @@ fn advice(options: &Options, snapped: &Primitives, layouts: &[Layout]) -> String
         if saved > 0 {
             steps.push(format!("`--lattice-bits 16` saves {saved} bytes"));
         }
+    }
+    if options.leaf_size == 0 && layouts.iter().any(|layout| layout.uses_leaves) {
+        steps.push(String::from(
+            "`--leaf-size 8` makes fewer nodes and costs time",
+        ));
     }
     for layout in layouts.iter().filter(|layout| layout.bytes() > 0) {
         let (name, saved) = (layout.structure.name(), layout.bytes());

@@ -2,13 +2,15 @@
 
 use super::hierarchy::{Node, Primitive};
 use gridel_core::accel::{Leaf, Link};
-use gridel_core::blob::record::{FlaggedPair, Pair, UnitBox, plane_word};
+use gridel_core::blob::record::{DualNode, FlaggedPair, Pair, UnitBox, plane_word};
 
 /// A hierarchy as a blob holds it.
 #[derive(Debug, Default)]
 pub struct Flat {
     pub pairs: Vec<Pair>,
     pub flagged: Vec<FlaggedPair>,
+    /// The same hierarchy as dual-split nodes, if it was laid out as such.
+    pub dual: Vec<DualNode>,
     pub leaves: Vec<u32>,
     /// The primitives in the order of their slots, kind by kind.
     pub slots: [Vec<u32>; 5],

@@ -148,7 +148,7 @@ fn wrong_numbers_are_usage_errors() {
     }
     fails(&["--depth", "17"], &["--depth"]);
     fails(&["--format", "f16"], &["fixed, f32, f64"]);
-    fails(&["--accel", "grid"], &["list, bvh, flagged"]);
+    fails(&["--accel", "grid"], &["list, bvh, flagged, dual-split"]);
     fails(&["--heat-map", "a.png"], &["another name"]);
     fails(&["--heat-map", "heat.ppm"], &[".png"]);
     fails(
@@ -172,7 +172,10 @@ fn a_structure_that_the_blob_lacks_is_told() {
     folder.fails(
         2,
         &["render", "quick.gridel", "-o", "a.png", "--accel", "bvh"],
-        &["holds no structure bvh, only: flagged, list", "--accel bvh"],
+        &[
+            "holds no structure bvh, only: dual-split, list",
+            "--accel bvh",
+        ],
     );
 }
 

@@ -13,7 +13,7 @@
 //!
 //! ```text
 //! GRIDEL_BLOB=/path/to/scene.gridel cargo run --release --target thumbv7em-none-eabihf \
-//!     --features f32,flagged --bin picture
+//!     --features f32,dual-split --bin picture
 //! ```
 #![no_std]
 

@@ -14,6 +14,8 @@ pub type Number = gridel_core::Fixed;
 
 #[cfg(feature = "bvh")]
 pub type Accel = gridel_core::Bvh;
+#[cfg(feature = "dual-split")]
+pub type Accel = gridel_core::DualSplit;
 #[cfg(feature = "flagged")]
 pub type Accel = gridel_core::Flagged;
 

@@ -3,8 +3,9 @@
 use super::{Fate, sealed, small_blob, speaks, works};
 use glam::DVec3;
 use gridel_core::accel::Link;
+use gridel_core::accel::dual_split::Way;
 use gridel_core::blob::SectionKind;
-use gridel_core::blob::record::{FlaggedPair, Header, Pair, SectionEntry};
+use gridel_core::blob::record::{DualNode, FlaggedPair, Header, Pair, SectionEntry};
 use gridel_core::{Number, Scene, Structure};
 use gridel_host::scene::Shape;
 use gridel_tests::query::{UnitRay, held, through};
@@ -209,6 +210,25 @@ fn cycles_and_orphans_are_refused() {
                 forge(end - 4, link.0);
             }
         }
+    }
+    let dual = section(&bytes, SectionKind::DualNodes).1;
+    for index in 0..dual.count {
+        let end = dual.offset as usize + (index as usize + 1) * size_of::<DualNode>();
+        let way = Way(word_at(end - 4));
+        let carves = way.carves().map(|axis| axis as u32);
+        for number in [
+            0,
+            index,
+            index.wrapping_sub(1) & 0xff_ffff,
+            way.number() + 1,
+            dual.count,
+            0xff_ffff,
+        ] {
+            for split in 0..4 {
+                forge(end - 4, Way::new(number, split, carves).0);
+            }
+        }
+        forge(end - 4, way.0 | 1 << 31);
     }
     eprintln!("forged links: {fate:?}");
     // A leaf's pair may count no pairs before it and mean the same.

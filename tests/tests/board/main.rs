@@ -34,7 +34,7 @@ fn pictures_are_the_hosts_byte_for_byte() {
     let mut figures = Figures::new();
     for scene in [scenes::quick(), scenes::glass_chess()] {
         for (board, format) in FORMATS {
-            let build = Build::new(board, format, Structure::Flagged, &scene);
+            let build = Build::new(board, format, Structure::DualSplit, &scene);
             let program = build.program("picture");
             let report = program.run();
             let picture = program.file("picture.rgb");
@@ -64,7 +64,7 @@ fn primary_rays_of_suzanne() {
     };
     let mut figures = Figures::new();
     for (board, format) in FORMATS {
-        for structure in [Structure::Flagged, Structure::Bvh] {
+        for structure in [Structure::DualSplit, Structure::Flagged, Structure::Bvh] {
             let build = Build::new(board, format, structure, &suzanne);
             let report = build.program("primary").run();
             assert_eq!(report["rays"], 64 * 64, "{build}");
@@ -78,6 +78,26 @@ fn primary_rays_of_suzanne() {
     figures.check();
 }
 
+/// The smallest layout, and what rays pay for it.
+#[test]
+fn primary_rays_of_suzanne_in_16_kib() {
+    if !firmware::available() {
+        return;
+    }
+    let Some(suzanne) = scenes::small_suzanne() else {
+        return;
+    };
+    assert!(suzanne.blob.bytes().len() <= 16 * 1024);
+    let mut figures = Figures::new();
+    for (board, format) in FORMATS {
+        let build = Build::new(board, format, Structure::Flagged, &suzanne);
+        let report = build.program("primary").run();
+        assert_eq!(report["hits"], 1400, "{build}");
+        figures.add(&build.to_string(), &report);
+    }
+    figures.check();
+}
+
 #[test]
 fn the_cores_own_tests_pass_on_boards() {
     if !firmware::available() {
@@ -85,7 +105,7 @@ fn the_cores_own_tests_pass_on_boards() {
     }
     let scene = scenes::quick();
     for (board, format) in [(&AN386, Format::F32), (&AN385, Format::Fixed)] {
-        let build = Build::new(board, format, Structure::Flagged, &scene);
+        let build = Build::new(board, format, Structure::DualSplit, &scene);
         build.program("selftest").run();
     }
 }
@@ -100,7 +120,7 @@ fn nothing_is_linked_that_must_not_be() {
     let mut figures = Figures::new();
     for scene in [scenes::quick(), scenes::glass_chess()] {
         for (board, format) in FORMATS {
-            let build = Build::new(board, format, Structure::Flagged, &scene);
+            let build = Build::new(board, format, Structure::DualSplit, &scene);
             let program = build.program("bare");
             let elf = elf::Elf::read(program.path());
             let panicking = elf.functions(elf::panics);

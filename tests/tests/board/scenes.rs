@@ -37,6 +37,22 @@ fn view_depth(compiled: &Compiled) -> u8 {
 /// The mesh on which tracers for boards are compared: seen from 3.2 before its middle, in a square
 /// picture that is 2.9 wide there. `None` where the mesh is missing.
 pub fn suzanne() -> Option<Compiled> {
+    Some(compile("suzanne", suzanne_scene()?, [64, 64]))
+}
+
+/// The same in as few bytes as a hierarchy takes.
+pub fn small_suzanne() -> Option<Compiled> {
+    let options = Options {
+        structures: vec![Structure::Flagged],
+        lattice_bits: 16,
+        leaf_size: 8,
+        ..Options::default()
+    };
+    let (name, size) = ("suzanne-small", [64, 64]);
+    Some(compile_with(name, suzanne_scene()?, size, &options))
+}
+
+fn suzanne_scene() -> Option<Scene> {
     let folder = env::var_os("GRIDEL_SCENES")
         .map_or_else(|| repository().join("../shared/scenes"), PathBuf::from);
     let path = folder.join("meshes/suzanne.obj");
@@ -63,7 +79,7 @@ pub fn suzanne() -> Option<Compiled> {
         up: DVec3::Y,
         fov_degrees: 2.0 * f64::atan(1.45 / 3.2).to_degrees(),
     });
-    Some(compile("suzanne", scene, [64, 64]))
+    Some(scene)
 }
 
 impl Compiled {
@@ -73,7 +89,7 @@ impl Compiled {
         let settings = Settings::of(&scene);
         let job = Job {
             format,
-            structure: Structure::Flagged,
+            structure: Structure::DualSplit,
             settings,
             rows: 0..settings.height,
             count: false,
@@ -102,13 +118,22 @@ fn load(path: &Path) -> Scene {
     }
 }
 
-fn compile(name: &'static str, mut scene: Scene, [width, height]: [u32; 2]) -> Compiled {
-    (scene.render.width, scene.render.height) = (width, height);
+fn compile(name: &'static str, scene: Scene, size: [u32; 2]) -> Compiled {
     let options = Options {
-        structures: vec![Structure::Bvh, Structure::Flagged],
+        structures: vec![Structure::Bvh, Structure::Flagged, Structure::DualSplit],
         ..Options::default()
     };
-    let compiled = compile::compile(&scene, &options).expect("the scene compiles");
+    compile_with(name, scene, size, &options)
+}
+
+fn compile_with(
+    name: &'static str,
+    mut scene: Scene,
+    [width, height]: [u32; 2],
+    options: &Options,
+) -> Compiled {
+    (scene.render.width, scene.render.height) = (width, height);
+    let compiled = compile::compile(&scene, options).expect("the scene compiles");
     Compiled {
         name,
         blob: compiled.blob,

@@ -4,11 +4,11 @@
 
 use core::hint::black_box;
 use cortex_m_rt::entry;
-use gridel_core::{Effects, Flagged, NoCount, Renderer, Rgb565, Scene, Settings, Workspace};
+use gridel_core::{DualSplit, Effects, NoCount, Renderer, Rgb565, Scene, Settings, Workspace};
 
 static BLOB: &[u8] = gridel_core::include_blob!(env!("GRIDEL_BLOB"));
-/// In the number format `f32`, with flagged pairs, for every effect.
-type Picture<'s> = Renderer<'s, 'static, f32, Flagged, { Effects::ALL.0 }>;
+/// In the number format `f32`, with dual-split nodes, for every effect.
+type Picture<'s> = Renderer<'s, 'static, f32, DualSplit, { Effects::ALL.0 }>;
 
 #[entry]
 fn main() -> ! {
