@@ -15,7 +15,7 @@ use embedded_graphics::text::Text;
 use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
 use gridel_core::accel::MAX_STACK_DEPTH;
 use gridel_core::render::{MAX_RAY_DEPTH, Renderer, Settings, Workspace};
-use gridel_core::{Effects, Flagged, NoCount, Scene};
+use gridel_core::{DualSplit, Effects, NoCount, Scene};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::{MoleculeOptions, load};
 use std::error::Error;
@@ -42,7 +42,7 @@ where
         dither: true,
         ..Settings::of(scene)
     };
-    let renderer = Renderer::<f32, Flagged, { Effects::ALL.0 }>::new(scene, settings)?;
+    let renderer = Renderer::<f32, DualSplit, { Effects::ALL.0 }>::new(scene, settings)?;
     let mut space = Workspace::<f32, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
     let mut space = space.as_view();
     renderer.check_workspace(&space)?;

@@ -11,7 +11,7 @@
 use gridel_core::accel::MAX_STACK_DEPTH;
 use gridel_core::render::{MAX_RAY_DEPTH, WorkspaceView};
 use gridel_core::{
-    Accel, Effects, Flagged, NoCount, Number, Renderer, Rgb565, Settings, Workspace,
+    Accel, DualSplit, Effects, NoCount, Number, Renderer, Rgb565, Settings, Workspace,
 };
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::{MoleculeOptions, load};
@@ -154,7 +154,7 @@ pub fn panel(scene: &Path) -> Result<Panel, Box<dyn Error>> {
         dither: true,
         ..Settings::of(&scene)
     };
-    let renderer = Renderer::<f32, Flagged, { Effects::ALL.0 }>::new(&scene, settings)?;
+    let renderer = Renderer::<f32, DualSplit, { Effects::ALL.0 }>::new(&scene, settings)?;
     let mut space = Workspace::<f32, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
     let mut space = space.as_view();
     renderer.check_workspace(&space)?;

@@ -41,7 +41,7 @@ fn rendered(blob: &Blob, [width, height]: [u16; 2]) -> Vec<u16> {
     let scene = blob.scene().expect("the compiler's blob");
     let job = Job {
         format: Format::F32,
-        structure: Structure::Flagged,
+        structure: Structure::DualSplit,
         settings: Settings {
             width,
             height,

@@ -97,7 +97,6 @@ fn reciprocal(d: u32) -> u32 {
 }
 
 /// [`Number::slopes`] of a vector beyond 31 bits.
-#[cold]
 fn slopes_of_wide(v: [i64; 3]) -> Option<([Fixed; 3], usize)> {
     let bits = excess_bits(v, 31);
     slopes_of_narrow(v.map(|component| shift_magnitude(component, bits)))
@@ -398,21 +397,12 @@ impl Number for Fixed {
     }
 
     #[inline(always)]
-    fn coarse(wide: Product) -> Product {
-        Product(wide.0 >> 23)
-    }
-
-    #[inline(always)]
     fn from_wide(product: Product) -> Self {
         saturate(round_off(product.0, RATIO_BITS))
     }
 
     #[inline(always)]
     fn wide_scale(wide: Product, ratio: Self) -> Product {
-        let narrow = wide.0 as i32;
-        if i64::from(narrow) == wide.0 {
-            return Product((i64::from(narrow) * i64::from(ratio.0)) >> RATIO_BITS);
-        }
         let high = (wide.0 >> 32).wrapping_mul(ratio.0 as i64);
         let low = (wide.0 & 0xffff_ffff).wrapping_mul(ratio.0 as i64);
         Product((high << (32 - RATIO_BITS)).wrapping_add(low >> RATIO_BITS))

@@ -262,11 +262,6 @@ macro_rules! float_number {
             }
 
             #[inline(always)]
-            fn coarse(wide: Self) -> Self {
-                wide
-            }
-
-            #[inline(always)]
             fn from_wide(product: Self) -> Self {
                 product
             }

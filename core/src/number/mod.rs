@@ -205,9 +205,6 @@ pub trait Number:
     fn wide_over(wide: Self::Wide, divisor: i32) -> Self::Wide;
     /// A far coordinate from an integer with 13 fraction bits.
     fn far(q13: i64) -> Self::Wide;
-    /// A wide number without the 23 lowest of its bits, which are more than a direction needs;
-    /// floats keep theirs.
-    fn coarse(wide: Self::Wide) -> Self::Wide;
     /// Three products added: `a . b`.
     #[inline(always)]
     fn dot(a: [Self; 3], b: [Self; 3]) -> Self::Wide {

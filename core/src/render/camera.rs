@@ -49,7 +49,7 @@ impl<N: Number> Camera<N> {
     #[inline(always)]
     pub(crate) fn ray(&self, row: &Row<N>, x: i32) -> Result<Ray<N>, RayError> {
         let shift = 2 * x - SUBPIXELS * self.width;
-        let axis = |k: usize| N::coarse(row.0[k] + N::wide_times(self.right[k], shift));
+        let axis = |k: usize| row.0[k] + N::wide_times(self.right[k], shift);
         self.eye.ray([axis(0), axis(1), axis(2)])
     }
 }
