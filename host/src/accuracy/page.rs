@@ -51,7 +51,7 @@ pub fn page(
     body.push_str(
         "</ul>\n<h2>Error against time</h2>\n<p>Nothing beats the settings on the red \
         line: what is as fast is less right, and what is as right is slower. Numbers are those of \
-        the table.</p>\n",
+        the table; the pointer shows the names. Rings mark what nothing beats by RMSE.</p>\n",
     );
     for metric in METRICS {
         body.push_str(&plot(metric, results, &best)?);
@@ -88,6 +88,7 @@ const HEAD: &str = "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\"
     figure { margin: 0; font-size: 11px; }\n\
     figure img { display: block; image-rendering: pixelated; width: 192px; }\n\
     .scroll { overflow-x: auto; }\n\
+    .front { font-size: 12px; color: #b3001b; }\n\
     svg { max-width: 100%; height: auto; }\n</style>\n";
 
 fn escape(text: &str) -> String {
@@ -119,8 +120,9 @@ fn plot((title, error): Metric, results: &Results, best: &[bool]) -> io::Result<
         (low / 1.25)..(high * 1.6)
     };
     let (times, errors) = (ends(|place| place.0), ends(|place| place.1));
-    let mut svg = String::new();
-    let draw = |svg: &mut String| -> Result<(), Box<dyn std::error::Error>> {
+    let (mut svg, mut names) = (String::new(), String::new());
+    let mut fastest_first = Vec::new();
+    let mut draw = |svg: &mut String| -> Result<(), Box<dyn std::error::Error>> {
         let area = SVGBackend::with_string(svg, SIZE).into_drawing_area();
         area.fill(&WHITE)?;
         let mut chart = ChartBuilder::on(&area)
@@ -144,6 +146,7 @@ fn plot((title, error): Metric, results: &Results, best: &[bool]) -> io::Result<
         for &number in &order {
             if front.last().is_none_or(|last| places[number].1 < last.1) {
                 front.push(places[number]);
+                fastest_first.push(number);
             }
         }
         chart.draw_series(LineSeries::new(front.iter().copied(), RGBColor(179, 0, 27)))?;
@@ -155,19 +158,24 @@ fn plot((title, error): Metric, results: &Results, best: &[bool]) -> io::Result<
                 _ => RGBColor(130, 150, 130),
             };
             chart.draw_series([Circle::new(place, 4, color.filled())])?;
-            let leads = front.contains(&place);
-            let label = if leads {
-                format!("{} {}", number + 1, point.name)
-            } else {
-                (number + 1).to_string()
-            };
-            let color = if leads {
+            let color = if front.contains(&place) {
                 RGBColor(179, 0, 27)
             } else {
                 RGBColor(90, 90, 90)
             };
             let font = ("sans-serif", 10).into_font().color(&color);
-            chart.draw_series([EmptyElement::at(place) + Text::new(label, (6, -5), font)])?;
+            let label = Text::new((number + 1).to_string(), (6, -5), font);
+            chart.draw_series([EmptyElement::at(place) + label])?;
+            let (x, y) = chart.backend_coord(&place);
+            // Names appear where the pointer is: all at once they would cover the points.
+            let _ = writeln!(
+                names,
+                "<circle cx=\"{x}\" cy=\"{y}\" r=\"7\" fill=\"transparent\"><title>{} {}: {} ms, {}</title></circle>",
+                number + 1,
+                escape(&point.name),
+                significant(place.0),
+                significant(place.1)
+            );
             if best.get(number).copied().unwrap_or(false) {
                 chart.draw_series([Circle::new(place, 7, RGBColor(179, 0, 27).stroke_width(1))])?;
             }
@@ -176,7 +184,15 @@ fn plot((title, error): Metric, results: &Results, best: &[bool]) -> io::Result<
         Ok(())
     };
     draw(&mut svg).map_err(|error| io::Error::other(error.to_string()))?;
-    Ok(svg)
+    let svg = svg.replace("</svg>", &format!("{names}</svg>"));
+    let front: Vec<String> = fastest_first
+        .into_iter()
+        .map(|number| format!("{} {}", number + 1, escape(&results.points[number].name)))
+        .collect();
+    Ok(format!(
+        "{svg}\n<p class=\"front\">On the line, the fastest first: {}.</p>\n",
+        front.join("; ")
+    ))
 }
 
 fn table(results: &Results, best: &[bool]) -> String {

@@ -112,7 +112,10 @@ impl Setting {
 }
 
 fn cutoff_text(cutoff: f64) -> String {
-    crate::report::significant(cutoff)
+    // Three digits tell them apart.
+    format!("{cutoff:.2e}")
+        .parse::<f64>()
+        .map_or_else(|_| cutoff.to_string(), |x| x.to_string())
 }
 
 /// The settings of a sweep around the one that the scene file states: first that one, then each lever
@@ -207,6 +210,6 @@ mod tests {
                 .iter()
                 .all(|s| s.depth == 6 && s.cutoff == base.cutoff)
         );
-        assert_eq!(settings[0].name(), "f32-24bit-1spp-6deep-0.00195313");
+        assert_eq!(settings[0].name(), "f32-24bit-1spp-6deep-0.00195");
     }
 }
