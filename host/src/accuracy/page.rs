@@ -122,7 +122,7 @@ fn plot((title, error): Metric, results: &Results, best: &[bool]) -> io::Result<
     let (times, errors) = (ends(|place| place.0), ends(|place| place.1));
     let (mut svg, mut names) = (String::new(), String::new());
     let mut fastest_first = Vec::new();
-    let mut draw = |svg: &mut String| -> Result<(), Box<dyn std::error::Error>> {
+    let draw = |svg: &mut String| -> Result<(), Box<dyn std::error::Error>> {
         let area = SVGBackend::with_string(svg, SIZE).into_drawing_area();
         area.fill(&WHITE)?;
         let mut chart = ChartBuilder::on(&area)
