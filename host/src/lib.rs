@@ -11,11 +11,13 @@
 //! | compare structures on a scene | [`compare`] |
 //! | trace rays of one's own | [`trace`], and [`npy`] for NumPy's files |
 //! | tell the story of a ray or a pixel | [`explain`] |
+//! | measure what accuracy costs in time | [`accuracy`] |
 //! | hold a scene to what is promised | [`verify`] |
 //! | tell where bytes and work go | [`report`] |
 //! | write a file whole or not at all | [`output`] |
 //!
 //! The program `gridel` is a thin layer over this library: what it does can be done from here.
+pub mod accuracy;
 pub mod blob;
 pub mod check;
 pub mod compare;

@@ -80,7 +80,10 @@ fn encoded<P: Pixel>(picture: &Picture, dither: bool) -> Vec<P> {
 }
 
 /// Writes sRGB pixels, three bytes each, as PNG; with a sentence on what they show if there is one.
-pub(crate) fn write_png(
+///
+/// # Errors
+/// If `out` has one.
+pub fn write_png(
     out: &mut dyn Write,
     [width, height]: [u32; 2],
     pixels: &[u8],

@@ -35,6 +35,50 @@ fn right_scenes_are_right() {
     }
 }
 
+/// Among them was a ray down a cylinder whose other slope vanished when it was squared.
+#[test]
+fn fixtures_keep_their_promises() {
+    for (name, rays) in [("glass-chess", 1500), ("quick", 500), ("cornell", 500)] {
+        let path = scenes::fixture_folder().join(name).with_extension("toml");
+        let blob = scenes::blob(&scenes::read(&path), 24);
+        let report = verify(&blob.scene().expect("a scene"), rays, &|| ());
+        assert_eq!(report.broken(), 0, "{name}: {:#?}", report.promises);
+    }
+}
+
+#[test]
+fn a_ray_that_is_nearly_parallel_to_a_cylinder_meets_its_cap() {
+    let cylinder = gridel_host::scene::Shape::Cone {
+        base: glam::DVec3::ZERO,
+        base_radius: 1.0,
+        apex: glam::DVec3::Y,
+        apex_radius: 1.0,
+    };
+    let blob = scenes::blob(&scenes::of([cylinder]), 24);
+    let scene = blob.scene().expect("a scene");
+    fn meets<N: Number>(scene: &Scene<'_>) {
+        for slope in [1e-10, 1e-20, 1e-26, 1e-38, 1e-300] {
+            for sign in [1.0, -1.0] {
+                let [[x0, x1], [y0, y1], [z0, z1]] = scene.bounds().0.map(|s| s.map(f64::from));
+                let origin = [
+                    0.6 * x0 + 0.4 * x1,
+                    y0 + 3.0 * (y1 - y0),
+                    0.6 * z0 + 0.4 * z1,
+                ];
+                let ray = gridel_host::verify::UnitRay::new(origin, [0.0, -1.0, sign * slope]);
+                let ready = ray.ready::<N>(scene).expect("a ray");
+                let hit = ask::<N, List>(scene, &ready).hit;
+                assert!(
+                    hit.is_some_and(|hit| hit.front),
+                    "{} {slope} {sign}",
+                    N::FORMAT.name()
+                );
+            }
+        }
+    }
+    gridel_tests::every_format!(meets(&scene));
+}
+
 /// Changes the answers of one structure and returns which promises are found broken.
 fn broken_by(change: impl Fn(&mut Heard<f64>)) -> Vec<Promise> {
     let blob = mesh(2);

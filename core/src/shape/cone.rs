@@ -142,7 +142,8 @@ impl Cone {
             } else {
                 (high, N::FAR)
             }
-        } else if b == zero {
+        } else if b == zero || e == N::ZERO {
+            // (So nearly parallel, perhaps, that the square of the slope vanishes.)
             // Along a line of the mantle, or parallel to the axis of a cylinder: inside or not.
             if c > zero {
                 return None;

@@ -3,7 +3,7 @@
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use gridel_core::{Format, Structure};
-use gridel_host::scene::{MoleculeOptions, MoleculeStyle};
+use gridel_host::scene::{MoleculeOptions, MoleculeStyle, Scene};
 use std::num::NonZeroUsize;
 use std::ops::Range;
 
@@ -15,6 +15,11 @@ pub struct SceneOptions {
     /// smaller [default: 24]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(10..=24))]
     pub lattice_bits: Option<u8>,
+
+    /// Do not cast secondary rays that can change no channel by more than this, 1 being display
+    /// white [default: what the scene file states]
+    #[arg(long, value_name = "X", value_parser = cutoff)]
+    cutoff: Option<f64>,
 
     /// How molecules look [default: space-filling]
     #[arg(long, value_parser = style())]
@@ -34,12 +39,20 @@ impl SceneOptions {
     pub fn given(&self) -> Option<&'static str> {
         [
             (self.lattice_bits.is_some(), "--lattice-bits"),
+            (self.cutoff.is_some(), "--cutoff"),
             (self.style.is_some(), "--style"),
             (self.model.is_some(), "--model"),
             (self.altloc.is_some(), "--altloc"),
         ]
         .into_iter()
         .find_map(|(given, name)| given.then_some(name))
+    }
+
+    /// Changes in a scene what was asked for.
+    pub fn change(&self, scene: &mut Scene) {
+        if let Some(cutoff) = self.cutoff {
+            scene.render.cutoff = cutoff;
+        }
     }
 
     /// The options for importers of molecules.
@@ -58,6 +71,13 @@ fn style() -> impl TypedValueParser<Value = MoleculeStyle> {
         "ball-and-stick" => MoleculeStyle::BallAndStick,
         _ => MoleculeStyle::SpaceFilling,
     })
+}
+
+/// Reads a cutoff.
+fn cutoff(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok();
+    let value = value.filter(|value| (0.0..=1.0).contains(value));
+    value.ok_or_else(|| String::from("write a number from 0 to 1, such as 0.002"))
 }
 
 /// The name of an acceleration structure.

@@ -77,8 +77,9 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
     }
     let path = &arguments.scene;
-    let imported = scene::load(path, &arguments.scene_options.molecule())
+    let mut imported = scene::load(path, &arguments.scene_options.molecule())
         .map_err(|error| Failure::Failed(miette::Report::new(error)))?;
+    arguments.scene_options.change(&mut imported.scene);
     for warning in &imported.warnings {
         warn(warning);
     }

@@ -16,6 +16,7 @@ mod output;
 mod progress;
 mod source;
 
+mod accuracy;
 mod build;
 mod check;
 mod compare;
@@ -45,6 +46,7 @@ enum Verb {
     Inspect(inspect::Arguments),
     Render(render::Arguments),
     Trace(trace::Arguments),
+    Accuracy(accuracy::Arguments),
     Verify(verify::Arguments),
     Explain(explain::Arguments),
     Sample(sample::Arguments),
@@ -73,6 +75,7 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
         Verb::Inspect(arguments) => inspect::run(&arguments),
         Verb::Render(arguments) => render::run(&arguments),
         Verb::Trace(arguments) => trace::run(&arguments),
+        Verb::Accuracy(arguments) => accuracy::run(&arguments),
         Verb::Verify(arguments) => verify::run(&arguments),
         Verb::Explain(arguments) => explain::run(&arguments),
         Verb::Sample(arguments) => sample::run(&arguments),

@@ -82,8 +82,9 @@ impl Source {
             compiling.lattice_bits = bits;
         }
         let progress = Progress::unknown("compiling");
-        let imported = scene::load(path, &options.molecule())
+        let mut imported = scene::load(path, &options.molecule())
             .map_err(|error| Failure::Failed(miette::Report::new(error)))?;
+        options.change(&mut imported.scene);
         let compiled = compile::compile(&imported.scene, &compiling);
         drop(progress);
         for warning in &imported.warnings {

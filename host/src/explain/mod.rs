@@ -66,7 +66,7 @@ pub fn explain(
         Format::F32 => structure.visit(watch.with::<f32>()),
         Format::F64 => structure.visit(watch.with::<f64>()),
     }?;
-    let mut story = Story::of(&Frame::of(scene), &recorder.events);
+    let mut story = Story::of(scene, &recorder.events);
     story.format = format.name();
     story.accel = structure.name();
     story.linear = linear;

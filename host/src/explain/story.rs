@@ -3,7 +3,7 @@
 use super::walk::Walk;
 use crate::trace::Frame;
 use gridel_core::event::{Met, Source};
-use gridel_core::{Event, RayKind};
+use gridel_core::{Event, RayKind, Scene};
 use serde::Serialize;
 
 /// A pixel, or a ray of one's own, explained. Colours are linear, 1 being display white.
@@ -106,7 +106,11 @@ pub enum Fall {
     /// The surface is turned away from it.
     Behind,
     /// Something stands in between.
-    Blocked { kind: &'static str, primitive: u32 },
+    Blocked {
+        kind: &'static str,
+        primitive: u32,
+        object: u32,
+    },
     /// Glass in between leaves too little of it.
     Faded,
     /// The material reflects none of it.
@@ -125,9 +129,9 @@ fn kind_name(kind: RayKind) -> &'static str {
 
 impl Story {
     /// Puts events in order.
-    pub(super) fn of(frame: &Frame, events: &[Event]) -> Self {
+    pub(super) fn of(scene: &Scene<'_>, events: &[Event]) -> Self {
         let mut story = Story::default();
-        let mut teller = Teller::new(frame);
+        let mut teller = Teller::new(scene);
         for event in events {
             if let Event::Seen { place, radiance } = *event {
                 story.samples.push(teller.finish(place, radiance));
@@ -140,8 +144,9 @@ impl Story {
 }
 
 /// A sample as far as it is told.
-struct Teller<'f> {
-    frame: &'f Frame,
+struct Teller<'t> {
+    scene: &'t Scene<'t>,
+    frame: Frame,
     sample: Sample,
     /// The rays that wait, by who sent them: the last is taken up first.
     waiting: Vec<usize>,
@@ -149,10 +154,11 @@ struct Teller<'f> {
     light: bool,
 }
 
-impl<'f> Teller<'f> {
-    fn new(frame: &'f Frame) -> Self {
+impl<'t> Teller<'t> {
+    fn new(scene: &'t Scene<'t>) -> Self {
         Self {
-            frame,
+            scene,
+            frame: Frame::of(scene),
             sample: Sample::default(),
             waiting: Vec::new(),
             light: false,
@@ -176,14 +182,13 @@ impl<'f> Teller<'f> {
                 weight,
             } => self.ray(kind, depth, weight),
             _ => {
-                let frame = *self.frame;
                 let current = self.sample.rays.len().wrapping_sub(1);
                 if matches!(event, Event::Sent { .. }) {
                     self.waiting.push(current);
                 }
                 let light = &mut self.light;
                 if let Some(ray) = self.sample.rays.last_mut() {
-                    ray.take(&frame, event, light);
+                    ray.take(self.scene, &self.frame, event, light);
                 }
             }
         }
@@ -216,7 +221,7 @@ impl<'f> Teller<'f> {
 }
 
 impl Ray {
-    fn take(&mut self, frame: &Frame, event: &Event, light: &mut bool) {
+    fn take(&mut self, scene: &Scene<'_>, frame: &Frame, event: &Event, light: &mut bool) {
         match *event {
             Event::Query { .. } => {
                 let walk = Walk::begin(frame, event);
@@ -249,7 +254,7 @@ impl Ray {
                 *light = false;
                 if let Some(lighting) = self.lights.last_mut().filter(|l| l.light == number) {
                     lighting.radiance = radiance;
-                    lighting.fall = lighting.fall();
+                    lighting.fall = lighting.fall(scene);
                 }
             }
             Event::Absorbed { weight } => self.absorbed = Some(weight),
@@ -289,7 +294,7 @@ impl Hit {
 }
 
 impl Lighting {
-    fn fall(&self) -> Fall {
+    fn fall(&self, scene: &Scene<'_>) -> Fall {
         if self.radiance != [0.0; 3] {
             return Fall::Lit;
         }
@@ -305,6 +310,7 @@ impl Lighting {
             Some(met) => Fall::Blocked {
                 kind: met.kind,
                 primitive: met.primitive,
+                object: scene.object(met.primitive),
             },
             None => Fall::Unreflected,
         }

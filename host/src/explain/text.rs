@@ -248,9 +248,15 @@ impl Shown<'_> {
                 color(lighting.radiance)
             ),
             Fall::Behind => format!("light {light} is behind the surface (cosine {cosine})"),
-            Fall::Blocked { kind, primitive } => {
-                format!("light {light} is blocked by {kind} {primitive}{glass}")
-            }
+            Fall::Blocked {
+                kind,
+                primitive,
+                object,
+            } => format!(
+                "light {light} is blocked by {kind} {primitive}, which is {}{}{glass}",
+                self.names.object(object),
+                self.names.material(object)
+            ),
             Fall::Faded => format!("light {light} fades away{glass}"),
             Fall::Unreflected => {
                 format!("light {light} shines on it, and the material reflects none of it")

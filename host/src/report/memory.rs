@@ -97,6 +97,11 @@ pub struct WorkingMemory {
 ///
 /// For 32 bits an `f64` is taken to be aligned to 8 bytes, as on Arm and RISC-V.
 pub fn working_memory(scene: &Scene<'_>) -> Vec<WorkingMemory> {
+    working_memory_at(scene, scene.view().depth)
+}
+
+/// The same for pictures of another ray depth than the scene's own.
+pub fn working_memory_at(scene: &Scene<'_>, depth: u8) -> Vec<WorkingMemory> {
     let bits = [4, size_of::<usize>()];
     let words = if bits[0] == bits[1] {
         &bits[..1]
@@ -104,7 +109,6 @@ pub fn working_memory(scene: &Scene<'_>) -> Vec<WorkingMemory> {
         &bits[..]
     };
     let secondary = Effects::MIRROR.with(Effects::GLASS);
-    let depth = scene.view().depth;
     // Where no ray causes another none has to wait.
     let places = if scene.effects().0 & secondary.0 == 0 || depth == 0 {
         0

@@ -6,5 +6,5 @@ mod memory;
 mod table;
 
 pub use heat_map::HeatMap;
-pub use memory::{MemoryMap, Part, WorkingMemory, working_memory};
+pub use memory::{MemoryMap, Part, WorkingMemory, working_memory, working_memory_at};
 pub use table::{Align, Table, counted, grouped, power_of_two, significant};

@@ -1,0 +1,215 @@
+//! What a sweep turns: five levers, each alone and together.
+
+use gridel_core::Format;
+use serde::{Deserialize, Serialize};
+
+/// A way to build and render a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Setting {
+    #[serde(with = "format_name")]
+    pub format: Format,
+    pub lattice_bits: u8,
+    pub samples: u16,
+    pub depth: u8,
+    /// A secondary ray that can change no channel by more than this is not traced.
+    pub cutoff: f64,
+}
+
+mod format_name {
+    use gridel_core::Format;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    pub fn serialize<S: Serializer>(format: &Format, to: S) -> Result<S::Ok, S::Error> {
+        format.name().serialize(to)
+    }
+
+    pub fn deserialize<'d, D: Deserializer<'d>>(from: D) -> Result<Format, D::Error> {
+        let name = String::deserialize(from)?;
+        let mut all = Format::ALL.into_iter();
+        all.find(|format| format.name() == name)
+            .ok_or_else(|| D::Error::custom("no such number format"))
+    }
+}
+
+/// One of the five.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Lever {
+    Format,
+    LatticeBits,
+    Samples,
+    Depth,
+    Cutoff,
+}
+
+impl Lever {
+    pub const ALL: [Lever; 5] = [
+        Lever::Format,
+        Lever::LatticeBits,
+        Lever::Samples,
+        Lever::Depth,
+        Lever::Cutoff,
+    ];
+
+    /// What it is called.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Lever::Format => "number format",
+            Lever::LatticeBits => "lattice bits",
+            Lever::Samples => "samples a pixel",
+            Lever::Depth => "ray depth",
+            Lever::Cutoff => "contribution cut-off",
+        }
+    }
+}
+
+const BITS: [u8; 5] = [10, 12, 16, 20, 24];
+const SAMPLES: [u16; 7] = [1, 2, 4, 8, 16, 32, 64];
+const CUTOFFS: [f64; 6] = [
+    0.0,
+    1.0 / 2048.0,
+    1.0 / 512.0,
+    1.0 / 128.0,
+    1.0 / 32.0,
+    1.0 / 8.0,
+];
+
+impl Setting {
+    /// Its short name: `f32-24bit-4spp-6deep-0.002`.
+    pub fn name(&self) -> String {
+        format!(
+            "{}-{}bit-{}spp-{}deep-{}",
+            self.format.name(),
+            self.lattice_bits,
+            self.samples,
+            self.depth,
+            cutoff_text(self.cutoff)
+        )
+    }
+
+    /// The levers in which it differs from another.
+    pub fn differs(&self, other: &Self) -> Vec<Lever> {
+        let differs = |lever: &Lever| match lever {
+            Lever::Format => self.format != other.format,
+            Lever::LatticeBits => self.lattice_bits != other.lattice_bits,
+            Lever::Samples => self.samples != other.samples,
+            Lever::Depth => self.depth != other.depth,
+            Lever::Cutoff => self.cutoff != other.cutoff,
+        };
+        Lever::ALL.into_iter().filter(differs).collect()
+    }
+
+    /// What is read off a lever.
+    pub fn value(&self, lever: Lever) -> String {
+        match lever {
+            Lever::Format => self.format.name().to_owned(),
+            Lever::LatticeBits => self.lattice_bits.to_string(),
+            Lever::Samples => self.samples.to_string(),
+            Lever::Depth => self.depth.to_string(),
+            Lever::Cutoff => cutoff_text(self.cutoff),
+        }
+    }
+}
+
+fn cutoff_text(cutoff: f64) -> String {
+    // Three digits tell them apart.
+    format!("{cutoff:.2e}")
+        .parse::<f64>()
+        .map_or_else(|_| cutoff.to_string(), |x| x.to_string())
+}
+
+/// The settings of a sweep around the one that the scene file states: first that one, then each lever
+/// alone, then together. `secondary` says whether anything in the scene reflects or refracts; without,
+/// depth and cut-off change nothing and are left alone.
+pub fn sweep(base: Setting, secondary: bool) -> Vec<Setting> {
+    let mut settings = vec![base];
+    let mut add = |setting: Setting| {
+        if !settings.contains(&setting) {
+            settings.push(setting);
+        }
+    };
+    let depths: Vec<u8> = (0..=base.depth.max(4)).collect();
+    for format in Format::ALL {
+        add(Setting { format, ..base });
+    }
+    for lattice_bits in BITS {
+        add(Setting {
+            lattice_bits,
+            ..base
+        });
+    }
+    for samples in SAMPLES {
+        add(Setting { samples, ..base });
+    }
+    if secondary {
+        for &depth in &depths {
+            add(Setting { depth, ..base });
+        }
+        for cutoff in CUTOFFS {
+            add(Setting { cutoff, ..base });
+        }
+    }
+    // Together: what a board can choose between, and what raises samples at less depth.
+    for format in [Format::Fixed, Format::F32] {
+        for lattice_bits in [12, 16] {
+            add(Setting {
+                format,
+                lattice_bits,
+                ..base
+            });
+        }
+        for samples in [1, 4, 16] {
+            add(Setting {
+                format,
+                samples,
+                ..base
+            });
+            if !secondary {
+                continue;
+            }
+            for depth in [2, base.depth] {
+                for cutoff in [base.cutoff, 1.0 / 32.0] {
+                    add(Setting {
+                        format,
+                        samples,
+                        depth,
+                        cutoff,
+                        ..base
+                    });
+                }
+            }
+        }
+    }
+    settings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_lever_is_turned_alone_and_nothing_twice() {
+        let base = Setting {
+            format: Format::F32,
+            lattice_bits: 24,
+            samples: 1,
+            depth: 6,
+            cutoff: 1.0 / 512.0,
+        };
+        let settings = sweep(base, true);
+        for lever in Lever::ALL {
+            let alone = settings.iter().filter(|s| s.differs(&base) == [lever]);
+            assert!(alone.count() >= 2, "{lever:?}");
+        }
+        for (number, setting) in settings.iter().enumerate() {
+            assert!(!settings[..number].contains(setting), "{setting:?}");
+        }
+        let plain = sweep(base, false);
+        assert!(
+            plain
+                .iter()
+                .all(|s| s.depth == 6 && s.cutoff == base.cutoff)
+        );
+        assert_eq!(settings[0].name(), "f32-24bit-1spp-6deep-0.00195");
+    }
+}

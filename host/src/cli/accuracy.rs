@@ -1,0 +1,493 @@
+//! `gridel accuracy`: what accuracy costs in time.
+
+use super::arguments::{self, SceneOptions};
+use super::failure::Failure;
+use super::output::{print, print_json, warn, write_file};
+use super::progress::Progress;
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use gridel_core::{Rgb888, Structure, render::Pixel};
+use gridel_host::accuracy::{
+    Bench, Exhibit, MeasureError, Point, Results, Setting, boards, cheapest, difference_picture,
+    frontier, page, sentences, sweep,
+};
+use gridel_host::picture::write_png;
+use gridel_host::report::{Align, Table, counted, grouped, significant};
+use gridel_host::scene;
+use serde::Serialize;
+use std::fmt::Write;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Show what accuracy costs in time
+///
+/// Turns five levers, each alone and in combinations: number format, lattice bits (10, 12, 16, 20,
+/// 24), samples a pixel (1 to 64), ray depth, and the contribution below which a secondary ray is not
+/// cast. Every setting is built and rendered and compared with a reference (f64, 24 bits, ray depth
+/// 16, many samples).
+///
+/// Errors, of display values (sRGB) from 0 to 1:
+///   RMSE           root of the mean square difference, over all pixels and channels
+///   largest        largest difference
+///   pixels off     pixels of which a channel is off by more than 1/255
+///   SSIM           mean structural similarity of the grey pictures in windows of 8 by 8; 1 is equal
+///   FLIP           mean difference that an eye sees when pictures alternate; 0 is equal
+///   other objects  rays through the middles of pixels that meet another object, or none
+///   t              error of the distance of the others, in units of the last place of single
+///                  precision: the median and the largest
+///
+/// Costs: milliseconds a frame on one thread, the median of repeats that take turns, and their spread;
+/// rays a pixel; boxes and primitives tested a ray; bytes of the blob, and of the workspace on a 32-bit
+/// board; instructions a pixel on boards, estimated as the rays times the least and the most that a
+/// ray of a recorded picture takes.
+///
+/// Writes into a folder: page.html with plots, sentences and pictures, which loads nothing from
+/// anywhere; results.csv; and results.json, to which every step is added as it is done. After an
+/// interruption the same command goes on where it stopped.
+#[derive(Args)]
+#[command(after_help = super::EXIT_CODES, verbatim_doc_comment)]
+pub struct Arguments {
+    /// Scene file: .toml, .obj, .nff, .pdb, .ent, .cif or .mmcif
+    scene: PathBuf,
+
+    /// The folder to write into; it is made if need be [default: accuracy-SCENE]
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+
+    /// Find the cheapest setting whose RMSE is at most this, from 0 to 1, and print the options of
+    /// `build` and `render` for it
+    #[arg(long, value_name = "E", value_parser = share)]
+    max_error: Option<f64>,
+
+    /// What is cheap for --max-error: instructions on this board instead of time on this machine
+    #[arg(long, value_name = "NAME", value_parser = board(), requires = "max_error")]
+    board: Option<String>,
+
+    /// Size of the pictures [default: the scene file's, made smaller to 128 pixels a side]
+    #[arg(long, value_name = "WxH", value_parser = arguments::size)]
+    size: Option<[u16; 2]>,
+
+    /// How often each setting is timed
+    #[arg(long, value_name = "N", default_value_t = 3,
+        value_parser = clap::value_parser!(u16).range(1..=1000))]
+    repeat: u16,
+
+    /// Samples a pixel of the reference
+    #[arg(long, value_name = "N", default_value_t = 256,
+        value_parser = clap::value_parser!(u16).range(1..=256))]
+    reference_samples: u16,
+
+    /// Acceleration structure; boards' figures are for flagged pairs
+    #[arg(long, value_name = "NAME", value_parser = arguments::structure(),
+        default_value = Structure::Flagged.name())]
+    accel: Structure,
+
+    /// Print the results as JSON
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    scene_options: SceneOptions,
+}
+
+/// Reads an error bound.
+fn share(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok();
+    let value = value.filter(|value| (0.0..=1.0).contains(value));
+    value.ok_or_else(|| String::from("write a number from 0 to 1, such as 0.02"))
+}
+
+fn board() -> impl TypedValueParser<Value = String> {
+    PossibleValuesParser::new(boards::names())
+}
+
+/// What is printed as JSON.
+#[derive(Serialize)]
+struct Told<'t> {
+    folder: String,
+    size: [u16; 2],
+    points: &'t [Point],
+    /// Which points nothing beats in time and RMSE.
+    frontier: Vec<bool>,
+    sentences: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cheapest: Option<Choice>,
+}
+
+/// The setting that was asked for.
+#[derive(Serialize)]
+struct Choice {
+    name: String,
+    rmse: f64,
+    build: String,
+    render: String,
+}
+
+/// Sweeps, measures and reports.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let path = &arguments.scene;
+    if arguments.scene_options.lattice_bits.is_some() {
+        return Err(Failure::usage(
+            "--lattice-bits is one of the levers that are turned",
+            "leave it out",
+        ));
+    }
+    let mut imported = scene::load(path, &arguments.scene_options.molecule())
+        .map_err(|error| Failure::Failed(miette::Report::new(error)))?;
+    arguments.scene_options.change(&mut imported.scene);
+    for warning in &imported.warnings {
+        warn(warning);
+    }
+    let stem = path.file_stem().unwrap_or_default().display().to_string();
+    let folder = match &arguments.output {
+        Some(folder) => folder.clone(),
+        None => PathBuf::from(format!("accuracy-{stem}")),
+    };
+    std::fs::create_dir_all(folder.join("pictures"))
+        .map_err(|error| Failure::writing(&folder, &error))?;
+    let stated = imported.scene.render;
+    let size = arguments
+        .size
+        .unwrap_or_else(|| smaller([stated.width, stated.height]));
+    let failed = |error: MeasureError| Failure::in_file(path, error);
+    let mut bench = Bench::new(&imported.scene, arguments.accel, size);
+    let settings = sweep(bench.base(), bench.is_secondary().map_err(failed)?);
+    let key = format!(
+        "gridel {} scene {:08x} size {size:?} structure {} reference {}",
+        env!("CARGO_PKG_VERSION"),
+        bench.checksum().map_err(failed)?,
+        arguments.accel.name(),
+        arguments.reference_samples
+    );
+    let results = measure(arguments, &mut bench, &folder, key, &settings)?;
+    let exhibits = exhibits(&folder, size, &results)?;
+    let page = page(&stem, size, &results, &exhibits)
+        .map_err(|error| Failure::failed(error.to_string(), "report this as a fault of gridel"))?;
+    write_file(&folder.join("page.html"), |out| {
+        out.write_all(page.as_bytes())
+    })?;
+    let csv = csv(&results.points);
+    write_file(&folder.join("results.csv"), |out| {
+        out.write_all(csv.as_bytes())
+    })?;
+
+    let choice = choice(arguments, &stem, &results)?;
+    if arguments.json {
+        return print_json(&Told {
+            folder: folder.display().to_string(),
+            size,
+            points: &results.points,
+            frontier: frontier(&results.points),
+            sentences: sentences(&results.base, &results.points),
+            cheapest: choice,
+        });
+    }
+    print(text(&folder, size, &results, choice.as_ref()))
+}
+
+/// A picture's size, made smaller.
+fn smaller(sides: [u32; 2]) -> [u16; 2] {
+    const MOST: u32 = 128;
+    let longest = sides[0].max(sides[1]).max(1);
+    sides.map(|side| {
+        let side = if longest > MOST {
+            (side * MOST).div_ceil(longest)
+        } else {
+            side
+        };
+        side.clamp(1, MOST) as u16
+    })
+}
+
+/// Measures what is not measured yet, and writes down every step.
+fn measure(
+    arguments: &Arguments,
+    bench: &mut Bench<'_>,
+    folder: &Path,
+    key: String,
+    settings: &[Setting],
+) -> Result<Results, Failure> {
+    let failed = |error: MeasureError| Failure::in_file(&arguments.scene, error);
+    let file = folder.join("results.json");
+    let repeats = usize::from(arguments.repeat);
+    let progress = Progress::steps("measuring", (settings.len() * (repeats + 1)) as u64 + 1);
+    let kept = std::fs::read(&file)
+        .ok()
+        .and_then(|bytes| serde_json::from_slice::<Results>(&bytes).ok())
+        .filter(|results| results.key == key);
+    let mut results = match kept {
+        Some(results) => results,
+        None => Results {
+            key,
+            base: bench.base(),
+            reference: bench
+                .reference(arguments.reference_samples)
+                .map_err(failed)?,
+            points: Vec::new(),
+        },
+    };
+    progress.step();
+    let write = |results: &Results| {
+        let text = serde_json::to_vec(results).map_err(io::Error::other);
+        write_file(&file, |out| text.and_then(|text| out.write_all(&text)))
+    };
+    write(&results)?;
+    // One thread, so that times tell of the work and not of the machine's other work.
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build()
+        .map_err(|error| Failure::failed(error.to_string(), "end other programs"))?;
+    for setting in settings {
+        if results.point(setting).is_none() {
+            let (point, pixels) = bench.measure(setting, &results.reference).map_err(failed)?;
+            let difference = difference_picture(&results.reference, &pixels);
+            let name = setting.name();
+            write_picture(folder, bench.size, &name, &encoded(&pixels))?;
+            write_picture(
+                folder,
+                bench.size,
+                &format!("{name}-difference"),
+                &difference,
+            )?;
+            results.points.push(point);
+            write(&results)?;
+        }
+        progress.step();
+    }
+    for repeat in 0..repeats {
+        for setting in settings {
+            let missing = |point: &&mut Point| point.cost.seconds.len() <= repeat;
+            if results.point(setting).filter(missing).is_some() {
+                let seconds = pool.install(|| bench.time(setting)).map_err(failed)?;
+                if let Some(point) = results.point(setting) {
+                    point.cost.seconds.push(seconds);
+                }
+                write(&results)?;
+            }
+            progress.step();
+        }
+    }
+    Ok(results)
+}
+
+fn encoded(pixels: &[[u16; 3]]) -> Vec<u8> {
+    let pixels = pixels
+        .iter()
+        .flat_map(|&linear| Rgb888::encode(linear, None).0);
+    pixels.collect()
+}
+
+fn write_picture(folder: &Path, size: [u16; 2], name: &str, pixels: &[u8]) -> Result<(), Failure> {
+    let path = folder
+        .join("pictures")
+        .join(name)
+        .with_added_extension("png");
+    write_file(&path, |out| {
+        write_png(out, size.map(u32::from), pixels, None)
+    })
+}
+
+/// The reference, and the pictures of levers that were turned alone.
+fn exhibits(folder: &Path, size: [u16; 2], results: &Results) -> Result<Vec<Exhibit>, Failure> {
+    let read = |name: &str| -> Result<Vec<u8>, Failure> {
+        let path = folder
+            .join("pictures")
+            .join(name)
+            .with_added_extension("png");
+        let pixels = || -> io::Result<Vec<u8>> {
+            let file = io::BufReader::new(std::fs::File::open(&path)?);
+            let mut reader = png::Decoder::new(file).read_info()?;
+            let mut pixels = vec![0; 3 * usize::from(size[0]) * usize::from(size[1])];
+            reader.next_frame(&mut pixels)?;
+            Ok(pixels)
+        };
+        pixels().map_err(|error| Failure::reading(&path, &error))
+    };
+    let mut exhibits = vec![Exhibit {
+        name: String::from("the reference"),
+        picture: encoded(&results.reference.pixels),
+        difference: Vec::new(),
+    }];
+    for (number, point) in results.points.iter().enumerate() {
+        if point.setting.differs(&results.base).len() <= 1 {
+            exhibits.push(Exhibit {
+                name: format!("{} {}", number + 1, point.name),
+                picture: read(&point.name)?,
+                difference: read(&format!("{}-difference", point.name))?,
+            });
+        }
+    }
+    Ok(exhibits)
+}
+
+/// The cheapest setting within the bound, as options.
+fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Result<Option<Choice>, Failure> {
+    let Some(most) = arguments.max_error else {
+        return Ok(None);
+    };
+    let Some(point) = cheapest(&results.points, most, arguments.board.as_deref()) else {
+        let best = results.points.iter().map(|point| point.errors.rmse);
+        return Err(Failure::failed(
+            format!(
+                "no setting keeps within an RMSE of {most}; the least is {}",
+                significant(best.fold(f64::INFINITY, f64::min))
+            ),
+            "ask for less, or give the scene file more samples and depth",
+        ));
+    };
+    let setting = &point.setting;
+    let cutoff = if setting.cutoff == results.base.cutoff {
+        String::new()
+    } else {
+        format!(" --cutoff {}", setting.cutoff)
+    };
+    Ok(Some(Choice {
+        name: point.name.clone(),
+        rmse: point.errors.rmse,
+        build: format!(
+            "gridel build {} -o {stem}.gridel --accel {} --lattice-bits {}{cutoff}",
+            arguments.scene.display(),
+            arguments.accel.name(),
+            setting.lattice_bits
+        ),
+        render: format!(
+            "gridel render {stem}.gridel -o {stem}.png --format {} --samples {} --depth {}",
+            setting.format.name(),
+            setting.samples,
+            setting.depth
+        ),
+    }))
+}
+
+fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Choice>) -> String {
+    let best = frontier(&results.points);
+    let mut table = Table::new([
+        ("", Align::Left),
+        ("setting", Align::Left),
+        ("ms", Align::Right),
+        ("spread", Align::Right),
+        ("RMSE", Align::Right),
+        ("largest", Align::Right),
+        ("pixels off", Align::Right),
+        ("SSIM", Align::Right),
+        ("FLIP", Align::Right),
+        ("other objects", Align::Right),
+        ("t", Align::Right),
+        ("rays a pixel", Align::Right),
+        ("tests a ray", Align::Right),
+        ("blob", Align::Right),
+        ("RAM", Align::Right),
+    ]);
+    for (point, best) in results.points.iter().zip(best) {
+        let (errors, cost) = (&point.errors, &point.cost);
+        table.row([
+            String::from(if best { "*" } else { "" }),
+            point.name.clone(),
+            format!("{:.2}", 1e3 * cost.time()),
+            format!("{:.0} %", 100.0 * cost.spread()),
+            format!("{:.5}", errors.rmse),
+            format!("{:.4}", errors.largest),
+            grouped(errors.pixels_off),
+            format!("{:.4}", errors.ssim),
+            format!("{:.4}", errors.flip),
+            grouped(errors.other_objects),
+            format!("{:.1}, {:.0}", errors.t_ulps[0], errors.t_ulps[1]),
+            format!("{:.2}", cost.rays as f64 / cost.pixels.max(1) as f64),
+            format!("{:.1}", cost.tests as f64 / cost.rays.max(1) as f64),
+            grouped(cost.blob_bytes),
+            grouped(cost.working_bytes),
+        ]);
+    }
+    let mut text = format!(
+        "{}, {} x {} pixels; * nothing is as fast and as right\n{table}\n",
+        counted(results.points.len(), "setting"),
+        size[0],
+        size[1]
+    );
+    // Writing to a string cannot fail.
+    for sentence in sentences(&results.base, &results.points) {
+        let _ = writeln!(text, "{sentence}");
+    }
+    let _ = writeln!(
+        text,
+        "\n{}: plots and pictures",
+        folder.join("page.html").display()
+    );
+    if let Some(choice) = choice {
+        let _ = writeln!(
+            text,
+            "\nThe cheapest within the bound is {}, with an RMSE of {}:\n  {}\n  {}",
+            choice.name,
+            significant(choice.rmse),
+            choice.build,
+            choice.render
+        );
+    }
+    text
+}
+
+fn csv(points: &[Point]) -> String {
+    let mut csv = String::from(
+        "name,format,lattice_bits,samples,depth,cutoff,rmse,largest,pixels_off,ssim,flip,\
+         other_objects,t_ulps_median,t_ulps_largest,seconds,spread,rays,tests,pixels,blob_bytes,\
+         working_bytes",
+    );
+    for board in boards::names() {
+        let _ = write!(csv, ",{board}_least,{board}_most");
+    }
+    csv.push('\n');
+    for point in points {
+        let Point {
+            name,
+            setting,
+            errors,
+            cost,
+        } = point;
+        let _ = write!(
+            csv,
+            "{name},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
+            setting.format.name(),
+            setting.lattice_bits,
+            setting.samples,
+            setting.depth,
+            setting.cutoff,
+            errors.rmse,
+            errors.largest,
+            errors.pixels_off,
+            errors.ssim,
+            errors.flip,
+            errors.other_objects,
+            errors.t_ulps[0],
+            errors.t_ulps[1],
+            cost.time(),
+            cost.spread(),
+            cost.rays,
+            cost.tests,
+            cost.pixels,
+            cost.blob_bytes,
+            cost.working_bytes
+        );
+        for board in boards::names() {
+            match boards::instructions(board, point) {
+                Some([least, most]) => {
+                    let _ = write!(csv, ",{least:.0},{most:.0}");
+                }
+                None => csv.push_str(",,"),
+            }
+        }
+        csv.push('\n');
+    }
+    csv
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_are_made_smaller_and_never_larger() {
+        assert_eq!(smaller([400, 300]), [128, 96]);
+        assert_eq!(smaller([64, 20]), [64, 20]);
+        assert_eq!(smaller([60_000, 1]), [128, 1]);
+    }
+}
