@@ -1,7 +1,7 @@
 //! No ray slips through a closed mesh: aimed at vertices, at edges, and along the lattice.
 
 use glam::DVec3;
-use gridel_core::{Bvh, Flagged, Format, Kind, NoCount, Number, Scene, Structure};
+use gridel_core::{Bvh, Flagged, Format, Hit, Kind, NoCount, Number, Scene, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::scene::Shape;
 use gridel_tests::effort::part_of;
@@ -85,16 +85,22 @@ fn leaks<N: Number>(
         let Some(hit) = through::<N>(structure, scene, &ray).0 else {
             return (rays + 1, leaks + 1);
         };
-        // At an edge two triangles are met at one place, which is known to within the error bound.
-        let cosine: f64 = (0..3)
-            .map(|k| hit.normal[k].ratio_to_f64() * ray.slope()[k].ratio_to_f64())
-            .sum();
+        // At an edge two triangles are met at one place, each known to within its error bound, which
+        // a flat angle makes longer along the ray.
+        let blur = |hit: &Hit<N>| {
+            let cosine: f64 = (0..3)
+                .map(|k| hit.normal[k].ratio_to_f64() * ray.slope()[k].ratio_to_f64())
+                .sum();
+            hit.error.length_to_f64() / cosine.abs()
+        };
+        let t = N::far_to_f64(hit.t);
         let behind = UnitRay {
-            tmin: N::far_to_f64(hit.t) + 4.0 * hit.error.length_to_f64() / cosine.abs(),
+            tmin: t + blur(&hit),
             ..UnitRay::new(from, direction)
         };
         let again = behind.ready::<N>(scene).expect("a ray");
-        let twice = through::<N>(structure, scene, &again).0.is_some();
+        let again = through::<N>(structure, scene, &again).0;
+        let twice = again.is_some_and(|next| N::far_to_f64(next.t) - t > blur(&hit) + blur(&next));
         (rays + 1, leaks + usize::from(twice))
     })
 }
