@@ -18,7 +18,8 @@ impl Disc {
         let t = cross_plane(ray, self.normal(), relative)?;
         // A ray passes through the scene within 2^16 units; more would leave the range of `fixed`
         // below, where the point may be as far again from the centre.
-        if !(t.abs() <= N::FAR.half()) {
+        let within_scene = t.abs() <= N::FAR.half();
+        if !within_scene {
             return None;
         }
         let radius = N::from_lattice(self.radius);
