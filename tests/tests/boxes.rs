@@ -31,8 +31,11 @@ struct Case {
 /// Beyond every scene, in 2^-8 units.
 const ENDLESS: i64 = 1 << 26;
 
-/// Sorts of rays, in turn, with the hard cases that they are.
-const SORTS: [(&str, fn(&mut Random) -> Case); 9] = [
+/// A name, and what makes cases.
+type Sort = (&'static str, fn(&mut Random) -> Case);
+
+/// Sorts of rays, with the hard cases that they are.
+const SORTS: [Sort; 9] = [
     ("A1 in a face", |random| in_planes(random, 1)),
     ("A1 along an edge", |random| in_planes(random, 2)),
     ("A4 directions below every normal number", |random| {
@@ -140,10 +143,10 @@ fn aimed(random: &mut Random, mut case: Case) -> Case {
     let target = place_in(random, &case.bounds);
     // Back by a whole number of steps along the slope's 23 bits, so that the origin is exact.
     let back = i64::from(random.within(0, 2)) << 23;
-    for axis in 0..3 {
+    case.origin = [0, 1, 2].map(|axis| {
         let steps = (case.slope[axis] >> (SLOPE_BITS - 23)) as i64;
-        case.origin[axis] = target[axis] - ((steps * back) >> 23);
-    }
+        target[axis] - ((steps * back) >> 23)
+    });
     case
 }
 

@@ -32,14 +32,11 @@ fn faces_edges_and_corners_belong_to_the_box() {
                 let rays = (0..30).map(|_| {
                     let axis = random.below(3);
                     let sign = if random.one_in(2) { 1.0 } else { -1.0 };
-                    let mut origin = low;
-                    for k in 0..3 {
-                        origin[k] = match random.below(3) {
-                            0 => low[k],
-                            1 => high[k],
-                            _ => lattice(low[k] + random.unit() * size[k]),
-                        };
-                    }
+                    let mut origin = DVec3::from_array([0, 1, 2].map(|k| match random.below(3) {
+                        0 => low[k],
+                        1 => high[k],
+                        _ => lattice(low[k] + random.unit() * size[k]),
+                    }));
                     origin[axis] -= sign * (size[axis] + lattice(random.unit() * 9000.0));
                     let mut way = [0.0 * -sign; 3];
                     way[axis] = sign;
