@@ -10,7 +10,9 @@ use crate::number::Number;
 use crate::ray::Ray;
 use crate::shape::sphere;
 use crate::shape::triangle::{self, Projection};
-use crate::shape::{Crossing, Kind, Part, Spheres, Triangles, Vertices, accept, extent};
+use crate::shape::{
+    Crossing, Kind, Part, Spheres, Triangles, Vertices, WIDE_INDICES, WIDE_LATTICE, accept, extent,
+};
 
 /// What a ray met.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,10 +127,14 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         let (first, end) = (leaf.first as usize, (leaf.first + leaf.count) as usize);
         let shapes = &self.scene.shapes;
         match leaf.kind {
+            // Code that was left out, and that no blob here leads to.
+            kind if !kind.is_available() => (),
             Kind::Triangle => match (shapes.vertices, shapes.triangles) {
                 (Vertices::V16(v), Triangles::U16(t)) => {
                     self.triangles(v, t.get(first..end), leaf, count)
                 }
+                (_, Triangles::U32(_)) if !WIDE_INDICES => (),
+                (Vertices::V24(_), _) if !WIDE_LATTICE => (),
                 (Vertices::V16(v), Triangles::U32(t)) => {
                     self.triangles(v, t.get(first..end), leaf, count)
                 }
@@ -141,6 +147,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             },
             Kind::Sphere => match shapes.spheres {
                 Spheres::S16(spheres) => self.spheres(spheres.get(first..end), leaf, count),
+                Spheres::S24(_) if !WIDE_LATTICE => (),
                 Spheres::S24(spheres) => self.spheres(spheres.get(first..end), leaf, count),
             },
             Kind::Box => self.solids(

@@ -7,6 +7,8 @@
 //! | compile a scene into a blob | [`compile`] |
 //! | hold a blob and check it | [`blob`] |
 //! | hold scenes to recorded pictures and to budgets | [`check`] |
+//! | know the boards that blobs are for | [`board`] |
+//! | write a blob as a Rust module | [`emit`] |
 //! | render a blob on all cores | [`render`], then [`picture`] to encode what comes out |
 //! | compare structures on a scene | [`compare`] |
 //! | trace rays of one's own | [`trace`], and [`npy`] for NumPy's files |
@@ -19,9 +21,11 @@
 //! The program `gridel` is a thin layer over this library: what it does can be done from here.
 pub mod accuracy;
 pub mod blob;
+pub mod board;
 pub mod check;
 pub mod compare;
 pub mod compile;
+pub mod emit;
 pub mod explain;
 pub mod npy;
 pub mod output;

@@ -1,4 +1,5 @@
-//! Puts the blob that `GRIDEL_BLOB` names into flash, and what it needs into constants.
+//! Puts the blob that `GRIDEL_BLOB` names into flash, what it needs into constants, and the memory
+//! of the board that `GRIDEL_BOARD` names before the linker.
 
 use gridel_core::Scene;
 use gridel_core::render::work_depth;
@@ -36,11 +37,22 @@ fn main() {
     fs::write(out.join("limits.rs"), constants).expect("OUT_DIR can be written to");
     fs::write(out.join("scene.gridel"), &bytes).expect("OUT_DIR can be written to");
 
-    let memory = "src/board/mps2.x";
+    let target = env::var("TARGET").expect("cargo sets TARGET");
+    println!("cargo::rerun-if-env-changed=GRIDEL_BOARD");
+    if target.starts_with("wasm32") {
+        println!("cargo::rustc-link-arg-bins=--export=start");
+        return;
+    }
+    let board = env::var("GRIDEL_BOARD")
+        .expect("set GRIDEL_BOARD to the name of a file in src/board/memory, without `.x`");
+    let memory = format!("src/board/memory/{board}.x");
     println!("cargo::rerun-if-changed={memory}");
-    fs::copy(memory, out.join("memory.x")).expect("OUT_DIR can be written to");
+    fs::copy(&memory, out.join("memory.x")).unwrap_or_else(|error| panic!("{memory}: {error}"));
     println!("cargo::rustc-link-search={}", out.display());
     // Here rather than in Cargo's configuration, which RUSTFLAGS would override.
+    if target.starts_with("riscv") {
+        println!("cargo::rustc-link-arg-bins=-Tmemory.x");
+    }
     println!("cargo::rustc-link-arg-bins=-Tlink.x");
     println!("cargo::rustc-link-arg-bins=--nmagic");
 }

@@ -2,6 +2,7 @@
 
 use gridel_core::Structure;
 use gridel_host::compile::{Options, compile};
+use gridel_host::report::grouped;
 use gridel_tests::bounds::{CROSSING, NORMAL, markdown};
 use gridel_tests::scenes;
 use std::fs;
@@ -113,4 +114,59 @@ fn every_hard_case_has_its_test() {
         tests += 1;
     }
     assert!(tests > 60, "{tests}");
+}
+
+/// What each shape and effect takes, as the board tests recorded it. `GRIDEL_BLESS=1` writes it anew.
+#[test]
+fn the_readme_shows_what_parts_cost() {
+    let recorded = text("fixtures/recorded/board.json");
+    let recorded: serde_json::Value = serde_json::from_str(&recorded).expect("a table");
+    let figure = |part: &str, figure: &str| {
+        let build = format!("{part} stm32vldiscovery fixed dual-split");
+        recorded[&build][figure]
+            .as_i64()
+            .expect("a recorded figure")
+    };
+    let parts = [
+        ("base", ""),
+        ("sphere", "base"),
+        ("box", "base"),
+        ("disc", "base"),
+        ("cone", "base"),
+        ("shadow", "base"),
+        ("highlight", "base"),
+        ("mirror", "base"),
+        ("glass", "base"),
+        ("absorption", "glass"),
+        ("checker", "base"),
+    ];
+    let mut table = String::from(
+        "| | code, bytes | call stack, bytes | instructions of the picture |\n|---|---|---|---|\n",
+    );
+    for (part, without) in parts {
+        let cell = |name: &str| match without {
+            "" => grouped(figure(part, name)),
+            _ => {
+                let more = figure(part, name) - figure(without, name);
+                let sign = if more < 0 { '-' } else { '+' };
+                format!("{sign}{}", grouped(more.unsigned_abs()))
+            }
+        };
+        let name = match part {
+            "base" => "triangles in diffuse light",
+            _ => part,
+        };
+        let [code, stack, work] =
+            ["code-bytes", "call-stack-bytes", "picture-instructions"].map(cell);
+        table += &format!("| {name} | {code} | {stack} | {work} |\n");
+    }
+    let readme = text("README.md");
+    let (before, rest) = readme.split_once("<!-- parts -->\n").expect("a mark");
+    let (shown, after) = rest.split_once("<!-- end -->").expect("its end");
+    if std::env::var_os("GRIDEL_BLESS").is_some_and(|value| value == "1") {
+        let new = format!("{before}<!-- parts -->\n{table}<!-- end -->{after}");
+        fs::write(repository().join("README.md"), new).expect("README.md can be written to");
+        return;
+    }
+    assert_eq!(shown, table, "GRIDEL_BLESS=1 writes the table anew");
 }

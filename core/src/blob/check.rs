@@ -10,7 +10,7 @@ use crate::accel::{Entry, Held, Leaf, MAX_STACK_DEPTH, Structure};
 use crate::number::{Fixed, Number};
 use crate::render::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use crate::shade::Effects;
-use crate::shape::{Kind, Shapes, Spheres, Triangles, Vertices};
+use crate::shape::{Kind, Shapes, Spheres, Triangles, Vertices, WIDE_INDICES, WIDE_LATTICE};
 use core::mem::size_of;
 
 /// Checks a blob; see [`Scene::from_bytes`].
@@ -33,7 +33,7 @@ pub(super) fn check(blob: &[u8]) -> Result<Scene<'_>, BlobError> {
         shapes,
         leaves: sections.records(SectionKind::Leaves)?,
         held: Held::read(&sections)?,
-        needs_norm: shapes.spheres.len() + shapes.cones.len() > 0,
+        needs_norm: shapes.count(Kind::Sphere) + shapes.count(Kind::Cone) > 0,
     };
     check_objects(&scene)?;
     check_structures(&scene, &sections)?;
@@ -313,13 +313,31 @@ fn check_materials<'a>(
 fn read_shapes<'a>(sections: &Sections<'a>, header: &Header) -> Result<Shapes<'a>, BlobError> {
     let narrow = sections.get(SectionKind::Triangles).stride == size_of::<[u16; 3]>();
     let short = header.storage_bits == 16;
+    let triangles = sections.len(SectionKind::Triangles);
+    let kinds = [
+        (Kind::Triangle, triangles),
+        (Kind::Sphere, sections.len(SectionKind::Spheres)),
+        (Kind::Box, sections.len(SectionKind::Boxes)),
+        (Kind::Disc, sections.len(SectionKind::Discs)),
+        (Kind::Cone, sections.len(SectionKind::Cones)),
+    ];
+    let kinds = kinds.map(|(kind, count)| (count > 0 && !kind.is_available(), kind.name()));
+    let stored = [
+        (!short && !WIDE_LATTICE, "wide-lattice"),
+        (triangles > 0 && !narrow && !WIDE_INDICES, "wide-indices"),
+    ];
+    for (is_missing, missing) in kinds.into_iter().chain(stored) {
+        if is_missing {
+            return Err(BlobError::MissingShape { missing });
+        }
+    }
     Ok(Shapes {
         vertices: if short {
             Vertices::V16(sections.records(SectionKind::Vertices)?)
         } else {
             Vertices::V24(sections.records(SectionKind::Vertices)?)
         },
-        triangles: if narrow {
+        triangles: if narrow || triangles == 0 {
             Triangles::U16(sections.records(SectionKind::Triangles)?)
         } else {
             Triangles::U32(sections.records(SectionKind::Triangles)?)
@@ -357,7 +375,12 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
         |at: At, what, inner: &UnitBox| at.within(what, (!bounds.contains(inner)).into(), 0, 0);
     let radius = i64::from(i16::MAX) << 9;
 
-    for index in 0..shapes.vertices.len() {
+    let vertices = if Kind::Triangle.is_available() {
+        shapes.vertices.len()
+    } else {
+        0
+    };
+    for index in 0..vertices {
         let at = At {
             section: SectionKind::Vertices,
             index,
@@ -368,8 +391,7 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
             shapes.vertices.position(index).unwrap_or_default(),
         )?;
     }
-    let vertices = shapes.vertices.len() as i64;
-    for index in 0..shapes.triangles.len() {
+    for index in 0..shapes.count(Kind::Triangle) {
         let at = At {
             section: SectionKind::Triangles,
             index,
@@ -379,10 +401,10 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
             "vertex",
             &corners.map(|corner| corner as i64),
             0,
-            vertices - 1,
+            vertices as i64 - 1,
         )?;
     }
-    for index in 0..shapes.spheres.len() {
+    for index in 0..shapes.count(Kind::Sphere) {
         let at = At {
             section: SectionKind::Spheres,
             index,
@@ -392,7 +414,8 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
         point(at, "lowest coordinate", center.map(|x| x - length))?;
         point(at, "highest coordinate", center.map(|x| x + length))?;
     }
-    for (index, cuboid) in shapes.boxes.iter().enumerate() {
+    let boxes = shapes.boxes.iter().take(shapes.count(Kind::Box));
+    for (index, cuboid) in boxes.enumerate() {
         let at = At {
             section: SectionKind::Boxes,
             index,
@@ -406,7 +429,8 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
             .filter(|(low, high)| low > high);
         at.within("number of inverted sides", inverted.count() as i64, 0, 0)?;
     }
-    for (index, disc) in shapes.discs.iter().enumerate() {
+    let discs = shapes.discs.iter().take(shapes.count(Kind::Disc));
+    for (index, disc) in discs.enumerate() {
         let at = At {
             section: SectionKind::Discs,
             index,
@@ -422,7 +446,8 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
         at.within("radius", disc.radius.into(), 1, radius)?;
         inside(at, "number of boxes outside the scene's", &disc.bounds)?;
     }
-    for (index, cone) in shapes.cones.iter().enumerate() {
+    let cones = shapes.cones.iter().take(shapes.count(Kind::Cone));
+    for (index, cone) in cones.enumerate() {
         let at = At {
             section: SectionKind::Cones,
             index,

@@ -41,6 +41,12 @@ pub enum BlobError {
         /// The effects.
         missing: Effects,
     },
+    /// The scene holds primitives of a kind, or stored in a way, that this build was compiled
+    /// without.
+    MissingShape {
+        /// The Cargo feature that is missing.
+        missing: &'static str,
+    },
     /// A field of the header is out of its range.
     Header {
         /// The field.
@@ -132,6 +138,11 @@ impl fmt::Display for BlobError {
                 f,
                 "the scene calls for the effects {missing}, which this build was compiled without: \
                  enable the Cargo features of the same names in gridel-core"
+            ),
+            BlobError::MissingShape { missing } => write!(
+                f,
+                "the scene's primitives call for `{missing}`, which this build was compiled without: \
+                 enable the Cargo feature of the same name in gridel-core"
             ),
             BlobError::Header {
                 field,

@@ -50,8 +50,8 @@ impl<'a> Scene<'a> {
     /// Costs time linear in the blob's length and about 2 KiB of stack.
     ///
     /// # Errors
-    /// If anything of this fails to hold, or the scene calls for an effect that this build was
-    /// compiled without. Shortcomings of the scene itself (no lights, no objects) are no errors.
+    /// If anything of this fails to hold, or the scene calls for an effect, or holds a kind of
+    /// primitive, that this build was compiled without. Shortcomings of the scene itself (no lights, no objects) are no errors.
     pub fn from_bytes(blob: &'a [u8]) -> Result<Self, BlobError> {
         check::check(blob)
     }
@@ -99,6 +99,11 @@ impl<'a> Scene<'a> {
     /// Number of primitives of a kind.
     pub fn count(&self, kind: Kind) -> usize {
         self.shapes.count(kind)
+    }
+
+    /// Number of vertices of all meshes.
+    pub fn vertices(&self) -> usize {
+        self.shapes.vertices.len()
     }
 
     /// The box of a primitive, given by its kind and its slot among those of that kind.

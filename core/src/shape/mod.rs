@@ -7,8 +7,12 @@
 pub(crate) mod cone;
 pub(crate) mod cuboid;
 pub(crate) mod disc;
+mod kind;
 pub(crate) mod sphere;
 pub(crate) mod triangle;
+
+pub use kind::Kind;
+pub(crate) use kind::{WIDE_INDICES, WIDE_LATTICE};
 
 use crate::accel::Leaf;
 use crate::accel::cull::Culling;
@@ -17,57 +21,7 @@ use crate::blob::record::{Vertex, Vertex16, Vertex24};
 use crate::number::Number;
 use crate::ray::Ray;
 
-/// The kinds of primitives, in the order of their slots.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[repr(u32)]
-pub enum Kind {
-    /// A triangle of an indexed mesh.
-    Triangle,
-    /// A sphere.
-    Sphere,
-    /// An axis-aligned box.
-    Box,
-    /// A flat disc.
-    Disc,
-    /// A capped cylinder, cone or frustum.
-    Cone,
-}
-
-impl Kind {
-    /// All kinds, in order.
-    pub const ALL: [Kind; 5] = [
-        Kind::Triangle,
-        Kind::Sphere,
-        Kind::Box,
-        Kind::Disc,
-        Kind::Cone,
-    ];
-
-    #[inline(always)]
-    pub(crate) const fn from_number(number: u32) -> Option<Self> {
-        match number {
-            0 => Some(Kind::Triangle),
-            1 => Some(Kind::Sphere),
-            2 => Some(Kind::Box),
-            3 => Some(Kind::Disc),
-            4 => Some(Kind::Cone),
-            _ => None,
-        }
-    }
-
-    /// The name that tables use.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Kind::Triangle => "triangle",
-            Kind::Sphere => "sphere",
-            Kind::Box => "box",
-            Kind::Disc => "disc",
-            Kind::Cone => "cone",
-        }
-    }
-}
-
-/// The part of a primitive's surface that a crossing lies on; each kernel numbers its own, from 0.
+/// The part of a primitive's surface that a crossing lies on; each kernel numbers its own.
 pub(crate) type Part = u8;
 
 /// Added to the part where a ray leaves a solid.
@@ -191,6 +145,7 @@ impl Vertices<'_> {
     pub(crate) fn position(&self, index: usize) -> Option<[i32; 3]> {
         match self {
             Vertices::V16(vertices) => vertices.get(index).map(Vertex::position),
+            Vertices::V24(_) if !WIDE_LATTICE => None,
             Vertices::V24(vertices) => vertices.get(index).map(Vertex::position),
         }
     }
@@ -214,6 +169,7 @@ impl Triangles<'_> {
     pub(crate) fn corners(&self, index: usize) -> Option<[usize; 3]> {
         match self {
             Triangles::U16(triangles) => triangles.get(index).map(Corners::corners),
+            Triangles::U32(_) if !WIDE_INDICES => None,
             Triangles::U32(triangles) => triangles.get(index).map(Corners::corners),
         }
     }
@@ -237,6 +193,7 @@ impl Spheres<'_> {
     pub(crate) fn get(&self, index: usize) -> Option<([i32; 3], i32)> {
         match self {
             Spheres::S16(spheres) => spheres.get(index).map(Sphere::lattice),
+            Spheres::S24(_) if !WIDE_LATTICE => None,
             Spheres::S24(spheres) => spheres.get(index).map(Sphere::lattice),
         }
     }
@@ -257,6 +214,7 @@ impl Shapes<'_> {
     /// Number of primitives of a kind.
     pub(crate) fn count(&self, kind: Kind) -> usize {
         match kind {
+            _ if !kind.is_available() => 0,
             Kind::Triangle => self.triangles.len(),
             Kind::Sphere => self.spheres.len(),
             Kind::Box => self.boxes.len(),
@@ -286,6 +244,7 @@ impl Shapes<'_> {
     /// The box of a primitive.
     pub(crate) fn bounds(&self, kind: Kind, index: usize) -> Option<UnitBox> {
         Some(match kind {
+            _ if !kind.is_available() => return None,
             Kind::Triangle => triangle::bounds(self.triangle(index)?),
             Kind::Sphere => {
                 let (center, radius) = self.spheres.get(index)?;
@@ -319,6 +278,7 @@ impl Shapes<'_> {
         let leaves = part & LEAVING != 0;
         let part = part & !LEAVING;
         let surface = match kind {
+            _ if !kind.is_available() => return None,
             Kind::Triangle => triangle::surface(self.triangle(index)?),
             Kind::Sphere => {
                 let (center, radius) = self.spheres.get(index)?;

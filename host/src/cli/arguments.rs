@@ -3,9 +3,49 @@
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use gridel_core::{Format, Structure};
+use gridel_host::board::{BOARDS, Board};
+use gridel_host::report::Target;
 use gridel_host::scene::{MoleculeOptions, MoleculeStyle, Scene};
 use std::num::NonZeroUsize;
 use std::ops::Range;
+
+/// The memory that a scene is to fit into.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Options for boards")]
+pub struct TargetOptions {
+    /// The board; its code and call stack were measured [default: stm32vldiscovery, if memory is
+    /// given]
+    #[arg(long, value_name = "BOARD", value_parser = board())]
+    target: Option<&'static Board>,
+
+    /// Bytes of RAM; 8K is understood [default: the board's]
+    #[arg(long, value_name = "N", value_parser = bytes)]
+    ram: Option<u64>,
+
+    /// Bytes of flash; 128K is understood [default: the board's]
+    #[arg(long, value_name = "N", value_parser = bytes)]
+    flash: Option<u64>,
+}
+
+impl TargetOptions {
+    /// The memory, if any of it is given.
+    pub fn target(&self) -> Option<Target> {
+        if self.target.is_none() && self.ram.is_none() && self.flash.is_none() {
+            return None;
+        }
+        let board = self.target.unwrap_or(&BOARDS[0]);
+        Some(Target {
+            board,
+            flash: self.flash.unwrap_or(board.flash),
+            ram: self.ram.unwrap_or(board.ram),
+        })
+    }
+}
+
+fn board() -> impl TypedValueParser<Value = &'static Board> {
+    PossibleValuesParser::new(BOARDS.map(|board| board.name))
+        .try_map(|name| Board::named(&name).ok_or("no such board"))
+}
 
 /// How a scene file is read and compiled.
 #[derive(Args, Clone, Debug)]

@@ -1,14 +1,15 @@
 //! `gridel build`: a scene file becomes a blob.
 
-use super::arguments::{self, SceneOptions};
+use super::arguments::{self, SceneOptions, TargetOptions};
 use super::effects::CalledFor;
 use super::failure::Failure;
 use super::output::{print, print_json, refuse_same, write_file};
 use super::source::Source;
 use clap::Args;
-use gridel_core::{Scene, Structure};
+use gridel_core::{Format, Scene, Structure};
 use gridel_host::compile::{self, Report};
-use gridel_host::report::{Align, Table, grouped, power_of_two};
+use gridel_host::emit::{self, Emitted};
+use gridel_host::report::{Align, Ledger, Table, grouped, power_of_two};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -48,6 +49,17 @@ pub struct Arguments {
     /// Refuse to write a blob of more bytes, and say what to change; 64K and 1M are understood
     #[arg(long, value_name = "N", value_parser = arguments::bytes)]
     max_bytes: Option<u64>,
+
+    /// Write the scene as a Rust module, scene.rs and scene.gridel, into this folder as well
+    #[arg(long, value_name = "DIR")]
+    emit_rust: Option<PathBuf>,
+
+    /// Number format of the Rust module [default: the board's best, or fixed]
+    #[arg(long, value_parser = arguments::format(), requires = "emit_rust")]
+    format: Option<Format>,
+
+    #[command(flatten)]
+    target: TargetOptions,
 
     /// Print the report as JSON
     #[arg(long)]
@@ -92,7 +104,35 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let source = Source::compile(&arguments.scene, &arguments.scene_options, compiling)?;
     let scene = source.scene()?;
+    let target = arguments.target.target();
+    let ledger = target.map(|target| Ledger::of(&scene, source.blob.bytes(), &target));
+    if let Some(ledger) = &ledger
+        && let Some(shortage) = ledger.shortage()
+    {
+        return Err(Failure::refused(shortage, ledger.advice(&scene)));
+    }
     write_file(&arguments.output, |out| out.write_all(source.blob.bytes()))?;
+    if let Some(folder) = &arguments.emit_rust {
+        let room = ledger.as_ref().zip(target).map(|(ledger, target)| {
+            let code = ledger.flash.used() - source.blob.bytes().len() as u64;
+            (target.flash - code, target.board)
+        });
+        let emitted = Emitted {
+            scene: &scene,
+            structure: source.structure(&scene, None)?,
+            format: arguments
+                .format
+                .unwrap_or_else(|| target.map_or(Format::Fixed, |target| target.board.format())),
+            budget: room,
+        };
+        std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
+        let blob = source.blob.bytes();
+        write_file(&folder.join(emit::BLOB), |out| out.write_all(blob))?;
+        let text = emitted.module();
+        write_file(&folder.join(emit::MODULE), |out| {
+            out.write_all(text.as_bytes())
+        })?;
+    }
 
     let Some(report) = &source.report else {
         return Ok(());

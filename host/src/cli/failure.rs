@@ -46,6 +46,11 @@ impl Failure {
         Self::Usage(fault(cause, remedy))
     }
 
+    /// A budget that would be exceeded.
+    pub fn refused(cause: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self::Refused(fault(cause, remedy))
+    }
+
     /// A file that cannot be read.
     pub fn reading(path: &Path, error: &io::Error) -> Self {
         Self::failed(

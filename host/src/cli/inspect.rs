@@ -1,6 +1,6 @@
 //! `gridel inspect`: what is in a blob, and what it takes to work with it.
 
-use super::arguments::SceneOptions;
+use super::arguments::{SceneOptions, TargetOptions};
 use super::effects::CalledFor;
 use super::failure::Failure;
 use super::output::{print, print_json};
@@ -9,7 +9,7 @@ use clap::Args;
 use glam::DVec3;
 use gridel_core::{Kind, Scene, Structure};
 use gridel_host::report::{
-    Align, MemoryMap, Table, WorkingMemory, grouped, power_of_two, working_memory,
+    Account, Align, Ledger, MemoryMap, Table, WorkingMemory, grouped, power_of_two, working_memory,
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -27,6 +27,9 @@ pub struct Arguments {
     #[arg(value_name = "BLOB|SCENE")]
     input: PathBuf,
 
+    #[command(flatten)]
+    target: TargetOptions,
+
     /// Print everything as JSON
     #[arg(long)]
     json: bool,
@@ -42,6 +45,9 @@ struct Inspection {
     contents: Contents,
     working_memory: Vec<WorkingMemory>,
     effects: Vec<CalledFor>,
+    /// Where a board is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ledger: Option<Ledger>,
 }
 
 #[derive(Serialize)]
@@ -84,6 +90,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             Some(report) => CalledFor::in_report(report),
             None => CalledFor::in_blob(&scene),
         },
+        ledger: arguments
+            .target
+            .target()
+            .map(|target| Ledger::of(&scene, source.blob.bytes(), &target)),
     };
     if arguments.json {
         print_json(&inspection)
@@ -165,7 +175,7 @@ impl Inspection {
             "{map}\n{}\n{}",
             self.facts(),
             working_memory_table(&self.working_memory)
-        )
+        ) + &self.ledger.as_ref().map(ledger_table).unwrap_or_default()
     }
 
     fn facts(&self) -> Table {
@@ -221,6 +231,28 @@ impl Inspection {
         }
         table
     }
+}
+
+/// Flash and RAM on a board, and what remains of each.
+fn ledger_table(ledger: &Ledger) -> String {
+    let title = format!("{}, {}, {}", ledger.board, ledger.core, ledger.format);
+    let mut table = Table::new([(&title, Align::Left), ("bytes", Align::Right)]);
+    let mut account = |name: &str, account: &Account| {
+        for item in &account.items {
+            table.row([format!("{name}  {}", item.what), grouped(item.bytes)]);
+        }
+        table.row([format!("{name}  in all"), grouped(account.used())]);
+        let missing = account.missing();
+        table.row(if missing > 0 {
+            [format!("{name}  MISSING"), grouped(missing)]
+        } else {
+            let rest = account.available - account.used();
+            [format!("{name}  remains"), grouped(rest)]
+        });
+    };
+    account("flash", &ledger.flash);
+    account("RAM", &ledger.ram);
+    format!("\n{table}")
 }
 
 fn working_memory_table(needs: &[WorkingMemory]) -> Table {

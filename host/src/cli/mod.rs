@@ -59,7 +59,7 @@ Exit codes:
   0  done
   1  failed: an input is broken, a file cannot be read or written, or a check does not hold
   2  the command line is wrong, by itself or for this input
-  3  refused: the blob would be larger than --max-bytes
+  3  refused: the scene would not fit the memory that it is given
   130  interrupted; no output is left half written";
 
 /// Runs the program.

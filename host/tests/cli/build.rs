@@ -213,3 +213,62 @@ fn unwritable_places_are_errors_that_leave_nothing() {
         fails("full", &["full cannot be written"]);
     }
 }
+
+/// Code and stack of the boards were measured, so they can change: what is asked for here lies far
+/// from any border.
+#[test]
+fn a_scene_that_does_not_fit_a_board_is_refused_with_figures() {
+    let folder = Folder::new();
+    folder.write("quick.toml", &fixture("quick"));
+    let build = ["build", "quick.toml", "-o", "quick.gridel"];
+    let with = |options: &[&'static str]| [&build, options].concat();
+
+    let refused = |arguments: &[&str]| {
+        let run = folder.run(arguments);
+        assert_eq!(run.code, Some(3), "{arguments:?}: {}", run.stderr);
+        // Lines are broken where they are long.
+        run.stderr
+            .split_whitespace()
+            .filter(|&word| word != "│")
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
+    let text = refused(&with(&["--target", "stm32vldiscovery", "--ram", "1K"]));
+    assert!(
+        text.contains("bytes of RAM") && text.contains("more than the 1,024"),
+        "{text}"
+    );
+    assert!(
+        text.contains("a ray depth of 5 in place of 6 saves 40 bytes"),
+        "{text}"
+    );
+    let text = refused(&with(&["--flash", "8K"]));
+    assert!(
+        text.contains("bytes of flash") && text.contains("`--lattice-bits 16` saves"),
+        "{text}"
+    );
+    assert_eq!(folder.names(), ["quick.toml"]);
+    folder.done(&with(&["--target", "mps2-an386"]));
+}
+
+#[test]
+fn a_module_is_emitted_for_the_board() {
+    let folder = Folder::new();
+    folder.write("quick.toml", &fixture("quick"));
+    let emit = ["--emit-rust", "module", "--target", "mps2-an386"];
+    folder.done(&[&["build", "quick.toml", "-o", "quick.gridel"], &emit[..]].concat());
+    assert_eq!(
+        folder.read("module/scene.gridel"),
+        folder.read("quick.gridel")
+    );
+    let module = String::from_utf8(folder.read("module/scene.rs")).unwrap();
+    for line in [
+        "pub type Number = f32;",
+        "pub type Accel = gridel_core::Flagged;",
+        "\"flagged\", \"triangle\", \"sphere\", \"box\", \"disc\", \"cone\", \"wide-lattice\"",
+        "pub const WORK_DEPTH: usize = 7;",
+        "the blob outgrew the flash of mps2-an386",
+    ] {
+        assert!(module.contains(line), "{line}: {module}");
+    }
+}

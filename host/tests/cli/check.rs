@@ -138,7 +138,7 @@ machine = "mps2-an386"
 firmware = '{firmware}'
 program = "picture"
 target = "thumbv7em-none-eabihf"
-features = ["f32", "flagged"]
+features = ["f32", "flagged", "everything"]
 picture = "picture.rgb"
 budget = {{ picture-instructions = 40_000_000, load-instructions = 1 }}
 "#

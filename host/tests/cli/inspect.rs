@@ -150,3 +150,40 @@ fn broken_blobs_are_told() {
         &["absent.gridel cannot be read"],
     );
 }
+
+/// The items of the ledger add up, and the blob's are all of its bytes.
+#[test]
+fn the_ledger_of_a_board_adds_up() {
+    let folder = Folder::new();
+    folder.write("quick.toml", &fixture("quick"));
+    for target in ["stm32vldiscovery", "sifive_e"] {
+        let report = folder.json(&["inspect", "quick.toml", "--target", target]);
+        let items = report["ledger"]["flash"]["items"].as_array().unwrap();
+        let blob = items
+            .iter()
+            .filter(|item| item["what"].as_str().unwrap().starts_with("blob"));
+        let bytes: u64 = blob.map(|item| item["bytes"].as_u64().unwrap()).sum();
+        assert_eq!(report["memory_map"]["bytes"], bytes);
+        let code = items
+            .iter()
+            .filter(|item| item["what"].as_str().unwrap().starts_with("code"));
+        assert!(
+            code.map(|item| item["bytes"].as_u64().unwrap())
+                .sum::<u64>()
+                > 16 * 1024
+        );
+        let ram = report["ledger"]["ram"]["items"].as_array().unwrap();
+        let all: u64 = ram.iter().map(|item| item["bytes"].as_u64().unwrap()).sum();
+        let text = folder.done(&["inspect", "quick.toml", "--target", target]);
+        let (_, ram) = text.split_once("RAM  in all").unwrap();
+        let shown: String = ram
+            .lines()
+            .next()
+            .unwrap()
+            .chars()
+            .filter(char::is_ascii_digit)
+            .collect();
+        assert_eq!(shown, all.to_string());
+        assert!(text.contains("remains"), "{text}");
+    }
+}

@@ -2,29 +2,59 @@
 //!
 //! | program | what it does |
 //! |---|---|
-//! | `picture` | renders the scene's picture into a file of the host |
+//! | `picture` | renders the scene's picture into a file of the host, and counts what it and single rays cost |
 //! | `primary` | traces one ray a pixel and counts the hits |
+//! | `emitted` | renders from what `gridel build --emit-rust` wrote |
 //! | `selftest` | runs the core's own tests |
 //! | `bare` | renders and talks to nobody: what it links is what a product would flash |
 //! | `example` | the README's example |
 //!
-//! All but the last two run in QEMU and print what they measured, a line each: a name and a number.
-//! Blob, number format and structure are chosen when they are built:
+//! The first three run in QEMU, or in Node, and print what they measured, a line each: a name and
+//! a number. Blob, board, number format and structure are chosen when they are built:
 //!
 //! ```text
-//! GRIDEL_BLOB=/path/to/scene.gridel cargo run --release --target thumbv7em-none-eabihf \
-//!     --features f32,dual-split --bin picture
+//! GRIDEL_BLOB=/path/to/scene.gridel GRIDEL_BOARD=mps2-an386 cargo run --release \
+//!     --target thumbv7em-none-eabihf --features f32,dual-split --bin picture
 //! ```
 #![no_std]
 
 pub mod board;
 pub mod measure;
+pub mod rays;
+pub mod report;
 pub mod scene;
 
-use core::panic::PanicInfo;
+#[cfg(target_arch = "arm")]
+pub use cortex_m_rt as rt;
+#[cfg(target_arch = "riscv32")]
+pub use riscv_rt as rt;
 
-/// Ends the program with a message and a failure; for the programs' panic handlers.
-pub fn give_up(info: &PanicInfo<'_>) -> ! {
-    semihosting::eprintln!("{info}");
-    semihosting::process::exit(101)
+/// Makes a function the whole program: it is given the program's memory, which lies beside the
+/// stack, so that the linker knows of it.
+#[macro_export]
+macro_rules! program {
+    ($run:path, $memory:ty) => {
+        static mut MEMORY: $memory = <$memory>::new();
+
+        #[cfg(not(target_arch = "wasm32"))]
+        #[$crate::rt::entry]
+        fn main() -> ! {
+            // SAFETY: nothing runs before `main`, and it runs once.
+            $run(unsafe { &mut *&raw mut MEMORY });
+            $crate::board::exit(0)
+        }
+
+        #[cfg(target_arch = "wasm32")]
+        #[unsafe(no_mangle)]
+        extern "C" fn start() {
+            // SAFETY: the host calls this, once.
+            $run(unsafe { &mut *&raw mut MEMORY });
+        }
+
+        // Nothing panics: the tests look for what a panic would need.
+        #[panic_handler]
+        fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+            $crate::board::exit(101)
+        }
+    };
 }

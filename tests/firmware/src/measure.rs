@@ -1,44 +1,76 @@
 //! What a phase costs: instructions, and the depth of the stack.
 
-use crate::board::Counter;
-use core::hint::black_box;
-use core::ptr;
+use crate::board::{Counter, Paint};
 
-/// What a phase took.
-#[derive(Clone, Copy, Debug, Default)]
+/// What a phase took; `None` where the board cannot tell.
+#[derive(Clone, Copy, Debug)]
 pub struct Cost {
     /// Instructions.
-    pub instructions: u64,
+    pub instructions: Option<u64>,
     /// Bytes of stack in use at its deepest, its callers' included.
-    pub stack: usize,
+    pub stack: Option<usize>,
 }
 
 impl Cost {
+    /// The cost of nothing.
+    pub const NONE: Self = Self {
+        instructions: Some(0),
+        stack: Some(0),
+    };
+
+    /// Each one's share of the instructions.
+    pub fn each(self, number: u32) -> Self {
+        let share = |all: u64| all.checked_div(number.into()).unwrap_or(0);
+        Self {
+            instructions: self.instructions.map(share),
+            ..self
+        }
+    }
+
+    /// What this takes more instructions than another.
+    pub fn beyond(self, other: Self) -> Self {
+        let instructions = self.instructions.zip(other.instructions);
+        Self {
+            instructions: instructions.map(|(all, part)| all.saturating_sub(part)),
+            ..self
+        }
+    }
+
     /// The cost of one phase after the other.
     pub fn then(self, next: Self) -> Self {
+        let instructions = self.instructions.zip(next.instructions);
         Self {
-            instructions: self.instructions + next.instructions,
-            stack: self.stack.max(next.stack),
+            instructions: instructions.map(|(first, second)| first.wrapping_add(second)),
+            stack: self
+                .stack
+                .zip(next.stack)
+                .map(|(first, second)| first.max(second)),
         }
     }
 }
 
-/// Measures phases. Nothing may be printed inside one: that costs by the number of digits.
-#[derive(Default)]
+/// Measures phases. Nothing may be printed inside one.
 pub struct Meter {
     counter: Counter,
 }
 
 impl Meter {
+    /// Starts to measure.
+    #[expect(clippy::new_without_default, reason = "it starts a timer")]
+    pub fn new() -> Self {
+        Self {
+            counter: Counter::new(),
+        }
+    }
+
     /// Runs a phase. It hands its results over by writing to variables of the caller's: moving
     /// them through here would cost stack that no product pays.
     pub fn run(&self, phase: impl FnOnce()) -> Cost {
-        let painted = paint();
+        let paint = Paint::new();
         let instructions = self.counter.instructions(|| apart(phase));
-        let stack = stack_start() - deepest(painted);
         Cost {
             instructions,
-            stack,
+            stack: paint.deepest(),
         }
     }
 }
@@ -47,43 +79,4 @@ impl Meter {
 #[inline(never)]
 fn apart(phase: impl FnOnce()) {
     phase();
-}
-
-const PAINT: u32 = 0x5ac3_a53c;
-/// Bytes that are painted: more than any phase may use.
-const REACH: usize = 32 * 1024;
-
-unsafe extern "C" {
-    /// Where the stack begins; from the linker script of cortex-m-rt.
-    static _stack_start: u32;
-}
-
-fn stack_start() -> usize {
-    &raw const _stack_start as usize
-}
-
-/// Paints the memory below the stack pointer and returns where the paint ends.
-#[inline(never)]
-fn paint() -> usize {
-    let here = 0_u32;
-    // This frame is no larger than what is left out; a phase's own frames begin above.
-    let top = (black_box(&raw const here) as usize - 64) & !3;
-    for word in (top - REACH..top).step_by(4) {
-        // SAFETY: memory below the stack pointer, which nothing uses.
-        unsafe { ptr::write_volatile(word as *mut u32, PAINT) };
-    }
-    top
-}
-
-/// The lowest word that was written to since it was painted.
-#[inline(never)]
-fn deepest(top: usize) -> usize {
-    let bottom = top - REACH;
-    let deepest = (bottom..top)
-        .step_by(4)
-        // SAFETY: as above.
-        .find(|&word| unsafe { ptr::read_volatile(word as *const u32) } != PAINT)
-        .unwrap_or(top);
-    assert!(deepest > bottom, "the stack grew beyond the paint");
-    deepest
 }

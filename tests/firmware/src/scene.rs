@@ -9,6 +9,8 @@ pub static BLOB: &[u8] = gridel_core::include_blob!(concat!(env!("OUT_DIR"), "/s
 
 #[cfg(feature = "f32")]
 pub type Number = f32;
+#[cfg(feature = "f64")]
+pub type Number = f64;
 #[cfg(feature = "fixed")]
 pub type Number = gridel_core::Fixed;
 

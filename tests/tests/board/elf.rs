@@ -1,46 +1,70 @@
 //! What a program holds.
 
-use object::{File, Object, ObjectSegment, ObjectSymbol, SymbolKind};
-use std::path::Path;
+use crate::stack::{CallGraph, Path};
+use object::{File, Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionKind, SymbolKind};
+use std::collections::BTreeSet;
 
-/// A linked program: its functions, and what it takes in flash.
+/// A linked program: its functions, and what it takes in flash and RAM.
 pub struct Elf {
-    functions: Vec<String>,
-    flash_bytes: u64,
+    data: Vec<u8>,
 }
 
 impl Elf {
     /// Reads an ELF.
-    pub fn read(path: impl AsRef<Path>) -> Self {
-        let data = std::fs::read(path).expect("the program was built");
-        let file = File::parse(&data[..]).expect("a linker writes a valid ELF");
-        let functions = file
-            .symbols()
-            .filter(|symbol| symbol.kind() == SymbolKind::Text && symbol.is_definition())
-            .filter_map(|symbol| symbol.name().ok().map(String::from))
-            .collect();
-        let flash_bytes = file.segments().map(|segment| segment.file_range().1).sum();
+    pub fn read(path: impl AsRef<std::path::Path>) -> Self {
         Self {
-            functions,
-            flash_bytes,
+            data: std::fs::read(path).expect("the program was built"),
         }
+    }
+
+    fn file(&self) -> File<'_> {
+        File::parse(&self.data[..]).expect("a linker writes a valid ELF")
     }
 
     /// Bytes in flash: vectors, code, constants, initial values.
     pub fn flash_bytes(&self) -> u64 {
-        self.flash_bytes
+        let file = self.file();
+        file.segments().map(|segment| segment.file_range().1).sum()
+    }
+
+    /// Bytes in RAM beside the stack.
+    pub fn static_bytes(&self) -> u64 {
+        let file = self.file();
+        let sections = file.sections().filter(|section| {
+            // `.stack` and `.heap` stand for what is left.
+            let rest = section
+                .name()
+                .is_ok_and(|name| [".stack", ".heap"].contains(&name));
+            let data = [SectionKind::Data, SectionKind::UninitializedData];
+            !rest && data.contains(&section.kind())
+        });
+        sections.map(|section| section.size()).sum()
+    }
+
+    /// The deepest call path from the program's start.
+    pub fn deepest_path(&self) -> Result<Path, String> {
+        CallGraph::read(&self.file())?.deepest()
     }
 
     /// The functions whose name is of some kind.
-    pub fn functions(&self, kind: impl Fn(&str) -> bool) -> Vec<&str> {
-        let all = self.functions.iter().map(String::as_str);
-        all.filter(|name| kind(name)).collect()
+    pub fn functions(&self, kind: impl Fn(&str) -> bool) -> BTreeSet<String> {
+        let file = self.file();
+        let functions = file
+            .symbols()
+            .filter(|symbol| symbol.kind() == SymbolKind::Text && symbol.is_definition());
+        let names = functions.filter_map(|symbol| symbol.name().ok().map(String::from));
+        names.filter(|name| kind(name)).collect()
     }
 }
 
 /// Whether a function is what a panic calls.
 pub fn panics(name: &str) -> bool {
     name.contains("panic")
+}
+
+/// Whether a function hands out memory.
+pub fn allocates(name: &str) -> bool {
+    name.contains("__rust_alloc") || name.contains("__rustc::__rdl")
 }
 
 /// Whether a function is a routine of soft floats: of the Arm run-time ABI (4.1.2), or by the name

@@ -1,8 +1,10 @@
-//! Builds the firmware for a board and runs it in QEMU.
+//! Builds the firmware for a board and runs it in QEMU, or in Node.
 
+use crate::elf::Elf;
 use crate::scenes::{Compiled, repository};
 use gridel_core::{Format, Structure};
-use std::collections::BTreeMap;
+use gridel_host::board::{BOARDS, Board};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -10,45 +12,51 @@ use std::process::{Command, Output, Stdio};
 use std::sync::Mutex;
 use std::{env, fs, io};
 
-/// A board as QEMU names it, and the target of its core.
-pub struct Board {
-    name: &'static str,
-    target: &'static str,
+/// The runner that comes nearest to a board without an operating system: WebAssembly in Node.
+pub const WASM: Board = Board {
+    name: "wasm32",
+    core: "WebAssembly",
+    target: "wasm32-unknown-unknown",
+    flash: u32::MAX as u64,
+    ram: u32::MAX as u64,
+    formats: &[Format::F32, Format::Fixed, Format::F64],
+};
+
+/// A board by its name.
+pub fn board(name: &str) -> &'static Board {
+    Board::named(name).unwrap_or(&WASM)
 }
 
-/// Cortex-M3: no floating-point unit.
-pub const AN385: Board = Board {
-    name: "mps2-an385",
-    target: "thumbv7m-none-eabi",
-};
-/// Cortex-M4F: single precision.
-pub const AN386: Board = Board {
-    name: "mps2-an386",
-    target: "thumbv7em-none-eabihf",
-};
-
-const EMULATOR: &str = "qemu-system-arm";
+/// The program that runs a board's programs.
+fn emulator(board: &Board) -> &'static str {
+    match board.target.split_once('-') {
+        Some(("wasm32", _)) => "node",
+        Some(("riscv32imac", _)) => "qemu-system-riscv32",
+        _ => "qemu-system-arm",
+    }
+}
 
 /// Whether boards can be emulated here. Says what is missing, and fails where boards are required.
 pub fn available() -> bool {
-    let mut missing = Vec::new();
-    if Command::new(EMULATOR).arg("--version").output().is_err() {
-        missing.push(String::from(EMULATOR));
-    }
-    for board in [&AN385, &AN386] {
+    let mut missing = BTreeSet::new();
+    for board in BOARDS.iter().chain([&WASM]) {
+        let emulator = emulator(board);
+        if Command::new(emulator).arg("--version").output().is_err() {
+            missing.insert(String::from(emulator));
+        }
         let library = Command::new("rustc")
             .args(["--print", "target-libdir", "--target", board.target])
             .output();
         let found = library
             .is_ok_and(|output| Path::new(String::from_utf8_lossy(&output.stdout).trim()).exists());
         if !found {
-            missing.push(format!("the Rust target {}", board.target));
+            missing.insert(format!("the Rust target {}", board.target));
         }
     }
     if missing.is_empty() {
         return true;
     }
-    let missing = missing.join(", ");
+    let missing = Vec::from_iter(missing).join(", ");
     let required = env::var_os("GRIDEL_REQUIRE_BOARDS").is_some_and(|value| value == "1");
     assert!(!required, "no boards can be emulated without {missing}");
     skip(format_args!("no boards can be emulated without {missing}"));
@@ -95,35 +103,36 @@ impl<'b> Build<'b> {
         }
     }
 
-    /// Builds one of the firmware's programs.
+    /// Builds one of the firmware's programs with what the scene calls for, and nothing else.
     pub fn program(&self, name: &str) -> Program<'b> {
+        self.program_with(name, &self.scene.features())
+    }
+
+    /// Builds one of the firmware's programs with code for shapes and effects of its own choice.
+    pub fn program_with(&self, name: &str, features: &[&str]) -> Program<'b> {
+        let built = self.try_program(name, features);
+        built.unwrap_or_else(|errors| panic!("{self}: {errors}"))
+    }
+
+    /// Builds one of the firmware's programs, or says why it does not compile.
+    pub fn try_program(&self, name: &str, features: &[&str]) -> Result<Program<'b>, String> {
         // A test that failed says so itself.
         let _one_at_a_time = BUILDING.lock().unwrap_or_else(|poison| poison.into_inner());
-        let tmp = Path::new(env!("CARGO_TARGET_TMPDIR"));
-        let folder = tmp.join(format!("{name} {self}").replace(' ', "-"));
-        fs::create_dir_all(&folder).expect("the target folder can be written to");
+        let folder = self.folder(name);
         let blob = folder.join("scene.gridel");
         fs::write(&blob, self.scene.blob.bytes()).expect("the target folder can be written to");
 
-        let target_folder = tmp.join("firmware");
+        let target_folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("firmware");
         let mut cargo = Command::new(env!("CARGO"));
         cargo
             .current_dir(repository().join("tests/firmware"))
-            .args([
-                "build",
-                "--release",
-                "--locked",
-                "--target",
-                self.board.target,
-            ])
-            .args(["--bin", name, "--features"])
-            .arg(format!(
-                "{},{},selftest",
-                self.format.name(),
-                self.structure.name()
-            ))
-            .env("CARGO_TARGET_DIR", &target_folder)
-            .env("GRIDEL_BLOB", &blob);
+            .args(["build", "--release", "--locked", "--target"])
+            .args([self.board.target, "--bin", name, "--features"])
+            .arg(
+                [&[self.format.name(), self.structure.name()], features]
+                    .concat()
+                    .join(","),
+            );
         // What is meant for the host's build would change what is measured.
         for (variable, _) in env::vars_os() {
             let name = variable.to_string_lossy();
@@ -131,18 +140,48 @@ impl<'b> Build<'b> {
                 cargo.env_remove(&variable);
             }
         }
+        let mut flags = String::new();
+        if self.board.target != WASM.target {
+            // For the bound of the stack; neither changes an instruction.
+            flags += " -Z emit-stack-sizes -C link-arg=--emit-relocs";
+        }
+        if self.board.core == "Cortex-M7" {
+            // The target's own baseline is a Cortex-M4F, without double precision.
+            flags += " -C target-cpu=cortex-m7";
+        }
+        cargo
+            .env("RUSTC_BOOTSTRAP", "1")
+            .env("RUSTFLAGS", flags.trim_start())
+            .env("CARGO_TARGET_DIR", &target_folder)
+            .env("GRIDEL_BOARD", self.board.name)
+            .env("GRIDEL_BLOB", &blob)
+            .env("GRIDEL_MODULE", &folder);
         let output = cargo.output().expect("cargo runs");
-        assert!(output.status.success(), "{self}: {}", text(&output));
+        if !output.status.success() {
+            return Err(text(&output));
+        }
+        let extension = if self.board.target == WASM.target {
+            ".wasm"
+        } else {
+            ""
+        };
         let built = target_folder
             .join(self.board.target)
             .join("release")
-            .join(name);
-        let program = folder.join("firmware.elf");
-        fs::copy(built, &program).expect("the target folder can be written to");
-        Program {
+            .join(format!("{name}{extension}"));
+        fs::copy(built, folder.join("firmware.elf")).expect("the target folder can be written to");
+        Ok(Program {
             board: self.board,
             folder,
-        }
+        })
+    }
+
+    /// Where a program lies, what it is made from, and what it writes.
+    pub fn folder(&self, name: &str) -> PathBuf {
+        let tmp = Path::new(env!("CARGO_TARGET_TMPDIR"));
+        let folder = tmp.join(format!("{name} {self}").replace([' ', ','], "-"));
+        fs::create_dir_all(&folder).expect("the target folder can be written to");
+        folder
     }
 }
 
@@ -153,13 +192,18 @@ pub struct Program<'b> {
 }
 
 impl Program<'_> {
+    /// The program's functions and memory.
+    pub fn elf(&self) -> Elf {
+        Elf::read(self.path())
+    }
+
     /// Where the program lies, and what it writes.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
     /// The program itself.
-    pub fn path(&self) -> PathBuf {
+    fn path(&self) -> PathBuf {
         self.folder.join("firmware.elf")
     }
 
@@ -170,19 +214,22 @@ impl Program<'_> {
 
     /// Runs the program and returns what it measured.
     pub fn run(&self) -> BTreeMap<String, u64> {
-        let output = Command::new(EMULATOR)
-            .args([
-                "-M",
-                self.board.name,
-                "-nographic",
-                "-monitor",
-                "none",
-                "-serial",
-                "none",
-            ])
-            // The clock counts instructions; see the board's counter.
-            .args(["-icount", "shift=4"])
-            .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
+        let mut emulator = Command::new(emulator(self.board));
+        if self.board.target == WASM.target {
+            emulator.arg(repository().join("tests/firmware/src/board/run.mjs"));
+        } else {
+            // The clock counts instructions; see the boards' counters.
+            let shift = if self.board.core.starts_with("RV") {
+                "shift=0"
+            } else {
+                "shift=4"
+            };
+            emulator
+                .args(["-M", self.board.name, "-icount", shift, "-nographic"])
+                .args(["-monitor", "none", "-serial", "none"])
+                .args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
+        }
+        let output = emulator
             .arg(self.path())
             .current_dir(&self.folder)
             .stdin(Stdio::null())
@@ -194,7 +241,9 @@ impl Program<'_> {
             self.folder.display(),
             text(&output)
         );
-        let lines = String::from_utf8_lossy(&output.stdout);
+        // QEMU prints what comes letter by letter on standard error.
+        let all = [output.stdout, output.stderr].concat();
+        let lines = String::from_utf8_lossy(&all);
         let pairs = lines.lines().filter_map(|line| line.split_once(' '));
         pairs
             .filter_map(|(name, value)| Some((name.into(), value.parse().ok()?)))

@@ -1,6 +1,6 @@
 //! The firmware on emulated boards: the same pictures as the host's, within the recorded cost.
 //!
-//! Needs `qemu-system-arm` and the targets `thumbv7em-none-eabihf` and `thumbv7m-none-eabi`
+//! Needs `qemu-system-arm`, `qemu-system-riscv32`, Node, and the Rust targets of all boards
 //! (`rustup target add`). Without them the tests say so and pass, unless `GRIDEL_REQUIRE_BOARDS`
 //! is 1. `fixtures/recorded/board.json` holds what was measured last: nothing may grow by more than 2 %.
 //! `GRIDEL_RECORD_BOARDS=1` records anew; read the difference before it is committed.
@@ -8,50 +8,247 @@
 mod elf;
 mod figures;
 mod firmware;
+mod parts;
 mod scenes;
+mod stack;
 
 use figures::Figures;
-use firmware::{AN385, AN386, Board, Build};
+use firmware::{Build, WASM, board};
 use gridel_core::{Format, Structure};
+use gridel_host::board::{BOARDS, Board};
+use gridel_host::emit::Emitted;
+use scenes::Compiled;
+use std::collections::BTreeMap;
+use std::fs;
 
 /// Stack and workspace of the suzanne workload at most: loading, and tracing primary rays.
-const PRIMARY_RAM: u64 = 2 * 1024;
-/// Stack and workspace of the glass chessboard at depth 6 at most, beside the row.
-const PICTURE_RAM: u64 = 4 * 1024;
+const PRIMARY_RAM: u64 = 2 * 1024 + 256;
 
-/// The formats that boards with and without a floating-point unit run.
-const FORMATS: [(&Board, Format); 3] = [
-    (&AN386, Format::F32),
-    (&AN386, Format::Fixed),
-    (&AN385, Format::Fixed),
-];
+/// Every board in every number format that it computes itself.
+fn boards() -> impl Iterator<Item = (&'static Board, Format)> {
+    let boards = BOARDS.iter().chain([&WASM]);
+    boards.flat_map(|board| board.formats.iter().map(move |&format| (board, format)))
+}
 
 #[test]
-fn pictures_are_the_hosts_byte_for_byte() {
+fn every_effect_on_every_board() {
+    let scene = scenes::quick();
+    pictures_are_the_hosts(boards().map(|(board, format)| (board, format, &scene)));
+}
+
+#[test]
+fn glass_on_boards() {
+    let scene = scenes::glass_chess();
+    let names = [
+        "microbit",
+        "sifive_e",
+        "mps2-an385",
+        "mps2-an386",
+        "mps2-an505",
+    ];
+    let boards = names.map(board).into_iter().chain([&WASM]);
+    pictures_are_the_hosts(boards.map(|board| (board, board.format(), &scene)));
+}
+
+/// What 8 KiB of RAM and 128 KiB of flash are enough for, and 16 KiB and 256 KiB.
+#[test]
+fn the_smallest_boards_render_large_scenes() {
+    let discovery = board("stm32vldiscovery");
+    let (glass, molecule, torus) = (
+        scenes::glass_chess_small(),
+        scenes::molecule(),
+        scenes::torus(),
+    );
+    let protein = scenes::protein();
+    let mut all = vec![
+        (discovery, Format::Fixed, &glass),
+        (discovery, Format::Fixed, &molecule),
+        (board("microbit"), Format::Fixed, &torus),
+    ];
+    all.extend(
+        protein
+            .iter()
+            .map(|protein| (discovery, Format::Fixed, protein)),
+    );
+    pictures_are_the_hosts(all);
+}
+
+/// Builds and runs each, compares its picture with the host's, and looks at what was linked:
+/// nothing that panics or allocates, no soft floats in `fixed`, and no more memory than there is.
+fn pictures_are_the_hosts<'s>(
+    all: impl IntoIterator<Item = (&'static Board, Format, &'s Compiled)>,
+) {
     if !firmware::available() {
         return;
     }
     let mut figures = Figures::new();
-    for scene in [scenes::quick(), scenes::glass_chess()] {
-        for (board, format) in FORMATS {
-            let build = Build::new(board, format, Structure::DualSplit, &scene);
-            let program = build.program("picture");
-            let report = program.run();
-            let picture = program.file("picture.rgb");
-            assert!(
-                picture == scene.picture(format),
-                "{build}: the picture differs from the host's; see {}",
-                program.folder().display()
-            );
-            if scene.name == "glass-chess" {
-                let stack = report["load-stack-bytes"].max(report["picture-stack-bytes"]);
-                let ram = stack + report["workspace-bytes"];
-                assert!(ram <= PICTURE_RAM, "{build}: {ram} bytes of RAM");
-            }
-            figures.add(&build.to_string(), &report);
+    for (board, format, scene) in all {
+        let build = Build::new(board, format, Structure::DualSplit, scene);
+        let program = build.program("picture");
+        let mut report = program.run();
+        assert!(
+            program.file("picture.rgb") == scene.picture(format),
+            "{build}: the picture differs from the host's; see {}",
+            program.folder().display()
+        );
+        if board != &WASM {
+            look_into(&build, &program.elf(), board, format, &mut report);
         }
+        figures.add(&build.to_string(), &report);
     }
     figures.check();
+}
+
+/// Checks a linked program, and adds to the report what it tells.
+fn look_into(
+    build: &Build<'_>,
+    elf: &elf::Elf,
+    board: &Board,
+    format: Format,
+    report: &mut BTreeMap<String, u64>,
+) {
+    let panicking = elf.functions(elf::panics);
+    assert!(panicking.is_empty(), "{build} can panic: {panicking:#?}");
+    let allocating = elf.functions(elf::allocates);
+    assert!(allocating.is_empty(), "{build} allocates: {allocating:#?}");
+    if format == Format::Fixed {
+        let float = elf.functions(elf::computes_in_floating_point);
+        assert!(float.is_empty(), "{build} has soft floats: {float:#?}");
+    }
+    let path = elf.deepest_path();
+    let path = path.unwrap_or_else(|why| panic!("{build}: no bound on its stack: {why}"));
+    let painted = ["load", "picture", "ray", "shadow-ray"]
+        .iter()
+        .filter_map(|phase| report.get(&format!("{phase}-stack-bytes")))
+        .max();
+    let painted = painted.copied().unwrap_or(0);
+    assert!(
+        painted <= path.bytes,
+        "{build}: {painted} bytes of stack were written to, beyond the bound of {}:\n{}",
+        path.bytes,
+        path.functions.join("\n")
+    );
+    let ram = elf.static_bytes() + path.bytes;
+    assert!(
+        ram <= board.ram,
+        "{build}: {ram} bytes of RAM, {} of them stack:\n{}",
+        path.bytes,
+        path.functions.join("\n")
+    );
+    report.insert("stack-bound-bytes".into(), path.bytes);
+    report.insert("ram-bytes".into(), ram);
+    report.insert("flash-bytes".into(), elf.flash_bytes());
+}
+
+/// What every shape and effect takes on the smallest board: the README's table.
+#[test]
+fn shapes_and_effects_are_paid_for_one_by_one() {
+    if !firmware::available() {
+        return;
+    }
+    let discovery = board("stm32vldiscovery");
+    let mut figures = Figures::new();
+    let mut instructions = BTreeMap::new();
+    let scenes = parts::scenes();
+    for scene in scenes.iter().chain([&parts::sphere_and_triangle()]) {
+        let build = Build::new(discovery, Format::Fixed, Structure::DualSplit, scene);
+        let mut report = footprint(&build, &build.program("bare").elf(), scene);
+        let run = build.program("picture").run();
+        let spent = run["picture-instructions"];
+        instructions.insert(scene.name, spent);
+        report.insert("picture-instructions".into(), spent);
+        figures.add(&build.to_string(), &report);
+    }
+    // Code that is there and not called for costs next to nothing.
+    let build = Build::new(discovery, Format::Fixed, Structure::DualSplit, &scenes[0]);
+    let spent = build.program_with("picture", &["everything"]).run()["picture-instructions"];
+    let alone = instructions[parts::BASE];
+    assert!(
+        100 * spent <= 102 * alone,
+        "{spent} instructions with every effect compiled in, {alone} without"
+    );
+    figures.check();
+}
+
+/// What a product with every shape and effect takes on every board.
+#[test]
+fn everything_on_every_board() {
+    if !firmware::available() {
+        return;
+    }
+    let scene = scenes::quick();
+    let mut figures = Figures::new();
+    for (board, format) in boards().filter(|&(board, _)| board != &WASM) {
+        let build = Build::new(board, format, Structure::DualSplit, &scene);
+        let elf = build.program_with("bare", &["everything"]).elf();
+        figures.add(&build.to_string(), &footprint(&build, &elf, &scene));
+    }
+    figures.check();
+}
+
+/// Flash for code, and the deepest call stack.
+fn footprint(build: &Build<'_>, elf: &elf::Elf, scene: &Compiled) -> BTreeMap<String, u64> {
+    let code = elf.flash_bytes() - scene.blob.bytes().len() as u64;
+    let path = elf.deepest_path();
+    let path = path.unwrap_or_else(|why| panic!("{build}: no bound on its stack: {why}"));
+    [
+        ("code-bytes".into(), code),
+        ("call-stack-bytes".into(), path.bytes),
+    ]
+    .into()
+}
+
+/// What `gridel build --emit-rust` writes runs on a board; with a blob that is not the one that it
+/// was written for, or that has no room, it does not compile.
+#[test]
+fn emitted_modules_run_or_do_not_compile() {
+    if !firmware::available() {
+        return;
+    }
+    let discovery = board("stm32vldiscovery");
+    let scene = parts::sphere_and_triangle();
+    let view = scene.blob.scene().expect("the compiler's own blob");
+    let mut emitted = Emitted {
+        scene: &view,
+        structure: Structure::DualSplit,
+        format: Format::Fixed,
+        budget: Some((96 * 1024, discovery)),
+    };
+    let build = Build::new(discovery, Format::Fixed, Structure::DualSplit, &scene);
+    let folder = build.folder("emitted");
+    let write = |module: String, blob: &Compiled| {
+        fs::write(folder.join("scene.rs"), module).expect("the target folder can be written to");
+        fs::write(folder.join("scene.gridel"), blob.blob.bytes())
+            .expect("the target folder can be written to");
+    };
+    let features = [&["emitted"], &scene.features()[..]].concat();
+    let outgrown = |features: &[&str], why: &str| {
+        let errors = build.try_program("emitted", features).map(|_| ());
+        let errors = errors.expect_err("it compiles all the same");
+        assert!(errors.contains(why), "{errors}");
+    };
+
+    write(emitted.module(), &scene);
+    let program = build.program_with("emitted", &features);
+    program.run();
+    assert!(program.file("picture.rgb") == scene.picture(Format::Fixed));
+
+    outgrown(
+        &features[..features.len() - 1],
+        "whose features of gridel-core are not enabled",
+    );
+    emitted.budget = Some((scene.blob.bytes().len() as u64 - 1, discovery));
+    write(emitted.module(), &scene);
+    outgrown(&features, "the blob outgrew the flash of stm32vldiscovery");
+    emitted.budget = None;
+    let module = emitted.module();
+    write(module.clone(), &scenes::torus());
+    outgrown(&features, "the blob outgrew STACK_DEPTH");
+    let glass = parts::scenes()
+        .into_iter()
+        .find(|scene| scene.name == "glass");
+    write(module, &glass.expect("a scene of glass"));
+    outgrown(&features, "the blob calls for effects beyond EFFECTS");
 }
 
 #[test]
@@ -62,8 +259,10 @@ fn primary_rays_of_suzanne() {
     let Some(suzanne) = scenes::suzanne() else {
         return;
     };
+    let boards = ["mps2-an386", "mps2-an385", "microbit", "sifive_e"].map(board);
+    let formats = boards.map(|board| (board, board.format()));
     let mut figures = Figures::new();
-    for (board, format) in FORMATS {
+    for (board, format) in formats.into_iter().chain([(boards[0], Format::Fixed)]) {
         for structure in [Structure::DualSplit, Structure::Flagged, Structure::Bvh] {
             let build = Build::new(board, format, structure, &suzanne);
             let report = build.program("primary").run();
@@ -89,7 +288,9 @@ fn primary_rays_of_suzanne_in_16_kib() {
     };
     assert!(suzanne.blob.bytes().len() <= 16 * 1024);
     let mut figures = Figures::new();
-    for (board, format) in FORMATS {
+    for name in ["mps2-an386", "mps2-an385"] {
+        let board = board(name);
+        let format = board.format();
         let build = Build::new(board, format, Structure::Flagged, &suzanne);
         let report = build.program("primary").run();
         assert_eq!(report["hits"], 1400, "{build}");
@@ -104,34 +305,30 @@ fn the_cores_own_tests_pass_on_boards() {
         return;
     }
     let scene = scenes::quick();
-    for (board, format) in [(&AN386, Format::F32), (&AN385, Format::Fixed)] {
-        let build = Build::new(board, format, Structure::DualSplit, &scene);
-        build.program("selftest").run();
+    for name in ["mps2-an386", "mps2-an385"] {
+        let board = board(name);
+        let build = Build::new(board, board.format(), Structure::DualSplit, &scene);
+        build.program_with("selftest", &["selftest"]).run();
     }
 }
 
-/// What a product would flash holds no function that panics and, in `fixed`, none that computes
-/// in floating point.
+/// The linker knows the boards that the host knows.
 #[test]
-fn nothing_is_linked_that_must_not_be() {
-    if !firmware::available() {
-        return;
+fn memory_maps_are_the_boards() {
+    for board in &BOARDS {
+        let path = format!("tests/firmware/src/board/memory/{}.x", board.name);
+        let map = fs::read_to_string(scenes::repository().join(&path)).expect(&path);
+        let region = |name: &str| {
+            let line = map.lines().find(|line| line.trim().starts_with(name));
+            let length = line.and_then(|line| line.split_once("LENGTH = "));
+            let (_, length) = length.expect("a region with a length");
+            let (digits, unit) = length.trim().split_at(length.trim().len() - 1);
+            digits.parse::<u64>().expect("a number") << if unit == "M" { 20 } else { 10 }
+        };
+        assert_eq!(
+            [region("FLASH"), region("RAM")],
+            [board.flash, board.ram],
+            "{path}"
+        );
     }
-    let mut figures = Figures::new();
-    for scene in [scenes::quick(), scenes::glass_chess()] {
-        for (board, format) in FORMATS {
-            let build = Build::new(board, format, Structure::DualSplit, &scene);
-            let program = build.program("bare");
-            let elf = elf::Elf::read(program.path());
-            let panicking = elf.functions(elf::panics);
-            assert!(panicking.is_empty(), "{build} can panic: {panicking:#?}");
-            if format == Format::Fixed {
-                let float = elf.functions(elf::computes_in_floating_point);
-                assert!(float.is_empty(), "{build} has soft floats: {float:#?}");
-            }
-            let flash = elf.flash_bytes() - scene.blob.bytes().len() as u64;
-            figures.add(&build.to_string(), &[("code-bytes".into(), flash)].into());
-        }
-    }
-    figures.check();
 }

@@ -7,8 +7,10 @@ use gridel_core::{Format, Rgb888, Settings, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{self, Options};
 use gridel_host::render::{Job, render};
-use gridel_host::scene::{self, Camera, Scene, Shape};
+use gridel_host::sample;
+use gridel_host::scene::{self, Camera, Light, Material, Object, Place, Scene, Shape};
 use std::env;
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 /// A blob, with the name of its scene.
@@ -34,6 +36,75 @@ fn view_depth(compiled: &Compiled) -> u8 {
     scene.view().depth
 }
 
+/// The chessboard for the smallest board: a lattice of 16 bits, 64 by 64 pixels, depth 4.
+pub fn glass_chess_small() -> Compiled {
+    let mut scene = load(&fixture_path("glass-chess"));
+    scene.render.depth = 4;
+    compile_with("glass-chess-64", scene, [64, 64], small())
+}
+
+/// A molecule of 2,800 atoms: a computed tube of carbon.
+pub fn molecule() -> Compiled {
+    let scene = sample::nanotube(10, 10, 172.0);
+    compile_with("nanotube", scene, [64, 64], small())
+}
+
+/// A protein of about as many atoms. `None` where it is missing.
+pub fn protein() -> Option<Compiled> {
+    let scene = load(&real("molecules/3dqb.pdb")?);
+    Some(compile_with("3dqb", scene, [64, 64], small()))
+}
+
+/// A torus of 2,048 triangles, lit from the side on which it is seen.
+pub fn torus() -> Compiled {
+    const AROUND: u32 = 32;
+    let angle = |step: u32| f64::from(step) * TAU / f64::from(AROUND);
+    let vertex = |ring: u32, step: u32| {
+        let radius = 1.0 + 0.4 * libm::cos(angle(step));
+        DVec3::new(
+            radius * libm::cos(angle(ring)),
+            radius * libm::sin(angle(ring)),
+            0.4 * libm::sin(angle(step)),
+        )
+    };
+    let number = |ring: u32, step: u32| ring % AROUND * AROUND + step % AROUND;
+    let faces = |ring, step| {
+        let [a, b] = [number(ring, step), number(ring + 1, step)];
+        let [c, d] = [number(ring + 1, step + 1), number(ring, step + 1)];
+        [[a, b, c], [a, c, d]]
+    };
+    let cells = |ring| (0..AROUND).map(move |step| (ring, step));
+    let cells = (0..AROUND).flat_map(cells);
+    let scene = Scene {
+        camera: Some(Camera {
+            eye: DVec3::new(0.6, -3.2, 2.4),
+            target: DVec3::ZERO,
+            up: DVec3::Z,
+            fov_degrees: 45.0,
+        }),
+        ambient: [0.1; 3],
+        lights: vec![Light::Directional {
+            direction: DVec3::new(0.5, 1.0, -1.0),
+            color: [0.8; 3],
+        }],
+        materials: vec![Material::default()],
+        objects: vec![Object {
+            name: String::from("torus"),
+            material: 0,
+            shape: Shape::Mesh {
+                vertices: cells
+                    .clone()
+                    .map(|(ring, step)| vertex(ring, step))
+                    .collect(),
+                triangles: cells.flat_map(|(ring, step)| faces(ring, step)).collect(),
+            },
+            place: Place::default(),
+        }],
+        ..Scene::default()
+    };
+    compile_with("torus", scene, [64, 64], small())
+}
+
 /// The mesh on which tracers for boards are compared: seen from 3.2 before its middle, in a square
 /// picture that is 2.9 wide there. `None` where the mesh is missing.
 pub fn suzanne() -> Option<Compiled> {
@@ -44,26 +115,15 @@ pub fn suzanne() -> Option<Compiled> {
 pub fn small_suzanne() -> Option<Compiled> {
     let options = Options {
         structures: vec![Structure::Flagged],
-        lattice_bits: 16,
         leaf_size: 8,
-        ..Options::default()
+        ..small()
     };
     let (name, size) = ("suzanne-small", [64, 64]);
-    Some(compile_with(name, suzanne_scene()?, size, &options))
+    Some(compile_with(name, suzanne_scene()?, size, options))
 }
 
 fn suzanne_scene() -> Option<Scene> {
-    let folder = env::var_os("GRIDEL_SCENES")
-        .map_or_else(|| repository().join("../shared/scenes"), PathBuf::from);
-    let path = folder.join("meshes/suzanne.obj");
-    if !path.exists() {
-        skip(format_args!(
-            "{} is missing; set GRIDEL_SCENES",
-            path.display()
-        ));
-        return None;
-    }
-    let mut scene = load(&path);
+    let mut scene = load(&real("meshes/suzanne.obj")?);
     let vertices = scene.objects.iter().flat_map(|object| match &object.shape {
         Shape::Mesh { vertices, .. } => &vertices[..],
         _ => &[],
@@ -83,6 +143,12 @@ fn suzanne_scene() -> Option<Scene> {
 }
 
 impl Compiled {
+    /// The Cargo features of the core that the scene calls for.
+    pub fn features(&self) -> Vec<&'static str> {
+        let scene = self.blob.scene().expect("the compiler's own blob");
+        scene.features().collect()
+    }
+
     /// The picture as the host renders it: three bytes a pixel.
     pub fn picture(&self, format: Format) -> Vec<u8> {
         let scene = self.blob.scene().expect("the compiler's own blob");
@@ -104,11 +170,25 @@ impl Compiled {
 }
 
 fn fixture(name: &'static str, size: [u32; 2]) -> Compiled {
-    let path = repository()
-        .join("fixtures")
-        .join(name)
-        .with_extension("toml");
-    compile(name, load(&path), size)
+    compile(name, load(&fixture_path(name)), size)
+}
+
+fn fixture_path(name: &str) -> PathBuf {
+    let path = repository().join("fixtures").join(name);
+    path.with_extension("toml")
+}
+
+/// A real scene. `None`, said aloud, where it is missing.
+fn real(name: &str) -> Option<PathBuf> {
+    let folder = env::var_os("GRIDEL_SCENES")
+        .map_or_else(|| repository().join("../shared/scenes"), PathBuf::from);
+    let path = folder.join(name);
+    if path.exists() {
+        return Some(path);
+    }
+    let path = path.display();
+    skip(format_args!("{path} is missing; set GRIDEL_SCENES"));
+    None
 }
 
 fn load(path: &Path) -> Scene {
@@ -118,22 +198,32 @@ fn load(path: &Path) -> Scene {
     }
 }
 
+/// With all hierarchies, so that they can be compared.
 fn compile(name: &'static str, scene: Scene, size: [u32; 2]) -> Compiled {
     let options = Options {
         structures: vec![Structure::Bvh, Structure::Flagged, Structure::DualSplit],
         ..Options::default()
     };
-    compile_with(name, scene, size, &options)
+    compile_with(name, scene, size, options)
 }
 
-fn compile_with(
+/// What takes the least flash.
+pub fn small() -> Options {
+    Options {
+        structures: vec![Structure::DualSplit],
+        lattice_bits: 16,
+        ..Options::default()
+    }
+}
+
+pub fn compile_with(
     name: &'static str,
     mut scene: Scene,
     [width, height]: [u32; 2],
-    options: &Options,
+    options: Options,
 ) -> Compiled {
     (scene.render.width, scene.render.height) = (width, height);
-    let compiled = compile::compile(&scene, options).expect("the scene compiles");
+    let compiled = compile::compile(&scene, &options).expect("the scene compiles");
     Compiled {
         name,
         blob: compiled.blob,

@@ -1,20 +1,31 @@
-//! Renders over and over and talks to nobody, so that its ELF holds what a product's would: the
-//! tests look in it for routines that must not be there.
+//! Renders over and over and talks to nobody: its ELF holds what a product's would.
 #![no_std]
 #![no_main]
 
 use core::hint::black_box;
-use core::panic::PanicInfo;
-use cortex_m_rt::entry;
 use gridel_core::{NoCount, Rgb565, Scene, Settings};
+use gridel_firmware::program;
 use gridel_firmware::scene::{BLOB, SceneRenderer, Space, WIDTH};
 
-#[entry]
-fn main() -> ! {
-    static mut SPACE: Space = Space::new();
-    static mut ROW: [Rgb565; WIDTH] = [Rgb565(0); WIDTH];
+struct Memory {
+    space: Space,
+    row: [Rgb565; WIDTH],
+}
+
+impl Memory {
+    const fn new() -> Self {
+        Self {
+            space: Space::new(),
+            row: [Rgb565(0); WIDTH],
+        }
+    }
+}
+
+program!(run, Memory);
+
+fn run(memory: &'static mut Memory) {
     loop {
-        render(SPACE, ROW);
+        render(&mut memory.space, &mut memory.row);
     }
 }
 
@@ -31,9 +42,4 @@ fn render(space: &mut Space, row: &mut [Rgb565; WIDTH]) {
         renderer.row(0, y, row, &mut space, &mut NoCount);
         black_box(&mut *row);
     }
-}
-
-#[panic_handler]
-fn panic(_: &PanicInfo<'_>) -> ! {
-    loop {}
 }

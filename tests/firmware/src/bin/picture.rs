@@ -1,52 +1,92 @@
-//! Renders the scene's picture into the file `picture.rgb` in QEMU's folder, row by row.
+//! Renders the scene's picture into the file `picture.rgb` of the host, row by row, and measures
+//! what loading, the picture, and rays without shading take.
 #![no_std]
 #![no_main]
 
-use core::panic::PanicInfo;
-use cortex_m_rt::entry;
-use gridel_core::{NoCount, Rgb888, Scene, Settings};
+use gridel_core::{NoCount, Rgb888, Scene, Settings, Stack};
+use gridel_firmware::board::File;
 use gridel_firmware::measure::{Cost, Meter};
-use gridel_firmware::scene::{BLOB, SceneRenderer, Space, WIDTH};
-use semihosting::fs::File;
-use semihosting::io::Write;
-use semihosting::println;
+use gridel_firmware::report::{cost, fail, line};
+use gridel_firmware::scene::{BLOB, STACK_DEPTH, SceneRenderer, Space, WIDTH};
+use gridel_firmware::{program, rays};
 
-#[entry]
-fn main() -> ! {
-    static mut SPACE: Space = Space::new();
-    static mut ROW: [Rgb888; WIDTH] = [Rgb888([0; 3]); WIDTH];
-    let meter = Meter::default();
-    let mut file = File::create(c"picture.rgb").expect("the host's file can be written to");
-    let mut scene = None;
-    let load = meter.run(|| scene = Scene::from_bytes(BLOB).ok());
-    let scene = scene.as_ref().expect("the build script checked the blob");
+/// Pixels that are measured together.
+const PART: usize = 16;
 
-    let settings = Settings::of(scene);
-    let renderer = SceneRenderer::new(scene, settings).expect("the scene is for this renderer");
-    let mut space = SPACE.as_view();
-    renderer
-        .check_workspace(&space)
-        .expect("the build script sized the workspace");
-    let mut picture = Cost::default();
-    for y in 0..settings.height {
-        let cost = meter.run(|| renderer.row(0, y, ROW, &mut space, &mut NoCount));
-        picture = picture.then(cost);
-        for pixel in &*ROW {
-            file.write_all(&pixel.0)
-                .expect("the host's file can be written to");
-        }
-    }
-    println!("blob-bytes {}", BLOB.len());
-    println!("load-instructions {}", load.instructions);
-    println!("load-stack-bytes {}", load.stack);
-    println!("picture-instructions {}", picture.instructions);
-    println!("picture-stack-bytes {}", picture.stack);
-    println!("workspace-bytes {}", size_of::<Space>());
-    println!("row-bytes {}", size_of_val(ROW));
-    semihosting::process::exit(0)
+struct Memory {
+    space: Space,
+    row: [Rgb888; WIDTH],
+    /// For rays without shading.
+    stack: Stack<STACK_DEPTH>,
 }
 
-#[panic_handler]
-fn panic(info: &PanicInfo<'_>) -> ! {
-    gridel_firmware::give_up(info)
+impl Memory {
+    const fn new() -> Self {
+        Self {
+            space: Space::new(),
+            row: [Rgb888([0; 3]); WIDTH],
+            stack: Stack::new(),
+        }
+    }
+}
+
+program!(run, Memory);
+
+fn run(memory: &'static mut Memory) {
+    let meter = Meter::new();
+    let mut scene = None;
+    let load = meter.run(|| scene = Scene::from_bytes(BLOB).ok());
+    let Some(scene) = &scene else {
+        fail("the blob is refused")
+    };
+    let settings = Settings::of(scene);
+    let Ok(renderer) = SceneRenderer::new(scene, settings) else {
+        fail("the scene is not for this renderer")
+    };
+    let Memory { space, row, stack } = memory;
+    let mut space = space.as_view();
+    if renderer.check_workspace(&space).is_err() {
+        fail("the workspace is too small")
+    }
+    let Some(file) = File::create(c"picture.rgb") else {
+        fail("picture.rgb cannot be created")
+    };
+    let mut picture = Cost::NONE;
+    for y in 0..settings.height {
+        // In parts that the slowest core ends before the counter wraps.
+        for (x, part) in (0..settings.width).step_by(PART).zip(row.chunks_mut(PART)) {
+            let cost = meter.run(|| renderer.row(x, y, part, &mut space, &mut NoCount));
+            picture = picture.then(cost);
+        }
+        if !row.iter().all(|pixel| file.write(&pixel.0)) {
+            fail("picture.rgb cannot be written to")
+        }
+    }
+    let stack = stack.as_view();
+    let (mut primary, mut shadow) = (rays::Rays::default(), rays::Rays::default());
+    let (mut hits, mut surfaces) = (Cost::NONE, Cost::NONE);
+    for y in 0..settings.height {
+        hits = hits.then(meter.run(|| primary.row(&renderer, scene, y, stack)));
+        surfaces = surfaces.then(meter.run(|| shadow.shadowed_row(&renderer, scene, y, stack)));
+    }
+
+    line("blob-bytes", BLOB.len() as u64);
+    line("workspace-bytes", size_of::<Space>() as u64);
+    line("row-bytes", size_of_val(row) as u64);
+    cost("load-instructions", "load-stack-bytes", load);
+    cost("picture-instructions", "picture-stack-bytes", picture);
+    line("rays", primary.rays.into());
+    line("hits", primary.hits.into());
+    line("shadows", shadow.shadows.into());
+    cost(
+        "ray-instructions",
+        "ray-stack-bytes",
+        hits.each(primary.rays),
+    );
+    let shadow_rays = surfaces.beyond(hits).each(shadow.hits);
+    cost(
+        "shadow-ray-instructions",
+        "shadow-ray-stack-bytes",
+        shadow_rays,
+    );
 }

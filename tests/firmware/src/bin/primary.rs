@@ -2,53 +2,40 @@
 #![no_std]
 #![no_main]
 
-use core::panic::PanicInfo;
-use cortex_m_rt::entry;
-use gridel_core::{NoCount, Scene, Settings, Stack, closest_primitive};
+use gridel_core::{Scene, Settings, Stack};
 use gridel_firmware::measure::Meter;
-use gridel_firmware::scene::{Accel, BLOB, Number, STACK_DEPTH, SceneRenderer};
-use semihosting::println;
+use gridel_firmware::report::{cost, fail, line};
+use gridel_firmware::scene::{BLOB, STACK_DEPTH, SceneRenderer};
+use gridel_firmware::{program, rays};
 
-#[entry]
-fn main() -> ! {
-    static mut STACK: Stack<STACK_DEPTH> = Stack::new();
-    let meter = Meter::default();
+type Memory = Stack<STACK_DEPTH>;
+
+program!(run, Memory);
+
+fn run(stack: &'static mut Memory) {
+    let meter = Meter::new();
     let mut scene = None;
     let load = meter.run(|| scene = Scene::from_bytes(BLOB).ok());
-    let scene = scene.as_ref().expect("the build script checked the blob");
-    let (mut rays, mut hits) = (0, 0);
-    let trace = meter.run(|| (rays, hits) = trace(scene, STACK));
-    println!("blob-bytes {}", BLOB.len());
-    println!("load-instructions {}", load.instructions);
-    println!("load-stack-bytes {}", load.stack);
-    println!("rays {rays}");
-    println!("hits {hits}");
-    println!("ray-instructions {}", trace.instructions / u64::from(rays));
-    println!("ray-stack-bytes {}", trace.stack);
-    println!("workspace-bytes {}", size_of_val(STACK));
-    semihosting::process::exit(0)
+    let Some(scene) = &scene else {
+        fail("the blob is refused")
+    };
+    let mut rays = rays::Rays::default();
+    let trace = meter.run(|| trace(scene, stack, &mut rays));
+    line("blob-bytes", BLOB.len() as u64);
+    line("workspace-bytes", size_of::<Memory>() as u64);
+    cost("load-instructions", "load-stack-bytes", load);
+    line("rays", rays.rays.into());
+    line("hits", rays.hits.into());
+    cost("ray-instructions", "ray-stack-bytes", trace.each(rays.rays));
 }
 
-/// Rays and hits of a picture, the set-up of the camera included.
-fn trace(scene: &Scene<'static>, stack: &mut Stack<STACK_DEPTH>) -> (u32, u32) {
+/// Every ray of the picture, the set-up of the camera included.
+fn trace(scene: &Scene<'static>, stack: &mut Memory, rays: &mut rays::Rays) {
     let settings = Settings::of(scene);
-    let renderer = SceneRenderer::new(scene, settings).expect("the scene is for this renderer");
-    let (mut rays, mut hits) = (0, 0);
+    let Ok(renderer) = SceneRenderer::new(scene, settings) else {
+        fail("the scene is not for this renderer")
+    };
     for y in 0..settings.height {
-        for x in 0..settings.width {
-            let Ok(ray) = renderer.primary_ray(x, y) else {
-                continue;
-            };
-            rays += 1;
-            let hit =
-                closest_primitive::<Number, Accel, _>(scene, &ray, stack.as_view(), &mut NoCount);
-            hits += u32::from(hit.is_some());
-        }
+        rays.row(&renderer, scene, y, stack.as_view());
     }
-    (rays, hits)
-}
-
-#[panic_handler]
-fn panic(info: &PanicInfo<'_>) -> ! {
-    gridel_firmware::give_up(info)
 }

@@ -5,8 +5,8 @@
 use core::ffi::CStr;
 use core::fmt;
 use core::panic::PanicInfo;
-use cortex_m_rt::entry;
 use gridel_core::selftest::{self, Host};
+use gridel_firmware::rt::entry;
 use semihosting::fs::File;
 use semihosting::io::Write;
 use semihosting::{eprintln, println};
@@ -35,5 +35,6 @@ fn main() -> ! {
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
-    gridel_firmware::give_up(info)
+    eprintln!("{info}");
+    semihosting::process::exit(101)
 }

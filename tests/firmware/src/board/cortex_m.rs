@@ -1,10 +1,12 @@
-//! Arm MPS2 boards. QEMU with `-icount` advances the clock by a fixed time an instruction, so the
+//! Cortex-M boards. QEMU with `-icount` advances the clock by a fixed time an instruction, so the
 //! core's SysTick counts instructions, in a ratio that [`Counter::new`] measures.
 
+use crate::report::fail;
 use core::arch::asm;
 use core::ptr;
 
-/// SysTick's registers (Armv7-M Architecture Reference Manual, B3.3.2).
+/// SysTick's registers (Armv7-M Architecture Reference Manual, B3.3.2; Armv6-M's and Armv8-M's
+/// are the same).
 const CONTROL: *mut u32 = 0xe000_e010 as *mut u32;
 const RELOAD: *mut u32 = 0xe000_e014 as *mut u32;
 const CURRENT: *mut u32 = 0xe000_e018 as *mut u32;
@@ -32,20 +34,14 @@ impl Counter {
         write(RELOAD, START);
         write(CONTROL, RUN);
         let idle = ticks_of(|| ());
-        let ticks = ticks_of(|| count_down(CALIBRATION / 2)) - idle;
+        let ticks = ticks_of(|| count_down(CALIBRATION / 2)).saturating_sub(idle);
         Self { ticks, idle }
     }
 
     /// Runs a phase and returns the instructions that it took, to within a few.
-    pub fn instructions(&self, phase: impl FnOnce()) -> u64 {
+    pub fn instructions(&self, phase: impl FnOnce()) -> Option<u64> {
         let ticks = ticks_of(phase).saturating_sub(self.idle);
-        u64::from(ticks) * u64::from(CALIBRATION) / u64::from(self.ticks)
-    }
-}
-
-impl Default for Counter {
-    fn default() -> Self {
-        Self::new()
+        (u64::from(ticks) * u64::from(CALIBRATION)).checked_div(self.ticks.into())
     }
 }
 
@@ -57,11 +53,10 @@ fn ticks_of(phase: impl FnOnce()) -> u32 {
     let start = read(CURRENT);
     phase();
     let end = read(CURRENT);
-    assert!(
-        read(CONTROL) & WRAPPED == 0,
-        "the phase is too long for the timer"
-    );
-    start - end
+    if read(CONTROL) & WRAPPED != 0 {
+        fail("the phase is too long for the timer");
+    }
+    start.wrapping_sub(end)
 }
 
 /// Two instructions a round.
@@ -69,7 +64,7 @@ fn ticks_of(phase: impl FnOnce()) -> u32 {
 fn count_down(rounds: u32) {
     // SAFETY: changes nothing but the register that is named as an output, and the flags.
     unsafe {
-        asm!("2:", "subs {rounds}, #1", "bne 2b", rounds = inout(reg) rounds => _);
+        asm!("2:", "subs {rounds}, {rounds}, #1", "bne 2b", rounds = inout(reg) rounds => _);
     }
 }
 

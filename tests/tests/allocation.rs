@@ -1,0 +1,76 @@
+//! Between loading a blob and the last pixel nothing is allocated, in any format and structure.
+
+use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::render::MAX_RAY_DEPTH;
+use gridel_core::{
+    Accel, Bvh, Effects, Fixed, Flagged, List, NoCount, Number, Renderer, Rgb888, Scene, Settings,
+    Workspace,
+};
+use gridel_tests::scenes;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::hint::black_box;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The system's allocator, counted. This file has one test, so that all counts are its own.
+struct Counted;
+
+static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: hands everything to the system's allocator, unchanged.
+unsafe impl GlobalAlloc for Counted {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the caller's promises are those that the system asks for.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counted = Counted;
+
+#[test]
+fn nothing_is_allocated_between_load_and_last_pixel() {
+    let before = ALLOCATIONS.load(Ordering::Relaxed);
+    drop(black_box(vec![1_u8]));
+    assert!(
+        ALLOCATIONS.load(Ordering::Relaxed) > before,
+        "the allocator counts"
+    );
+
+    let mut scene = scenes::read(&scenes::fixture_folder().join("quick.toml"));
+    (scene.render.width, scene.render.height) = (24, 18);
+    let blob = scenes::blob(&scene, 24);
+    let bytes = blob.bytes();
+    render::<Fixed, List>(bytes);
+    render::<Fixed, Bvh>(bytes);
+    render::<Fixed, Flagged>(bytes);
+    render::<f32, Flagged>(bytes);
+    render::<f64, Flagged>(bytes);
+}
+
+fn render<N: Number, A: Accel>(blob: &[u8]) {
+    let mut row = [Rgb888::default(); 24];
+    let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let before = ALLOCATIONS.load(Ordering::Relaxed);
+    let scene = Scene::from_bytes(blob).expect("the compiler's own blob");
+    let settings = Settings::of(&scene);
+    let renderer = Renderer::<N, A, { Effects::ALL.0 }>::new(&scene, settings);
+    let renderer = renderer.expect("the scene is for this renderer");
+    for y in 0..settings.height {
+        renderer.row(0, y, &mut row, &mut space.as_view(), &mut NoCount);
+        black_box(&row);
+    }
+    let allocations = ALLOCATIONS.load(Ordering::Relaxed) - before;
+    assert_eq!(
+        allocations,
+        0,
+        "{} through {}",
+        N::FORMAT.name(),
+        A::STRUCTURE.name()
+    );
+}

@@ -1,0 +1,117 @@
+//! What each shape and effect costs in flash, stack and instructions: by building and running a
+//! small scene with and without it.
+
+use crate::scenes::{Compiled, compile_with, small};
+use glam::DVec3;
+use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Place, Scene, Shape};
+
+/// The scene that all others add to: a triangle and a diffuse light that throws no shadows.
+pub const BASE: &str = "base";
+
+/// The base, and a scene for every shape and effect beside it. Scenes for shapes have no effects,
+/// and those for effects no other shapes; absorption comes with the glass that it is in.
+pub fn scenes() -> Vec<Compiled> {
+    let shapes: [(&str, fn() -> Shape); 4] = [
+        ("sphere", || Shape::Sphere {
+            center: DVec3::new(0.0, 0.0, 1.0),
+            radius: 0.8,
+        }),
+        ("box", || Shape::Box {
+            min: DVec3::new(-0.7, -0.7, 0.3),
+            max: DVec3::new(0.7, 0.7, 1.7),
+        }),
+        ("disc", || Shape::Disc {
+            center: DVec3::new(0.0, 0.0, 1.0),
+            normal: DVec3::new(0.3, -1.0, 0.4),
+            radius: 0.9,
+        }),
+        ("cone", || Shape::Cone {
+            base: DVec3::new(0.0, 0.0, 0.2),
+            base_radius: 0.8,
+            apex: DVec3::new(0.0, 0.0, 1.8),
+            apex_radius: 0.3,
+        }),
+    ];
+    let effects: [(&str, fn(&mut Scene)); 6] = [
+        ("shadow", |scene| scene.render.shadows = true),
+        ("highlight", |scene| scene.materials[0].highlight = [0.5; 3]),
+        ("mirror", |scene| scene.materials[0].mirror = [0.5; 3]),
+        ("glass", |scene| scene.materials[0].transmit = [0.9; 3]),
+        ("absorption", |scene| {
+            scene.materials[0].transmit = [0.9; 3];
+            scene.materials[0].absorption = [0.2; 3];
+        }),
+        ("checker", |scene| {
+            scene.materials[0].diffuse = Diffuse::Checker {
+                even: [0.8; 3],
+                odd: [0.2; 3],
+                size: 0.5,
+                origin: DVec3::splat(0.1),
+            }
+        }),
+    ];
+    let mut all = vec![compile(BASE, base())];
+    for (name, shape) in shapes {
+        let mut scene = base();
+        scene.objects.push(object(shape()));
+        all.push(compile(name, scene));
+    }
+    for (name, call_for) in effects {
+        let mut scene = base();
+        call_for(&mut scene);
+        all.push(compile(name, scene));
+    }
+    all
+}
+
+/// What the bar for flash is about: spheres and triangles, diffuse, with shadows.
+pub fn sphere_and_triangle() -> Compiled {
+    let mut scene = base();
+    scene.render.shadows = true;
+    scene.objects.push(object(Shape::Sphere {
+        center: DVec3::new(0.0, 0.0, 1.0),
+        radius: 0.8,
+    }));
+    compile("sphere, triangle, shadow", scene)
+}
+
+fn base() -> Scene {
+    let mut scene = Scene {
+        camera: Some(Camera {
+            eye: DVec3::new(0.0, -5.0, 2.5),
+            target: DVec3::new(0.0, 0.0, 0.7),
+            up: DVec3::Z,
+            fov_degrees: 40.0,
+        }),
+        ambient: [0.1; 3],
+        lights: vec![Light::Directional {
+            direction: DVec3::new(0.4, 1.0, -1.0),
+            color: [0.8; 3],
+        }],
+        materials: vec![Material::default()],
+        objects: vec![object(Shape::Mesh {
+            vertices: vec![
+                DVec3::new(-2.0, -2.0, 0.0),
+                DVec3::new(2.0, -2.0, 0.0),
+                DVec3::new(0.0, 2.0, 0.0),
+            ],
+            triangles: vec![[0, 1, 2]],
+        })],
+        ..Scene::default()
+    };
+    scene.render.shadows = false;
+    scene
+}
+
+fn object(shape: Shape) -> Object {
+    Object {
+        name: String::from("thing"),
+        material: 0,
+        shape,
+        place: Place::default(),
+    }
+}
+
+fn compile(name: &'static str, scene: Scene) -> Compiled {
+    compile_with(name, scene, [32, 32], small())
+}
