@@ -22,7 +22,7 @@ pub struct Hit<N: Number> {
     /// The geometric normal, of length 1: outward from solids, to the side from which a triangle's
     /// corners run counter-clockwise, along a disc's own.
     pub normal: [N; 3],
-    /// Whether the ray came from the side to which the normal points.
+    /// Whether the ray came from the side to which the normal points; of a solid, whether it enters.
     pub front: bool,
     /// The object, counted in scene-file order.
     pub object: u32,
@@ -304,13 +304,14 @@ impl<N: Number> Found<N> {
         let best = self.best;
         let point = ray.at(best.t);
         let index = best.index as usize;
-        let surface = scene.shapes.surface(best.kind, index, best.part, point)?;
+        let shapes = &scene.shapes;
+        let (surface, front) = shapes.surface(best.kind, index, best.part, ray, point)?;
         let scale = extent(ray.origin).max(extent(point)).max(surface.extent);
         Some(Hit {
             t: self.t,
             point,
             normal: surface.normal,
-            front: N::dot(surface.normal, ray.slope) < N::Wide::default(),
+            front,
             object: scene.object(best.primitive),
             primitive: best.primitive,
             error: N::error_bound(scale),

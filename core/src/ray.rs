@@ -102,7 +102,14 @@ impl<N: Number> Ray<N> {
         let start = [start(0), start(1), start(2)];
         let within = |axis: usize| start[axis] <= reach && -start[axis] <= reach;
         let meets = tmax >= zero && within(0) && within(1) && within(2);
-        let coordinate = |axis: usize| N::settle(N::narrow(start[axis]));
+        // A ray that misses the scene starts anywhere in it, so that every kernel keeps its range.
+        let coordinate = |axis: usize| {
+            if meets {
+                N::settle(N::narrow(start[axis]))
+            } else {
+                N::ZERO
+            }
+        };
         Ok(Self {
             origin: [coordinate(0), coordinate(1), coordinate(2)],
             slope,

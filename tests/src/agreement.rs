@@ -88,6 +88,17 @@ fn compare_one<N: Number>(
 }
 
 impl Tally {
+    /// Both together.
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            rays: self.rays + other.rays,
+            hits: self.hits + other.hits,
+            listed: self.listed + other.listed,
+            plain_planes: self.plain_planes + other.plain_planes,
+            flagged_planes: self.flagged_planes + other.flagged_planes,
+        }
+    }
+
     /// Tells what was compared, and holds the flagged hierarchy to half of the planes.
     pub fn report<N: Number>(&self, name: &str) {
         assert!(2 * self.flagged_planes <= self.plain_planes, "{name}");

@@ -29,7 +29,7 @@ const SIZES: [(&str, f64, f64); 5] = [
 ];
 
 /// On the storage lattice, inside the scene.
-fn lattice(x: f64) -> f64 {
+pub fn lattice(x: f64) -> f64 {
     (x * 256.0).round().clamp(-8_380_000.0, 8_380_000.0) / 256.0
 }
 
@@ -157,7 +157,7 @@ pub fn shape_of(solid: &Solid) -> Shape {
 }
 
 /// Slopes with 23 fraction bits, exact in every number format.
-fn slope(direction: DVec3) -> [f64; 3] {
+pub fn slope(direction: DVec3) -> [f64; 3] {
     let scaled = direction / direction.abs().max_element();
     let steps = f64::powi(2.0, 23);
     (scaled * steps).to_array().map(|x| x.round() / steps)

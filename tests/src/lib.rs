@@ -3,6 +3,10 @@
 pub mod agreement;
 pub mod bounds;
 pub mod cases;
+pub mod effort;
+pub mod exact_box;
+pub mod judge;
+pub mod moved;
 pub mod query;
 pub mod scenes;
 

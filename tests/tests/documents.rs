@@ -1,6 +1,7 @@
 //! What the documents show is what the project has: examples and dumps cannot fall behind.
 
 use gridel_host::compile::{Options, compile};
+use gridel_tests::bounds::{CROSSING, NORMAL, markdown};
 use gridel_tests::scenes;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -59,4 +60,55 @@ fn the_formats_dump_is_what_the_compiler_writes() {
             .map(|byte| u8::from_str_radix(byte, 16).expect("a byte"))
     });
     assert!(dump.eq(compiled.blob.bytes().iter().copied()));
+}
+
+/// `GRIDEL_BLESS=1` writes the tables anew.
+#[test]
+fn the_accuracy_page_prints_the_bounds_that_tests_hold() {
+    let path = "core/ACCURACY.md";
+    let mut page = text(path);
+    for (name, table) in [("crossing", &CROSSING), ("normal", &NORMAL)] {
+        let start = format!("<!-- {name} -->\n");
+        let (before, rest) = page.split_once(&start).expect("the table's place");
+        let (_, after) = rest.split_once("<!-- end -->").expect("its end");
+        page = format!("{before}{start}{}<!-- end -->{after}", markdown(table));
+    }
+    if std::env::var_os("GRIDEL_BLESS").is_some() {
+        fs::write(repository().join(path), &page).expect("the page can be written to");
+    }
+    assert!(
+        text(path) == page,
+        "{path} is behind tests/src/bounds.rs: run with GRIDEL_BLESS=1"
+    );
+}
+
+/// Every hard case is listed, and every test that the list names is there.
+#[test]
+fn every_hard_case_has_its_test() {
+    let page = text("tests/CASES.md");
+    let chapters = [
+        ('A', 15),
+        ('D', 16),
+        ('E', 9),
+        ('F', 14),
+        ('G', 6),
+        ('H', 7),
+    ];
+    for (chapter, last) in chapters {
+        for number in 1..=last {
+            let row = format!("| {chapter}{number} ");
+            assert_eq!(page.matches(&row).count(), 1, "{row}");
+        }
+    }
+    for row in ["| D17 to D23 ", "| D24 ", "| D25 ", "B1 to B9", "C1 to C8"] {
+        assert!(page.contains(row), "{row}");
+    }
+    let mut tests = 0;
+    for name in page.split('`').filter(|name| name.contains(".rs::")) {
+        let (path, function) = name.split_once("::").expect("a file and a function");
+        let source = text(path);
+        assert!(source.contains(&format!("fn {function}(")), "{name}");
+        tests += 1;
+    }
+    assert!(tests > 60, "{tests}");
 }

@@ -7,10 +7,20 @@ use core::ops::{Add, Mul, Neg, Sub};
 /// A number in fixed point. Where its binary point lies depends on what it stands for: a length
 /// has 13 fraction bits, a ratio 30, a radiance 20 (see [`Number`]).
 ///
-/// All operators wrap; none panics, whatever the build's overflow checks.
+/// All operators wrap; none panics, whatever the build's overflow checks. Kernels stay within ranges
+/// that they document, and tests hold them to that with the feature `strict-ranges`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Fixed(pub i32);
+
+/// Nothing, or with the feature `strict-ranges` a panic where a kernel left the range that its
+/// documentation says it keeps.
+#[inline(always)]
+fn keep(in_range: impl FnOnce() -> bool) {
+    if cfg!(feature = "strict-ranges") {
+        assert!(in_range(), "a number left its range");
+    }
+}
 
 /// Fraction bits of a length.
 pub(crate) const LENGTH_BITS: u32 = 13;
@@ -100,6 +110,7 @@ impl Add for Fixed {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
+        keep(|| self.0.checked_add(other.0).is_some());
         Self(self.0.wrapping_add(other.0))
     }
 }
@@ -108,6 +119,7 @@ impl Sub for Fixed {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
+        keep(|| self.0.checked_sub(other.0).is_some());
         Self(self.0.wrapping_sub(other.0))
     }
 }
@@ -116,6 +128,7 @@ impl Neg for Fixed {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
+        keep(|| self.0.checked_neg().is_some());
         Self(self.0.wrapping_neg())
     }
 }
@@ -124,7 +137,9 @@ impl Mul for Fixed {
     type Output = Self;
     #[inline(always)]
     fn mul(self, ratio: Self) -> Self {
-        Self(round_off(self.0 as i64 * ratio.0 as i64, RATIO_BITS) as i32)
+        let product = round_off(self.0 as i64 * ratio.0 as i64, RATIO_BITS);
+        keep(|| i32::try_from(product).is_ok());
+        Self(product as i32)
     }
 }
 
@@ -137,6 +152,7 @@ impl Add for Product {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
+        keep(|| self.0.checked_add(other.0).is_some());
         Self(self.0.wrapping_add(other.0))
     }
 }
@@ -145,6 +161,7 @@ impl Sub for Product {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
+        keep(|| self.0.checked_sub(other.0).is_some());
         Self(self.0.wrapping_sub(other.0))
     }
 }
@@ -153,6 +170,7 @@ impl Neg for Product {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
+        keep(|| self.0.checked_neg().is_some());
         Self(self.0.wrapping_neg())
     }
 }
@@ -350,6 +368,7 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn wide_scale(wide: Product, ratio: Self) -> Product {
+        keep(|| i64::try_from((wide.0 as i128 * ratio.0 as i128) >> RATIO_BITS).is_ok());
         let high = (wide.0 >> 32).wrapping_mul(ratio.0 as i64);
         let low = (wide.0 & 0xffff_ffff).wrapping_mul(ratio.0 as i64);
         Product((high << (32 - RATIO_BITS)).wrapping_add(low >> RATIO_BITS))
@@ -494,6 +513,7 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn scale_up(self, bits: u32) -> Self {
+        keep(|| self.0.unsigned_abs().leading_zeros() > bits);
         Fixed(self.0.wrapping_shl(bits))
     }
 

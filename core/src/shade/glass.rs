@@ -82,3 +82,6 @@ pub(crate) fn absorb<N: Number>(material: &Material, length: N) -> Color<N> {
             .map(|coefficient| length.exp_neg(coefficient)),
     )
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,11 +4,21 @@
 //! and the half angle of the cone as `sin`, `cos`, the line is in the solid's mantle where
 //! `cos |Q + D s| <= g - e s`; `Q` and `D` are position and direction without their axial parts,
 //! `g = cos r - sin y` and `e = sin d.y`. The axial parts are removed *before* anything is squared.
-//! The discriminant of that quadratic factors:
-//! `B^2 - A C = cos^2 (|g D + e Q| - cos |Q x D|) (|g D + e Q| + cos |Q x D|)`, and `A` and `C` are
-//! differences of squares too, so nothing large cancels. The mantle's interval on the line is then
-//! cut with that of the two caps, and since both solids are convex there is no seam: no hole at a
-//! rim, no double count, no mirrored nappe.
+//!
+//! The quadric `A s^2 + 2 B s + C` of that is judged at its vertex: the origin slides to `s = -B/A`
+//! (as far as the solid reaches), where `C = (cos |Q| - g) (cos |Q| + g)` decides alone whether the
+//! line meets the mantle, and where the roots' `B^2 - A C` is no difference of near equals. A root
+//! where the mantle is thin against the solid, at the tip, is taken again from an origin that slid
+//! there, because the quadric's error is that of the mantle's radius at its origin.
+//!
+//! The mantle's interval on the line is then cut with that of the two caps, and since both solids
+//! are convex there is no seam: no hole at a rim, no double count, no mirrored nappe.
+//!
+//! **Ranges of `fixed`.** A solid lies in the scene's box, so its reach (half the height and the
+//! widest radius) is below 80,300 units, or 2^29.3 sub-steps, and scaled up below 2^29. The closest
+//! point lies within one reach of the middle and the origin slides by at most one along the major
+//! axis, so no point is farther than two reaches from the middle; and `cos |Q| + g` is at most that
+//! and a radius: three reaches, below 2^31. Squares are below 2^62.
 
 use super::{Crossing, Part, Surface, extent};
 use crate::blob::record::Cone;
@@ -19,6 +29,10 @@ use crate::ray::Ray;
 const MANTLE: Part = 0;
 const BASE: Part = 1;
 const APEX: Part = 2;
+
+/// How often the origin slides on towards the tip, at most: where the solid is thinner by half than
+/// at the last place.
+const SLIDES: usize = 4;
 
 /// The solid's frame, from its integers.
 struct Frame<N> {
@@ -31,6 +45,94 @@ struct Frame<N> {
     sin: N,
     /// Radius halfway.
     radius: N,
+}
+
+/// Where a line is in the infinite mantle: `cos |q + d s| <= g - e s`.
+struct Mantle<N: Number> {
+    q: [N; 3],
+    d: [N; 3],
+    cos: N,
+    g: N,
+    e: N,
+    a: N::Wide,
+    /// Beyond twice this nothing counts, on either side.
+    reach: N,
+}
+
+impl<N: Number> Mantle<N> {
+    /// `C` and `B` of the quadric around a point `q` of the line.
+    #[inline(always)]
+    fn terms(&self, q: [N; 3], g: N) -> (N::Wide, N::Wide) {
+        let (_, distance) = N::normalize(q);
+        let c = (distance * self.cos - g).wide(distance * self.cos + g);
+        let b = N::wide_scale(N::wide_scale(N::dot(q, self.d), self.cos), self.cos);
+        (c, b + g.wide(self.e))
+    }
+
+    /// Where the line enters and leaves, by roots around the origin that slid to `s`.
+    fn roots(&self, s: N) -> Option<(N, N)> {
+        let zero = N::Wide::default();
+        let axis = |k: usize| self.q[k] + s * self.d[k];
+        let g = self.g - self.e * s;
+        let (c, b) = self.terms([axis(0), axis(1), axis(2)], g);
+        let a = self.a;
+        let magnitude = |x: N::Wide| if x < zero { -x } else { x };
+        let mean = N::geometric_mean(magnitude(a), magnitude(c));
+        let root = if (a < zero) != (c < zero) {
+            N::wide_norm([b, mean, zero])
+        } else if magnitude(b) >= mean {
+            N::geometric_mean(magnitude(b) - mean, magnitude(b) + mean)
+        } else if a < zero {
+            // Steeper than the mantle: such a line always meets it, here at the tip.
+            zero
+        } else {
+            return None;
+        };
+        let sum = if b < zero { root - b } else { -(b + root) };
+        // The roots of a s^2 + 2 b s + c = 0, without a difference of near equals.
+        let (first, second) = (N::divide(sum, a), N::divide(c, sum));
+        let (low, high) = if first < second {
+            (first, second)
+        } else {
+            (second, first)
+        };
+        let (from, to) = if a > zero {
+            // Both roots lie on one nappe: the real one if g is positive halfway between them.
+            if g * N::from_wide(a) + N::from_wide(b) * self.e < N::ZERO {
+                return None;
+            }
+            (low, high)
+        } else if a < zero {
+            // One root on each nappe; on the real one g - e s is positive.
+            if self.e > N::ZERO {
+                (-N::FAR, low)
+            } else {
+                (high, N::FAR)
+            }
+        } else if b == zero {
+            // Along a line of the mantle, or parallel to the axis of a cylinder: inside or not.
+            if c > zero {
+                return None;
+            }
+            (-N::FAR, N::FAR)
+        } else if (b > zero) != (self.e > N::ZERO) {
+            // Parallel to a line of the mantle, on the mirrored nappe.
+            return None;
+        } else {
+            let root = N::divide(-c, b).half();
+            if b > zero {
+                (-N::FAR, root)
+            } else {
+                (root, N::FAR)
+            }
+        };
+        let end = self.reach + self.reach;
+        let (lowest, highest) = (-end - s, end - s);
+        Some((
+            s + from.max(lowest).min(highest),
+            s + to.max(lowest).min(highest),
+        ))
+    }
 }
 
 impl Cone {
@@ -58,9 +160,8 @@ impl Cone {
     /// The crossing with the solid. `recip_norm2` is [`Number::recip_norm2`] of the ray's slopes.
     ///
     /// Cost: some 20 multiplications and additions to reject by the sphere around the solid; some
-    /// 100, six divisions and five square roots to accept.
+    /// 100, five divisions and six square roots to accept.
     pub(crate) fn cross<N: Number>(&self, ray: &Ray<N>, recip_norm2: N) -> Option<Crossing<N>> {
-        let zero = N::Wide::default();
         let frame = self.frame::<N>();
         let middle = self.middle::<N>();
         let axis = |k: usize| middle[k] - ray.origin[k];
@@ -70,12 +171,15 @@ impl Cone {
         let apart = [axis(0), axis(1), axis(2)];
         let widest = N::from_lattice(self.base_radius.max(self.apex_radius));
         let reach = frame.half_height + widest;
-        if !(apart[0].abs() <= reach && apart[1].abs() <= reach && apart[2].abs() <= reach) {
+        // The box first, so that squares stay in range.
+        let near = |k: usize| apart[k].abs() <= reach;
+        if !(near(0) && near(1) && near(2) && N::dot(apart, apart) <= reach.wide(reach)) {
             return None;
         }
 
         // From here on lengths are shifted up as far as their products allow.
         let bits = N::headroom(reach);
+        let reach = reach.scale_up(bits);
         let q = apart.map(|x| x.scale_up(bits));
         let half_height = frame.half_height.scale_up(bits);
         let d = ray.slope;
@@ -103,77 +207,53 @@ impl Cone {
             let axis = |k: usize| v[k] - axial * frame.axis[k];
             [axis(0), axis(1), axis(2)]
         };
-        let (q_across, d_across) = (across(q, q_axial), across(d, d_axial));
         let (cos, sin) = (frame.cos, frame.sin);
-        let g = frame.radius.scale_up(bits) * cos - q_axial * sin;
-        let e = d_axial * sin;
-        let cross =
-            |i: usize, j: usize| q_across[i].wide(d_across[j]) - q_across[j].wide(d_across[i]);
-        let twist = N::wide_scale(N::wide_norm([cross(1, 2), cross(2, 0), cross(0, 1)]), cos);
-        let lever = |k: usize| d_across[k].wide(g) + q_across[k].wide(e);
-        let lever = N::wide_norm([lever(0), lever(1), lever(2)]);
-        if lever < twist {
-            return None;
-        }
-        let root = N::wide_scale(N::geometric_mean(lever - twist, lever + twist), cos);
+        let d_across = across(d, d_axial);
         let (_, d_norm) = N::normalize(d_across);
-        let (_, q_norm) = N::normalize(q_across);
-        let a = (d_norm * cos - e).wide(d_norm * cos + e);
-        let b = N::wide_scale(N::wide_scale(N::dot(q_across, d_across), cos), cos) + g.wide(e);
-        let c = (q_norm * cos - g).wide(q_norm * cos + g);
-        let sum = if b < zero { -b + root } else { -(b + root) };
-        // The roots of a s^2 + 2 b s + c = 0, without a difference of near equals.
-        let (first, second) = (N::divide(sum, a), N::divide(c, sum));
-        let (low, high) = if first < second {
-            (first, second)
-        } else {
-            (second, first)
+        let e = d_axial * sin;
+        let mantle = Mantle {
+            q: across(q, q_axial),
+            d: d_across,
+            cos,
+            g: frame.radius.scale_up(bits) * cos - q_axial * sin,
+            e,
+            a: (d_norm * cos - e).wide(d_norm * cos + e),
+            reach,
         };
-        let (from, to) = if a > zero {
-            // Both roots lie on one nappe: the real one if g is positive halfway between them.
-            if g * N::from_wide(a) + N::from_wide(b) * e < N::ZERO {
-                return None;
-            }
-            (low, high)
-        } else if a < zero {
-            // One root on each nappe; on the real one g - e s is positive.
-            if e > N::ZERO {
-                (-N::FAR, low)
+        let within = |s: N| s.max(-reach).min(reach);
+        let (_, b) = mantle.terms(mantle.q, mantle.g);
+        let mut cut = mantle.roots(within(N::divide(-b, mantle.a)))?;
+        let mut thin = (widest.scale_up(bits) * cos).half();
+        for _ in 0..SLIDES {
+            let (first, last) = (within(cut.0.max(enter.0)), within(cut.1.min(leave.0)));
+            let (g_first, g_last) = (mantle.g - e * first, mantle.g - e * last);
+            let (s, g) = if g_first < g_last {
+                (first, g_first)
             } else {
-                (high, N::FAR)
+                (last, g_last)
+            };
+            if g >= thin {
+                break;
             }
-        } else if b == zero {
-            // Along a line of the mantle, or parallel to the axis of a cylinder: inside or not.
-            if c > zero {
-                return None;
-            }
-            (-N::FAR, N::FAR)
-        } else if (b > zero) != (e > N::ZERO) {
-            // Parallel to a line of the mantle, on the mirrored nappe.
-            return None;
-        } else {
-            let root = N::divide(-c, b).half();
-            if b > zero {
-                (-N::FAR, root)
-            } else {
-                (root, N::FAR)
-            }
-        };
-        if from > enter.0 {
-            enter = (from, MANTLE);
+            cut = mantle.roots(s)?;
+            thin = g.half();
         }
-        if to < leave.0 {
-            leave = (to, MANTLE);
+        if cut.0 > enter.0 {
+            enter = (cut.0, MANTLE);
+        }
+        if cut.1 < leave.0 {
+            leave = (cut.1, MANTLE);
         }
         let back = |(s, part): (N, Part)| (closest + s.scale_down(bits), part);
-        // Written so that a NaN is no crossing.
-        (enter.0 <= leave.0).then(|| Crossing {
+        // Ends beyond what counts are infinite. Written so that a NaN is no crossing.
+        let (start, end) = (-reach - reach, reach + reach);
+        (enter.0 <= leave.0 && enter.0 > start && leave.0 < end).then(|| Crossing {
             enter: back(enter),
             leave: back(leave),
         })
     }
 
-    /// Outward; at the tip of a cone along the axis.
+    /// Outward. Every normal of the mantle supports the tip, so there any of them will do.
     pub(crate) fn surface<N: Number>(&self, part: Part, point: [N; 3]) -> Surface<N> {
         let frame = self.frame::<N>();
         let middle = self.middle::<N>();
@@ -187,22 +267,46 @@ impl Cone {
                 let q = q.map(|x| x.scale_up(bits));
                 let axial = N::from_wide(N::dot(q, frame.axis));
                 let axis = |k: usize| q[k] - axial * frame.axis[k];
-                let (outward, distance) = N::normalize([axis(0), axis(1), axis(2)]);
-                if distance == N::ZERO {
-                    if axial > N::ZERO {
-                        frame.axis
-                    } else {
-                        frame.axis.map(|x| -x)
-                    }
-                } else {
-                    let axis = |k: usize| outward[k] * frame.cos + frame.axis[k] * frame.sin;
-                    N::normalize([axis(0), axis(1), axis(2)]).0
+                let (mut outward, distance) = N::normalize([axis(0), axis(1), axis(2)]);
+                // Next to the axis what is left may be rounding, and lean; on it, any way is outward.
+                let lean = N::from_wide(N::dot(outward, frame.axis));
+                if lean.abs() > N::ratio(1 << 20) || distance == N::ZERO {
+                    outward = upright(outward, frame.axis);
                 }
+                let axis = |k: usize| outward[k] * frame.cos + frame.axis[k] * frame.sin;
+                N::normalize([axis(0), axis(1), axis(2)]).0
             }
         };
         Surface {
             normal,
             extent: extent(middle) + frame.half_height + frame.radius + frame.radius,
         }
+    }
+}
+
+/// A direction at right angles to an axis: `lean` without its part along the axis, or without that
+/// the axis of coordinates that is farthest from it.
+#[cold]
+fn upright<N: Number>(lean: [N; 3], axis: [N; 3]) -> [N; 3] {
+    let without = |v: [N; 3]| {
+        let along = N::from_wide(N::dot(v, axis));
+        let across = |k: usize| v[k] - along * axis[k];
+        N::normalize([across(0), across(1), across(2)]).0
+    };
+    let [x, y, z] = axis.map(N::abs);
+    let farthest = if x <= y && x <= z {
+        [N::ONE, N::ZERO, N::ZERO]
+    } else if y <= z {
+        [N::ZERO, N::ONE, N::ZERO]
+    } else {
+        [N::ZERO, N::ZERO, N::ONE]
+    };
+    let upright = without(lean);
+    // Once more, because little may have been left.
+    let upright = without(upright);
+    if extent(upright) == N::ZERO {
+        without(farthest)
+    } else {
+        upright
     }
 }

@@ -16,16 +16,18 @@ impl Disc {
         let axis = |k: usize| N::from_lattice(self.center[k]) - ray.origin[k];
         let relative = [axis(0), axis(1), axis(2)];
         let t = cross_plane(ray, self.normal(), relative)?;
+        // A ray passes through the scene within 2^16 units; more would leave the range of `fixed`
+        // below, where the point may be as far again from the centre.
+        let within_scene = t.abs() <= N::FAR.half();
+        if !within_scene {
+            return None;
+        }
         let radius = N::from_lattice(self.radius);
         let axis = |k: usize| t * ray.slope[k] - relative[k];
         let apart = [axis(0), axis(1), axis(2)];
         // The box first, so that squares stay in range.
         let near = |k: usize| apart[k].abs() <= radius;
-        let inside = t.abs() <= N::FAR
-            && near(0)
-            && near(1)
-            && near(2)
-            && N::dot(apart, apart) <= radius.wide(radius);
+        let inside = near(0) && near(1) && near(2) && N::dot(apart, apart) <= radius.wide(radius);
         inside.then_some(Crossing::flat(t))
     }
 

@@ -67,8 +67,11 @@ impl Kind {
     }
 }
 
-/// The part of a primitive's surface that a crossing lies on; each kernel numbers its own.
+/// The part of a primitive's surface that a crossing lies on; each kernel numbers its own, from 0.
 pub(crate) type Part = u8;
+
+/// Added to the part where a ray leaves a solid.
+const LEAVING: Part = 1 << 7;
 
 /// Where a line enters and leaves a primitive; the same place twice for a flat one.
 #[derive(Clone, Copy, Debug)]
@@ -94,6 +97,25 @@ pub(crate) struct Surface<N> {
     pub(crate) normal: [N; 3],
     /// The largest magnitude of a coordinate that the kernel computed with, for the error bound.
     pub(crate) extent: N,
+}
+
+impl<N: Number> Surface<N> {
+    /// The surface as a ray sees it that only grazes it.
+    ///
+    /// What a ray enters or leaves is known better than the normal, which the point's rounding turns
+    /// where a solid is as thin as an error bound; and a grazing ray's may turn too far by a bit.
+    #[cold]
+    fn level_with(self, ray: &Ray<N>) -> Self {
+        let turned = N::wide_scale(N::dot(self.normal, ray.slope), N::recip_norm2(ray.slope));
+        let turned = N::from_wide(turned);
+        let axis = |k: usize| self.normal[k] - turned * ray.slope[k];
+        let (normal, length) = N::normalize([axis(0), axis(1), axis(2)]);
+        let opposite = self.normal.map(|x| -x);
+        Self {
+            normal: if length == N::ZERO { opposite } else { normal },
+            extent: self.extent,
+        }
+    }
 }
 
 /// The hit of a crossing in `tmin <= t <= tmax`, if there is one.
@@ -127,7 +149,7 @@ pub(crate) fn accept<N: Number>(
         return Some((enter, crossing.enter.1));
     }
     let leave = clamp(crossing.leave.0);
-    (leave >= ray.tmin && leave <= tmax).then_some((leave, crossing.leave.1))
+    (leave >= ray.tmin && leave <= tmax).then_some((leave, crossing.leave.1 | LEAVING))
 }
 
 /// The crossing of a plane through `relative` (a point as seen from the ray's origin) with a normal
@@ -284,15 +306,19 @@ impl Shapes<'_> {
         })
     }
 
-    /// How a primitive's surface lies where a ray hit it.
+    /// How a primitive's surface lies where a ray hit it, and whether the ray came from the side to
+    /// which the normal points.
     pub(crate) fn surface<N: Number>(
         &self,
         kind: Kind,
         index: usize,
         part: Part,
+        ray: &Ray<N>,
         point: [N; 3],
-    ) -> Option<Surface<N>> {
-        Some(match kind {
+    ) -> Option<(Surface<N>, bool)> {
+        let leaves = part & LEAVING != 0;
+        let part = part & !LEAVING;
+        let surface = match kind {
             Kind::Triangle => triangle::surface(self.triangle(index)?),
             Kind::Sphere => {
                 let (center, radius) = self.spheres.get(index)?;
@@ -301,6 +327,16 @@ impl Shapes<'_> {
             Kind::Box => self.boxes.get(index)?.surface(part),
             Kind::Disc => self.discs.get(index)?.surface(),
             Kind::Cone => self.cones.get(index)?.surface(part, point),
+        };
+        let against = N::dot(surface.normal, ray.slope) < N::Wide::default();
+        let front = match kind {
+            Kind::Triangle | Kind::Disc => against,
+            Kind::Sphere | Kind::Box | Kind::Cone => !leaves,
+        };
+        Some(if front == against {
+            (surface, front)
+        } else {
+            (surface.level_with(ray), front)
         })
     }
 }

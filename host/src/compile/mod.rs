@@ -10,7 +10,7 @@ mod writer;
 
 pub use lattice::BITS as LATTICE_BITS;
 
-use crate::scene::Scene;
+use crate::scene::{Object, Scene};
 use glam::DVec3;
 use gridel_core::Structure;
 use hierarchy::Primitive;
@@ -72,6 +72,8 @@ pub struct Report {
 /// Why a scene cannot be compiled.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum CompileError {
+    #[error("{object} has a coordinate or a length that is infinite or not a number")]
+    NotFinite { object: String },
     #[error("the scene's size is {size}, which no lattice can hold")]
     #[diagnostic(help("scale the scene to a size between 1e-250 and 1e250"))]
     Extent { size: f64 },
@@ -119,6 +121,12 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
     if !LATTICE_BITS.contains(&options.lattice_bits) {
         return Err(CompileError::LatticeBits {
             bits: options.lattice_bits,
+        });
+    }
+    let bad = |object: &&Object| !primitives::is_finite(&object.shape);
+    if let Some(object) = scene.objects.iter().find(bad) {
+        return Err(CompileError::NotFinite {
+            object: object.name.clone(),
         });
     }
     let (lowest, highest) = primitives::extent(scene);

@@ -84,6 +84,31 @@ pub fn extent(scene: &Scene) -> (DVec3, DVec3) {
     }
 }
 
+/// Whether all numbers of a shape are finite.
+pub fn is_finite(shape: &Shape) -> bool {
+    match shape {
+        Shape::Sphere { center, radius } => center.is_finite() && radius.is_finite(),
+        Shape::Mesh { vertices, .. } => vertices.iter().all(|vertex| vertex.is_finite()),
+        Shape::Box { min, max } => min.is_finite() && max.is_finite(),
+        Shape::Disc {
+            center,
+            normal,
+            radius,
+        } => center.is_finite() && normal.is_finite() && radius.is_finite(),
+        Shape::Cone {
+            base,
+            base_radius,
+            apex,
+            apex_radius,
+        } => {
+            base.is_finite()
+                && apex.is_finite()
+                && base_radius.is_finite()
+                && apex_radius.is_finite()
+        }
+    }
+}
+
 /// How far a unit disc with a normal reaches along each axis.
 fn disc_reach(normal: DVec3) -> DVec3 {
     let normal = (normal / normal.abs().max_element()).normalize();

@@ -99,8 +99,10 @@ fn slab(y: &Real, rise: &Real, half: &Real) -> Span {
 
 /// Roots of `a t^2 + 2 b t + c` in order, `a` not zero.
 fn roots(a: &Real, b: &Real, c: &Real) -> Span {
+    // Where a is negative, the line is steeper than a cone's mantle and meets both of its nappes,
+    // perhaps at the tip.
     let square = b * b - a * c;
-    if square.is_negative() {
+    if square.is_negative() && a.is_positive() {
         return None;
     }
     let root = square.sqrt();
@@ -264,33 +266,19 @@ impl Solid {
         excesses
     }
 
-    /// How far a point of the surface is from a rim or a corner, at least; infinite on shapes that
-    /// have none, and on flat ones, which have no second face to meet there.
-    pub fn rim_distance(&self, point: [f64; 3]) -> f64 {
+    /// About how large the shape is.
+    pub fn size(&self) -> f64 {
+        let apart = |a: &[f64; 3], b: &[f64; 3]| norm(&minus(&vector(*a), &vector(*b))).to_f64();
         match self {
-            Solid::Box { .. } | Solid::Cone { .. } => -self.excesses(point)[1],
-            _ => f64::INFINITY,
-        }
-    }
-
-    /// How many times thinner a cone is at a point than where it is thickest, up to a million times;
-    /// 1 for other shapes.
-    pub fn taper(&self, point: [f64; 3]) -> f64 {
-        match (self, self.frame()) {
-            (
-                Solid::Cone {
-                    base_radius,
-                    apex_radius,
-                    ..
-                },
-                Some(frame),
-            ) => {
-                let y = dot(&minus(&vector(point), &frame.middle), &frame.axis);
-                let radius = (&frame.radius - &frame.sin * y / &frame.cos).to_f64();
-                let widest = base_radius.max(*apex_radius);
-                (widest / radius.max(1e-300)).clamp(1.0, 1e6)
-            }
-            _ => 1.0,
+            Solid::Sphere { radius, .. } | Solid::Disc { radius, .. } => *radius,
+            Solid::Box { lowest, highest } => apart(lowest, highest),
+            Solid::Cone {
+                base,
+                apex,
+                base_radius,
+                apex_radius,
+            } => apart(base, apex).max(*base_radius).max(*apex_radius),
+            Solid::Triangle([a, b, c]) => apart(a, b).max(apart(b, c)),
         }
     }
 

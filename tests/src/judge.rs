@@ -1,0 +1,195 @@
+//! Judges one answer about one shape by arithmetic of 320 bits.
+
+use crate::bounds::{length_step, normal_step, ratio_step, ulp_of_one};
+use crate::cases::shape_of;
+use crate::exact::{Real, dot, norm, vector};
+use crate::query::{UnitRay, closest, point_of};
+use crate::scenes;
+use crate::solid::{Line, Solid};
+use glam::DVec3;
+use gridel_core::{Hit, List, NoCount, Number, Scene};
+use gridel_host::blob::Blob;
+use gridel_host::scene::Shape;
+
+/// A blob of shapes whose lattice is known: one unit is one scene unit, and its zero is the
+/// scene's. Two specks at the ends of the lattice see to that; they come last.
+pub fn blob_of<'s>(solids: impl IntoIterator<Item = &'s Solid>) -> Blob {
+    let speck = |corner: f64| Shape::Sphere {
+        center: DVec3::splat(corner),
+        radius: 1.0 / 256.0,
+    };
+    let specks = [speck(-32_764.0), speck(32_764.0)];
+    let shapes = solids.into_iter().map(shape_of).chain(specks);
+    let blob = scenes::blob(&scenes::of(shapes), 24);
+    let scene = blob.scene().expect("a scene");
+    let header = scene.header();
+    assert_eq!((header.unit_exponent, header.origin), (0, [0.0; 3]));
+    blob
+}
+
+/// Errors that are tried, in steps; the last stands for anything.
+const LADDER: [f64; 15] = [
+    0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 64.0, 1024.0, 1e9,
+];
+
+/// Whether an answer is right for a shape that differs by no more than `error`.
+fn is_right(solid: &Solid, line: &Line, answer: Option<f64>, error: f64) -> bool {
+    let zero = Real::of(0.0);
+    let grown = solid.span(line, &Real::of(error));
+    let behind = |span: &(Real, Real)| span.0 <= zero;
+    if solid.is_flat() && answer.is_none() && grown.as_ref().is_some_and(behind) {
+        return true;
+    }
+    let shrunk = solid.span(line, &Real::of(-error));
+    let Some(t) = answer.map(Real::of) else {
+        return shrunk.is_none_or(|(_, leave)| leave <= zero);
+    };
+    let Some((first, last)) = grown else {
+        return false;
+    };
+    if solid.is_flat() {
+        return first <= t && t <= last;
+    }
+    let (enter, leave) = shrunk.unwrap_or((last.clone(), first.clone()));
+    let entering = first <= t && t <= enter;
+    let leaving = leave <= t && t <= last && !first.is_positive();
+    entering || leaving
+}
+
+/// What is wrong with an answer, in the units of the table of bounds.
+pub struct Verdict<N: Number> {
+    pub hit: Option<Hit<N>>,
+    /// The least error on a ladder that explains where the hit is, or that there is none.
+    pub crossing: f64,
+    /// The same, if there should have been a hit and was none, or the other way.
+    pub flag: f64,
+    /// By how much the normal is off.
+    pub normal: f64,
+    /// By how much the normal's length differs from 1, in units of last place.
+    pub length: f64,
+    /// How far the surface is from the hit's point, as a part of the bound that comes with it.
+    pub point: f64,
+    /// Whether a ray that enters the solid was said to leave it, or the other way.
+    pub wrong_side: bool,
+}
+
+/// Asks the list about one ray and judges the answer. `None` if the ray hits a speck.
+///
+/// Origins lie on the lattice and slopes have at most 23 fraction bits, so that every number format
+/// is asked the same question.
+pub fn verdict<N: Number>(
+    solid: &Solid,
+    scene: &Scene<'_>,
+    (origin, slope): ([f64; 3], [f64; 3]),
+) -> Option<Verdict<N>> {
+    let ray = UnitRay::new(origin, slope);
+    let Some(ready) = ray.ready::<N>(scene) else {
+        panic!("{ray:?} is refused");
+    };
+    assert_eq!(
+        ready.slope().map(N::ratio_to_f64),
+        slope.map(|x| x + 0.0),
+        "{ray:?}"
+    );
+    let hit = closest::<N, List>(scene, &ready, &mut NoCount);
+    if hit.is_some_and(|hit| hit.primitive != 0) {
+        return None;
+    }
+    let line = Line::new(origin, slope);
+    let t = hit.map(|hit| N::far_to_f64(hit.t));
+    assert!(t.is_none_or(|t| t >= 0.0), "behind: {ray:?}");
+    let place = origin.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let step = length_step::<N>(place.max(solid.extent()).max(t.unwrap_or(0.0)));
+    let explains = |&&error: &&f64| is_right(solid, &line, t, error * step);
+    let crossing = *LADDER.iter().find(explains).unwrap_or(&f64::INFINITY);
+    let span = solid.span(&line, &Real::of(0.0));
+    let exists = span.is_some_and(|span| !span.1.is_negative());
+    let mut verdict = Verdict {
+        hit,
+        crossing,
+        flag: if exists == t.is_some() { 0.0 } else { crossing },
+        normal: 0.0,
+        length: 0.0,
+        point: 0.0,
+        wrong_side: false,
+    };
+    let Some(hit) = hit else {
+        return Some(verdict);
+    };
+    let point = point_of(&hit);
+    assert!(point.iter().all(|x| x.is_finite()), "{ray:?}");
+    let normal = hit.normal.map(N::ratio_to_f64);
+    let off = solid.normals(point).into_iter().map(|face| {
+        let step = normal_step::<N>(&face);
+        let apart = |k: usize| (&face.exact[k] - Real::of(normal[k])).to_f64().abs();
+        let off = apart(0).max(apart(1)).max(apart(2)) / step;
+        // Where the point's rounding turned the normal to the wrong side of the ray, the hit's is
+        // level with the ray.
+        let against = dot(&face.exact, &line.slope).is_negative();
+        if solid.is_flat() || against == hit.front {
+            return off;
+        }
+        let level = dot(&vector(normal), &line.slope) / norm(&line.slope);
+        off.min(level.to_f64().abs() / ratio_step::<N>())
+    });
+    verdict.normal = off.fold(f64::INFINITY, f64::min);
+    let length: f64 = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+    verdict.length = (length - 1.0).abs() / ulp_of_one::<N>();
+    verdict.point = solid.excesses(point)[0].abs() / hit.error.length_to_f64();
+    // Entering or leaving is told apart where a solid smaller by the bound is met, too.
+    if let (false, Some((enter, leave))) =
+        (solid.is_flat(), solid.span(&line, &Real::of(-8.0 * step)))
+    {
+        let t = Real::of(N::far_to_f64(hit.t));
+        verdict.wrong_side = if hit.front { t > enter } else { t < leave };
+    }
+    Some(verdict)
+}
+
+/// The worst of many verdicts, with the rays that caused them.
+#[derive(Default)]
+pub struct Worst {
+    pub rays: usize,
+    pub hits: usize,
+    pub crossing: (f64, String),
+    pub flag: (f64, String),
+    pub normal: (f64, String),
+    pub length: (f64, String),
+    pub point: (f64, String),
+    pub wrong_sides: (f64, String),
+}
+
+impl Worst {
+    /// Takes a verdict into account; `about` tells of its case.
+    pub fn take<N: Number>(&mut self, verdict: &Verdict<N>, about: impl Fn() -> String) {
+        self.rays += 1;
+        self.hits += usize::from(verdict.hit.is_some());
+        let worse = |worst: &mut (f64, String), value: f64| {
+            if value.is_nan() || value > worst.0 {
+                *worst = (value, format!("{} gives {:?}", about(), verdict.hit));
+            }
+        };
+        worse(&mut self.crossing, verdict.crossing);
+        worse(&mut self.flag, verdict.flag);
+        worse(&mut self.normal, verdict.normal);
+        worse(&mut self.length, verdict.length);
+        worse(&mut self.point, verdict.point);
+        let sides = self.wrong_sides.0 + f64::from(u8::from(verdict.wrong_side));
+        worse(&mut self.wrong_sides, sides);
+    }
+}
+
+/// Shapes of every kind whose numbers lie on the lattice, around the scene's zero.
+pub fn lattice_soup(seed: u64, count: usize) -> gridel_host::scene::Scene {
+    let solids = (0..count).map(|number| {
+        let shape = number % crate::cases::SHAPES.len();
+        let case = crate::cases::cases(seed * 1000 + number as u64, shape, 1, 0);
+        shape_of(&case[0].solid)
+    });
+    // Specks hold the lattice's place and step, as in `blob_of`.
+    let speck = |corner: f64| Shape::Sphere {
+        center: DVec3::splat(corner),
+        radius: 1.0 / 256.0,
+    };
+    scenes::of(solids.chain([speck(-32_764.0), speck(32_764.0)]))
+}

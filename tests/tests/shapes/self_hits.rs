@@ -1,0 +1,222 @@
+//! A ray that leaves a surface does not meet it again, and meets what lies just beyond (hard cases
+//! F1 to F3, and the nudge test of D25).
+//!
+//! All shapes but triangles and discs are convex, so a ray from the outside of a face into the half
+//! space of that face's normal can never meet the solid again: at rims, at tips, on hairs, anywhere.
+//! A ray that goes on inside must leave: as long as it starts inside, which it does unless the solid
+//! is thinner there than the error bound.
+
+use glam::DVec3;
+use gridel_core::{Hit, List, NoCount, Number, Scene};
+use gridel_tests::cases::{SHAPES, cases, lattice};
+use gridel_tests::effort::part_of;
+use gridel_tests::every_format;
+use gridel_tests::judge::blob_of;
+use gridel_tests::query::{UnitRay, closest, depart};
+use gridel_tests::random::Random;
+use gridel_tests::solid::Solid;
+
+/// A direction into the half space of a normal, often grazing.
+fn outward(random: &mut Random, normal: DVec3) -> DVec3 {
+    let direction = DVec3::from_array(random.direction());
+    let cosine = direction.dot(normal);
+    let lift = if random.one_in(3) {
+        random.unit() * 1e-3
+    } else {
+        cosine.abs()
+    };
+    direction + (lift - cosine) * normal
+}
+
+fn next_hit<N: Number>(scene: &Scene<'_>, from: [f64; 3], way: DVec3) -> Option<Hit<N>> {
+    let ray = UnitRay::new(from, way.to_array()).ready::<N>(scene);
+    closest::<N, List>(scene, &ray.expect("a ray"), &mut NoCount)
+}
+
+fn no_self_hits<N: Number>(shape: usize, shapes: usize, rays_each: usize) {
+    let mut random = Random(77);
+    let (mut away, mut through, mut thin) = (0, 0, 0);
+    for case in cases(500 + shape as u64, shape, shapes, rays_each) {
+        let blob = blob_of([&case.solid]);
+        let scene = blob.scene().expect("a scene");
+        for (origin, slope) in case.rays {
+            let Some(hit) = next_hit::<N>(&scene, origin, DVec3::from_array(slope)) else {
+                continue;
+            };
+            if hit.primitive != 0 {
+                continue;
+            }
+            for side in [1.0, -1.0] {
+                let normal = side * DVec3::from_array(hit.normal.map(N::ratio_to_f64));
+                let way = outward(&mut random, normal);
+                let from = depart(&hit, side);
+                let outside = side > 0.0 || case.solid.is_flat();
+                if !outside && case.solid.excesses(from)[0] > -0.5 * hit.error.length_to_f64() {
+                    thin += 1;
+                    continue;
+                }
+                let again = next_hit::<N>(&scene, from, way).filter(|next| next.primitive == 0);
+                let about = || {
+                    format!(
+                        "{} {:?} {origin:?} {slope:?} {hit:?} {side} {way:?} {again:?}",
+                        N::FORMAT.name(),
+                        case.solid
+                    )
+                };
+                if outside {
+                    away += 1;
+                    assert!(again.is_none(), "{}", about());
+                } else {
+                    through += 1;
+                    assert!(again.is_some_and(|again| !again.front), "{}", about());
+                }
+            }
+        }
+    }
+    eprintln!(
+        "{:9} {:5}: {away} rays away and {through} rays through, no self-hit; {thin} where the \
+         solid is thinner than the error bound",
+        SHAPES[shape],
+        N::FORMAT.name()
+    );
+}
+
+/// 1,000 shapes and 1,000 rays at each in the full run; the sizes of a shape span seven magnitudes
+/// and its offset is up to the lattice's end.
+#[test]
+fn rays_that_leave_a_shape_do_not_meet_it() {
+    let (shapes, rays) = (part_of(150, 1000), part_of(100, 1000));
+    let mut failures = Vec::new();
+    for shape in 0..SHAPES.len() {
+        fn one<N: Number>(shape: usize, shapes: usize, rays: usize, failures: &mut Vec<String>) {
+            let result = std::panic::catch_unwind(|| no_self_hits::<N>(shape, shapes, rays));
+            let name = || format!("{} {}", SHAPES[shape], N::FORMAT.name());
+            failures.extend(result.err().map(|_| name()));
+        }
+        every_format!(one(shape, shapes, rays, &mut failures));
+    }
+    assert!(failures.is_empty(), "{failures:?}");
+}
+
+/// A shape and the same shape larger by a gap on all sides, along the axes of the lattice.
+fn nested(random: &mut Random, shape: usize, gap: f64) -> (Solid, Solid) {
+    let place = DVec3::from_array(random.direction()) * random.magnitude(1.0, 10_000.0);
+    let place = place.map(lattice);
+    let size = lattice(random.magnitude(1.0, 5000.0));
+    let axis = random.below(3);
+    let up = DVec3::AXES[axis];
+    let both = |make: &dyn Fn(f64) -> Solid| (make(0.0), make(gap));
+    match SHAPES[shape] {
+        "sphere" => both(&|gap| Solid::Sphere {
+            center: place.to_array(),
+            radius: size + gap,
+        }),
+        "box" => both(&|gap| Solid::Box {
+            lowest: (place - size - gap).to_array(),
+            highest: (place + size + gap).to_array(),
+        }),
+        "disc" => both(&|gap| Solid::Disc {
+            center: (place + up * gap).to_array(),
+            normal: up.to_array(),
+            radius: size * if gap > 0.0 { 4.0 } else { 1.0 },
+        }),
+        "triangle" => both(&|gap| {
+            let size = size * if gap > 0.0 { 4.0 } else { 1.0 };
+            let (u, v) = (DVec3::AXES[(axis + 1) % 3], DVec3::AXES[(axis + 2) % 3]);
+            let place = place + up * gap;
+            let corners = [
+                place - u * size - v * size,
+                place + u * size,
+                place + v * size,
+            ];
+            Solid::Triangle(corners.map(|corner| corner.map(lattice).to_array()))
+        }),
+        _ => both(&|gap| Solid::Cone {
+            base: (place - up * (size + gap)).to_array(),
+            apex: (place + up * (size + gap)).to_array(),
+            base_radius: size + gap,
+            apex_radius: size + gap,
+        }),
+    }
+}
+
+/// A second surface at eight error bounds' distance is still met: the departure loses no contact.
+#[test]
+fn a_second_surface_close_by_is_met() {
+    fn judge<N: Number>(shape: usize) {
+        let mut random = Random(78);
+        let (mut rays, mut least) = (0, f64::INFINITY);
+        for _ in 0..part_of(60, 1000) {
+            // The bound of the farthest point, in whole steps of the lattice.
+            let worst = N::error_bound(N::length_from_f64(40_000.0)).length_to_f64();
+            let gap = (8.0 * worst * 256.0).ceil() / 256.0;
+            let (inner, outer) = nested(&mut random, shape, gap);
+            let blob = blob_of([&inner, &outer]);
+            let scene = blob.scene().expect("a scene");
+            for _ in 0..part_of(40, 100) {
+                // Between the two, or from far away with only the inner one in the way.
+                let way = DVec3::from_array(random.direction());
+                let Some(hit) = from_between::<N>(&scene, &inner, &mut random, way) else {
+                    continue;
+                };
+                let normal = DVec3::from_array(hit.normal.map(N::ratio_to_f64));
+                // Flat shapes are left steeply enough to pass below the second one.
+                let way = outward(&mut random, normal) + normal * 0.25;
+                let next = next_hit::<N>(&scene, depart(&hit, 1.0), way);
+                let met = next.is_some_and(|next| next.primitive == 1);
+                assert!(
+                    met,
+                    "{} {inner:?} {gap} {hit:?} {way:?} {next:?}",
+                    N::FORMAT.name()
+                );
+                assert!(gap >= 8.0 * hit.error.length_to_f64());
+                rays += 1;
+                least = least.min(gap / hit.error.length_to_f64());
+            }
+        }
+        assert!(rays > 0);
+        eprintln!(
+            "{:9} {:5}: {rays} rays met the surface at {least:.1} error bounds' distance or more",
+            SHAPES[shape],
+            N::FORMAT.name()
+        );
+    }
+    for shape in 0..5 {
+        every_format!(judge(shape));
+    }
+}
+
+/// A hit of the inner of two nested shapes from the outside, by a ray that starts between them.
+fn from_between<N: Number>(
+    scene: &Scene<'_>,
+    inner: &Solid,
+    random: &mut Random,
+    way: DVec3,
+) -> Option<Hit<N>> {
+    let middle = match *inner {
+        Solid::Sphere { center, .. } | Solid::Disc { center, .. } => DVec3::from_array(center),
+        Solid::Box { lowest, highest } => {
+            (DVec3::from_array(lowest) + DVec3::from_array(highest)) * 0.5
+        }
+        Solid::Cone { base, apex, .. } => (DVec3::from_array(base) + DVec3::from_array(apex)) * 0.5,
+        Solid::Triangle([a, b, c]) => {
+            let [a, b, c] = [a, b, c].map(DVec3::from_array);
+            (a + b + c) / 3.0
+        }
+    };
+    let extent = inner.size() * 0.2;
+    let target = middle + DVec3::from_array(random.direction()) * extent;
+    let start = target - way * inner.size() * 4.0;
+    // The first hit of the inner one as if the outer one were not there: tmin moves past it.
+    let mut ray = UnitRay::new(start.to_array(), way.to_array());
+    for _ in 0..4 {
+        let ready = ray.ready::<N>(scene)?;
+        let hit = closest::<N, List>(scene, &ready, &mut NoCount)?;
+        if hit.primitive == 0 {
+            return hit.front.then_some(hit);
+        }
+        let next = N::far_to_f64(hit.t);
+        ray.tmin = next + next * f64::powi(2.0, -22) + f64::powi(2.0, -12);
+    }
+    None
+}
