@@ -84,13 +84,16 @@ impl Cost {
     }
 }
 
+/// What the ray through the middle of a pixel meets: an object, and how far away.
+type FirstHit = Option<(u32, f64)>;
+
 /// The picture that others are measured against.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Reference {
     /// Linear, 65535 being white.
     pub pixels: Vec<[u16; 3]>,
-    /// What the ray through the middle of each pixel meets: an object, and how far away.
-    hits: Vec<Option<(u32, f64)>>,
+    /// Of each pixel.
+    hits: Vec<FirstHit>,
 }
 
 /// Why something cannot be measured.
@@ -113,7 +116,7 @@ pub struct Bench<'s> {
     structure: Structure,
     pub size: [u16; 2],
     blobs: HashMap<(u8, u64), Blob>,
-    hits: HashMap<(u8, u64, &'static str), Vec<Option<(u32, f64)>>>,
+    hits: HashMap<(u8, u64, &'static str), Vec<FirstHit>>,
 }
 
 /// How the reference is made: double precision, the finest lattice, all reflections that a picture
@@ -242,7 +245,7 @@ impl<'s> Bench<'s> {
     }
 
     /// What the rays through the middles of pixels meet.
-    fn first_hits(&mut self, setting: &Setting) -> Result<Vec<Option<(u32, f64)>>, MeasureError> {
+    fn first_hits(&mut self, setting: &Setting) -> Result<Vec<FirstHit>, MeasureError> {
         let name = setting.format.name();
         let key = (setting.lattice_bits, setting.cutoff.to_bits(), name);
         if let Some(hits) = self.hits.get(&key) {
@@ -283,7 +286,7 @@ struct Look<'l> {
 struct InFormat<'l, N>(Look<'l>, PhantomData<N>);
 
 impl<N: Number> StructureVisitor for InFormat<'_, N> {
-    type Output = Result<Vec<Option<(u32, f64)>>, RenderError>;
+    type Output = Result<Vec<FirstHit>, RenderError>;
 
     fn visit<A: Accel>(self) -> Self::Output {
         let Look { scene, settings } = self.0;
@@ -316,7 +319,7 @@ fn errors(
     [width, height]: [u16; 2],
     reference: &Reference,
     pixels: &[[u16; 3]],
-    hits: &[Option<(u32, f64)>],
+    hits: &[FirstHit],
 ) -> Errors {
     let [expected, found] = [&reference.pixels[..], pixels]
         .map(|p| -> Vec<[f64; 3]> { p.iter().map(|pixel| pixel.map(display)).collect() });
