@@ -15,7 +15,7 @@ use embedded_graphics_simulator::SimulatorDisplay;
 use gridel_core::accel::MAX_STACK_DEPTH;
 use gridel_core::render::{MAX_RAY_DEPTH, Pixel};
 use gridel_core::{
-    Counters, Effects, Flagged, Format, Renderer, Rgb565, Settings, Structure, Workspace,
+    Counters, DualSplit, Effects, Format, Renderer, Rgb565, Settings, Structure, Workspace,
 };
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
@@ -97,7 +97,7 @@ fn what_a_display_does_not_show_is_not_traced() {
         dither: true,
         ..Settings::of(&scene)
     };
-    let renderer = Renderer::<f32, Flagged, { Effects::ALL.0 }>::new(&scene, settings);
+    let renderer = Renderer::<f32, DualSplit, { Effects::ALL.0 }>::new(&scene, settings);
     let renderer = renderer.expect("a renderer");
     let mut space = Workspace::<f32, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
     let mut space = space.as_view();

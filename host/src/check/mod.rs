@@ -53,6 +53,7 @@
 //! ```toml
 //! [[check]]
 //! scene = "quick.toml"
+//! accel = "flagged"
 //! formats = ["fixed", "f32"]
 //! size = [48, 36]
 //! hash = { fixed = "c50483f14794bca8", f32 = "2506030936d23933" }
@@ -67,7 +68,7 @@
 //! firmware = "../tests/firmware"
 //! program = "picture"
 //! target = "thumbv7em-none-eabihf"
-//! features = ["f32", "flagged"]
+//! features = ["f32", "flagged", "everything"]
 //! picture = "picture.rgb"
 //! budget = { picture-instructions = 12_000_000, picture-stack-bytes = 2500 }
 //! ```

@@ -132,13 +132,14 @@ fn firmware_is_built_and_run() {
         r#"
 [[check]]
 scene = "quick.toml"
+accel = "dual-split"
 size = [24, 18]
 [[check.board]]
 machine = "mps2-an386"
 firmware = '{firmware}'
 program = "picture"
 target = "thumbv7em-none-eabihf"
-features = ["f32", "flagged", "everything"]
+features = ["f32", "dual-split", "everything"]
 picture = "picture.rgb"
 budget = {{ picture-instructions = 40_000_000, load-instructions = 1 }}
 "#
