@@ -83,7 +83,7 @@ const ALL: u32 = Effects::ALL.0;
 /// Whether pictures are made through a structure day by day. The others are there to be compared:
 /// they have one ray loop, for all effects, because this program has to be compiled, too.
 const fn is_for_pictures(structure: Structure) -> bool {
-    matches!(structure, Structure::Bvh | Structure::Flagged)
+    matches!(structure, Structure::Bvh | Structure::DualSplit)
 }
 
 fn with_structure<N: Number, A: Accel>(
