@@ -8,10 +8,15 @@ use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Place, Scene,
 /// The scene that all others add to: a triangle and a diffuse light that throws no shadows.
 pub const BASE: &str = "base";
 
+/// A part's name, and how to make it.
+type Shapes = [(&'static str, fn() -> Shape); 4];
+/// A part's name, and how to call for it.
+type Effects = [(&'static str, fn(&mut Scene)); 6];
+
 /// The base, and a scene for every shape and effect beside it. Scenes for shapes have no effects,
 /// and those for effects no other shapes; absorption comes with the glass that it is in.
 pub fn scenes() -> Vec<Compiled> {
-    let shapes: [(&str, fn() -> Shape); 4] = [
+    let shapes: Shapes = [
         ("sphere", || Shape::Sphere {
             center: DVec3::new(0.0, 0.0, 1.0),
             radius: 0.8,
@@ -32,7 +37,7 @@ pub fn scenes() -> Vec<Compiled> {
             apex_radius: 0.3,
         }),
     ];
-    let effects: [(&str, fn(&mut Scene)); 6] = [
+    let effects: Effects = [
         ("shadow", |scene| scene.render.shadows = true),
         ("highlight", |scene| scene.materials[0].highlight = [0.5; 3]),
         ("mirror", |scene| scene.materials[0].mirror = [0.5; 3]),
