@@ -57,9 +57,9 @@ fn judge<N: Number>(inverse_ior: i32, entering: bool, sin: f64) -> Result<(), Te
         return Ok(());
     }
     let exact = reflected(k, entering, cos);
-    // The angle outside is as uncertain as the margin is small; where glass is almost like air, the
-    // angle inside is as flat, and what is reflected depends on the ratio of the two.
-    let flat = if entering { 1.0 } else { cos };
+    // The other angle is as uncertain as the margin is small; where glass is almost like air, this
+    // angle may be as flat, and what is reflected depends on the ratio of the two.
+    let flat = cos.max(1.0 - k);
     let bound = 256.0 * u::<N>() * (1.0 / (margin.abs().sqrt() * flat)).max(1.0);
     prop_assert!((found - exact).abs() <= bound, "{found} {exact} {margin}");
     if !entering && margin < 0.0 {
