@@ -53,7 +53,8 @@ fn judge<N: Number>(inverse_ior: i32, entering: bool, sin: f64) -> Result<(), Te
     } else {
         (k * k - sin2) / (k * k)
     };
-    if margin.abs() < 8.0 * u::<N>() {
+    let rounding = if entering { 8.0 } else { 8.0 / (k * k) };
+    if margin.abs() < rounding * u::<N>() {
         return Ok(());
     }
     let exact = reflected(k, entering, cos);
