@@ -44,12 +44,22 @@ pub mod selftest;
 pub mod shade;
 mod shape;
 
+#[cfg(feature = "apex")]
+pub use accel::Apex;
 #[cfg(feature = "bvh")]
 pub use accel::Bvh;
+#[cfg(feature = "cylinder-cube")]
+pub use accel::CylinderCube;
+#[cfg(feature = "cylinder-cube-entry")]
+pub use accel::CylinderCubeEntry;
+#[cfg(feature = "cylinder-cube-tight")]
+pub use accel::CylinderCubeTight;
 #[cfg(feature = "dual-split")]
 pub use accel::DualSplit;
 #[cfg(feature = "flagged")]
 pub use accel::Flagged;
+#[cfg(feature = "ray-classes")]
+pub use accel::RayClasses;
 pub use accel::{Accel, List, Stack, StackView, Structure, StructureVisitor};
 pub use blob::{Aligned, BlobError, Scene};
 pub use count::{Count, Counters, NoCount, RayKind};

@@ -18,12 +18,21 @@ const _: () = assert!(align_of::<u128>() == ALIGNMENT && size_of::<u128>() == AL
 impl Blob {
     /// Copies bytes into aligned memory.
     pub fn new(bytes: &[u8]) -> Self {
-        let mut words = vec![0_u128; bytes.len().div_ceil(ALIGNMENT)];
-        bytemuck::cast_slice_mut(&mut words)[..bytes.len()].copy_from_slice(bytes);
+        let mut blob = Self::zeros(bytes.len());
+        blob.bytes_mut().copy_from_slice(bytes);
+        blob
+    }
+
+    /// So many zeros, to be written to.
+    pub(crate) fn zeros(length: usize) -> Self {
         Self {
-            words,
-            length: bytes.len(),
+            words: vec![0; length.div_ceil(ALIGNMENT)],
+            length,
         }
+    }
+
+    pub(crate) fn bytes_mut(&mut self) -> &mut [u8] {
+        &mut bytemuck::cast_slice_mut(&mut self.words)[..self.length]
     }
 
     /// Reads a blob file, unchecked.
@@ -62,10 +71,15 @@ pub fn is_blob(path: &Path) -> io::Result<bool> {
 
 /// The structures that a scene holds, the one that a verb takes unless it is told first.
 pub fn best_structures(scene: &Scene<'_>) -> impl Iterator<Item = Structure> {
-    const BEST_FIRST: [Structure; 4] = [
+    const BEST_FIRST: [Structure; 9] = [
+        Structure::Apex,
+        Structure::RayClasses,
+        Structure::CylinderCubeEntry,
         Structure::DualSplit,
         Structure::Flagged,
         Structure::Bvh,
+        Structure::CylinderCubeTight,
+        Structure::CylinderCube,
         Structure::List,
     ];
     BEST_FIRST

@@ -23,11 +23,27 @@ pub fn of(shapes: impl IntoIterator<Item = Shape>) -> Scene {
     }
 }
 
-/// A blob with every structure.
+/// A blob with every structure, the cylinder cubes with three gridels a side.
 pub fn blob(scene: &Scene, lattice_bits: u8) -> Blob {
+    blob_with_gridels(scene, lattice_bits, 3)
+}
+
+/// A blob with every structure, the cylinder cubes with a number of gridels a side.
+pub fn blob_with_gridels(scene: &Scene, lattice_bits: u8, gridels: u32) -> Blob {
+    blob_with_tables(scene, lattice_bits, gridels, 1 << 24)
+}
+
+/// A blob with every structure, and tables as small as they can be.
+pub fn compact_blob(scene: &Scene, lattice_bits: u8) -> Blob {
+    blob_with_tables(scene, lattice_bits, 1, 4096)
+}
+
+fn blob_with_tables(scene: &Scene, lattice_bits: u8, gridels: u32, budget: u64) -> Blob {
     let options = Options {
         structures: Structure::ALL.to_vec(),
         lattice_bits,
+        gridels: Some(gridels),
+        budget: Some(budget),
         ..Options::default()
     };
     compile(scene, &options).expect("compiles").blob

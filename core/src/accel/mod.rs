@@ -8,28 +8,50 @@
 //! in the leaf's and every box in its parent's, and culling is monotone (see [`cull`]). Whatever
 //! was rounded on the way, a primitive that is met lies in boxes that are met.
 
+#[cfg(feature = "apex")]
+pub mod apex;
 #[cfg(feature = "bvh")]
 pub mod bvh;
+mod candidates;
 pub mod cull;
+#[cfg(feature = "cylinder-cube")]
+pub mod cylinder_cube;
+#[cfg(feature = "cylinder-cube-entry")]
+pub mod cylinder_cube_entry;
+#[cfg(feature = "cylinder-cube-tight")]
+pub mod cylinder_cube_tight;
 #[cfg(feature = "dual-split")]
 pub mod dual_split;
 #[cfg(feature = "flagged")]
 pub mod flagged;
+mod gridel_table;
+pub mod gridels;
 #[cfg(any(
     target_arch = "x86_64",
     target_arch = "aarch64",
     all(target_arch = "wasm32", target_feature = "simd128")
 ))]
 mod lanes;
+mod line;
 #[cfg(any(feature = "bvh", feature = "flagged"))]
 mod link;
 pub mod list;
 #[cfg(any(feature = "bvh", feature = "flagged"))]
 mod pairs;
+#[cfg(feature = "ray-classes")]
+pub mod ray_classes;
 mod registry;
 
+#[cfg(feature = "apex")]
+pub use apex::Apex;
 #[cfg(feature = "bvh")]
 pub use bvh::Bvh;
+#[cfg(feature = "cylinder-cube")]
+pub use cylinder_cube::CylinderCube;
+#[cfg(feature = "cylinder-cube-entry")]
+pub use cylinder_cube_entry::CylinderCubeEntry;
+#[cfg(feature = "cylinder-cube-tight")]
+pub use cylinder_cube_tight::CylinderCubeTight;
 #[cfg(feature = "dual-split")]
 pub use dual_split::DualSplit;
 #[cfg(feature = "flagged")]
@@ -37,6 +59,8 @@ pub use flagged::Flagged;
 #[cfg(any(feature = "bvh", feature = "flagged"))]
 pub use link::Link;
 pub use list::List;
+#[cfg(feature = "ray-classes")]
+pub use ray_classes::RayClasses;
 pub(crate) use registry::{Held, Records};
 pub use registry::{Structure, StructureVisitor};
 

@@ -79,14 +79,14 @@ where
         tmax: N,
         stack: &mut StackView,
         count: &mut C,
-        mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+        leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) where
         L: Fn(N) -> i32,
     {
         count.planes(6);
         count.boxes(1);
-        let mut limit = (self.limit)(tmax);
-        let mut interval = (self.root)(limit);
+        let limit = (self.limit)(tmax);
+        let interval = (self.root)(limit);
         if C::TELLS {
             count.tell(Event::Tested {
                 place: root(self.pairs).place(),
@@ -94,10 +94,44 @@ where
                 span: interval.units(),
             });
         }
-        if interval.near > interval.far {
-            return;
+        if interval.near <= interval.far {
+            self.descend(root(self.pairs), interval, limit, stack, count, leaf);
         }
-        let mut node = root(self.pairs);
+    }
+
+    /// The same from a node on, whose box is not tested. For records whose children do not depend on
+    /// their parent's interval.
+    #[inline(always)]
+    pub(super) fn enter<N: Number, C: Count>(
+        &self,
+        node: Node,
+        tmax: N,
+        stack: &mut StackView,
+        count: &mut C,
+        leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+    ) where
+        L: Fn(N) -> i32,
+    {
+        let limit = (self.limit)(tmax);
+        let interval = Interval {
+            near: 0,
+            far: limit,
+        };
+        self.descend(node, interval, limit, stack, count, leaf);
+    }
+
+    #[inline(always)]
+    fn descend<N: Number, C: Count>(
+        &self,
+        mut node: Node,
+        mut interval: Interval,
+        mut limit: i32,
+        stack: &mut StackView,
+        count: &mut C,
+        mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+    ) where
+        L: Fn(N) -> i32,
+    {
         stack.clear();
         loop {
             if C::TELLS {

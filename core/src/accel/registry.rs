@@ -121,12 +121,49 @@ structures! {
     Flagged = 2, "flagged", flagged, if feature = "flagged";
     /// A hierarchy of nodes with a split and at most two carves, 16 bytes each.
     DualSplit = 3, "dual-split", dual_split, if feature = "dual-split";
+    /// The paper's cylinder cube: for every pair of gridels what the cylinder between them meets.
+    CylinderCube = 4, "cylinder-cube", cylinder_cube, if feature = "cylinder-cube";
+    /// The cylinder cube with tight lists, sorted along the way from one gridel to the other.
+    CylinderCubeTight = 5, "cylinder-cube-tight", cylinder_cube_tight,
+        if feature = "cylinder-cube-tight";
+    /// Lists for the rays of the camera and of point lights; other rays walk `bvh`.
+    Apex = 6, "apex", apex, if feature = "apex";
+    /// The cylinder cube whose lists hold nodes of `bvh`, at which a ray enters it.
+    CylinderCubeEntry = 7, "cylinder-cube-entry", cylinder_cube_entry,
+        if feature = "cylinder-cube-entry";
+    /// Lists for classes of rays by origin and direction; rays without one walk `bvh`.
+    RayClasses = 8, "ray-classes", ray_classes, if feature = "ray-classes";
 }
 
 impl Structure {
     /// The structure's bit in the header.
     pub const fn bit(self) -> u32 {
         1 << self as u32
+    }
+
+    /// Whether loading a blob proves that this structure answers as the list does. That lists of
+    /// candidates lack nothing cannot be seen in linear time: whoever compiled the blob answers for
+    /// it. A walk through them ends all the same, and hits only what is there.
+    pub const fn is_proved(self) -> bool {
+        !matches!(
+            self,
+            Structure::CylinderCube
+                | Structure::CylinderCubeTight
+                | Structure::CylinderCubeEntry
+                | Structure::Apex
+                | Structure::RayClasses
+        )
+    }
+
+    /// Proves that a scene holds this structure, to which another one leads.
+    pub(super) fn needed_by(self, other: Self, scene: &Scene<'_>) -> Result<(), BlobError> {
+        if scene.holds(self) {
+            return Ok(());
+        }
+        Err(BlobError::MissingStructure {
+            missing: self,
+            needed_by: other,
+        })
     }
 }
 

@@ -1,6 +1,7 @@
 //! Why a blob was refused, in words that say what to do.
 
 use super::section::SectionKind;
+use crate::accel::Structure;
 use crate::shade::Effects;
 use core::fmt;
 
@@ -46,6 +47,13 @@ pub enum BlobError {
     MissingShape {
         /// The Cargo feature that is missing.
         missing: &'static str,
+    },
+    /// The blob holds a structure without another one that it leads to.
+    MissingStructure {
+        /// The structure that is not there.
+        missing: Structure,
+        /// The structure that leads to it.
+        needed_by: Structure,
     },
     /// A field of the header is out of its range.
     Header {
@@ -143,6 +151,13 @@ impl fmt::Display for BlobError {
                 f,
                 "the scene's primitives call for `{missing}`, which this build was compiled without: \
                  enable the Cargo feature of the same name in gridel-core"
+            ),
+            BlobError::MissingStructure { missing, needed_by } => write!(
+                f,
+                "the blob holds the structure {} without {}, to which it leads: build it again with \
+                 `gridel build`",
+                needed_by.name(),
+                missing.name()
             ),
             BlobError::Header {
                 field,

@@ -19,7 +19,7 @@ pub enum Indices<'a> {
 }
 
 impl<'a> Indices<'a> {
-    pub(super) fn read(sections: &Sections<'a>, kind: SectionKind) -> Result<Self, BlobError> {
+    pub(crate) fn read(sections: &Sections<'a>, kind: SectionKind) -> Result<Self, BlobError> {
         let section = sections.get(kind);
         Ok(match (section.bytes.is_empty(), section.stride) {
             (true, _) => Indices::Absent,

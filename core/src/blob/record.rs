@@ -286,6 +286,50 @@ pub struct DualNode {
     pub way: u32,
 }
 
+/// How the cylinder cubes partition the scene's box: see [`gridels`](crate::accel::gridels).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Gridels {
+    /// Gridels along a side of a face, 1 to 64.
+    pub count: u32,
+    /// The lowest corner of the partitioned box, lengths with 13 fraction bits.
+    pub low: [i32; 3],
+    /// The highest corner.
+    pub high: [i32; 3],
+    /// Gridels a length along each axis, with 44 fraction bits more than the length's.
+    pub scale: [u32; 3],
+}
+
+/// A point whose rays have lists: see [`apex`](crate::accel::apex).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ApexPoint {
+    /// The point, in 1/256 unit; magnitudes up to 2^29.
+    pub at: [i32; 3],
+    /// For each face of the cube of directions its window, or 0xffff: face `2 k` is down axis `k`,
+    /// `2 k + 1` up it.
+    pub windows: [u16; 6],
+}
+
+/// A rectangle of directions from an apex, by their slopes on the two axes that follow the major
+/// one in turn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ApexWindow {
+    /// The least slopes, ratios with 30 fraction bits.
+    pub low: [i32; 2],
+    /// Cells a slope of 2^-30, with 32 fraction bits.
+    pub scale: [u32; 2],
+    /// Cells along each side, 1 to 1024.
+    pub cells: [u16; 2],
+    /// The first cell of the window in the table; cells lie row by row of the second slope.
+    pub first_cell: u32,
+    /// Where the levels of keys begin: culling steps from the apex.
+    pub start: i32,
+    /// Levels a culling step, with 24 fraction bits.
+    pub a_step: u32,
+}
+
 /// Two 16-bit planes as one word, the way pairs hold them.
 pub const fn plane_word(planes: [i16; 2]) -> u32 {
     planes[0] as u16 as u32 | (planes[1] as u16 as u32) << 16
@@ -408,6 +452,9 @@ const _: () = {
     assert!(size_of::<Cuboid>() == 24 && size_of::<Disc>() == 40 && size_of::<Cone>() == 44);
     assert!(offset_of!(Disc, radius) == 24 && offset_of!(Disc, bounds) == 28);
     assert!(offset_of!(Cone, base_radius) == 24 && offset_of!(Cone, bounds) == 32);
+    assert!(size_of::<Gridels>() == 40 && offset_of!(Gridels, scale) == 28);
+    assert!(size_of::<ApexPoint>() == 24 && offset_of!(ApexPoint, windows) == 12);
+    assert!(size_of::<ApexWindow>() == 32 && offset_of!(ApexWindow, cells) == 16);
     assert!(size_of::<Pair>() == 32 && size_of::<FlaggedPair>() == 16);
     assert!(size_of::<DualNode>() == 16);
 };

@@ -62,12 +62,56 @@ kinds! {
     FlaggedPairs = 15, "flagged-pairs";
     /// [`DualNode`](super::record::DualNode)s.
     DualNodes = 16, "dual-nodes";
-}
-
-impl SectionKind {
-    fn from_number(number: u16) -> Option<Self> {
-        Self::ALL.get(usize::from(number).checked_sub(1)?).copied()
-    }
+    /// One [`Gridels`](super::record::Gridels): the partition of the cylinder cube.
+    CylinderGridels = 17, "cylinder-gridels";
+    /// For each pair of gridels, its list (1 to 4 bytes).
+    CylinderCells = 18, "cylinder-cells";
+    /// For each list, its first entry; then the number of entries (1 to 4 bytes).
+    CylinderStarts = 19, "cylinder-starts";
+    /// The slots of all lists (1 to 3 bytes).
+    CylinderEntries = 20, "cylinder-entries";
+    /// One [`Gridels`](super::record::Gridels): the partition of the tight cylinder cube.
+    TightGridels = 21, "tight-gridels";
+    /// For each pair of gridels, its list (1 to 4 bytes).
+    TightCells = 22, "tight-cells";
+    /// For each list, its first entry; then the number of entries (1 to 4 bytes).
+    TightStarts = 23, "tight-starts";
+    /// The slots of all lists (1 to 3 bytes).
+    TightEntries = 24, "tight-entries";
+    /// For each entry, between which levels it and its neighbours lie (1 byte).
+    TightKeys = 25, "tight-keys";
+    /// [`ApexPoint`](super::record::ApexPoint)s.
+    ApexPoints = 26, "apex-points";
+    /// [`ApexWindow`](super::record::ApexWindow)s.
+    ApexWindows = 27, "apex-windows";
+    /// For each cell of all windows, its list (1 to 4 bytes).
+    ApexCells = 28, "apex-cells";
+    /// For each list, its first entry; then the number of entries (1 to 4 bytes).
+    ApexStarts = 29, "apex-starts";
+    /// The slots of all lists (1 to 3 bytes).
+    ApexEntries = 30, "apex-entries";
+    /// For each entry, the level at which it can begin (1 byte).
+    ApexKeys = 31, "apex-keys";
+    /// One [`Gridels`](super::record::Gridels): the partition of the cube of entry nodes.
+    EntryGridels = 32, "entry-gridels";
+    /// For each pair of gridels, its list (1 to 4 bytes).
+    EntryCells = 33, "entry-cells";
+    /// For each list, its first entry; then the number of entries (1 to 4 bytes).
+    EntryStarts = 34, "entry-starts";
+    /// The nodes of all lists: numbers of pairs, and behind the last one of leaves (1 to 4 bytes).
+    EntryNodes = 35, "entry-nodes";
+    /// For each entry, between which levels it and its neighbours lie (1 byte).
+    EntryKeys = 36, "entry-keys";
+    /// [`ClassNode`](crate::accel::ray_classes::ClassNode)s, `u32` each.
+    ClassNodes = 37, "class-nodes";
+    /// For each class with a list, its list (1 to 4 bytes).
+    ClassCells = 38, "class-cells";
+    /// For each list, its first entry; then the number of entries (1 to 4 bytes).
+    ClassStarts = 39, "class-starts";
+    /// The slots of all lists (1 to 3 bytes).
+    ClassEntries = 40, "class-entries";
+    /// For each entry, the level at which it can begin (1 byte).
+    ClassKeys = 41, "class-keys";
 }
 
 /// A section's place, proved to lie in the blob.
@@ -77,8 +121,18 @@ pub(crate) struct Section<'a> {
     pub(crate) stride: usize,
 }
 
-/// All sections of a blob; absent ones are empty.
-pub(crate) struct Sections<'a>([Section<'a>; SectionKind::ALL.len()]);
+/// The bytes of a section; `None` if they do not lie in the blob.
+fn bytes_of<'a>(blob: &'a [u8], entry: &SectionEntry) -> Option<&'a [u8]> {
+    let length = (entry.count as usize).checked_mul(entry.stride.into())?;
+    let start = entry.offset as usize;
+    blob.get(start..start.checked_add(length)?)
+}
+
+/// The sections of a blob, found in its table when they are asked for; absent ones are empty.
+pub(crate) struct Sections<'a> {
+    blob: &'a [u8],
+    table: &'a [SectionEntry],
+}
 
 impl<'a> Sections<'a> {
     /// Reads the section table. Proves that kinds are known and ascend, and that sections are
@@ -93,7 +147,6 @@ impl<'a> Sections<'a> {
             })?;
         let entries: &[SectionEntry] =
             bytemuck::try_cast_slice(table).map_err(|_| BlobError::Misaligned)?;
-        let mut sections = Self([Section::default(); SectionKind::ALL.len()]);
         let mut end = size_of::<Header>() + table_bytes;
         let mut last = 0;
         for (index, entry) in entries.iter().enumerate() {
@@ -103,11 +156,10 @@ impl<'a> Sections<'a> {
                 found,
                 expected,
             };
-            let kind = SectionKind::from_number(entry.kind).ok_or(malformed(
-                "kind",
-                entry.kind.into(),
-                SectionKind::ALL.len() as u64,
-            ))?;
+            let kinds = SectionKind::ALL.len() as u64;
+            if entry.kind == 0 || u64::from(entry.kind) > kinds {
+                return Err(malformed("kind", entry.kind.into(), kinds));
+            }
             if entry.kind <= last {
                 return Err(malformed(
                     "kind, which must ascend,",
@@ -124,22 +176,12 @@ impl<'a> Sections<'a> {
             if start != expected {
                 return Err(malformed("offset", entry.offset.into(), expected as u64));
             }
-            let bytes = (entry.count as usize)
-                .checked_mul(entry.stride.into())
-                .and_then(|length| start.checked_add(length))
-                .and_then(|stop| blob.get(start..stop))
-                .ok_or(malformed(
-                    "last byte",
-                    u64::from(entry.offset) + u64::from(entry.count) * u64::from(entry.stride),
-                    blob.len() as u64,
-                ))?;
+            let bytes = bytes_of(blob, entry).ok_or(malformed(
+                "last byte",
+                u64::from(entry.offset) + u64::from(entry.count) * u64::from(entry.stride),
+                blob.len() as u64,
+            ))?;
             end = start + bytes.len();
-            if let Some(slot) = sections.0.get_mut(kind as usize - 1) {
-                *slot = Section {
-                    bytes,
-                    stride: entry.stride.into(),
-                };
-            }
         }
         if end != blob.len() {
             return Err(BlobError::Truncated {
@@ -147,11 +189,20 @@ impl<'a> Sections<'a> {
                 found: blob.len(),
             });
         }
-        Ok(sections)
+        Ok(Self {
+            blob,
+            table: entries,
+        })
     }
 
     pub(crate) fn get(&self, kind: SectionKind) -> Section<'a> {
-        self.0.get(kind as usize - 1).copied().unwrap_or_default()
+        let entry = self.table.iter().find(|entry| entry.kind == kind as u16);
+        let section = entry.and_then(|entry| {
+            let bytes = bytes_of(self.blob, entry)?;
+            let stride = entry.stride.into();
+            Some(Section { bytes, stride })
+        });
+        section.unwrap_or_default()
     }
 
     /// Number of records of a section.

@@ -299,6 +299,16 @@ impl Number for Fixed {
         self.0 as f32 / (1 << LENGTH_BITS) as f32
     }
 
+    #[inline(always)]
+    fn to_q13(self) -> i32 {
+        self.0
+    }
+
+    #[inline(always)]
+    fn to_q30(self) -> i32 {
+        self.0
+    }
+
     fn length_to_f64(self) -> f64 {
         f64::from(self.0) / f64::from(1 << LENGTH_BITS)
     }

@@ -181,6 +181,16 @@ macro_rules! float_number {
                 self as f32
             }
 
+            #[inline(always)]
+            fn to_q13(self) -> i32 {
+                (self * 8192.0) as i32
+            }
+
+            #[inline(always)]
+            fn to_q30(self) -> i32 {
+                (self * 1_073_741_824.0) as i32
+            }
+
             fn length_to_f64(self) -> f64 {
                 self as f64
             }

@@ -147,6 +147,10 @@ pub trait Number:
     fn ratio_from_f64(value: f64) -> Self;
     /// A length or a ratio in single precision, for culling on machines with SIMD registers.
     fn to_f32(self) -> f32;
+    /// A length as an integer with 13 fraction bits, rounded towards zero; saturates.
+    fn to_q13(self) -> i32;
+    /// A ratio as an integer with 30 fraction bits, rounded towards zero; saturates.
+    fn to_q30(self) -> i32;
     /// A length in units in double precision, for reports.
     fn length_to_f64(self) -> f64;
     /// A ratio in double precision, for reports.

@@ -234,6 +234,26 @@ impl Shapes<'_> {
         before.map(|&other| self.count(other)).sum::<usize>() + index as usize
     }
 
+    /// The primitive of a slot among those of all kinds, as a leaf of its own; an empty leaf beyond
+    /// the last.
+    #[inline(always)]
+    pub(crate) fn single(&self, slot: u32) -> Leaf {
+        let mut first = slot;
+        for kind in Kind::ALL {
+            let count = self.count(kind) as u32;
+            if first < count {
+                let count = 1;
+                return Leaf { kind, first, count };
+            }
+            first -= count;
+        }
+        Leaf {
+            kind: Kind::Triangle,
+            first: 0,
+            count: 0,
+        }
+    }
+
     /// The corners of a triangle in 1/256 unit.
     pub(crate) fn triangle(&self, index: usize) -> Option<[[i32; 3]; 3]> {
         let [a, b, c] = self.triangles.corners(index)?;

@@ -7,7 +7,7 @@ use super::output::{print, print_json, refuse_same, write_file};
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Format, Scene, Structure};
-use gridel_host::compile::{self, Report};
+use gridel_host::compile::{self, Figures, Report, Tabled};
 use gridel_host::emit::{self, Emitted};
 use gridel_host::report::{Align, Ledger, Table, grouped, power_of_two};
 use serde::Serialize;
@@ -50,6 +50,17 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = arguments::bytes)]
     max_bytes: Option<u64>,
 
+    /// Gridels along a side of a cylinder cube's faces, 1 to 64 [default: as many as the budget
+    /// holds, the paper's 4 at the most for `cylinder-cube`]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    gridels: Option<u32>,
+
+    /// Most bytes of each table of candidate lists, for `apex` of the lists of each point; 64K and
+    /// 1M are understood [default: 48M for `cylinder-cube`, 4M for `cylinder-cube-tight` and
+    /// `ray-classes`, 2M for `cylinder-cube-entry`, 1M for `apex`]
+    #[arg(long, value_name = "N", value_parser = arguments::bytes)]
+    budget: Option<u64>,
+
     /// Write the scene as a Rust module, scene.rs and scene.gridel, into this folder as well
     #[arg(long, value_name = "DIR")]
     emit_rust: Option<PathBuf>,
@@ -90,6 +101,7 @@ struct Built<'r> {
     sah_cost: f64,
     effects: Vec<CalledFor>,
     supplied: &'r [String],
+    tables: &'r [Tabled],
     warnings: &'r [String],
 }
 
@@ -100,6 +112,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         structures: arguments.accel.clone(),
         leaf_size: arguments.leaf_size.map_or(0, usize::from),
         max_bytes: arguments.max_bytes,
+        gridels: arguments.gridels,
+        budget: arguments.budget,
         ..compile::Options::default()
     };
     let source = Source::compile(&arguments.scene, &arguments.scene_options, compiling)?;
@@ -170,6 +184,7 @@ impl<'r> Built<'r> {
             sah_cost: report.sah_cost,
             effects: CalledFor::in_report(report),
             supplied: &report.supplied,
+            tables: &report.tables,
             warnings,
         }
     }
@@ -212,6 +227,27 @@ impl<'r> Built<'r> {
                 self.largest_displacement
             ),
         );
+        for lists in self.tables {
+            let Figures {
+                cells,
+                entries,
+                longest,
+                bytes,
+                ..
+            } = lists.figures;
+            line(
+                "table",
+                format!(
+                    "{}: {} cells, {} lists, {} entries, {} in the longest, {} bytes",
+                    lists.structure,
+                    grouped(cells),
+                    grouped(lists.figures.lists),
+                    grouped(entries),
+                    grouped(longest),
+                    grouped(bytes)
+                ),
+            );
+        }
         for (what, names) in [("supplied", self.supplied), ("collapsed", self.collapsed)] {
             for name in names {
                 line(what, name.clone());

@@ -33,15 +33,19 @@ pub fn charts(
         bar("secondary", &secondary_rate),
     ];
     let curve = |of: fn(&Row) -> Option<f64>| -> Vec<Curve> {
-        let curve = |(index, name): (usize, &String)| Curve {
+        let curve = |name: &String| Curve {
             name: name.clone(),
             points: growth
                 .steps
                 .iter()
-                .filter_map(|step| Some((step.primitives as f64, of(step.rows.get(index)?)?)))
+                .filter_map(|step| {
+                    let mut rows = step.rows.iter();
+                    let row = rows.find(|row| row.structure == name.as_str())?;
+                    Some((step.primitives as f64, of(row)?))
+                })
                 .collect(),
         };
-        groups.iter().enumerate().map(curve).collect()
+        groups.iter().map(curve).collect()
     };
     let title = |what: &str| format!("{name}: {what}");
     let objects = "primitives";

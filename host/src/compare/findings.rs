@@ -36,7 +36,8 @@ const NOISE: f64 = 1.03;
 /// passed over where it comes to that.
 pub fn findings(comparison: &Comparison) -> Vec<String> {
     let list = Structure::List.name();
-    let mut findings = Vec::new();
+    let refused = comparison.refused.iter();
+    let mut findings: Vec<_> = refused.map(|refused| refused.why.clone()).collect();
     for row in &comparison.rows {
         if row.wrong.is_some() {
             findings.push(format!("{} is wrong", row.structure));

@@ -89,6 +89,16 @@ pub struct Comparison {
     /// each other, and the list was asked where they differed.
     pub listed: usize,
     pub rows: Vec<Row>,
+    /// Structures whose tables do not fit their budget.
+    pub refused: Vec<Refused>,
+}
+
+/// A structure that was not built.
+#[derive(Clone, Debug, Serialize)]
+pub struct Refused {
+    pub structure: &'static str,
+    /// With the bytes that it would take.
+    pub why: String,
 }
 
 /// The rays of the picture.
@@ -163,10 +173,20 @@ fn compare_in<N: Number>(
     progress("casting the picture's rays");
     let rays = PictureRays::<N>::of(&flagged.compiled.blob.scene()?, settings)?;
     let mut built = Vec::new();
+    let mut refused = Vec::new();
     for &structure in &options.structures {
         progress(&format!("building {}", structure.name()));
-        built.push(build(structure)?);
+        match build(structure) {
+            Err(CompareError::Compile(error @ CompileError::OverBudget { .. })) => {
+                refused.push(Refused {
+                    structure: structure.name(),
+                    why: error.to_string(),
+                });
+            }
+            other => built.push(other?),
+        }
     }
+    let structures: Vec<_> = built.iter().map(|built| built.structure).collect();
     let scenes = built
         .iter()
         .map(|built| built.compiled.blob.scene())
@@ -187,7 +207,7 @@ fn compare_in<N: Number>(
         },
     };
 
-    let contenders: Vec<_> = scenes.iter().zip(&options.structures).collect();
+    let contenders: Vec<_> = scenes.iter().zip(&structures).collect();
     progress("comparing answers");
     let verdict = judge::judge(&questions, &list_scene, &contenders, options.tests);
     let sound: Vec<_> = contenders
@@ -216,6 +236,7 @@ fn compare_in<N: Number>(
         },
         listed: verdict.listed,
         rows,
+        refused,
     })
 }
 

@@ -1,9 +1,22 @@
 //! What each structure adds to a blob: the one place on the host that names them all.
 
+use super::candidates::cylinder_cube::{self, Cylinders, Hulls};
+use super::candidates::entry::EntryNodes;
+use super::candidates::lists::Figures;
+use super::candidates::own_rays::own_rays;
+use super::candidates::target::Targets;
+use super::candidates::{Budget, apex, ray_classes};
+use super::lattice::Lattice;
 use super::pairs::Flat;
-use super::writer::{Section, section};
+use super::primitives::Primitives;
+use super::surroundings::Surroundings;
+use super::writer::{self, Section, section};
+use super::{CompileError, Options};
+use crate::scene::Scene;
 use gridel_core::Structure;
+use gridel_core::accel::ray_classes::ClassPoint;
 use gridel_core::blob::SectionKind;
+use gridel_core::blob::record::UnitBox;
 
 /// What one structure adds to a blob.
 #[derive(Clone, Debug)]
@@ -15,6 +28,44 @@ pub struct Layout {
     pub uses_leaves: bool,
     /// Entries that a walk's stack must hold.
     pub stack_depth: usize,
+    /// What its lists of candidates came to, if it has such.
+    pub table: Option<Figures>,
+}
+
+/// What structures are built from.
+#[derive(Clone, Copy)]
+pub struct Ground<'g> {
+    pub scene: &'g Scene,
+    pub lattice: &'g Lattice,
+    pub flat: &'g Flat,
+    pub primitives: &'g Primitives,
+    pub bounds: UnitBox,
+    pub surroundings: &'g Surroundings,
+    pub options: &'g Options,
+}
+
+impl Ground<'_> {
+    fn targets(&self) -> Targets<'_> {
+        Targets::new(self.primitives, self.flat, self.bounds)
+    }
+
+    /// The rays of the scene's own picture, through a blob with nothing but the hierarchy.
+    fn own_rays(&self) -> Result<Vec<ClassPoint>, CompileError> {
+        let hierarchy = Layout::of(Structure::Flagged, self)?;
+        let blob = writer::write(self, vec![hierarchy])?;
+        // What the writer writes, the core reads: the tests hold them to it.
+        Ok(blob
+            .scene()
+            .map_or_else(|_| Vec::new(), |scene| own_rays(&scene)))
+    }
+
+    /// The budget of a table, unless another is asked for.
+    fn budget(&self, usual: u64) -> Budget {
+        Budget {
+            gridels: self.options.gridels,
+            bytes: self.options.budget.unwrap_or(usual),
+        }
+    }
 }
 
 /// Whether a structure is laid out over the hierarchy; the others leave primitives as they are.
@@ -24,33 +75,69 @@ pub fn takes_hierarchy(structure: Structure) -> bool {
 
 impl Layout {
     /// Lays a structure out over the shared hierarchy.
-    pub fn of(structure: Structure, flat: &Flat) -> Self {
-        match structure {
+    ///
+    /// # Errors
+    /// If its tables do not fit their budget.
+    pub fn of(structure: Structure, ground: &Ground<'_>) -> Result<Self, CompileError> {
+        let flat = ground.flat;
+        Ok(match structure {
             Structure::List => Self {
                 structure,
                 sections: Vec::new(),
                 uses_leaves: false,
                 stack_depth: 0,
+                table: None,
             },
             Structure::Bvh => Self {
                 structure,
                 sections: vec![section(SectionKind::Pairs, &flat.pairs)],
                 uses_leaves: true,
                 stack_depth: flat.depth,
+                table: None,
             },
             Structure::Flagged => Self {
                 structure,
                 sections: vec![section(SectionKind::FlaggedPairs, &flat.flagged)],
                 uses_leaves: true,
                 stack_depth: flat.depth,
+                table: None,
             },
             Structure::DualSplit => Self {
                 structure,
                 sections: vec![section(SectionKind::DualNodes, &flat.dual)],
                 uses_leaves: true,
                 stack_depth: flat.depth,
+                table: None,
             },
-        }
+            Structure::CylinderCube => {
+                let targets = ground.targets();
+                let form = Cylinders::new(&targets);
+                let budget = ground.budget(usual_budget(structure));
+                Self::of_cube(structure, cylinder_cube::build(&form, &targets, budget)?)
+            }
+            Structure::CylinderCubeTight => {
+                let targets = ground.targets();
+                let budget = ground.budget(usual_budget(structure));
+                let cube = cylinder_cube::build(&Hulls(&targets), &targets, budget)?;
+                Self::of_cube(structure, cube)
+            }
+            Structure::CylinderCubeEntry => {
+                let targets = ground.targets();
+                let budget = ground.budget(usual_budget(structure));
+                let cube = cylinder_cube::build(&EntryNodes(&targets), &targets, budget)?;
+                Self::of_cube(structure, cube)
+            }
+            Structure::RayClasses => {
+                let budget = ground.budget(usual_budget(structure));
+                let rays = ground.own_rays()?;
+                Self::of_classes(ray_classes::build(&ground.targets(), &rays, budget)?)
+            }
+            Structure::Apex => {
+                let Surroundings { view, lights, .. } = ground.surroundings;
+                let budget = ground.budget(usual_budget(structure));
+                Self::of_apexes(apex::build(&ground.targets(), view, lights, budget))
+            }
+        })
     }
 
     /// Bytes of its own sections.
@@ -59,5 +146,28 @@ impl Layout {
             .iter()
             .map(|section| section.bytes.len())
             .sum()
+    }
+}
+
+/// The structure that another one leads on to.
+pub const fn leads_to(structure: Structure) -> Option<Structure> {
+    match structure {
+        Structure::CylinderCubeEntry | Structure::Apex | Structure::RayClasses => {
+            Some(Structure::Bvh)
+        }
+        _ => None,
+    }
+}
+
+/// Most bytes of a structure's table, where no budget is given.
+pub const fn usual_budget(structure: Structure) -> u64 {
+    const MEGABYTE: u64 = 1 << 20;
+    match structure {
+        // What the paper's machine had.
+        Structure::CylinderCube => 48 * MEGABYTE,
+        Structure::CylinderCubeEntry => 2 * MEGABYTE,
+        // For each point.
+        Structure::Apex => MEGABYTE,
+        _ => 4 * MEGABYTE,
     }
 }

@@ -1,5 +1,6 @@
 //! Compiles a scene into a blob: lattice, primitives, hierarchy, effects, bytes.
 
+mod candidates;
 mod dual_split;
 mod hierarchy;
 mod lattice;
@@ -9,14 +10,19 @@ mod primitives;
 mod surroundings;
 mod writer;
 
+pub use candidates::census::{Census, CubeCensus};
+pub use candidates::lists::Figures;
 pub use lattice::BITS as LATTICE_BITS;
+pub use layout::usual_budget;
 
 use crate::scene::{Object, Scene};
+use candidates::target::Targets;
 use glam::DVec3;
 use gridel_core::Structure;
+use gridel_core::blob::record::{Gridels, UnitBox};
 use hierarchy::Primitive;
 use lattice::Lattice;
-use layout::Layout;
+use layout::{Ground, Layout};
 use primitives::Primitives;
 use std::time::{Duration, Instant};
 
@@ -35,6 +41,11 @@ pub struct Options {
     pub leaf_size: usize,
     /// Refuse a blob that would be larger.
     pub max_bytes: Option<u64>,
+    /// Gridels along a side of a cylinder cube's faces, 1 to 64; otherwise as many as the budget
+    /// holds.
+    pub gridels: Option<u32>,
+    /// Most bytes of each table of candidate lists; otherwise what [`usual_budget`] says.
+    pub budget: Option<u64>,
 }
 
 impl Default for Options {
@@ -44,6 +55,8 @@ impl Default for Options {
             lattice_bits: 24,
             leaf_size: 0,
             max_bytes: None,
+            gridels: None,
+            budget: None,
         }
     }
 }
@@ -75,6 +88,16 @@ pub struct Report {
     /// What the structures took to build, from primitives on the lattice to records.
     #[serde(skip)]
     pub setup: Duration,
+    /// Structures with tables of candidate lists.
+    pub tables: Vec<Tabled>,
+}
+
+/// A structure with tables of candidate lists, and what they came to.
+#[derive(Clone, Copy, Debug, serde::Serialize)]
+pub struct Tabled {
+    pub structure: &'static str,
+    #[serde(flatten)]
+    pub figures: Figures,
 }
 
 /// Why a scene cannot be compiled.
@@ -109,6 +132,22 @@ pub enum CompileError {
         distance: f64,
         size: f64,
     },
+    #[error(
+        "the table of {structure}{size} takes {at_least}{needed} bytes, more than its budget of \
+         {budget}"
+    )]
+    #[diagnostic(help(
+        "raise `--budget`, or ask for fewer gridels with `--gridels`, or leave both out"
+    ))]
+    OverBudget {
+        structure: &'static str,
+        /// Such as ` with 4 gridels a side`.
+        size: String,
+        needed: u64,
+        /// `at least ` where the whole was not worth counting.
+        at_least: &'static str,
+        budget: u64,
+    },
     #[error("the blob would have {bytes} bytes, {over} more than --max-bytes allows")]
     #[diagnostic(help("{advice}"))]
     TooLarge {
@@ -141,8 +180,14 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
     let lattice = Lattice::around(lowest, highest, options.lattice_bits)?;
     let snapped = Primitives::snap(scene, &lattice)?;
     let mut structures = options.structures.clone();
+    let more: Vec<_> = structures
+        .iter()
+        .filter_map(|&it| layout::leads_to(it))
+        .collect();
+    structures.extend(more);
     structures.sort();
     structures.dedup();
+    let surroundings = surroundings::Surroundings::of(scene, &lattice, (lowest, highest))?;
     let started = Instant::now();
     let mut order: Vec<Primitive> = snapped.boxes();
     let bounds = hierarchy::bounds(&order);
@@ -162,24 +207,37 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
     };
     let flat = pairs::Flat { dual, ..flat };
     let sah_cost = root.as_ref().map_or(0.0, hierarchy::sah_cost);
-    let layouts: Vec<Layout> = structures
-        .iter()
-        .map(|&structure| Layout::of(structure, &flat))
-        .collect();
-    let setup = started.elapsed();
-    let surroundings = surroundings::Surroundings::of(scene, &lattice, (lowest, highest))?;
-    let blob = writer::write(&writer::Parts {
+    let ground = Ground {
         scene,
         lattice: &lattice,
-        primitives: &snapped,
         flat: &flat,
-        bounds,
+        primitives: &snapped,
+        bounds: bounds.unwrap_or(UnitBox([[0; 2]; 3])),
         surroundings: &surroundings,
-        layouts: &layouts,
-    })?;
+        options,
+    };
+    let layouts = structures
+        .iter()
+        .map(|&structure| Layout::of(structure, &ground))
+        .collect::<Result<Vec<_>, _>>()?;
+    let setup = started.elapsed();
+    let tables = layouts
+        .iter()
+        .filter_map(|layout| {
+            Some(Tabled {
+                structure: layout.structure.name(),
+                figures: layout.table?,
+            })
+        })
+        .collect();
+    let sizes: Vec<_> = layouts
+        .iter()
+        .map(|layout| (layout.structure, layout.bytes()))
+        .collect();
+    let blob = writer::write(&ground, layouts)?;
     let bytes = blob.bytes().len();
     if let Some(most) = options.max_bytes.filter(|&most| bytes as u64 > most) {
-        let advice = advice(options, &snapped, &layouts);
+        let advice = advice(options, &snapped, &sizes);
         return Err(CompileError::TooLarge {
             bytes: bytes as u64,
             over: bytes as u64 - most,
@@ -195,12 +253,31 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
         effects: surroundings.called_for.clone(),
         supplied: surroundings.supplied.clone(),
         setup,
+        tables,
     };
     Ok(Compiled { blob, report })
 }
 
+/// Counts what the cylinder cube of a scene takes, with a number of gridels a side (1 to 64). Builds
+/// nothing, so it takes time and no memory.
+///
+/// # Errors
+/// If the scene does not fit a lattice.
+pub fn cube_census(scene: &Scene, gridels: u32) -> Result<CubeCensus, CompileError> {
+    let (lowest, highest) = primitives::extent(scene);
+    let lattice = Lattice::around(lowest, highest, Options::default().lattice_bits)?;
+    let snapped = Primitives::snap(scene, &lattice)?;
+    let mut order: Vec<Primitive> = snapped.boxes();
+    let root = hierarchy::build(&mut order, Options::default().leaf_size);
+    let flat = root.as_ref().map(|root| pairs::flatten(root, &order));
+    let bounds = root.map_or(UnitBox([[0; 2]; 3]), |root| *root.bounds());
+    let flat = flat.unwrap_or_default();
+    let targets = Targets::new(&snapped, &flat, bounds);
+    Ok(CubeCensus::of(&targets, gridels.clamp(1, Gridels::MOST)))
+}
+
 /// What makes a blob smaller, by its own figures.
-fn advice(options: &Options, snapped: &Primitives, layouts: &[Layout]) -> String {
+fn advice(options: &Options, snapped: &Primitives, sizes: &[(Structure, usize)]) -> String {
     let mut steps = Vec::new();
     if options.lattice_bits > 16 {
         let saved = 3 * snapped.vertices.len() + 4 * snapped.spheres.len();
@@ -208,14 +285,18 @@ fn advice(options: &Options, snapped: &Primitives, layouts: &[Layout]) -> String
             steps.push(format!("`--lattice-bits 16` saves {saved} bytes"));
         }
     }
-    if options.leaf_size == 0 && layouts.iter().any(|layout| layout.uses_leaves) {
+    if options.leaf_size == 0
+        && sizes
+            .iter()
+            .any(|&(structure, _)| structure != Structure::List)
+    {
         steps.push(String::from(
             "`--leaf-size 8` makes fewer nodes and costs time",
         ));
     }
-    for layout in layouts.iter().filter(|layout| layout.bytes() > 0) {
-        let (name, saved) = (layout.structure.name(), layout.bytes());
-        steps.push(if layouts.len() > 1 {
+    for &(structure, saved) in sizes.iter().filter(|(_, bytes)| *bytes > 0) {
+        let name = structure.name();
+        steps.push(if sizes.len() > 1 {
             format!("leaving out `--accel {name}` saves {saved} bytes")
         } else {
             format!("`--accel list` instead of {name} saves {saved} bytes and costs time")

@@ -2,30 +2,17 @@
 
 use super::CompileError;
 use super::lattice::Lattice;
-use super::layout::Layout;
+use super::layout::{Ground, Layout};
 use super::pairs::Flat;
 use super::primitives::Primitives;
-use super::surroundings::Surroundings;
 use crate::blob::Blob;
-use crate::scene::Scene;
 use gridel_core::accel::Entry;
 use gridel_core::blob::record::{
-    ALIGNMENT, ENDIANNESS, Header, MAGIC, SectionEntry, Sphere16, Sphere24, UnitBox, VERSION,
-    Vertex16, Vertex24,
+    ALIGNMENT, ENDIANNESS, Header, MAGIC, SectionEntry, Sphere16, Sphere24, VERSION, Vertex16,
+    Vertex24,
 };
 use gridel_core::blob::{SectionKind, checksum};
 use gridel_core::{Kind, Structure};
-
-/// What a blob is made of.
-pub struct Parts<'p> {
-    pub scene: &'p Scene,
-    pub lattice: &'p Lattice,
-    pub primitives: &'p Primitives,
-    pub flat: &'p Flat,
-    pub bounds: Option<UnitBox>,
-    pub surroundings: &'p Surroundings,
-    pub layouts: &'p [Layout],
-}
 
 /// A section before it has a place.
 #[derive(Clone, Debug)]
@@ -77,16 +64,16 @@ fn counts_up(values: &[u32]) -> bool {
 }
 
 /// Writes a blob.
-pub fn write(parts: &Parts<'_>) -> Result<Blob, CompileError> {
-    let uses_leaves = parts.layouts.iter().any(|layout| layout.uses_leaves);
-    let Parts {
+pub fn write(ground: &Ground<'_>, layouts: Vec<Layout>) -> Result<Blob, CompileError> {
+    let uses_leaves = layouts.iter().any(|layout| layout.uses_leaves);
+    let Ground {
         scene,
         lattice,
         primitives,
         flat,
         surroundings,
         ..
-    } = *parts;
+    } = *ground;
     let objects = scene.objects.len() as u32;
     let total = primitives.total;
 
@@ -123,19 +110,16 @@ pub fn write(parts: &Parts<'_>) -> Result<Blob, CompileError> {
     if uses_leaves {
         sections.push(section(SectionKind::Leaves, &flat.leaves));
     }
-    let own = parts.layouts.iter().flat_map(|layout| &layout.sections);
-    sections.extend(own.cloned());
-    sections.retain(|section| !section.bytes.is_empty());
-    sections.sort_by_key(|section| section.kind);
-
-    let depths = parts.layouts.iter().map(|layout| layout.stack_depth);
+    let depths = layouts.iter().map(|layout| layout.stack_depth);
     let stack_depth = depths.max().unwrap_or(0) as u16;
-    let structures = parts
-        .layouts
+    let structures = layouts
         .iter()
         .map(|layout| layout.structure)
         .chain([Structure::List])
         .fold(0, |bits, structure| bits | structure.bit());
+    sections.extend(layouts.into_iter().flat_map(|layout| layout.sections));
+    sections.retain(|section| !section.bytes.is_empty());
+    sections.sort_by_key(|section| section.kind);
     let header = Header {
         magic: MAGIC,
         endianness: ENDIANNESS,
@@ -157,11 +141,11 @@ pub fn write(parts: &Parts<'_>) -> Result<Blob, CompileError> {
         storage_bits: if lattice.bits <= 16 { 16 } else { 24 },
         unit_exponent: lattice.unit_exponent,
         origin: lattice.origin.to_array(),
-        bounds: parts.bounds.unwrap_or(UnitBox([[0; 2]; 3])),
+        bounds: ground.bounds,
         stack_bytes: u32::from(stack_depth) * size_of::<Entry>() as u32,
         spare: [0; 2],
     };
-    assemble(header, &sections)
+    assemble(header, sections)
 }
 
 /// The geometry, every kind in the order of its slots.
@@ -250,10 +234,10 @@ fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Sect
 }
 
 /// Puts header, table and sections together.
-fn assemble(mut header: Header, sections: &[Section]) -> Result<Blob, CompileError> {
+fn assemble(mut header: Header, sections: Vec<Section>) -> Result<Blob, CompileError> {
     let mut offset = size_of::<Header>() + sections.len() * size_of::<SectionEntry>();
     let mut entries = Vec::with_capacity(sections.len());
-    for section in sections {
+    for section in &sections {
         offset = offset.next_multiple_of(ALIGNMENT);
         entries.push(SectionEntry {
             kind: section.kind as u16,
@@ -273,14 +257,16 @@ fn assemble(mut header: Header, sections: &[Section]) -> Result<Blob, CompileErr
         });
     }
     header.blob_bytes = offset as u32;
-    let mut bytes = Vec::with_capacity(offset);
-    bytes.extend_from_slice(bytemuck::bytes_of(&header));
-    bytes.extend_from_slice(bytemuck::cast_slice(&entries));
-    for (section, entry) in sections.iter().zip(&entries) {
-        bytes.resize(entry.offset as usize, 0);
-        bytes.extend_from_slice(&section.bytes);
+    let table = size_of::<Header>()..size_of::<Header>() + size_of_val(&entries[..]);
+    let mut blob = Blob::zeros(offset);
+    let bytes = blob.bytes_mut();
+    bytes[table].copy_from_slice(bytemuck::cast_slice(&entries));
+    for (section, entry) in sections.into_iter().zip(&entries) {
+        let start = entry.offset as usize;
+        bytes[start..start + section.bytes.len()].copy_from_slice(&section.bytes);
     }
-    header.checksum = checksum(&bytes);
     bytes[..size_of::<Header>()].copy_from_slice(bytemuck::bytes_of(&header));
-    Ok(Blob::new(&bytes))
+    header.checksum = checksum(bytes);
+    bytes[..size_of::<Header>()].copy_from_slice(bytemuck::bytes_of(&header));
+    Ok(blob)
 }

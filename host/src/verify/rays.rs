@@ -41,10 +41,12 @@ pub struct Targets {
     bounds: UnitBox,
     boxes: Vec<UnitBox>,
     triangles: Vec<[[f64; 3]; 3]>,
+    /// The camera's eye and the point lights.
+    points: Vec<[f64; 3]>,
 }
 
 /// Sorts of rays, in turn.
-const SORTS: [fn(&Targets, &mut Random) -> UnitRay; 13] = [
+const SORTS: [fn(&Targets, &mut Random) -> UnitRay; 15] = [
     primary,
     random_ray,
     along_an_axis,
@@ -58,6 +60,8 @@ const SORTS: [fn(&Targets, &mut Random) -> UnitRay; 13] = [
     grazing,
     from_on_a_surface,
     in_a_cells_plane,
+    from_a_point,
+    to_a_point,
 ];
 
 /// Endless rays through a scene, all sorts in turn; the same for the same seed.
@@ -90,11 +94,16 @@ impl Targets {
             chosen(kind).filter_map(move |slot| scene.primitive_bounds(kind, slot))
         });
         let triangles = chosen(Kind::Triangle).filter_map(|slot| scene.triangle(slot));
+        let point_lights = scene.lights().iter().filter(|it| it.directional == 0);
         let mut targets = Self {
             bounds: *scene.bounds(),
             boxes: boxes.collect(),
             triangles: triangles
                 .map(|corners| corners.map(|corner| corner.map(|x| f64::from(x) / 256.0)))
+                .collect(),
+            points: std::iter::once(scene.view().eye)
+                .chain(point_lights.map(|light| light.vector))
+                .map(|place| place.map(|x| x as f64 / 8192.0))
                 .collect(),
         };
         targets.boxes.push(targets.bounds);
@@ -341,4 +350,38 @@ fn in_a_cells_plane(targets: &Targets, random: &mut Random) -> UnitRay {
         _ => {}
     }
     at(origin, target)
+}
+
+/// From the eye or a light, or from close by.
+fn from_a_point(targets: &Targets, random: &mut Random) -> UnitRay {
+    let point = targets.points[random.below(targets.points.len())];
+    let aside = [0.0, 0.0, 1e-3, 3.0, 5.0, 100.0][random.below(6)];
+    let origin = point.map(|x| x + random.signed() * aside);
+    if random.one_in(6) {
+        return UnitRay::new(origin, random.direction());
+    }
+    let mut ray = at(origin, targets.target(random));
+    if random.one_in(4) {
+        // Beginning on either side of the point.
+        let whole = ray
+            .direction
+            .iter()
+            .fold(0.0_f64, |most, x| most.max(x.abs()));
+        ray.tmin = whole * random.signed();
+        ray.tmax = ray.tmin + 2.0 * whole * random.unit();
+    }
+    ray
+}
+
+/// To the eye or a light, and seldom beyond.
+fn to_a_point(targets: &Targets, random: &mut Random) -> UnitRay {
+    let point = targets.points[random.below(targets.points.len())];
+    let aside = [0.0, 0.0, 1e-3, 3.0, 5.0, 100.0][random.below(6)];
+    let target = point.map(|x| x + random.signed() * aside);
+    let mut ray = at(targets.target(random), target);
+    let whole = (0..3)
+        .map(|k| (target[k] - ray.origin[k]).abs())
+        .fold(0.0, f64::max);
+    ray.tmax = whole * [1.0, 1.0, 0.999, 1.0001, 3.0, f64::INFINITY][random.below(6)];
+    ray
 }

@@ -43,6 +43,11 @@ fn structures_are_those_asked_for() {
             &["--accel", "bvh", "--accel", "flagged"],
             &[Structure::List, Structure::Bvh, Structure::Flagged],
         ),
+        // Rays without a list need a hierarchy.
+        (
+            &["--accel", "apex"],
+            &[Structure::List, Structure::Bvh, Structure::Apex],
+        ),
     ] {
         folder.done(&[&["build", "quick.toml", "-o", "b"], asked].concat());
         let blob = Blob::new(&folder.read("b"));

@@ -66,7 +66,9 @@ fn small_scene() -> gridel_host::scene::Scene {
 }
 
 fn small_blob(lattice_bits: u8) -> Vec<u8> {
-    scenes::blob(&small_scene(), lattice_bits).bytes().to_vec()
+    scenes::compact_blob(&small_scene(), lattice_bits)
+        .bytes()
+        .to_vec()
 }
 
 /// Gives changed bytes a length and a checksum that fit.
@@ -113,7 +115,8 @@ fn speaks(error: &BlobError) {
     assert!(named, "{error:?}: {text}");
 }
 
-/// Uses a scene that was accepted: all its structures agree, and pictures come to an end.
+/// Uses a scene that was accepted: all structures that loading proves agree, the others come to an
+/// end, and so do pictures.
 fn works(scene: &Scene<'_>, rays_each: usize) {
     every_format!(structures_agree(scene, rays_each));
     let settings = Settings {
@@ -156,7 +159,10 @@ fn structures_agree<N: Number>(scene: &Scene<'_>, rays_each: usize) {
         );
         for structure in held(scene) {
             let (hit, any) = through::<N>(structure, scene, &ready);
-            check(hit, any);
+            // Lists of candidates that were tampered with may lack something.
+            if structure.is_proved() {
+                check(hit, any);
+            }
         }
     }
 }

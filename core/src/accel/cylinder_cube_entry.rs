@@ -1,0 +1,107 @@
+//! The cylinder cube as a door into the hierarchy: for every pair of gridels a few nodes that
+//! together hold all that a ray between the two can meet.
+//!
+//! A ray enters the hierarchy ([`Bvh`](super::Bvh)) at these nodes and skips the top of the tree;
+//! where nothing lies between two gridels it does nothing at all. The table's size hardly depends on
+//! the scene: a pair has at most [`CylinderCubeEntry::MOST_NODES`] nodes, most have one to four.
+//! Nodes are sorted along the way from one gridel to the other, as the primitives of the
+//! [tight cube](super::cylinder_cube_tight) are.
+
+use super::candidates::ListSections;
+use super::cull::Culling;
+use super::gridel_table::{Table, along};
+use super::link::Node;
+use super::pairs::Walk;
+use super::{Accel, Leaf, Records, StackView, Structure};
+use crate::blob::record::Pair;
+use crate::blob::{BlobError, Scene, SectionKind, Sections};
+use crate::count::Count;
+use crate::number::Number;
+use crate::ray::Ray;
+
+/// The cylinder cube whose lists hold nodes of the hierarchy.
+#[derive(Clone, Copy, Debug)]
+pub enum CylinderCubeEntry {}
+
+impl CylinderCubeEntry {
+    /// Most nodes of a pair of gridels.
+    pub const MOST_NODES: usize = 8;
+}
+
+impl Accel for CylinderCubeEntry {
+    const STRUCTURE: Structure = Structure::CylinderCubeEntry;
+    type Cull<N: Number> = N::Cull;
+
+    // Once, and not for every set of effects that the ray loop is compiled for.
+    #[inline(never)]
+    fn walk<N: Number, C: Count>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        cull: &N::Cull,
+        stack: &mut StackView,
+        count: &mut C,
+        mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+    ) {
+        let Held(table) = scene.held.cylinder_cube_entry;
+        let Some(passage) = table.gridels.and_then(|gridels| gridels.passage(ray)) else {
+            return;
+        };
+        count.cells(1);
+        let pairs = scene.held.bvh.0;
+        let walk = Walk {
+            scene,
+            pairs,
+            root: |limit| cull.root(scene.bounds(), limit),
+            narrow: |pair: &Pair, _, limit| cull.children(pair, limit),
+            limit: N::Cull::limit,
+        };
+        let mut tmax = ray.tmax;
+        along(&table.lists, &passage, ray, |number| {
+            let node = match number.checked_sub(pairs.len() as u32) {
+                Some(leaf) => Node::leaf(leaf),
+                None => Node::pair(number),
+            };
+            let mut limit = Some(tmax);
+            walk.enter(node, tmax, stack, count, |range, count| {
+                limit = leaf(range, count);
+                limit
+            });
+            tmax = limit?;
+            limit
+        });
+    }
+}
+
+/// The lists of a scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Held<'a>(Table<'a>);
+
+const GRIDELS: SectionKind = SectionKind::EntryGridels;
+const LISTS: ListSections = ListSections {
+    cells: SectionKind::EntryCells,
+    starts: SectionKind::EntryStarts,
+    entries: SectionKind::EntryNodes,
+    keys: Some(SectionKind::EntryKeys),
+};
+
+impl<'a> Records<'a> for Held<'a> {
+    const SECTIONS: &'static [SectionKind] = &[
+        GRIDELS,
+        LISTS.cells,
+        LISTS.starts,
+        LISTS.entries,
+        SectionKind::EntryKeys,
+    ];
+    const USES_LEAVES: bool = true;
+
+    fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
+        Table::read(sections, GRIDELS, &LISTS).map(Self)
+    }
+
+    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
+        Structure::Bvh.needed_by(Structure::CylinderCubeEntry, scene)?;
+        let nodes = scene.held.bvh.0.len() + scene.leaves.len();
+        self.0.check(scene, GRIDELS, &LISTS, nodes)?;
+        Ok(0)
+    }
+}

@@ -1,0 +1,107 @@
+//! Which nodes of the hierarchy a ray between two gridels enters at.
+//!
+//! A node is replaced by those of its children that lead to something, as long as this pays: to
+//! enter at two children costs a test more than to enter at their parent, and saves one wherever
+//! both would have been entered. How often rays of the pair meet each child is found with a few of
+//! them.
+
+use super::cylinder_cube::{Form, Pair, sorted};
+use super::lists::List;
+use super::shaft::Shaft;
+use super::target::{Node, Targets};
+use gridel_core::Structure;
+use gridel_core::accel::CylinderCubeEntry;
+use gridel_core::blob::record::Gridels;
+
+/// The form whose lists hold nodes.
+pub struct EntryNodes<'t>(pub &'t Targets<'t>);
+
+/// Rays tried for a pair: from so many places of one gridel to another place of the other.
+const SAMPLES: usize = 16;
+
+impl Form for EntryNodes<'_> {
+    const STRUCTURE: Structure = Structure::CylinderCubeEntry;
+    const KEYED: bool = true;
+    const MOST: u32 = Gridels::MOST;
+
+    fn end(&self) -> u32 {
+        self.0.node_count()
+    }
+
+    fn list(&self, pair: &Pair, list: &mut List) {
+        let shaft = Shaft::between(pair.0[0], pair.0[1]);
+        let whole = self.0.bounds.0.map(|side| side.map(f64::from));
+        let root = self.0.root().filter(|&root| self.leads_on(root, &shaft));
+        let Some(root) = root else {
+            return;
+        };
+        let mut waiting = vec![(root, whole)];
+        let mut chosen = Vec::new();
+        while let Some((node, bounds)) = waiting.pop() {
+            let Some(children) = self.0.children(node) else {
+                chosen.push((node, bounds));
+                continue;
+            };
+            let mut met = children;
+            let leading = |&(child, bounds): &(Node, [[f64; 2]; 3])| {
+                shaft.meets(&bounds).is_some() && self.leads_on(child, &shaft)
+            };
+            let count = match children.each_ref().map(leading) {
+                [true, true] => 2,
+                [first, _] => {
+                    met[0] = children[usize::from(!first)];
+                    1
+                }
+            };
+            let met = &met[..count];
+            let room = waiting.len() + chosen.len() + count <= CylinderCubeEntry::MOST_NODES;
+            let tests: f64 = met.iter().map(|(_, bounds)| chance(pair, bounds)).sum();
+            if room && (count == 1 || tests > 1.0) {
+                waiting.extend_from_slice(met);
+            } else {
+                chosen.push((node, bounds));
+            }
+        }
+        let met = chosen.into_iter().filter_map(|(node, bounds)| {
+            let span = shaft.meets(&bounds)?;
+            Some((self.0.node_number(node), span))
+        });
+        sorted(met.collect(), list);
+    }
+}
+
+impl EntryNodes<'_> {
+    /// Whether a shaft meets a primitive below a node.
+    fn leads_on(&self, node: Node, shaft: &Shaft) -> bool {
+        match self.0.children(node) {
+            Some(children) => children.iter().any(|(child, bounds)| {
+                shaft.meets(bounds).is_some() && self.leads_on(*child, shaft)
+            }),
+            None => {
+                let mut slots = self.0.slots(node);
+                slots.any(|slot| self.0.all()[slot].met_by(shaft).is_some())
+            }
+        }
+    }
+}
+
+/// What part of a pair's rays meets a box, by a few of them.
+fn chance(pair: &Pair, bounds: &[[f64; 2]; 3]) -> f64 {
+    let met = (0..SAMPLES).filter(|&sample| {
+        // Four by four places of a gridel; those of the other are the same in another order.
+        let place = |number: usize, sides: &[[f64; 2]; 3]| {
+            let mut part = [number % 4, number / 4].into_iter().cycle();
+            sides.map(|[low, high]| {
+                if low == high {
+                    return [low; 2];
+                }
+                let part = (part.next().unwrap_or(0) as f64 + 0.5) / 4.0;
+                [low + part * (high - low); 2]
+            })
+        };
+        let from = place(sample, &pair.0[0]);
+        let to = place((sample * 7 + 3) % SAMPLES, &pair.0[1]);
+        Shaft::between(from, to).meets(bounds).is_some()
+    });
+    met.count() as f64 / SAMPLES as f64
+}

@@ -1,0 +1,136 @@
+//! Apex lists serve the rays of their points, and no others; ray classes serve the scene's own.
+
+use glam::DVec3;
+use gridel_core::{
+    Accel, Apex, Counters, List, NoCount, Number, Ray, RayClasses, Scene, Settings, Structure,
+};
+use gridel_host::compare::PictureRays;
+use gridel_host::compile::{Options, compile};
+use gridel_host::scene::{Light, Scene as SceneFile};
+use gridel_tests::every_format;
+use gridel_tests::query::{HitBits, any, closest};
+use gridel_tests::scenes;
+
+/// A scene with a camera and two point lights, one of them among the objects.
+fn lit_soup() -> SceneFile {
+    let color = [0.5; 3];
+    SceneFile {
+        lights: [DVec3::new(3.0, 5.0, 4.0), DVec3::new(0.1, 0.2, -0.3)]
+            .map(|position| Light::Point { position, color })
+            .to_vec(),
+        ..scenes::soup(31, 200, 0.25)
+    }
+}
+
+fn settings(scene: &Scene<'_>) -> Settings {
+    Settings {
+        width: 64,
+        height: 48,
+        samples: 1,
+        ..Settings::of(scene)
+    }
+}
+
+/// How many of some rays ask the hierarchy; all must be answered as by the list.
+fn fallen_back<N: Number, A: Accel>(scene: &Scene<'_>, rays: &[Ray<N>]) -> usize {
+    let falls = |ray: &&Ray<N>| {
+        let mut work = Counters::default();
+        let hit = closest::<N, A>(scene, ray, &mut work);
+        let listed = closest::<N, List>(scene, ray, &mut NoCount);
+        let bits = listed.as_ref().map(HitBits::of);
+        assert_eq!(hit.as_ref().map(HitBits::of), bits, "{ray:?}");
+        assert_eq!(any::<N, A>(scene, ray), bits.is_some(), "{ray:?}");
+        work.planes > 0
+    };
+    rays.iter().filter(falls).count()
+}
+
+#[test]
+fn apexes_serve_the_rays_of_the_eye_and_of_lights() {
+    fn in_format<N: Number>(name: &str, scene: &Scene<'_>) {
+        let rays = PictureRays::<N>::of(scene, settings(scene)).expect("rays");
+        let point_lights = scene.lights().iter().filter(|it| it.directional == 0);
+        // What misses everything may miss the windows too, and then asks the hierarchy's root.
+        let meets = |ray: &&Ray<N>| any::<N, List>(scene, ray);
+        let seen: Vec<_> = rays.primary.iter().filter(meets).copied().collect();
+        let format = N::FORMAT.name();
+        assert!(seen.len() > 300, "{name}, {format}: {} hits", seen.len());
+        assert_eq!(fallen_back::<N, Apex>(scene, &seen), 0, "{name}, {format}");
+        fallen_back::<N, Apex>(scene, &rays.primary);
+        if point_lights.count() == scene.lights().len() {
+            let shaded: Vec<_> = rays.shadow.iter().filter(meets).copied().collect();
+            assert!(!shaded.is_empty(), "{name}, {format}");
+            assert_eq!(
+                fallen_back::<N, Apex>(scene, &shaded),
+                0,
+                "{name}, {format}"
+            );
+        }
+        fallen_back::<N, Apex>(scene, &rays.bounced);
+    }
+    let chess = scenes::read(&scenes::fixture_folder().join("glass-chess.toml"));
+    for (name, scene) in [("soup", lit_soup()), ("glass-chess", chess)] {
+        let blob = compile(&scene, &options(Structure::Apex, None))
+            .expect("compiles")
+            .blob;
+        let scene = blob.scene().expect("a scene");
+        every_format!(in_format(name, &scene));
+    }
+}
+
+#[test]
+fn a_moved_camera_falls_back() {
+    let blob = compile(&lit_soup(), &options(Structure::Apex, None))
+        .expect("compiles")
+        .blob;
+    let scene = blob.scene().expect("a scene");
+    let eye = scene.view().eye.map(|x| x as f64 / 8192.0);
+    let rays = |moved: f64| -> Vec<Ray<f32>> {
+        let target = |number: u32| {
+            let [x, y] = [number % 32, number / 32].map(|part| f64::from(part) / 16.0 - 1.0);
+            [9000.0 * x, 9000.0 * y, 9000.0 * (x - y)]
+        };
+        let origin = [eye[0] + moved, eye[1] - moved, eye[2] + moved];
+        let ray = |number| {
+            let target: [f64; 3] = target(number);
+            let direction = [0, 1, 2].map(|k| target[k] - origin[k]);
+            Ray::from_f64(scene.bounds(), origin, direction, 0.0, 1e9).ok()
+        };
+        (0..1024).filter_map(ray).collect()
+    };
+    assert_eq!(fallen_back::<f32, Apex>(&scene, &rays(0.0)), 0);
+    // By a thousandth of the scene.
+    assert_eq!(fallen_back::<f32, Apex>(&scene, &rays(65.0)), 1024);
+}
+
+#[test]
+fn classes_serve_the_scenes_own_rays_within_their_budget() {
+    let scene = lit_soup();
+    let mut last = usize::MAX;
+    for budget in [20_000, 200_000, 2_000_000] {
+        let compiled = compile(&scene, &options(Structure::RayClasses, Some(budget)));
+        let compiled = compiled.expect("compiles");
+        let figures = compiled.report.tables[0].figures;
+        assert!(figures.bytes <= budget, "{figures:?}");
+        let scene = compiled.blob.scene().expect("a scene");
+        let rays = PictureRays::<f32>::of(&scene, settings(&scene));
+        let rays = rays.expect("rays");
+        let all = [rays.primary, rays.shadow, rays.bounced].concat();
+        let fallen = fallen_back::<f32, RayClasses>(&scene, &all);
+        eprintln!(
+            "{budget} bytes: {fallen} of {} rays ask the hierarchy",
+            all.len()
+        );
+        assert!(fallen <= last);
+        last = fallen;
+    }
+}
+
+fn options(structure: Structure, budget: Option<u64>) -> Options {
+    Options {
+        // The hierarchy through which the picture's rays are found.
+        structures: vec![structure, Structure::Flagged],
+        budget,
+        ..Options::default()
+    }
+}
