@@ -23,6 +23,9 @@ const SHORT: usize = 3;
 const FEW_RAYS: usize = 4;
 /// Lists as long as this are no better than the hierarchy.
 const LONG: usize = 64;
+/// Tests of primitives against classes, at the most: a few seconds. Where many things lie in one
+/// place, classes could be halved for ever and no list would become short.
+const MOST_TESTS: usize = 1 << 26;
 /// Halvings from a root to a leaf, at the most.
 const MOST_LEVELS: u32 = 60;
 /// Bytes of a leaf beside its entries: its share of nodes, its cell and its list's start.
@@ -108,7 +111,13 @@ pub fn build(
         return Err(budget.exceeded(Structure::RayClasses, None, bytes, true));
     }
     let mut done = Vec::new();
+    let mut tests = 0;
     while let Some(class) = waiting.pop() {
+        tests += 2 * ClassNode::DIMENSIONS * class.met.len();
+        if tests > MOST_TESTS {
+            done.push(class);
+            break;
+        }
         let halves = best_halves(targets, rays, &class);
         let Some((dimension, halves)) = halves else {
             done.push(class);
