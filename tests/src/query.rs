@@ -4,9 +4,10 @@ pub use gridel_host::verify::UnitRay;
 
 use gridel_core::accel::MAX_STACK_DEPTH;
 use gridel_core::{
-    Accel, Count, Hit, NoCount, Number, Ray, Scene, Stack, Structure, StructureVisitor, any_hit,
-    closest_hit,
+    Accel, Count, Fixed, Hit, NoCount, Number, Ray, Scene, Stack, Structure, StructureVisitor,
+    any_hit, closest_hit,
 };
+use std::any::Any;
 
 /// A hit to the last bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,26 +57,55 @@ pub fn held(scene: &Scene<'_>) -> impl Iterator<Item = Structure> {
     all.filter(|&structure| structure != Structure::List && scene.holds(structure))
 }
 
+/// A first hit, and whether there is any.
+type Answer<N> = (Option<Hit<N>>, bool);
+
 /// The first hit through a structure that is chosen while the program runs, and whether
 /// [`any_hit`] finds one.
-pub fn through<N: Number>(
-    structure: Structure,
-    scene: &Scene<'_>,
-    ray: &Ray<N>,
-) -> (Option<Hit<N>>, bool) {
-    struct Through<'t, N: Number>(&'t Scene<'t>, &'t Ray<N>);
-    impl<N: Number> StructureVisitor for Through<'_, N> {
-        type Output = (Option<Hit<N>>, bool);
-
-        fn visit<A: Accel>(self) -> Self::Output {
-            let Self(scene, ray) = self;
-            (
-                closest::<N, A>(scene, ray, &mut NoCount),
-                any::<N, A>(scene, ray),
-            )
-        }
+///
+/// Every structure is compiled for every format once, in this library, and not again in each
+/// program of tests: hence the detour by types that are known when the program runs.
+pub fn through<N: Number>(structure: Structure, scene: &Scene<'_>, ray: &Ray<N>) -> Answer<N> {
+    fn answer<N: Number, M: Number>(
+        ask: fn(Structure, &Scene<'_>, &Ray<M>) -> Answer<M>,
+        structure: Structure,
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+    ) -> Option<Answer<N>> {
+        let ray = (ray as &dyn Any).downcast_ref::<Ray<M>>()?;
+        let answer = ask(structure, scene, ray);
+        (&answer as &dyn Any).downcast_ref::<Answer<N>>().copied()
     }
+    answer(ask_fixed, structure, scene, ray)
+        .or_else(|| answer(ask_f32, structure, scene, ray))
+        .or_else(|| answer(ask_f64, structure, scene, ray))
+        .expect("there are three formats")
+}
+
+fn ask_fixed(structure: Structure, scene: &Scene<'_>, ray: &Ray<Fixed>) -> Answer<Fixed> {
     structure.visit(Through(scene, ray))
+}
+
+fn ask_f32(structure: Structure, scene: &Scene<'_>, ray: &Ray<f32>) -> Answer<f32> {
+    structure.visit(Through(scene, ray))
+}
+
+fn ask_f64(structure: Structure, scene: &Scene<'_>, ray: &Ray<f64>) -> Answer<f64> {
+    structure.visit(Through(scene, ray))
+}
+
+struct Through<'t, N: Number>(&'t Scene<'t>, &'t Ray<N>);
+
+impl<N: Number> StructureVisitor for Through<'_, N> {
+    type Output = Answer<N>;
+
+    fn visit<A: Accel>(self) -> Self::Output {
+        let Self(scene, ray) = self;
+        (
+            closest::<N, A>(scene, ray, &mut NoCount),
+            any::<N, A>(scene, ray),
+        )
+    }
 }
 
 /// A point in units, from a hit.

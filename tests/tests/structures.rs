@@ -5,6 +5,7 @@
 
 use glam::DVec3;
 use gridel_core::Number;
+use gridel_host::blob::Blob;
 use gridel_host::scene::{Scene, Shape};
 use gridel_tests::agreement::{Tally, compare};
 use gridel_tests::every_format;
@@ -31,8 +32,17 @@ const FULL: Amount = Amount {
 /// Parts that a scene's rays are compared in, at the same time.
 const PARTS: usize = 8;
 
+/// With tables of candidates, too.
+const TABLES: Amount = Amount {
+    rays: 3_000,
+    list_tests: 2_000_000,
+};
+
 fn compare_scene(name: &str, scene: &Scene, lattice_bits: u8, amount: Amount) {
-    let blob = scenes::blob(scene, lattice_bits);
+    compare_blob(name, &scenes::blob(scene, lattice_bits), amount);
+}
+
+fn compare_blob(name: &str, blob: &Blob, amount: Amount) {
     let scene = blob.scene().expect("a scene");
     fn compare_format<N: Number>(name: &str, scene: &gridel_core::Scene<'_>, amount: Amount) {
         let parts = (0..PARTS).into_par_iter().map(|part| {
@@ -152,6 +162,16 @@ fn degenerate_scenes_agree() {
 #[test]
 fn fixtures_agree() {
     fixtures(QUICK);
+}
+
+#[test]
+fn tables_of_candidates_agree() {
+    for (name, scene) in scenes::fixtures() {
+        compare_blob(&name, &scenes::blob_with_gridels(&scene, 24, 3), TABLES);
+    }
+    for (name, scene) in degenerate_scenes() {
+        compare_blob(name, &scenes::blob_with_gridels(&scene, 24, 2), TABLES);
+    }
 }
 
 #[test]

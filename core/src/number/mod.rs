@@ -98,7 +98,7 @@ pub trait Number:
         + Neg<Output = Self::Wide>
         + Send
         + Sync
-        + 'static;
+        + 'static + 'static;
 
     /// The name of this format.
     const FORMAT: Format;
