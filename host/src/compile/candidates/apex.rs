@@ -243,7 +243,11 @@ fn cell_size(faces: &[Face], targets: usize, bytes: u64) -> Option<f64> {
     };
     let sides = faces.iter().flat_map(|face| face.window);
     let widest = sides.map(|[low, high]| high - low).fold(0.0, f64::max);
-    let mut size = widest.max(f64::MIN_POSITIVE);
+    if widest < f64::MIN_POSITIVE {
+        // Nothing is seen, so no size is small enough.
+        return None;
+    }
+    let mut size = widest;
     let mut now = entries(size);
     if !fits(size, now) {
         return None;
