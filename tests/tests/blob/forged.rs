@@ -247,12 +247,14 @@ fn slots_of_one_primitive_do_not_divide_structures() {
     let roof = scenes::of([Shape::Mesh {
         vertices: (0..2 * gables + 2).map(corner).collect(),
         triangles: (0..gables)
+            .rev()
             .flat_map(|row| {
                 let first = 2 * row;
                 [[0, 1, 2], [1, 3, 2]].map(|face| face.map(|vertex| first + vertex))
             })
             .collect(),
     }]);
+    // The last triangle first, so that slots and primitives differ and the blob has an order.
     let mut bytes = scenes::blob(&roof, 24).bytes().to_vec();
     let (_, order) = section(&bytes, SectionKind::Order);
     let place = order.offset as usize;
