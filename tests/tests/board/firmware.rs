@@ -119,7 +119,8 @@ impl<'b> Build<'b> {
         // A test that failed says so itself.
         let _one_at_a_time = BUILDING.lock().unwrap_or_else(|poison| poison.into_inner());
         let folder = self.folder(name);
-        let blob = folder.join("scene.gridel");
+        // Beside it a module with a `scene.gridel` of its own may lie.
+        let blob = folder.join("firmware.gridel");
         fs::write(&blob, self.scene.blob.bytes()).expect("the target folder can be written to");
 
         let target_folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("firmware");
