@@ -56,6 +56,12 @@ impl CallGraph {
             return Err(format!("functions are called through pointers: {taken:?}"));
         }
         let mut functions = BTreeMap::new();
+        let entry = file.entry() & !1;
+        let steps: Vec<u64> = ranges
+            .iter()
+            .filter(|(range, name)| STEPS.contains(&&name[..]) && range.start != entry)
+            .map(|(range, _)| range.start)
+            .collect();
         for (range, name) in ranges {
             let mut decoded = Decoded::default();
             code.decode(range.clone(), decoder, &mut decoded);
@@ -68,13 +74,13 @@ impl CallGraph {
                 (None, None) => return Err(format!("{name}: its frame is not known")),
             };
             let outside = |target: &u64| !range.contains(target);
-            let calls = decoded.targets.into_iter().filter(outside).collect();
+            let mut calls: Vec<u64> = decoded.targets.into_iter().filter(outside).collect();
+            if range.start == entry {
+                calls.extend(&steps);
+            }
             functions.insert(range.start, Function { name, frame, calls });
         }
-        Ok(Self {
-            functions,
-            entry: file.entry() & !1,
-        })
+        Ok(Self { functions, entry })
     }
 
     /// The deepest path from the program's entry.
@@ -125,13 +131,14 @@ fn functions(file: &File<'_>) -> Vec<(Range<u64>, String)> {
     let mut starts: BTreeMap<u64, (u64, String)> = BTreeMap::new();
     let symbols = file.symbols().filter(|symbol| {
         let name = symbol.name().unwrap_or_default();
-        let kind = matches!(
-            symbol.kind(),
-            SymbolKind::Text | SymbolKind::Unknown | SymbolKind::Label
-        );
-        kind && in_code(file, symbol.section_index())
-            && !name.starts_with(['$', '.'])
-            && !name.is_empty()
+        // Labels that begin with two underscores are the linker's own, for the ends of sections.
+        let kind = match symbol.kind() {
+            SymbolKind::Text => true,
+            SymbolKind::Unknown | SymbolKind::Label => !name.starts_with("__"),
+            _ => false,
+        };
+        let ours = !name.starts_with(['$', '.']) && !name.is_empty();
+        kind && ours && in_code(file, symbol.section_index())
     });
     for symbol in symbols {
         let entry = starts.entry(symbol.address() & !1).or_default();
@@ -189,7 +196,9 @@ fn stated_frames(file: &File<'_>) -> BTreeMap<u64, u64> {
 }
 
 /// What only the hardware calls, by an address that the start-up code hands to it.
-const TRAPS: [&str; 2] = ["_start_trap", "_default_start_trap"];
+const TRAPS: [&str; 3] = ["_start_trap", "_default_start_trap", "_default_abort"];
+/// The steps of riscv-rt's start-up code, which jumps through registers from one to the next.
+const STEPS: [&str; 2] = ["_abs_start", "_start_rust"];
 
 /// Functions whose address the program takes, so that it might call them through a pointer.
 fn taken_addresses(file: &File<'_>, functions: &[(Range<u64>, String)]) -> Vec<String> {
@@ -229,7 +238,8 @@ fn taken_addresses(file: &File<'_>, functions: &[(Range<u64>, String)]) -> Vec<S
                 .iter()
                 .find(|(range, _)| range.start == value & !1);
             let name = function.map(|(_, name)| name);
-            taken.extend(name.filter(|name| !TRAPS.contains(&&name[..])).cloned());
+            let harmless = |name: &str| TRAPS.contains(&name) || STEPS.contains(&name);
+            taken.extend(name.filter(|name| !harmless(name)).cloned());
         }
     }
     taken
