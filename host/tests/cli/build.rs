@@ -269,7 +269,7 @@ fn a_module_is_emitted_for_the_board() {
     let module = String::from_utf8(folder.read("module/scene.rs")).unwrap();
     for line in [
         "pub type Number = f32;",
-        "pub type Accel = gridel_core::Flagged;",
+        "pub type Accel = gridel_core::DualSplit;",
         "\"flagged\", \"triangle\", \"sphere\", \"box\", \"disc\", \"cone\", \"wide-lattice\"",
         "pub const WORK_DEPTH: usize = 7;",
         "the blob outgrew the flash of mps2-an386",
