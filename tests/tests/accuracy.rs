@@ -105,12 +105,16 @@ fn boards_are_the_recorded_ones() {
     let recorded: serde_json::Value = serde_json::from_str(&text.expect("a file")).expect("JSON");
     for board in BOARDS {
         for (name, a_ray) in ["quick", "glass-chess"].into_iter().zip(board.a_ray) {
-            let build = format!("{name} {} {} flagged", board.machine, board.format.name());
+            let build = format!(
+                "{name} {} {} dual-split",
+                board.machine,
+                board.format.name()
+            );
             let Some(instructions) = recorded[&build]["picture-instructions"].as_f64() else {
                 panic!("{build} is not recorded");
             };
             let scene = scenes::read(&scenes::fixture_folder().join(name).with_extension("toml"));
-            let mut bench = Bench::new(&scene, Structure::Flagged, [48, 36]);
+            let mut bench = Bench::new(&scene, Structure::DualSplit, [48, 36]);
             let setting = gridel_host::accuracy::Setting {
                 format: board.format,
                 ..bench.base()
