@@ -59,14 +59,14 @@ impl Meter {
     #[expect(clippy::new_without_default, reason = "it starts a timer")]
     pub fn new() -> Self {
         Self {
-            counter: Counter::new(),
+            counter: Counter::calibrated(),
         }
     }
 
     /// Runs a phase. It hands its results over by writing to variables of the caller's: moving
     /// them through here would cost stack that no product pays.
     pub fn run(&self, phase: impl FnOnce()) -> Cost {
-        let paint = Paint::new();
+        let paint = Paint::spread();
         let instructions = self.counter.instructions(|| apart(phase));
         Cost {
             instructions,

@@ -1,5 +1,5 @@
 //! Cortex-M boards. QEMU with `-icount` advances the clock by a fixed time an instruction, so the
-//! core's SysTick counts instructions, in a ratio that [`Counter::new`] measures.
+//! core's SysTick counts instructions, in a ratio that [`Counter::calibrated`] measures.
 
 use crate::report::fail;
 use core::arch::asm;
@@ -30,7 +30,7 @@ pub struct Counter {
 
 impl Counter {
     /// Starts the timer and calibrates it.
-    pub fn new() -> Self {
+    pub fn calibrated() -> Self {
         write(RELOAD, START);
         write(CONTROL, RUN);
         let idle = ticks_of(|| ());

@@ -23,7 +23,7 @@ pub struct Paint {
 impl Paint {
     /// Paints what is free.
     #[inline(never)]
-    pub fn new() -> Self {
+    pub fn spread() -> Self {
         let here = 0_u32;
         // This frame is no larger than what is left out; a phase's own frames begin above.
         let top = (black_box(&raw const here) as usize - 64) & !3;

@@ -69,5 +69,7 @@ pub fn exit(code: u8) -> ! {
     let arguments = [APPLICATION_EXIT, code.into()];
     // SAFETY: the reason and the code.
     unsafe { call(EXIT_EXTENDED, arguments.as_ptr() as usize) };
-    loop {}
+    loop {
+        core::hint::spin_loop();
+    }
 }

@@ -46,7 +46,7 @@ pub struct Counter;
 
 impl Counter {
     /// A counter.
-    pub fn new() -> Self {
+    pub fn calibrated() -> Self {
         Self
     }
 
@@ -62,7 +62,7 @@ pub struct Paint;
 
 impl Paint {
     /// No paint.
-    pub fn new() -> Self {
+    pub fn spread() -> Self {
         Self
     }
 
