@@ -77,11 +77,16 @@ fn with_format<N: Number>(
 
 /// Sets of effects that the ray loop is compiled for; a scene gets the first that has all of its.
 const SHADOWED: u32 = Effects::SHADOW.0;
-const GLOSSY: u32 = SHADOWED | Effects::HIGHLIGHT.0 | Effects::CHECKER.0;
-const ALL: u32 = Effects::ALL.0;
+/// Without glass a shadow ray stops at any hit, which is less work.
+pub(crate) const OPAQUE: u32 = Effects::ALL
+    .without(Effects::GLASS)
+    .without(Effects::ABSORPTION)
+    .0;
+pub(crate) const ALL: u32 = Effects::ALL.0;
 
 /// Whether pictures are made through a structure day by day. The others are there to be compared:
-/// they have one ray loop, for all effects, because this program has to be compiled, too.
+/// they have no ray loops of their own for the plainest scenes, because this program has to be
+/// compiled, too.
 const fn is_for_pictures(structure: Structure) -> bool {
     matches!(structure, Structure::Bvh | Structure::DualSplit)
 }
@@ -91,22 +96,36 @@ fn with_structure<N: Number, A: Accel>(
     job: &Job,
     progress: &(dyn Fn() + Sync),
 ) -> Result<Picture, RenderError> {
+    let fits = |set| Effects(set).contains(scene.effects());
     if job.count {
-        let renderer = Renderer::<N, A, ALL>::new(scene, job.settings)?;
-        let row = |y, pixels: &mut _| Some(counted_row(&renderer, y, pixels));
-        return Ok(spread(job, progress, &row));
+        return if fits(OPAQUE) {
+            counted_rows::<N, A, OPAQUE>(scene, job, progress)
+        } else {
+            counted_rows::<N, A, ALL>(scene, job, progress)
+        };
     }
     if const { is_for_pictures(A::STRUCTURE) } {
-        let fits = |set| Effects(set).contains(scene.effects());
         if fits(0) {
             return rows::<N, A, 0>(scene, job, progress);
         } else if fits(SHADOWED) {
             return rows::<N, A, SHADOWED>(scene, job, progress);
-        } else if fits(GLOSSY) {
-            return rows::<N, A, GLOSSY>(scene, job, progress);
         }
     }
-    rows::<N, A, ALL>(scene, job, progress)
+    if fits(OPAQUE) {
+        rows::<N, A, OPAQUE>(scene, job, progress)
+    } else {
+        rows::<N, A, ALL>(scene, job, progress)
+    }
+}
+
+fn counted_rows<N: Number, A: Accel, const EFFECTS: u32>(
+    scene: &Scene<'_>,
+    job: &Job,
+    progress: &(dyn Fn() + Sync),
+) -> Result<Picture, RenderError> {
+    let renderer = Renderer::<N, A, EFFECTS>::new(scene, job.settings)?;
+    let row = |y, pixels: &mut _| Some(counted_row(&renderer, y, pixels));
+    Ok(spread(job, progress, &row))
 }
 
 fn rows<N: Number, A: Accel, const EFFECTS: u32>(

@@ -157,7 +157,6 @@ fn a_mirrored_scene_is_the_mirror_image() {
 
 /// With its axes exchanged, a scene has the same hits to within the rounding of a few sums (G2).
 #[test]
-#[ignore = "some t differ by more than their error bounds, for a reason not yet understood"]
 fn a_turned_scene_is_the_same_scene() {
     fn judge<N: Number>(plain: &Scene<'_>, other: &Scene<'_>, rays: &[UnitRay]) {
         let (mut flags, mut worst) = (0, 0.0_f64);
@@ -192,7 +191,7 @@ fn a_turned_scene_is_the_same_scene() {
             rays.len()
         );
         assert!(worst <= 1.0);
-        assert!(flags * 50 <= rays.len(), "{flags}");
+        assert!(flags * 100 <= rays.len(), "{flags}");
     }
     let soup = lattice_soup(43, 60);
     let turned = moved::with(&soup, |p| DVec3::new(p.z, p.x, p.y), 1.0, DVec3::ZERO);
@@ -201,11 +200,8 @@ fn a_turned_scene_is_the_same_scene() {
         plain.scene().expect("a scene"),
         turned.scene().expect("one"),
     );
-    // Rays that touch are another matter: only those that go through.
-    let rays: Vec<_> = rays::rays(&plain, 44)
-        .enumerate()
-        .filter(|(number, _)| matches!(number % 10, 0 | 1))
-        .map(|(_, ray)| ray)
+    // Rays that touch are another matter.
+    let rays: Vec<_> = rays::plain_rays(&plain, 44)
         .take(part_of(4000, 100_000))
         .collect();
     every_format!(judge(&plain, &turned, &rays));

@@ -3,8 +3,8 @@
 //! Instead of a cylinder each list stands for the convex hull of its two gridels, tested against
 //! the primitive itself instead of its bounding sphere. Lists are sorted along the way from one
 //! gridel to the other and walked from whichever end the ray enters; entries behind the ray's
-//! origin are passed over, and the walk ends when nothing later can beat the best hit (see
-//! [`Levels`](super::gridels::Levels)).
+//! origin are passed over, and the walk ends when nothing later can beat the best hit (see `Levels`
+//! in `gridels.rs`).
 //!
 //! Memory: 15 n^4 cells, a list for each that differs from all others, and a byte more an entry
 //! than in the paper's form.

@@ -66,7 +66,7 @@ impl Gridels {
     }
 
     /// The first and the last place along an axis that belong to a gridel, as lengths with 13
-    /// fraction bits; exactly what [`Gridels::column`] says.
+    /// fraction bits; exactly those that rays are sent to it from.
     pub fn extent(&self, axis: usize, column: u32) -> [i32; 2] {
         let scale = u64::from(pick(self.scale, axis)).max(1);
         let first = |column: u32| (u64::from(column) << 44).div_ceil(scale) as i32;

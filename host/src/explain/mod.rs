@@ -12,6 +12,7 @@ pub use story::{Fall, Hit, Lighting, Ray, Sample, Story, Weighted};
 pub use text::{Names, Shown};
 pub use walk::{Candidate, Culled, Step, Tested, Verdict, Walk};
 
+use crate::render::{ALL, OPAQUE};
 use crate::trace::{Frame, SceneRay};
 use gridel_core::accel::MAX_STACK_DEPTH;
 use gridel_core::render::{MAX_RAY_DEPTH, RenderError};
@@ -98,16 +99,10 @@ impl<N: Number> StructureVisitor for InFormat<'_, N> {
         if Effects(OPAQUE).contains(scene.effects()) {
             self.0.tell::<N, A, OPAQUE>()
         } else {
-            self.0.tell::<N, A, { Effects::ALL.0 }>()
+            self.0.tell::<N, A, ALL>()
         }
     }
 }
-
-/// Without glass a shadow ray stops at any hit.
-const OPAQUE: u32 = Effects::ALL
-    .without(Effects::GLASS)
-    .without(Effects::ABSORPTION)
-    .0;
 
 impl Watch<'_> {
     fn tell<N: Number, A: Accel, const EFFECTS: u32>(

@@ -71,6 +71,14 @@ pub fn rays(scene: &Scene<'_>, seed: u64) -> impl Iterator<Item = UnitRay> + use
     (0..).map(move |number: usize| targets.ray(number, &mut random))
 }
 
+/// Endless rays that go through a scene and, but for odd cases, touch nothing: neither edges nor the
+/// surface that they start from.
+pub fn plain_rays(scene: &Scene<'_>, seed: u64) -> impl Iterator<Item = UnitRay> + use<> {
+    let targets = Targets::of(scene);
+    let mut random = Random(seed);
+    (0..).map(move |number: usize| [primary, random_ray][number % 2](&targets, &mut random))
+}
+
 impl Targets {
     /// Endless rays, all sorts in turn; the same for the same seed.
     pub fn rays(&self, seed: u64) -> impl Iterator<Item = UnitRay> {
