@@ -175,12 +175,15 @@ pub(super) fn float_signs(checks: &mut Checks<'_>) {
 }
 
 pub(super) fn vectors(checks: &mut Checks<'_>) {
-    vectors_in::<Fixed>(checks, 1e-8);
-    vectors_in::<f32>(checks, 1e-6);
-    vectors_in::<f64>(checks, 1e-15);
+    // The distance from 1 to the next number.
+    vectors_in::<Fixed>(checks, 1.0 / 1_073_741_824.0);
+    vectors_in::<f32>(checks, f32::EPSILON.into());
+    vectors_in::<f64>(checks, f64::EPSILON);
 }
 
-fn vectors_in<N: Number>(checks: &mut Checks<'_>, tolerance: f64) {
+fn vectors_in<N: Number>(checks: &mut Checks<'_>, ulp: f64) {
+    // A sum of three squares, a root and a quotient: less than four roundings.
+    let tolerance = 4.0 * ulp;
     let mut random = Random(5);
     for _ in 0..ROUNDS / 4 {
         let v = [0; 3].map(|_: i32| random.integer(40));
