@@ -2,7 +2,8 @@
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use gridel_core::{Format, Structure};
+use gridel_core::render::{MAX_RAY_DEPTH, MAX_SAMPLES};
+use gridel_core::{Format, Scene as CoreScene, Settings, Structure};
 use gridel_host::board::{BOARDS, Board};
 use gridel_host::report::Target;
 use gridel_host::scene::{MoleculeOptions, MoleculeStyle, Scene};
@@ -45,6 +46,57 @@ impl TargetOptions {
 fn board() -> impl TypedValueParser<Value = &'static Board> {
     PossibleValuesParser::new(BOARDS.map(|board| board.name))
         .try_map(|name| Board::named(&name).ok_or("no such board"))
+}
+
+/// What rays are traced with.
+#[derive(Args, Clone, Debug)]
+pub struct TraceOptions {
+    /// Arithmetic to trace in
+    #[arg(long, value_name = "NAME", value_parser = format(), default_value = "f32")]
+    pub format: Format,
+
+    /// Acceleration structure [default: the best that the blob holds]
+    #[arg(long, value_name = "NAME", value_parser = structure())]
+    pub accel: Option<Structure>,
+}
+
+/// What of a picture's settings is not as the scene states it.
+#[derive(Args, Clone, Debug)]
+pub struct PictureOptions {
+    /// Size of the whole picture, such as 640x480
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u16; 2]>,
+
+    /// Samples a pixel, 1 to 256
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u16).range(1..=i64::from(MAX_SAMPLES))
+    )]
+    samples: Option<u16>,
+
+    /// How often a ray may be reflected or refracted, 0 to 16
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u8).range(0..=MAX_RAY_DEPTH as i64)
+    )]
+    depth: Option<u8>,
+}
+
+impl PictureOptions {
+    /// The settings for a scene's picture, without dither.
+    pub fn settings(&self, scene: &CoreScene<'_>) -> Settings {
+        let stated = Settings::of(scene);
+        let [width, height] = self.size.unwrap_or([stated.width, stated.height]);
+        Settings {
+            width,
+            height,
+            samples: self.samples.unwrap_or(stated.samples),
+            depth: self.depth.unwrap_or(stated.depth),
+            dither: false,
+        }
+    }
 }
 
 /// How a scene file is read and compiled.

@@ -1,13 +1,12 @@
 //! `gridel explain`: the story of a pixel or of a ray.
 
-use super::arguments::{self, SceneOptions};
+use super::arguments::{PictureOptions, SceneOptions, TraceOptions};
 use super::failure::Failure;
 use super::output::{print, print_json};
 use super::source::Source;
 use clap::{ArgGroup, Args};
 use glam::DVec3;
-use gridel_core::render::{MAX_RAY_DEPTH, MAX_SAMPLES};
-use gridel_core::{Format, Settings, Structure};
+use gridel_core::Settings;
 use gridel_host::explain::{ExplainError, Shown, Subject, explain};
 use gridel_host::trace::SceneRay;
 use std::path::PathBuf;
@@ -43,33 +42,11 @@ pub struct Arguments {
     )]
     ray: Option<SceneRay>,
 
-    /// Arithmetic to trace in
-    #[arg(long, value_name = "NAME", value_parser = arguments::format(), default_value = "f32")]
-    format: Format,
+    #[command(flatten)]
+    with: TraceOptions,
 
-    /// Acceleration structure [default: the best that the blob holds]
-    #[arg(long, value_name = "NAME", value_parser = arguments::structure())]
-    accel: Option<Structure>,
-
-    /// Size of the picture that the pixel is of, such as 640x480
-    #[arg(long, value_name = "WxH", value_parser = arguments::size)]
-    size: Option<[u16; 2]>,
-
-    /// Samples a pixel, 1 to 256
-    #[arg(
-        long,
-        value_name = "N",
-        value_parser = clap::value_parser!(u16).range(1..=i64::from(MAX_SAMPLES))
-    )]
-    samples: Option<u16>,
-
-    /// How often a ray may be reflected or refracted, 0 to 16
-    #[arg(
-        long,
-        value_name = "N",
-        value_parser = clap::value_parser!(u8).range(0..=MAX_RAY_DEPTH as i64)
-    )]
-    depth: Option<u8>,
+    #[command(flatten)]
+    picture: PictureOptions,
 
     /// Show the way of every ray through the structure, those of shadow rays too
     #[arg(long)]
@@ -85,19 +62,16 @@ pub struct Arguments {
 
 /// Tells a story.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::open(&arguments.input, &arguments.scene_options, arguments.accel)?;
+    let source = Source::open(
+        &arguments.input,
+        &arguments.scene_options,
+        arguments.with.accel,
+    )?;
     let scene = source.scene()?;
     source.warn_of_collapsed(&scene);
-    let structure = source.structure(&scene, arguments.accel)?;
-    let stated = Settings::of(&scene);
-    let [width, height] = arguments.size.unwrap_or([stated.width, stated.height]);
-    let settings = Settings {
-        width,
-        height,
-        samples: arguments.samples.unwrap_or(stated.samples),
-        depth: arguments.depth.unwrap_or(stated.depth),
-        dither: false,
-    };
+    let structure = source.structure(&scene, arguments.with.accel)?;
+    let settings = arguments.picture.settings(&scene);
+    let Settings { width, height, .. } = settings;
     let subject = match (arguments.pixel, arguments.ray) {
         (Some([x, y]), _) if x >= width || y >= height => {
             return Err(Failure::usage(
@@ -114,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         // The command line asks for one of them.
         (None, None) => return Ok(()),
     };
-    let story = explain(&scene, arguments.format, structure, settings, subject)
+    let story = explain(&scene, arguments.with.format, structure, settings, subject)
         .map_err(|error| failure(&error))?;
     if arguments.json {
         return print_json(&story);

@@ -1,13 +1,12 @@
 //! `gridel render`: a picture of a scene.
 
-use super::arguments::{self, SceneOptions};
+use super::arguments::{self, PictureOptions, SceneOptions, TraceOptions};
 use super::failure::Failure;
 use super::output::{print, print_json, refuse_same, write_file};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
-use gridel_core::render::{MAX_RAY_DEPTH, MAX_SAMPLES};
-use gridel_core::{Counters, Format, Scene, Settings, Structure};
+use gridel_core::{Counters, Scene, Settings};
 use gridel_host::picture::PictureFormat;
 use gridel_host::render::{Job, Picture, render};
 use gridel_host::report::{Align, HeatMap, Table, counted, grouped};
@@ -32,33 +31,11 @@ pub struct Arguments {
     #[arg(short, long, value_name = "PICTURE")]
     output: PathBuf,
 
-    /// Arithmetic to render in
-    #[arg(long, value_name = "NAME", value_parser = arguments::format(), default_value = "f32")]
-    format: Format,
+    #[command(flatten)]
+    with: TraceOptions,
 
-    /// Acceleration structure [default: the best that the blob holds]
-    #[arg(long, value_name = "NAME", value_parser = arguments::structure())]
-    accel: Option<Structure>,
-
-    /// Size of the whole picture, such as 640x480
-    #[arg(long, value_name = "WxH", value_parser = arguments::size)]
-    size: Option<[u16; 2]>,
-
-    /// Samples a pixel, 1 to 256
-    #[arg(
-        long,
-        value_name = "N",
-        value_parser = clap::value_parser!(u16).range(1..=i64::from(MAX_SAMPLES))
-    )]
-    samples: Option<u16>,
-
-    /// How often a ray may be reflected or refracted, 0 to 16
-    #[arg(
-        long,
-        value_name = "N",
-        value_parser = clap::value_parser!(u8).range(0..=MAX_RAY_DEPTH as i64)
-    )]
-    depth: Option<u8>,
+    #[command(flatten)]
+    picture: PictureOptions,
 
     /// Threads, 1 to 1024 [default: one a core]
     #[arg(long, value_name = "N", value_parser = arguments::threads())]
@@ -136,7 +113,11 @@ struct HeatMapFile {
 /// Renders a picture and writes it.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let format = check_outputs(arguments)?;
-    let source = Source::open(&arguments.input, &arguments.scene_options, arguments.accel)?;
+    let source = Source::open(
+        &arguments.input,
+        &arguments.scene_options,
+        arguments.with.accel,
+    )?;
     let scene = source.scene()?;
     source.warn_of_collapsed(&scene);
     let job = job(arguments, &source, &scene)?;
@@ -226,15 +207,11 @@ fn check_outputs(arguments: &Arguments) -> Result<PictureFormat, Failure> {
 }
 
 fn job(arguments: &Arguments, source: &Source, scene: &Scene<'_>) -> Result<Job, Failure> {
-    let stated = Settings::of(scene);
-    let [width, height] = arguments.size.unwrap_or([stated.width, stated.height]);
     let settings = Settings {
-        width,
-        height,
-        samples: arguments.samples.unwrap_or(stated.samples),
-        depth: arguments.depth.unwrap_or(stated.depth),
         dither: arguments.dither,
+        ..arguments.picture.settings(scene)
     };
+    let Settings { width, height, .. } = settings;
     let rows = arguments.rows.clone().unwrap_or(0..height);
     if rows.end > height {
         return Err(Failure::usage(
@@ -258,8 +235,8 @@ fn job(arguments: &Arguments, source: &Source, scene: &Scene<'_>) -> Result<Job,
         ));
     }
     Ok(Job {
-        format: arguments.format,
-        structure: source.structure(scene, arguments.accel)?,
+        format: arguments.with.format,
+        structure: source.structure(scene, arguments.with.accel)?,
         settings,
         rows,
         count: arguments.stats || arguments.heat_map.is_some(),

@@ -1,12 +1,12 @@
 //! `gridel trace`: rays of the user's own, as NumPy arrays.
 
-use super::arguments::{self, SceneOptions};
+use super::arguments::{self, SceneOptions, TraceOptions};
 use super::failure::Failure;
 use super::output::{print, print_json, refuse_same, write_file};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
-use gridel_core::{Count, Counters, Format, NoCount, Scene, Structure};
+use gridel_core::{Count, Counters, NoCount, Scene};
 use gridel_host::npy::{read_rays, write_hits};
 use gridel_host::report::grouped;
 use gridel_host::trace::{Frame, Query, SceneHit, SceneRay, trace};
@@ -43,13 +43,8 @@ pub struct Arguments {
     #[arg(short, long, value_name = "HITS.npy")]
     output: PathBuf,
 
-    /// Arithmetic to trace in
-    #[arg(long, value_name = "NAME", value_parser = arguments::format(), default_value = "f32")]
-    format: Format,
-
-    /// Acceleration structure [default: the best that the blob holds]
-    #[arg(long, value_name = "NAME", value_parser = arguments::structure())]
-    accel: Option<Structure>,
+    #[command(flatten)]
+    with: TraceOptions,
 
     /// Only find out whether each ray meets anything; what it meets is not told, so t, object,
     /// primitive and normal are 0 for each that does
@@ -108,12 +103,16 @@ struct Tests {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     refuse_same(&arguments.input, &arguments.output)?;
     refuse_same(&arguments.rays, &arguments.output)?;
-    let source = Source::open(&arguments.input, &arguments.scene_options, arguments.accel)?;
+    let source = Source::open(
+        &arguments.input,
+        &arguments.scene_options,
+        arguments.with.accel,
+    )?;
     let scene = source.scene()?;
     source.warn_of_collapsed(&scene);
     let query = Query {
-        format: arguments.format,
-        structure: source.structure(&scene, arguments.accel)?,
+        format: arguments.with.format,
+        structure: source.structure(&scene, arguments.with.accel)?,
         any: arguments.any,
     };
     let rays = read(&arguments.rays)?;
