@@ -32,6 +32,8 @@ pub struct Hit<N: Number> {
     pub primitive: u32,
     /// The surface lies within this length of `point`, measured along the normal.
     pub error: N,
+    kind: Kind,
+    index: u32,
 }
 
 /// The best hit so far.
@@ -315,11 +317,29 @@ impl<N: Number> Found<N> {
             object: scene.object(self.primitive),
             primitive: self.primitive,
             error: N::error_bound(scale),
+            kind: best.kind,
+            index: best.index,
         })
     }
 }
 
 impl<N: Number> Hit<N> {
+    /// Where a ray starts that goes on from here on the normal's side, so that it does not meet
+    /// what it leaves: beside the surface by the hit's error bound.
+    pub fn outside(&self) -> [N; 3] {
+        let axis = |k: usize| self.point[k] + self.error * self.normal[k];
+        [axis(0), axis(1), axis(2)]
+    }
+
+    /// Where a ray starts that goes on from here on the other side, `scene` being the one that was
+    /// asked. Of a solid that is beneath *all* of its faces by the hit's error bound, so that the ray
+    /// leaves the solid again; where the solid is thinner, halfway between them.
+    pub fn inside(&self, scene: &Scene<'_>) -> [N; 3] {
+        let surface = [self.point, self.normal];
+        let index = self.index as usize;
+        scene.shapes.inside(self.kind, index, surface, self.error)
+    }
+
     /// The hit as events tell it.
     fn met(&self) -> Met {
         Met {

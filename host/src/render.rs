@@ -3,14 +3,13 @@
 //! Rows are spread over threads; a pixel depends on nothing but the blob, the number format and the
 //! settings, so a picture is the same bit for bit with any number of threads.
 
-use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
 use gridel_core::render::{MAX_RAY_DEPTH, RenderError};
 use gridel_core::{
-    Accel, Count, Counters, Effects, Fixed, Format, NoCount, Number, Renderer, Scene, Settings,
-    Structure, StructureVisitor, Workspace,
+    Accel, Bvh, Count, Counters, DualSplit, Effects, Fixed, Format, NoCount, Number, Renderer,
+    Scene, Settings, Structure, Workspace,
 };
 use rayon::prelude::*;
-use std::marker::PhantomData;
 use std::ops::Range;
 
 /// Linear pixels of some rows of a picture, and what they cost.
@@ -53,28 +52,6 @@ pub fn render(
     }
 }
 
-fn with_format<N: Number>(
-    scene: &Scene<'_>,
-    job: &Job,
-    progress: &(dyn Fn() + Sync),
-) -> Result<Picture, RenderError> {
-    struct Through<'t, N>(
-        &'t Scene<'t>,
-        &'t Job,
-        &'t (dyn Fn() + Sync),
-        PhantomData<N>,
-    );
-    impl<N: Number> StructureVisitor for Through<'_, N> {
-        type Output = Result<Picture, RenderError>;
-
-        fn visit<A: Accel>(self) -> Self::Output {
-            with_structure::<N, A>(self.0, self.1, self.2)
-        }
-    }
-    job.structure
-        .visit(Through(scene, job, progress, PhantomData::<N>))
-}
-
 /// Sets of effects that the ray loop is compiled for; a scene gets the first that has all of its.
 const SHADOWED: u32 = Effects::SHADOW.0;
 /// Without glass a shadow ray stops at any hit, which is less work.
@@ -84,46 +61,62 @@ pub(crate) const OPAQUE: u32 = Effects::ALL
     .0;
 pub(crate) const ALL: u32 = Effects::ALL.0;
 
-/// Whether pictures are made through a structure day by day. The others are there to be compared:
-/// they have no ray loops of their own for the plainest scenes, because this program has to be
-/// compiled, too.
-const fn is_for_pictures(structure: Structure) -> bool {
-    matches!(structure, Structure::Bvh | Structure::DualSplit)
+fn with_format<N: Number>(
+    scene: &Scene<'_>,
+    job: &Job,
+    progress: &(dyn Fn() + Sync),
+) -> Result<Picture, RenderError> {
+    // Pictures are made through these two; the others are there to be compared.
+    if !job.count && scene.holds(job.structure) {
+        match job.structure {
+            Structure::Bvh => return fast::<N, Bvh>(scene, job, progress),
+            Structure::DualSplit => return fast::<N, DualSplit>(scene, job, progress),
+            _ => {}
+        }
+    }
+    let scene = &chosen(scene, job.structure)?;
+    let opaque = Effects(OPAQUE).contains(scene.effects());
+    match (job.count, opaque) {
+        (true, true) => counted_rows::<N, OPAQUE>(scene, job, progress),
+        (true, false) => counted_rows::<N, ALL>(scene, job, progress),
+        (false, true) => rows::<N, Chosen, OPAQUE>(scene, job, progress),
+        (false, false) => rows::<N, Chosen, ALL>(scene, job, progress),
+    }
 }
 
-fn with_structure<N: Number, A: Accel>(
+/// The scene with a structure chosen for [`Chosen`] to walk.
+pub(crate) fn chosen<'a>(
+    scene: &Scene<'a>,
+    structure: Structure,
+) -> Result<Scene<'a>, RenderError> {
+    let chosen = scene.choose(structure);
+    chosen.ok_or(RenderError::Structure(structure))
+}
+
+/// Through a structure of its own, with no code for effects that the plainer scenes do without.
+fn fast<N: Number, A: Accel>(
     scene: &Scene<'_>,
     job: &Job,
     progress: &(dyn Fn() + Sync),
 ) -> Result<Picture, RenderError> {
     let fits = |set| Effects(set).contains(scene.effects());
-    if job.count {
-        return if fits(OPAQUE) {
-            counted_rows::<N, A, OPAQUE>(scene, job, progress)
-        } else {
-            counted_rows::<N, A, ALL>(scene, job, progress)
-        };
-    }
-    if const { is_for_pictures(A::STRUCTURE) } {
-        if fits(0) {
-            return rows::<N, A, 0>(scene, job, progress);
-        } else if fits(SHADOWED) {
-            return rows::<N, A, SHADOWED>(scene, job, progress);
-        }
-    }
-    if fits(OPAQUE) {
+    if fits(0) {
+        rows::<N, A, 0>(scene, job, progress)
+    } else if fits(SHADOWED) {
+        rows::<N, A, SHADOWED>(scene, job, progress)
+    } else if fits(OPAQUE) {
         rows::<N, A, OPAQUE>(scene, job, progress)
     } else {
         rows::<N, A, ALL>(scene, job, progress)
     }
 }
 
-fn counted_rows<N: Number, A: Accel, const EFFECTS: u32>(
+fn counted_rows<N: Number, const EFFECTS: u32>(
     scene: &Scene<'_>,
     job: &Job,
     progress: &(dyn Fn() + Sync),
 ) -> Result<Picture, RenderError> {
-    let renderer = Renderer::<N, A, EFFECTS>::new(scene, job.settings)?;
+    let renderer = Renderer::<N, Chosen, EFFECTS>::new(scene, job.settings)?;
     let row = |y, pixels: &mut _| Some(counted_row(&renderer, y, pixels));
     Ok(spread(job, progress, &row))
 }

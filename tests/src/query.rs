@@ -113,13 +113,12 @@ pub fn point_of<N: Number>(hit: &Hit<N>) -> [f64; 3] {
     hit.point.map(N::length_to_f64)
 }
 
-/// Where a ray starts that leaves a hit on the normal's side (1) or the other (-1), computed as the
-/// ray loop does.
-pub fn depart<N: Number>(hit: &Hit<N>, side: f64) -> [f64; 3] {
-    let beside = |axis: usize| {
-        let shift = hit.error * hit.normal[axis];
-        let shift = if side < 0.0 { -shift } else { shift };
-        (hit.point[axis] + shift).length_to_f64()
+/// Where a ray starts that leaves a hit on the normal's side (1) or the other (-1).
+pub fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, side: f64) -> [f64; 3] {
+    let start = if side < 0.0 {
+        hit.inside(scene)
+    } else {
+        hit.outside()
     };
-    [beside(0), beside(1), beside(2)]
+    start.map(N::length_to_f64)
 }

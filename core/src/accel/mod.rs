@@ -61,6 +61,8 @@ pub use link::Link;
 pub use list::List;
 #[cfg(feature = "ray-classes")]
 pub use ray_classes::RayClasses;
+#[cfg(feature = "all-structures")]
+pub use registry::Chosen;
 pub(crate) use registry::{Held, Records};
 pub use registry::{Structure, StructureVisitor};
 
@@ -74,7 +76,7 @@ use heapless::{Vec, VecView};
 
 /// A structure, as a type: the code of those that are not named is not in the program.
 pub trait Accel: Send + Sync {
-    /// Its name.
+    /// Its name. `Chosen` has none, and gives the list's, which every scene holds.
     const STRUCTURE: Structure;
     /// The form in which its rays cull.
     type Cull<N: Number>: Culling<N>;

@@ -5,7 +5,11 @@
 //! that a build was compiled without are passed over.
 
 use super::Accel;
+#[cfg(feature = "all-structures")]
+use super::{Leaf, StackView, cull::Culling};
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
+#[cfg(feature = "all-structures")]
+use crate::{count::Count, number::Number, ray::Ray};
 
 /// What is done with a structure that is chosen while the program runs: see [`Structure::visit`].
 pub trait StructureVisitor {
@@ -15,6 +19,13 @@ pub trait StructureVisitor {
     /// Does it with the structure `A`.
     fn visit<A: Accel>(self) -> Self::Output;
 }
+
+/// The structure that was chosen for a scene while the program runs, by [`Scene::choose`]: what is
+/// built around queries is compiled once for it, and not for every structure. Costs a branch and the
+/// set-up of a culling form a query more than the structure itself.
+#[cfg(feature = "all-structures")]
+#[derive(Clone, Copy, Debug)]
+pub enum Chosen {}
 
 /// What a structure keeps in a blob, and the proof that it is sound.
 pub(crate) trait Records<'a>: Copy {
@@ -59,6 +70,28 @@ macro_rules! structures {
             pub fn visit<V: StructureVisitor>(self, visitor: V) -> V::Output {
                 match self {
                     $(Structure::$variant => visitor.visit::<super::$variant>(),)*
+                }
+            }
+        }
+
+        #[cfg(feature = "all-structures")]
+        impl Accel for Chosen {
+            const STRUCTURE: Structure = Structure::List;
+            type Cull<N: Number> = N::Cull;
+
+            fn walk<N: Number, C: Count>(
+                scene: &Scene<'_>,
+                ray: &Ray<N>,
+                _: &N::Cull,
+                stack: &mut StackView,
+                count: &mut C,
+                leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+            ) {
+                match scene.chosen {
+                    $(Structure::$variant => {
+                        let cull = <super::$variant as Accel>::Cull::<N>::new(ray);
+                        super::$variant::walk(scene, ray, &cull, stack, count, leaf);
+                    })*
                 }
             }
         }

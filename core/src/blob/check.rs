@@ -34,6 +34,8 @@ pub(super) fn check(blob: &[u8]) -> Result<Scene<'_>, BlobError> {
         leaves: sections.records(SectionKind::Leaves)?,
         held: Held::read(&sections)?,
         needs_norm: shapes.count(Kind::Sphere) + shapes.count(Kind::Cone) > 0,
+        #[cfg(feature = "all-structures")]
+        chosen: Structure::List,
     };
     check_objects(&scene)?;
     check_structures(&scene, &sections)?;

@@ -36,6 +36,9 @@ pub struct Scene<'a> {
     pub(crate) held: Held<'a>,
     /// Whether any primitive's test needs the norm of the ray's direction.
     pub(crate) needs_norm: bool,
+    /// What `Chosen` walks.
+    #[cfg(feature = "all-structures")]
+    pub(crate) chosen: Structure,
 }
 
 impl<'a> Scene<'a> {
@@ -95,6 +98,16 @@ impl<'a> Scene<'a> {
     /// Whether the blob holds a structure.
     pub fn holds(&self, structure: Structure) -> bool {
         self.header.structures & structure.bit() != 0
+    }
+
+    /// The scene with a structure chosen for [`Chosen`](crate::accel::Chosen) to walk; `None` if the
+    /// blob does not hold it.
+    #[cfg(feature = "all-structures")]
+    pub fn choose(&self, structure: Structure) -> Option<Self> {
+        self.holds(structure).then_some(Self {
+            chosen: structure,
+            ..*self
+        })
     }
 
     /// Number of primitives of a kind.

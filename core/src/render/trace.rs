@@ -235,14 +235,7 @@ impl Loop<'_, '_> {
             let weight = weight.times(transmit.scaled(N::ONE - reflected));
             let kind = RayKind::Refracted;
             self.send(
-                space,
-                hit,
-                refracted,
-                normal.map(|x| -x),
-                weight,
-                depth,
-                kind,
-                count,
+                space, hit, refracted, !hit.front, weight, depth, kind, count,
             );
         }
         if glass || effects.contains(Effects::MIRROR) {
@@ -254,7 +247,7 @@ impl Loop<'_, '_> {
                 space,
                 hit,
                 reflected,
-                normal,
+                hit.front,
                 weight.times(mirrored),
                 depth,
                 kind,
@@ -271,7 +264,7 @@ impl Loop<'_, '_> {
         space: &mut WorkspaceView<'_, N>,
         hit: Hit<N>,
         direction: [N; 3],
-        side: [N; 3],
+        outward: bool,
         weight: Color<N>,
         depth: u8,
         kind: RayKind,
@@ -279,7 +272,7 @@ impl Loop<'_, '_> {
     ) {
         let peak = weight.peak();
         if peak > N::ZERO && peak * N::radiance(1 << 20) > N::radiance(self.scene.view.cutoff) {
-            let origin = depart(&hit, side);
+            let origin = depart(self.scene, &hit, outward);
             // The list is as long as the depth asks for, so there is a place.
             let _ = space.work.push(Pending {
                 origin,
@@ -323,7 +316,7 @@ impl Loop<'_, '_> {
         count: &mut C,
     ) -> Color<N> {
         let effects = Effects(EFFECTS);
-        let origin = depart(hit, normal);
+        let origin = depart(self.scene, hit, hit.front);
         let (way, distance) = light.seen_from(origin);
         let Some((slopes, _)) = N::slopes(way) else {
             return Color::BLACK;
@@ -424,12 +417,7 @@ impl Loop<'_, '_> {
             if left.peak() * N::radiance(1 << 20) <= N::radiance(self.scene.view.cutoff) {
                 return Color::BLACK;
             }
-            let onward = if hit.front {
-                hit.normal.map(|x| -x)
-            } else {
-                hit.normal
-            };
-            origin = depart(&hit, onward);
+            origin = depart(self.scene, &hit, !hit.front);
             error = hit.error;
             // The way goes on along the same slopes, so its largest component stays the measure.
             distance = distance.map(|distance| distance - hit.t);
@@ -452,11 +440,14 @@ struct Shadow<N: Number> {
     error: N,
 }
 
-/// Where a ray starts that leaves a hit on a side: beside the surface by the hit's error bound.
+/// Where a ray starts that leaves a hit.
 #[inline(always)]
-fn depart<N: Number>(hit: &Hit<N>, side: [N; 3]) -> [N; 3] {
-    let axis = |k: usize| hit.point[k] + hit.error * side[k];
-    [axis(0), axis(1), axis(2)]
+fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, outward: bool) -> [N; 3] {
+    if outward {
+        hit.outside()
+    } else {
+        hit.inside(scene)
+    }
 }
 
 /// The length of a ray up to its hit.

@@ -254,6 +254,41 @@ impl Cone {
         })
     }
 
+    /// A point of the solid near a point of its surface, at least `depth` away from mantle and caps,
+    /// or where the solid is thinner, on the axis.
+    pub(crate) fn inside<N: Number>(&self, point: [N; 3], depth: N) -> [N; 3] {
+        let Frame {
+            axis,
+            half_height,
+            cos,
+            sin,
+            radius,
+        } = self.frame::<N>();
+        let middle = self.middle::<N>();
+        let k = |k: usize| point[k] - middle[k];
+        let q = [k(0), k(1), k(2)];
+        let mut along = N::from_wide(N::dot(q, axis));
+        let k = |k: usize| q[k] - along * axis[k];
+        let (outward, mut across) = N::normalize([k(0), k(1), k(2)]);
+        // The mantle's distance from the axis's middle, less the depth: inside is where
+        // `cos across + sin along` is at most that.
+        let mantle = radius * cos - depth;
+        let highest = (half_height - depth).max(N::ZERO);
+        let excess = (across * cos + along * sin - mantle).max(N::ZERO);
+        across = across - excess * cos;
+        along = (along - excess * sin).max(-highest).min(highest);
+        // Next to a cap the mantle may be near again; next to the tip there is only the axis.
+        let left = mantle - along * sin;
+        if left <= N::ZERO {
+            across = N::ZERO;
+            along = mantle.over(sin).max(-highest).min(highest);
+        } else if across * cos > left {
+            across = left.over(cos);
+        }
+        let k = |k: usize| middle[k] + along * axis[k] + across.max(N::ZERO) * outward[k];
+        [k(0), k(1), k(2)]
+    }
+
     /// Outward. Every normal of the mantle supports the tip, so there any of them will do.
     pub(crate) fn surface<N: Number>(&self, part: Part, point: [N; 3]) -> Surface<N> {
         let frame = self.frame::<N>();

@@ -61,4 +61,19 @@ impl Cuboid {
             extent: far(self.lowest).max(far(self.highest)),
         }
     }
+
+    /// The point of the box that is nearest to a point, of those at least `depth` away from all
+    /// faces, or halfway between them.
+    pub(crate) fn inside<N: Number>(&self, point: [N; 3], depth: N) -> [N; 3] {
+        let axis = |k: usize| {
+            let low = N::from_lattice(self.lowest[k]) + depth;
+            let high = N::from_lattice(self.highest[k]) - depth;
+            if low > high {
+                low.half() + high.half()
+            } else {
+                point[k].max(low).min(high)
+            }
+        };
+        [axis(0), axis(1), axis(2)]
+    }
 }

@@ -319,4 +319,32 @@ impl Shapes<'_> {
             (surface.level_with(ray), front)
         })
     }
+
+    /// A point beneath a point of a primitive's surface: `depth` away from it along the normal, and
+    /// in solids as far from all other faces, as far as they are thick enough.
+    ///
+    /// At an edge or a rim the way along the normal alone could lead out again.
+    #[inline(never)]
+    pub(crate) fn inside<N: Number>(
+        &self,
+        kind: Kind,
+        index: usize,
+        [point, normal]: [[N; 3]; 2],
+        depth: N,
+    ) -> [N; 3] {
+        match kind {
+            Kind::Box if kind.is_available() => match self.boxes.get(index) {
+                Some(cuboid) => cuboid.inside(point, depth),
+                None => point,
+            },
+            Kind::Cone if kind.is_available() => match self.cones.get(index) {
+                Some(cone) => cone.inside(point, depth),
+                None => point,
+            },
+            _ => {
+                let axis = |k: usize| point[k] - depth * normal[k];
+                [axis(0), axis(1), axis(2)]
+            }
+        }
+    }
 }

@@ -4,20 +4,19 @@ use super::flip::{self, flip};
 use super::setting::Setting;
 use crate::blob::Blob;
 use crate::compile::{self, CompileError};
-use crate::render::{Job, Picture, render};
+use crate::render::{Job, Picture, chosen, render};
 use crate::report::working_memory_at;
 use crate::scene::Scene;
-use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
 use gridel_core::blob::checksum;
 use gridel_core::render::{MAX_RAY_DEPTH, RenderError};
 use gridel_core::{
-    Accel, Effects, Fixed, Format, NoCount, Number, Renderer, Rgb888, Settings, Stack, Structure,
-    StructureVisitor, closest_hit, render::Pixel,
+    Effects, Fixed, Format, NoCount, Number, Renderer, Rgb888, Settings, Stack, Structure,
+    closest_hit, render::Pixel,
 };
 use image_compare::Algorithm;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-use std::marker::PhantomData;
 use std::time::Instant;
 
 /// What a setting is worth.
@@ -253,14 +252,11 @@ impl<'s> Bench<'s> {
         }
         let (structure, settings) = (self.structure, settings(self.size, setting));
         let scene = self.blob(setting)?.scene()?;
-        let look = Look {
-            scene: &scene,
-            settings,
-        };
+        let scene = &chosen(&scene, structure)?;
         let hits = match setting.format {
-            Format::Fixed => structure.visit(InFormat::<Fixed>(look, PhantomData)),
-            Format::F32 => structure.visit(InFormat::<f32>(look, PhantomData)),
-            Format::F64 => structure.visit(InFormat::<f64>(look, PhantomData)),
+            Format::Fixed => first_hits::<Fixed>(scene, settings),
+            Format::F32 => first_hits::<f32>(scene, settings),
+            Format::F64 => first_hits::<f64>(scene, settings),
         }?;
         self.hits.insert(key, hits.clone());
         Ok(hits)
@@ -277,32 +273,22 @@ fn settings([width, height]: [u16; 2], setting: &Setting) -> Settings {
     }
 }
 
-#[derive(Clone, Copy)]
-struct Look<'l> {
-    scene: &'l gridel_core::Scene<'l>,
+fn first_hits<N: Number>(
+    scene: &gridel_core::Scene<'_>,
     settings: Settings,
-}
-
-struct InFormat<'l, N>(Look<'l>, PhantomData<N>);
-
-impl<N: Number> StructureVisitor for InFormat<'_, N> {
-    type Output = Result<Vec<FirstHit>, RenderError>;
-
-    fn visit<A: Accel>(self) -> Self::Output {
-        let Look { scene, settings } = self.0;
-        let renderer = Renderer::<N, A, { Effects::ALL.0 }>::new(scene, settings)?;
-        let unit = f64::powi(2.0, scene.header().unit_exponent.into());
-        let mut stack = Stack::<MAX_STACK_DEPTH>::new();
-        let mut first = |x: u16, y: u16| {
-            let ray = renderer.primary_ray(x, y).ok()?;
-            let hit = closest_hit::<N, A, _>(scene, &ray, stack.as_view(), &mut NoCount)?;
-            let slope = ray.slope().map(N::ratio_to_f64);
-            let norm = slope.iter().map(|x| x * x).sum::<f64>().sqrt();
-            Some((hit.object, N::far_to_f64(hit.t) * norm * unit))
-        };
-        let places = (0..settings.height).flat_map(|y| (0..settings.width).map(move |x| (x, y)));
-        Ok(places.map(|(x, y)| first(x, y)).collect())
-    }
+) -> Result<Vec<FirstHit>, RenderError> {
+    let renderer = Renderer::<N, Chosen, { Effects::ALL.0 }>::new(scene, settings)?;
+    let unit = f64::powi(2.0, scene.header().unit_exponent.into());
+    let mut stack = Stack::<MAX_STACK_DEPTH>::new();
+    let mut first = |x: u16, y: u16| {
+        let ray = renderer.primary_ray(x, y).ok()?;
+        let hit = closest_hit::<N, Chosen, _>(scene, &ray, stack.as_view(), &mut NoCount)?;
+        let slope = ray.slope().map(N::ratio_to_f64);
+        let norm = slope.iter().map(|x| x * x).sum::<f64>().sqrt();
+        Some((hit.object, N::far_to_f64(hit.t) * norm * unit))
+    };
+    let places = (0..settings.height).flat_map(|y| (0..settings.width).map(move |x| (x, y)));
+    Ok(places.map(|(x, y)| first(x, y)).collect())
 }
 
 /// A linear value as a display shows it, 0 to 1.

@@ -12,15 +12,14 @@ pub use story::{Fall, Hit, Lighting, Ray, Sample, Story, Weighted};
 pub use text::{Names, Shown};
 pub use walk::{Candidate, Culled, Step, Tested, Verdict, Walk};
 
-use crate::render::{ALL, OPAQUE};
+use crate::render::{ALL, OPAQUE, chosen};
 use crate::trace::{Frame, SceneRay};
-use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
 use gridel_core::render::{MAX_RAY_DEPTH, RenderError};
 use gridel_core::{
-    Accel, Count, Effects, Event, Fixed, Format, Number, Renderer, Rgb888, Scene, Settings,
-    Structure, StructureVisitor, Workspace, render::Pixel,
+    Count, Effects, Event, Fixed, Format, Number, Renderer, Rgb888, Scene, Settings, Structure,
+    Workspace, render::Pixel,
 };
-use std::marker::PhantomData;
 
 /// What to explain.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,15 +56,11 @@ pub fn explain(
     settings: Settings,
     subject: Subject,
 ) -> Result<Story, ExplainError> {
-    let watch = Watch {
-        scene,
-        settings,
-        subject,
-    };
+    let scene = &chosen(scene, structure)?;
     let (linear, recorder) = match format {
-        Format::Fixed => structure.visit(watch.with::<Fixed>()),
-        Format::F32 => structure.visit(watch.with::<f32>()),
-        Format::F64 => structure.visit(watch.with::<f64>()),
+        Format::Fixed => with_format::<Fixed>(scene, settings, subject),
+        Format::F32 => with_format::<f32>(scene, settings, subject),
+        Format::F64 => with_format::<f64>(scene, settings, subject),
     }?;
     let mut story = Story::of(scene, &recorder.events);
     story.format = format.name();
@@ -75,58 +70,34 @@ pub fn explain(
     Ok(story)
 }
 
-/// What is watched.
-#[derive(Clone, Copy)]
-struct Watch<'w> {
-    scene: &'w Scene<'w>,
+type Told = Result<([u16; 3], Recorder), ExplainError>;
+
+fn with_format<N: Number>(scene: &Scene<'_>, settings: Settings, subject: Subject) -> Told {
+    if Effects(OPAQUE).contains(scene.effects()) {
+        watch::<N, OPAQUE>(scene, settings, subject)
+    } else {
+        watch::<N, ALL>(scene, settings, subject)
+    }
+}
+
+fn watch<N: Number, const EFFECTS: u32>(
+    scene: &Scene<'_>,
     settings: Settings,
     subject: Subject,
-}
-
-impl<'w> Watch<'w> {
-    fn with<N: Number>(self) -> InFormat<'w, N> {
-        InFormat(self, PhantomData)
-    }
-}
-
-struct InFormat<'w, N>(Watch<'w>, PhantomData<N>);
-
-impl<N: Number> StructureVisitor for InFormat<'_, N> {
-    type Output = Result<([u16; 3], Recorder), ExplainError>;
-
-    fn visit<A: Accel>(self) -> Self::Output {
-        let scene = self.0.scene;
-        if Effects(OPAQUE).contains(scene.effects()) {
-            self.0.tell::<N, A, OPAQUE>()
-        } else {
-            self.0.tell::<N, A, ALL>()
+) -> Told {
+    let renderer = Renderer::<N, Chosen, EFFECTS>::new(scene, settings)?;
+    let mut space = Box::new(Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new());
+    let mut space = space.as_view();
+    let mut recorder = Recorder::default();
+    let linear = match subject {
+        Subject::Pixel([x, y]) => renderer.linear(x, y, &mut space, &mut recorder),
+        Subject::Ray(ray) => {
+            let ready = Frame::of(scene).ray::<N>(scene, &ray);
+            let (ray, _) = ready.ok_or(ExplainError::NoRay)?;
+            renderer.linear_along(&ray, &mut space, &mut recorder)
         }
-    }
-}
-
-impl Watch<'_> {
-    fn tell<N: Number, A: Accel, const EFFECTS: u32>(
-        self,
-    ) -> Result<([u16; 3], Recorder), ExplainError> {
-        let Watch {
-            scene,
-            settings,
-            subject,
-        } = self;
-        let renderer = Renderer::<N, A, EFFECTS>::new(scene, settings)?;
-        let mut space = Box::new(Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new());
-        let mut space = space.as_view();
-        let mut recorder = Recorder::default();
-        let linear = match subject {
-            Subject::Pixel([x, y]) => renderer.linear(x, y, &mut space, &mut recorder),
-            Subject::Ray(ray) => {
-                let ready = Frame::of(scene).ray::<N>(scene, &ray);
-                let (ray, _) = ready.ok_or(ExplainError::NoRay)?;
-                renderer.linear_along(&ray, &mut space, &mut recorder)
-            }
-        };
-        Ok((linear, recorder))
-    }
+    };
+    Ok((linear, recorder))
 }
 
 /// Keeps what is told, but not every primitive of a long list that a ray passes by.
