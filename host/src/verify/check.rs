@@ -2,10 +2,10 @@
 
 use super::judge::{Answer, Judge, RoundedRay, STEPS, Wrong, step};
 use super::random::Random;
-use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
 use gridel_core::{
-    Accel, Format, Hit, Kind, List, NoCount, Number, Ray, Scene, Stack, Structure,
-    StructureVisitor, any_hit, closest_hit,
+    Accel, Format, Hit, Kind, List, NoCount, Number, Ray, Scene, Stack, Structure, any_hit,
+    closest_hit,
 };
 
 /// What a scene promises.
@@ -80,19 +80,17 @@ pub fn ask<N: Number, A: Accel>(scene: &Scene<'_>, ray: &Ray<N>) -> Heard<N> {
 
 /// Asks the list and then every structure that a scene holds.
 pub fn ask_all<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Heard<N>> {
-    struct Ask<'q, N: Number>(&'q Scene<'q>, &'q Ray<N>);
-    impl<N: Number> StructureVisitor for Ask<'_, N> {
-        type Output = Heard<N>;
-
-        fn visit<A: Accel>(self) -> Heard<N> {
-            ask::<N, A>(self.0, self.1)
-        }
-    }
     let list = ask::<N, List>(scene, ray);
     let others = Structure::ALL
         .into_iter()
-        .filter(|&structure| structure != Structure::List && scene.holds(structure))
-        .map(|structure| structure.visit(Ask(scene, ray)));
+        .filter(|&structure| structure != Structure::List)
+        .filter_map(|structure| {
+            let chosen = scene.choose(structure)?;
+            Some(Heard {
+                structure,
+                ..ask::<N, Chosen>(&chosen, ray)
+            })
+        });
     std::iter::once(list).chain(others).collect()
 }
 

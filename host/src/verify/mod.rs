@@ -18,13 +18,13 @@ pub use closed::ClosedMesh;
 pub use rays::{Targets, UnitRay};
 
 use crate::trace::{Frame, SceneRay};
-use gridel_core::{Accel, Fixed, Format, List, Number, Scene, Structure, StructureVisitor};
+use gridel_core::accel::Chosen;
+use gridel_core::{Fixed, Format, List, Number, Scene, Structure};
 use judge::Judge;
 use random::Random;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::marker::PhantomData;
 
 /// What was found.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -262,21 +262,16 @@ impl Work<'_> {
 
     /// Follows a ray from inside of a closed mesh through every structure.
     fn leak<N: Number>(&self, aim: &Aim, tally: &mut Tally) {
-        struct Follow<'f, N>(&'f Work<'f>, &'f Aim, PhantomData<N>);
-        impl<N: Number> StructureVisitor for Follow<'_, N> {
-            type Output = Option<Fault>;
-
-            fn visit<A: Accel>(self) -> Self::Output {
-                let (work, aim) = (self.0, self.1);
-                let (origin, direction) = (aim.origin, aim.direction);
-                sealed::<N, A>(work.scene, work.judge, aim.object, origin, direction)
-            }
-        }
-        for structure in held(self.scene) {
+        let (origin, direction) = (aim.origin, aim.direction);
+        for structure in Structure::ALL {
+            let Some(scene) = self.scene.choose(structure) else {
+                continue;
+            };
             tally.checked(Promise::Leaks, 1);
-            let ray = UnitRay::new(aim.origin, aim.direction);
-            if let Some(fault) = structure.visit(Follow::<N>(self, aim, PhantomData)) {
-                tally.fault(fault, &self.frame.scene_ray(&ray));
+            let fault = sealed::<N, Chosen>(&scene, self.judge, aim.object, origin, direction);
+            if let Some(fault) = fault {
+                let ray = UnitRay::new(origin, direction);
+                tally.fault(Fault { structure, ..fault }, &self.frame.scene_ray(&ray));
             }
         }
     }

@@ -9,7 +9,7 @@ use std::fmt;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::{env, fs, io};
 
 /// The runner that comes nearest to a board without an operating system: WebAssembly in Node.
@@ -85,8 +85,23 @@ impl fmt::Display for Build<'_> {
     }
 }
 
-/// Builds share one target folder, so one runs at a time.
-static BUILDING: Mutex<()> = Mutex::new(());
+/// Target folders, each for one build at a time: linking takes one core.
+static BUILDING: [Mutex<()>; 2] = [Mutex::new(()), Mutex::new(())];
+
+/// A target folder that no other build uses, by number.
+fn a_target_folder() -> (usize, MutexGuard<'static, ()>) {
+    let free = BUILDING.iter().enumerate().find_map(|(number, folder)| {
+        let guard = folder.try_lock().ok()?;
+        Some((number, guard))
+    });
+    // A test that failed says so itself.
+    free.unwrap_or_else(|| {
+        (
+            0,
+            BUILDING[0].lock().unwrap_or_else(PoisonError::into_inner),
+        )
+    })
+}
 
 impl<'b> Build<'b> {
     pub fn new(
@@ -116,14 +131,14 @@ impl<'b> Build<'b> {
 
     /// Builds one of the firmware's programs, or says why it does not compile.
     pub fn try_program(&self, name: &str, features: &[&str]) -> Result<Program<'b>, String> {
-        // A test that failed says so itself.
-        let _one_at_a_time = BUILDING.lock().unwrap_or_else(|poison| poison.into_inner());
+        let (number, _one_at_a_time) = a_target_folder();
         let folder = self.folder(name);
         // Beside it a module with a `scene.gridel` of its own may lie.
         let blob = folder.join("firmware.gridel");
         fs::write(&blob, self.scene.blob.bytes()).expect("the target folder can be written to");
 
-        let target_folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("firmware");
+        let target_folder =
+            Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("firmware-{number}"));
         let mut cargo = Command::new(env!("CARGO"));
         cargo
             .current_dir(repository().join("tests/firmware"))
