@@ -2,10 +2,9 @@
 
 pub use gridel_host::verify::UnitRay;
 
-use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
 use gridel_core::{
-    Accel, Count, Fixed, Hit, NoCount, Number, Ray, Scene, Stack, Structure, StructureVisitor,
-    any_hit, closest_hit,
+    Accel, Count, Fixed, Hit, NoCount, Number, Ray, Scene, Stack, Structure, any_hit, closest_hit,
 };
 use std::any::Any;
 
@@ -67,13 +66,13 @@ type Answer<N> = (Option<Hit<N>>, bool);
 /// program of tests: hence the detour by types that are known when the program runs.
 pub fn through<N: Number>(structure: Structure, scene: &Scene<'_>, ray: &Ray<N>) -> Answer<N> {
     fn answer<N: Number, M: Number>(
-        ask: fn(Structure, &Scene<'_>, &Ray<M>) -> Answer<M>,
+        asked: fn(Structure, &Scene<'_>, &Ray<M>) -> Answer<M>,
         structure: Structure,
         scene: &Scene<'_>,
         ray: &Ray<N>,
     ) -> Option<Answer<N>> {
         let ray = (ray as &dyn Any).downcast_ref::<Ray<M>>()?;
-        let answer = ask(structure, scene, ray);
+        let answer = asked(structure, scene, ray);
         (&answer as &dyn Any).downcast_ref::<Answer<N>>().copied()
     }
     answer(ask_fixed, structure, scene, ray)
@@ -83,29 +82,23 @@ pub fn through<N: Number>(structure: Structure, scene: &Scene<'_>, ray: &Ray<N>)
 }
 
 fn ask_fixed(structure: Structure, scene: &Scene<'_>, ray: &Ray<Fixed>) -> Answer<Fixed> {
-    structure.visit(Through(scene, ray))
+    ask(structure, scene, ray)
 }
 
 fn ask_f32(structure: Structure, scene: &Scene<'_>, ray: &Ray<f32>) -> Answer<f32> {
-    structure.visit(Through(scene, ray))
+    ask(structure, scene, ray)
 }
 
 fn ask_f64(structure: Structure, scene: &Scene<'_>, ray: &Ray<f64>) -> Answer<f64> {
-    structure.visit(Through(scene, ray))
+    ask(structure, scene, ray)
 }
 
-struct Through<'t, N: Number>(&'t Scene<'t>, &'t Ray<N>);
-
-impl<N: Number> StructureVisitor for Through<'_, N> {
-    type Output = Answer<N>;
-
-    fn visit<A: Accel>(self) -> Self::Output {
-        let Self(scene, ray) = self;
-        (
-            closest::<N, A>(scene, ray, &mut NoCount),
-            any::<N, A>(scene, ray),
-        )
-    }
+fn ask<N: Number>(structure: Structure, scene: &Scene<'_>, ray: &Ray<N>) -> Answer<N> {
+    let chosen = scene.choose(structure).expect("a structure that is held");
+    (
+        closest::<N, Chosen>(&chosen, ray, &mut NoCount),
+        any::<N, Chosen>(&chosen, ray),
+    )
 }
 
 /// A point in units, from a hit.

@@ -416,8 +416,7 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
         point(at, "lowest coordinate", center.map(|x| x - length))?;
         point(at, "highest coordinate", center.map(|x| x + length))?;
     }
-    let boxes = shapes.boxes.iter().take(shapes.count(Kind::Box));
-    for (index, cuboid) in boxes.enumerate() {
+    for (index, cuboid) in (0..shapes.count(Kind::Box)).zip(shapes.boxes) {
         let at = At {
             section: SectionKind::Boxes,
             index,
@@ -431,8 +430,7 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
             .filter(|(low, high)| low > high);
         at.within("number of inverted sides", inverted.count() as i64, 0, 0)?;
     }
-    let discs = shapes.discs.iter().take(shapes.count(Kind::Disc));
-    for (index, disc) in discs.enumerate() {
+    for (index, disc) in (0..shapes.count(Kind::Disc)).zip(shapes.discs) {
         let at = At {
             section: SectionKind::Discs,
             index,
@@ -448,8 +446,7 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
         at.within("radius", disc.radius.into(), 1, radius)?;
         inside(at, "number of boxes outside the scene's", &disc.bounds)?;
     }
-    let cones = shapes.cones.iter().take(shapes.count(Kind::Cone));
-    for (index, cone) in cones.enumerate() {
+    for (index, cone) in (0..shapes.count(Kind::Cone)).zip(shapes.cones) {
         let at = At {
             section: SectionKind::Cones,
             index,
@@ -564,9 +561,9 @@ fn check_leaves(scene: &Scene<'_>, hierarchies: bool) -> Result<u32, BlobError> 
             expected: 0,
         });
     }
-    let mut next = [0; Kind::ALL.len()];
+    let mut next = [0_u32; Kind::ALL.len()];
     let mut longest = 0;
-    for (index, &word) in scene.leaves.iter().enumerate() {
+    for (index, &word) in (0..scene.leaves.len()).zip(scene.leaves) {
         let at = At { section, index };
         let Some(leaf) = Leaf::from_word(word) else {
             let (what, expected) = ("kind", Kind::ALL.len() as i64 - 1);
@@ -591,7 +588,8 @@ fn check_leaves(scene: &Scene<'_>, hierarchies: bool) -> Result<u32, BlobError> 
             (*next).into(),
             (*next).into(),
         )?;
-        *next += leaf.count;
+        // Below 2^24 and 31.
+        *next = next.wrapping_add(leaf.count);
         longest = longest.max(leaf.count);
         let most = scene.shapes.count(leaf.kind) as i64;
         at.within("end of the slots", (*next).into(), 0, most)?;

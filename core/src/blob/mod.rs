@@ -163,9 +163,9 @@ impl<'a> Scene<'a> {
             };
         }
         // The last object whose first primitive is not beyond this one.
-        let (mut low, mut high) = (0, self.object_first.len());
-        while high - low > 1 {
-            let middle = low + (high - low) / 2;
+        let (mut low, mut high) = (0_usize, self.object_first.len());
+        while low.saturating_add(1) < high {
+            let middle = low.midpoint(high);
             match self.object_first.get(middle) {
                 Some(first) if first <= primitive => low = middle,
                 _ => high = middle,

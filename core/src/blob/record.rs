@@ -86,7 +86,12 @@ impl UnitBox {
     /// The box around coordinates of the storage lattice (1/256 unit), rounded outward.
     #[inline(always)]
     pub fn around(lowest: [i32; 3], highest: [i32; 3]) -> Self {
-        let axis = |k: usize| [(lowest[k] >> 8) as i16, ((highest[k] + 255) >> 8) as i16];
+        let axis = |k: usize| {
+            [
+                (lowest[k] >> 8) as i16,
+                (highest[k].wrapping_add(255) >> 8) as i16,
+            ]
+        };
         Self([axis(0), axis(1), axis(2)])
     }
 

@@ -64,8 +64,10 @@ fn srgb(linear: u16) -> u32 {
     let (Some(&low), Some(&high)) = (LINEAR_OF_SRGB.get(below), LINEAR_OF_SRGB.get(above)) else {
         return 255 << 8;
     };
-    let (rest, step) = (u32::from(linear - low), u32::from(high - low));
-    ((below as u32) << 8) + (rest << 8).checked_div(step).unwrap_or(0)
+    // The table ascends, so no difference wraps.
+    let (rest, step) = (linear.wrapping_sub(low), high.wrapping_sub(low));
+    let part = (u32::from(rest) << 8).checked_div(step.into());
+    ((below as u32) << 8).wrapping_add(part.unwrap_or(0))
 }
 
 /// Bayer's matrix of order 8: every number of 0 to 63 once.

@@ -225,13 +225,19 @@ impl Shapes<'_> {
 
     /// Number of primitives.
     pub(crate) fn total(&self) -> usize {
-        Kind::ALL.iter().map(|&kind| self.count(kind)).sum()
+        self.before(Kind::ALL.len())
     }
 
     /// The slot of a primitive among those of all kinds.
     pub(crate) fn slot(&self, kind: Kind, index: u32) -> usize {
-        let before = Kind::ALL.iter().take_while(|&&other| other != kind);
-        before.map(|&other| self.count(other)).sum::<usize>() + index as usize
+        self.before(kind as usize).wrapping_add(index as usize)
+    }
+
+    /// Number of primitives of the first so many kinds: all of them are records of one slice of
+    /// memory, so no sum wraps.
+    fn before(&self, kinds: usize) -> usize {
+        let kinds = Kind::ALL.iter().take(kinds);
+        kinds.fold(0, |sum: usize, &kind| sum.wrapping_add(self.count(kind)))
     }
 
     /// The primitive of a slot among those of all kinds, as a leaf of its own; an empty leaf beyond
@@ -245,7 +251,7 @@ impl Shapes<'_> {
                 let count = 1;
                 return Leaf { kind, first, count };
             }
-            first -= count;
+            first = first.wrapping_sub(count);
         }
         Leaf {
             kind: Kind::Triangle,
