@@ -76,10 +76,15 @@ use heapless::{Vec, VecView};
 
 /// A structure, as a type: the code of those that are not named is not in the program.
 pub trait Accel: Send + Sync {
-    /// Its name. `Chosen` has none, and gives the list's, which every scene holds.
+    /// Its name; the list's of one that has none.
     const STRUCTURE: Structure;
     /// The form in which its rays cull.
     type Cull<N: Number>: Culling<N>;
+
+    /// What a scene must hold to be walked.
+    fn needs(_: &Scene<'_>) -> Structure {
+        Self::STRUCTURE
+    }
 
     /// Calls `leaf` for every leaf whose box the ray can meet, nearer ones first where the
     /// structure knows. `leaf` returns the t beyond which nothing counts any more, or `None` to

@@ -79,6 +79,10 @@ macro_rules! structures {
             const STRUCTURE: Structure = Structure::List;
             type Cull<N: Number> = N::Cull;
 
+            fn needs(scene: &Scene<'_>) -> Structure {
+                scene.chosen
+            }
+
             fn walk<N: Number, C: Count>(
                 scene: &Scene<'_>,
                 ray: &Ray<N>,

@@ -154,8 +154,9 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         if usize::from(depth) > MAX_RAY_DEPTH {
             return Err(RenderError::Depth(depth));
         }
-        if !scene.holds(A::STRUCTURE) {
-            return Err(RenderError::Structure(A::STRUCTURE));
+        let needed = A::needs(scene);
+        if !scene.holds(needed) {
+            return Err(RenderError::Structure(needed));
         }
         let missing = scene.effects().without(Effects(EFFECTS));
         if missing != Effects::NONE {

@@ -270,7 +270,7 @@ fn a_module_is_emitted_for_the_board() {
     for line in [
         "pub type Number = f32;",
         "pub type Accel = gridel_core::DualSplit;",
-        "\"flagged\", \"triangle\", \"sphere\", \"box\", \"disc\", \"cone\", \"wide-lattice\"",
+        "\"dual-split\", \"triangle\", \"sphere\", \"box\", \"disc\", \"cone\", \"wide-lattice\"",
         "pub const WORK_DEPTH: usize = 7;",
         "the blob outgrew the flash of mps2-an386",
     ] {
