@@ -32,8 +32,8 @@ pub struct Hit<N: Number> {
     pub primitive: u32,
     /// The surface lies within this length of `point`, measured along the normal.
     pub error: N,
-    kind: Kind,
-    index: u32,
+    /// The primitive by kind and slot, as a leaf's word.
+    place: u32,
 }
 
 /// The best hit so far.
@@ -317,8 +317,12 @@ impl<N: Number> Found<N> {
             object: scene.object(self.primitive),
             primitive: self.primitive,
             error: N::error_bound(scale),
-            kind: best.kind,
-            index: best.index,
+            place: Leaf {
+                kind: best.kind,
+                first: best.index,
+                count: 1,
+            }
+            .to_word(),
         })
     }
 }
@@ -336,8 +340,14 @@ impl<N: Number> Hit<N> {
     /// leaves the solid again; where the solid is thinner, halfway between them.
     pub fn inside(&self, scene: &Scene<'_>) -> [N; 3] {
         let surface = [self.point, self.normal];
-        let index = self.index as usize;
-        scene.shapes.inside(self.kind, index, surface, self.error)
+        match Leaf::from_word(self.place) {
+            Some(Leaf { kind, first, .. }) => {
+                scene
+                    .shapes
+                    .inside(kind, first as usize, surface, self.error)
+            }
+            None => self.point,
+        }
     }
 
     /// The hit as events tell it.

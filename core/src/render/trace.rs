@@ -235,7 +235,7 @@ impl Loop<'_, '_> {
             let weight = weight.times(transmit.scaled(N::ONE - reflected));
             let kind = RayKind::Refracted;
             self.send(
-                space, hit, refracted, !hit.front, weight, depth, kind, count,
+                space, &hit, refracted, !hit.front, weight, depth, kind, count,
             );
         }
         if glass || effects.contains(Effects::MIRROR) {
@@ -245,7 +245,7 @@ impl Loop<'_, '_> {
             let kind = RayKind::Reflected;
             self.send(
                 space,
-                hit,
+                &hit,
                 reflected,
                 hit.front,
                 weight.times(mirrored),
@@ -262,7 +262,7 @@ impl Loop<'_, '_> {
     fn send<N: Number, C: Count>(
         &self,
         space: &mut WorkspaceView<'_, N>,
-        hit: Hit<N>,
+        hit: &Hit<N>,
         direction: [N; 3],
         outward: bool,
         weight: Color<N>,
@@ -272,7 +272,7 @@ impl Loop<'_, '_> {
     ) {
         let peak = weight.peak();
         if peak > N::ZERO && peak * N::radiance(1 << 20) > N::radiance(self.scene.view.cutoff) {
-            let origin = depart(self.scene, &hit, outward);
+            let origin = depart(self.scene, hit, outward);
             // The list is as long as the depth asks for, so there is a place.
             let _ = space.work.push(Pending {
                 origin,
@@ -441,7 +441,9 @@ struct Shadow<N: Number> {
 }
 
 /// Where a ray starts that leaves a hit.
-#[inline(always)]
+///
+/// Out of line, because copies of it took more of the call stack than the call.
+#[inline(never)]
 fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, outward: bool) -> [N; 3] {
     if outward {
         hit.outside()
