@@ -312,7 +312,14 @@ impl Shapes<'_> {
             }
             Kind::Box => self.boxes.get(index)?.surface(part),
             Kind::Disc => self.discs.get(index)?.surface(),
-            Kind::Cone => self.cones.get(index)?.surface(part, point),
+            Kind::Cone => {
+                let toward = if leaves {
+                    ray.slope
+                } else {
+                    ray.slope.map(|x| -x)
+                };
+                self.cones.get(index)?.surface(part, point, toward)
+            }
         };
         let against = N::dot(surface.normal, ray.slope) < N::Wide::default();
         let front = match kind {
