@@ -34,6 +34,8 @@ pub mod boards {}
 pub mod accel;
 pub mod blob;
 pub mod count;
+#[cfg(feature = "wide")]
+mod eight;
 pub mod event;
 pub mod number;
 mod query;
@@ -60,6 +62,8 @@ pub use accel::DualSplit;
 pub use accel::Flagged;
 #[cfg(feature = "ray-classes")]
 pub use accel::RayClasses;
+#[cfg(feature = "wide")]
+pub use accel::Wide;
 pub use accel::{Accel, List, Stack, StackView, Structure, StructureVisitor};
 pub use blob::{Aligned, BlobError, Scene};
 pub use count::{Count, Counters, NoCount, RayKind};

@@ -11,7 +11,13 @@ use crate::ray::Ray;
 use crate::shape::sphere;
 use crate::shape::triangle::{self, Projection};
 use crate::shape::{
-    Crossing, Kind, Part, Spheres, Triangles, Vertices, WIDE_INDICES, WIDE_LATTICE, accept, extent,
+    Crossing, Kind, Part, Place, Spheres, Triangles, Vertices, WIDE_INDICES, WIDE_LATTICE, accept,
+    extent,
+};
+#[cfg(feature = "wide")]
+use crate::{
+    blob::cluster::{Pack, Strip},
+    shape::{Packs, Strips, pack, strip},
 };
 
 /// What a ray met.
@@ -32,7 +38,7 @@ pub struct Hit<N: Number> {
     pub primitive: u32,
     /// The surface lies within this length of `point`, measured along the normal.
     pub error: N,
-    /// The primitive by kind and slot, as a leaf's word.
+    /// The primitive by kind and slot, as a leaf's word, whichever structure found it.
     place: u32,
 }
 
@@ -40,8 +46,7 @@ pub struct Hit<N: Number> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Best<N> {
     t: N,
-    kind: Kind,
-    index: u32,
+    place: Place,
     part: Part,
 }
 
@@ -51,6 +56,9 @@ struct Search<'s, 'a, N: Number, K> {
     ray: &'s Ray<N>,
     cull: &'s K,
     recip_norm2: N,
+    /// The projection of strips.
+    #[cfg(feature = "wide")]
+    projection: Projection<N>,
     /// No hit beyond this counts.
     tmax: N,
     best: Option<Best<N>>,
@@ -68,6 +76,8 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             } else {
                 N::ZERO
             },
+            #[cfg(feature = "wide")]
+            projection: strip::projection(ray, &scene.shapes.clusters.strips),
             tmax: ray.tmax,
             best: None,
         }
@@ -77,55 +87,102 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     ///
     /// Out of line, because few of the primitives that are tested come this far.
     #[inline(never)]
-    fn consider(&mut self, crossing: Crossing<N>, bounds: UnitBox, kind: Kind, index: u32) {
+    fn consider(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: Place) {
         let Some((t, part)) = accept(self.ray, self.cull, crossing, bounds, self.tmax) else {
             return;
         };
         // No hit lies beyond the best one, so this one is nearer, or as near.
         let tie = self.best.filter(|best| t >= best.t);
-        if tie.is_some_and(|best| self.rank(best.kind, best.index) <= self.rank(kind, index)) {
+        if tie.is_some_and(|best| self.scene.key(best.place) <= self.scene.key(place)) {
             return;
         }
         self.tmax = t;
-        self.best = Some(Best {
-            t,
-            kind,
-            index,
-            part,
-        });
-    }
-
-    /// What decides between hits at the same t: the number in scene-file order, and then the slot,
-    /// because a forged blob may give one number to two primitives.
-    fn rank(&self, kind: Kind, index: u32) -> (u32, u8, u32) {
-        (self.scene.primitive(kind, index), kind as u8, index)
+        self.best = Some(Best { t, place, part });
     }
 
     /// Tells of a primitive that was just tested, and considered if it was met.
     #[inline(always)]
-    fn tell<C: Count>(
-        &self,
-        kind: Kind,
-        index: u32,
-        crossing: Option<&Crossing<N>>,
-        count: &mut C,
-    ) {
+    fn tell<C: Count>(&self, place: Place, crossing: Option<&Crossing<N>>, count: &mut C) {
         if C::TELLS {
             count.tell(Event::Candidate {
-                kind,
-                primitive: self.scene.primitive(kind, index),
+                kind: place.kind(),
+                primitive: self.scene.primitive_at(place),
                 crossing: crossing.map(|c| [c.enter.0, c.leave.0].map(N::length_to_f64)),
-                nearest: self
-                    .best
-                    .is_some_and(|best| (best.kind, best.index) == (kind, index)),
+                nearest: self.best.is_some_and(|best| best.place == place),
             });
         }
     }
 
     /// Tests the primitives of a leaf.
     #[inline(always)]
-    fn leaf<C: Count>(&mut self, leaf: Leaf, count: &mut C) {
+    fn leaf<A: Accel, C: Count>(&mut self, leaf: Leaf, count: &mut C) {
+        #[cfg(feature = "wide")]
+        if A::HAS_CLUSTERS && leaf.count == 0 {
+            let clusters = &self.scene.shapes.clusters;
+            return match (leaf.kind, clusters.strips, clusters.packs) {
+                (Kind::Triangle, Strips::S16(strips), _) => self.strip(strips, leaf.first, count),
+                (Kind::Triangle, Strips::S24(strips), _) => self.strip(strips, leaf.first, count),
+                (_, _, Packs::P16(packs)) => self.pack(packs, leaf.first, count),
+                (_, _, Packs::P24(packs)) => self.pack(packs, leaf.first, count),
+            };
+        }
         count.objects(leaf.count);
+        self.slots(leaf, count);
+    }
+
+    /// Tests the triangles of a strip.
+    #[cfg(feature = "wide")]
+    #[inline(always)]
+    fn strip<S: Strip, C: Count>(&mut self, strips: &[S], number: u32, count: &mut C) {
+        let Some(strip) = strips.get(number as usize) else {
+            return;
+        };
+        count.objects(strip.members().count());
+        let mut met = strip::met(&self.projection, self.ray.major, strip);
+        while met != 0 {
+            let place = met.trailing_zeros();
+            met &= met - 1;
+            self.triangle_in_strip(strip, Place::Strip(number, place as u8), count);
+        }
+    }
+
+    /// Takes a triangle of a strip that the ray meets somewhere on its line.
+    #[cfg(feature = "wide")]
+    #[inline(never)]
+    fn triangle_in_strip<S: Strip, C: Count>(&mut self, strip: &S, place: Place, count: &mut C) {
+        if let Place::Strip(_, number) = place
+            && let Some(corners) = strip.triangle(number.into())
+        {
+            self.triangle(corners, place, count);
+        }
+    }
+
+    /// Tests the spheres of a pack.
+    #[cfg(feature = "wide")]
+    #[inline(always)]
+    fn pack<P: Pack, C: Count>(&mut self, packs: &[P], number: u32, count: &mut C) {
+        let Some(pack) = packs.get(number as usize) else {
+            return;
+        };
+        count.objects(pack.members().count());
+        let mut met = pack::met(self.ray, self.recip_norm2, pack);
+        while met != 0 {
+            let lane = met.trailing_zeros();
+            met &= met - 1;
+            if let Some((center, radius)) = pack.sphere(lane) {
+                let place = Place::Pack(number, lane as u8);
+                let crossing = sphere::cross(self.ray, self.recip_norm2, center, radius);
+                if let Some(crossing) = crossing {
+                    self.consider(crossing, sphere::bounds(center, radius), place);
+                }
+                self.tell(place, crossing.as_ref(), count);
+            }
+        }
+    }
+
+    /// Tests the primitives of a range of slots.
+    #[inline(always)]
+    fn slots<C: Count>(&mut self, leaf: Leaf, count: &mut C) {
         let (first, end) = (leaf.first as usize, (leaf.first + leaf.count) as usize);
         let shapes = &self.scene.shapes;
         match leaf.kind {
@@ -188,10 +245,11 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     ) {
         for (index, record) in (leaf.first..).zip(records.unwrap_or_default()) {
             let crossing = cross(self, record);
+            let place = Place::Slot(leaf.kind, index);
             if let Some(crossing) = crossing {
-                self.consider(crossing, bounds(record), leaf.kind, index);
+                self.consider(crossing, bounds(record), place);
             }
-            self.tell(leaf.kind, index, crossing.as_ref(), count);
+            self.tell(place, crossing.as_ref(), count);
         }
     }
 
@@ -239,25 +297,30 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                 continue;
             };
             if projection.meets::<MAJOR, V>(a, b, c) {
-                self.triangle(index, count);
+                self.triangle_in_slot(index, count);
             } else {
-                self.tell(Kind::Triangle, index, None, count);
+                self.tell(Place::Slot(Kind::Triangle, index), None, count);
             }
         }
     }
 
-    /// Takes a triangle that the ray meets somewhere on its line.
+    /// Takes a triangle of its own record that the ray meets somewhere on its line.
     #[inline(never)]
-    fn triangle<C: Count>(&mut self, index: u32, count: &mut C) {
-        let Some(corners) = self.scene.triangle(index as usize) else {
-            return;
-        };
+    fn triangle_in_slot<C: Count>(&mut self, index: u32, count: &mut C) {
+        if let Some(corners) = self.scene.shapes.indexed_triangle(index as usize) {
+            self.triangle(corners, Place::Slot(Kind::Triangle, index), count);
+        }
+    }
+
+    /// Takes a triangle that the ray meets somewhere on its line.
+    #[inline(always)]
+    fn triangle<C: Count>(&mut self, corners: [[i32; 3]; 3], place: Place, count: &mut C) {
         let crossing = triangle::cross(self.ray, corners);
         if let Some(crossing) = crossing {
             let bounds = triangle::bounds(corners);
-            self.consider(crossing, bounds, Kind::Triangle, index);
+            self.consider(crossing, bounds, place);
         }
-        self.tell(Kind::Triangle, index, crossing.as_ref(), count);
+        self.tell(place, crossing.as_ref(), count);
     }
 }
 
@@ -288,13 +351,13 @@ pub fn closest_primitive<N: Number, A: Accel, C: Count>(
         count.tell(ray.query(false));
     }
     A::walk(scene, ray, &cull, stack, count, |leaf, count| {
-        search.leaf(leaf, count);
+        search.leaf::<A, C>(leaf, count);
         Some(search.tmax)
     });
     let best = search.best?;
     Some(Found {
         t: best.t.widen() + ray.moved,
-        primitive: scene.primitive(best.kind, best.index),
+        primitive: scene.primitive_at(best.place),
         best,
     })
 }
@@ -305,9 +368,7 @@ impl<N: Number> Found<N> {
     pub fn hit(&self, scene: &Scene<'_>, ray: &Ray<N>) -> Option<Hit<N>> {
         let best = self.best;
         let point = ray.at(best.t);
-        let index = best.index as usize;
-        let shapes = &scene.shapes;
-        let (surface, front) = shapes.surface(best.kind, index, best.part, ray, point)?;
+        let (surface, front) = scene.shapes.surface(best.place, best.part, ray, point)?;
         let scale = extent(ray.origin).max(extent(point)).max(surface.extent);
         Some(Hit {
             t: self.t,
@@ -318,8 +379,8 @@ impl<N: Number> Found<N> {
             primitive: self.primitive,
             error: N::error_bound(scale),
             place: Leaf {
-                kind: best.kind,
-                first: best.index,
+                kind: best.place.kind(),
+                first: scene.key(best.place).2,
                 count: 1,
             }
             .to_word(),
@@ -392,7 +453,7 @@ pub fn any_hit<N: Number, A: Accel, C: Count>(
         count.tell(ray.query(true));
     }
     A::walk(scene, ray, &cull, stack, count, |leaf, count| {
-        search.leaf(leaf, count);
+        search.leaf::<A, C>(leaf, count);
         search.best.is_none().then_some(search.tmax)
     });
     if C::TELLS {

@@ -212,7 +212,9 @@ impl<N: Number> Ray<N> {
     /// # Errors
     /// If the direction is zero, or anything is NaN, or the origin or direction infinite, or
     /// `tmin > tmax`. Queries for which no ray can be made have no hit.
-    #[inline]
+    // Hosts have the room; through memory a ray would cost as much again.
+    #[cfg_attr(feature = "wide", inline(always))]
+    #[cfg_attr(not(feature = "wide"), inline)]
     pub fn new(
         bounds: &UnitBox,
         origin: [N::Wide; 3],

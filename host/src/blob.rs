@@ -71,7 +71,8 @@ pub fn is_blob(path: &Path) -> io::Result<bool> {
 
 /// The structures that a scene holds, the one that a verb takes unless it is told first.
 pub fn best_structures(scene: &Scene<'_>) -> impl Iterator<Item = Structure> {
-    const BEST_FIRST: [Structure; 9] = [
+    const BEST_FIRST: [Structure; 10] = [
+        Structure::Wide,
         Structure::Apex,
         Structure::RayClasses,
         Structure::CylinderCubeEntry,

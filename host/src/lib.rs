@@ -11,6 +11,7 @@
 //! | write a blob as a Rust module | [`emit`] |
 //! | render a blob on all cores | [`render`], then [`picture`] to encode what comes out |
 //! | compare structures on a scene | [`compare`] |
+//! | put parts of a picture together | [`merge`] |
 //! | trace rays of one's own | [`trace`], and [`npy`] for NumPy's files |
 //! | tell the story of a ray or a pixel | [`explain`] |
 //! | measure what accuracy costs in time | [`accuracy`] |
@@ -27,6 +28,7 @@ pub mod compare;
 pub mod compile;
 pub mod emit;
 pub mod explain;
+pub mod merge;
 pub mod npy;
 pub mod output;
 pub mod picture;

@@ -3,8 +3,51 @@
 use crate::render::Picture;
 use gridel_core::render::Pixel;
 use gridel_core::{Rgb565, Rgb888};
+use std::fmt;
 use std::io::{self, Write};
+use std::ops::Range;
 use std::path::Path;
+use std::str::FromStr;
+
+/// Which rows of which picture a file has; PNG and PPM files of a part say so.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rows {
+    /// The rows, from the top.
+    pub part: Range<u16>,
+    /// Height of the whole picture.
+    pub height: u16,
+}
+
+impl Rows {
+    /// Keyword of the text in PNG files.
+    pub const KEYWORD: &str = "Rows";
+
+    /// The rows of a part; `None` for a whole picture.
+    fn of(picture: &Picture) -> Option<Self> {
+        let (part, height) = (picture.rows.clone(), picture.height);
+        (part != (0..height)).then_some(Self { part, height })
+    }
+}
+
+impl fmt::Display for Rows {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { part, height } = self;
+        write!(f, "{}..{} of {height}", part.start, part.end)
+    }
+}
+
+impl FromStr for Rows {
+    type Err = ();
+
+    fn from_str(text: &str) -> Result<Self, ()> {
+        let (part, height) = text.split_once(" of ").ok_or(())?;
+        let (start, end) = part.split_once("..").ok_or(())?;
+        let number = |text: &str| text.parse::<u16>().map_err(|_| ());
+        let (part, height) = (number(start)?..number(end)?, number(height)?);
+        let inside = part.start < part.end && part.end <= height;
+        inside.then_some(Self { part, height }).ok_or(())
+    }
+}
 
 /// A hash of a picture: FNV-1a with 64 bits over its linear channels of 16 bits, the lower byte
 /// first, red before green before blue, row by row; in hexadecimal.
@@ -51,11 +94,16 @@ impl PictureFormat {
         match self {
             Self::Png => {
                 let pixels: Vec<Rgb888> = encoded(picture, dither);
-                write_png(out, size, bytemuck::cast_slice(&pixels), None)
+                let rows = Rows::of(picture).map(|rows| (Rows::KEYWORD, rows.to_string()));
+                write_png(out, size, bytemuck::cast_slice(&pixels), rows)
             }
             Self::Ppm => {
                 let pixels: Vec<Rgb888> = encoded(picture, dither);
-                write!(out, "P6\n{} {}\n255\n", size[0], size[1])?;
+                writeln!(out, "P6")?;
+                if let Some(rows) = Rows::of(picture) {
+                    writeln!(out, "# rows {rows}")?;
+                }
+                write!(out, "{} {}\n255\n", size[0], size[1])?;
                 out.write_all(bytemuck::cast_slice(&pixels))
             }
             Self::Rgb565 => {
@@ -79,7 +127,7 @@ fn encoded<P: Pixel>(picture: &Picture, dither: bool) -> Vec<P> {
         .collect()
 }
 
-/// Writes sRGB pixels, three bytes each, as PNG; with a sentence on what they show if there is one.
+/// Writes sRGB pixels, three bytes each, as PNG; with a text and its keyword if there is one.
 ///
 /// # Errors
 /// If `out` has one.
@@ -87,14 +135,14 @@ pub fn write_png(
     out: &mut dyn Write,
     [width, height]: [u32; 2],
     pixels: &[u8],
-    description: Option<String>,
+    text: Option<(&str, String)>,
 ) -> io::Result<()> {
     let mut encoder = png::Encoder::new(out, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
     let write = || {
-        if let Some(text) = description {
-            encoder.add_text_chunk(String::from("Description"), text)?;
+        if let Some((keyword, text)) = text {
+            encoder.add_text_chunk(keyword.to_owned(), text)?;
         }
         let mut writer = encoder.write_header()?;
         writer.write_image_data(pixels)?;
@@ -118,6 +166,7 @@ mod tests {
             .collect();
         Picture {
             width: 16,
+            height: 9,
             rows,
             pixels,
             counters: None,
@@ -135,7 +184,9 @@ mod tests {
     fn png_and_ppm_hold_the_same_pixels() {
         let picture = ramp(0..5);
         let ppm = written(PictureFormat::Ppm, &picture, false);
-        let pixels = ppm.strip_prefix(b"P6\n16 5\n255\n").unwrap();
+        let pixels = ppm
+            .strip_prefix(b"P6\n# rows 0..5 of 9\n16 5\n255\n")
+            .unwrap();
         let png = written(PictureFormat::Png, &picture, false);
         let mut reader = png::Decoder::new(io::Cursor::new(png)).read_info().unwrap();
         assert!(reader.info().srgb.is_some());
@@ -153,8 +204,8 @@ mod tests {
                 PictureFormat::Rgb565 => 32,
                 _ => 48,
             };
-            let header = whole.len() - 9 * row;
-            assert_eq!(part[header..], whole[header + 3 * row..][..3 * row]);
+            let headers = [whole.len() - 9 * row, part.len() - 3 * row];
+            assert_eq!(part[headers[1]..], whole[headers[0] + 3 * row..][..3 * row]);
             assert_ne!(whole, written(format, &ramp(0..9), false));
         }
     }

@@ -7,7 +7,7 @@ use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
 use gridel_core::render::{MAX_RAY_DEPTH, RenderError};
 use gridel_core::{
     Accel, Bvh, Count, Counters, DualSplit, Effects, Fixed, Format, NoCount, Number, Renderer,
-    Scene, Settings, Structure, Workspace,
+    Scene, Settings, Structure, Wide, Workspace,
 };
 use rayon::prelude::*;
 use std::ops::Range;
@@ -16,6 +16,8 @@ use std::ops::Range;
 #[derive(Clone, Debug)]
 pub struct Picture {
     pub width: u16,
+    /// Of the whole picture.
+    pub height: u16,
     /// Rows of the whole picture that these are.
     pub rows: Range<u16>,
     /// Row by row, 65535 being white.
@@ -66,11 +68,12 @@ fn with_format<N: Number>(
     job: &Job,
     progress: &(dyn Fn() + Sync),
 ) -> Result<Picture, RenderError> {
-    // Pictures are made through these two; the others are there to be compared.
+    // Pictures are made through these; the others are there to be compared.
     if !job.count && scene.holds(job.structure) {
         match job.structure {
             Structure::Bvh => return fast::<N, Bvh>(scene, job, progress),
             Structure::DualSplit => return fast::<N, DualSplit>(scene, job, progress),
+            Structure::Wide => return fast::<N, Wide>(scene, job, progress),
             _ => {}
         }
     }
@@ -159,6 +162,7 @@ fn spread(job: &Job, progress: &(dyn Fn() + Sync), row: &Row<'_>) -> Picture {
     let sum = |sum: Counters, (row, _): &Cost| sum.plus(row);
     Picture {
         width,
+        height: job.settings.height,
         rows: job.rows.clone(),
         pixels,
         counters: job

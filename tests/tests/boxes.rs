@@ -2,7 +2,7 @@
 //! a tree changes an answer. That structures agree ray by ray is in `structures`.
 
 use glam::DVec3;
-use gridel_core::accel::cull::Culling;
+use gridel_core::accel::cull::{Culling, PairCulling};
 use gridel_core::blob::record::UnitBox;
 use gridel_core::{Kind, NoCount, Number, Ray, Scene, Structure};
 use gridel_host::compile::{Options, compile};
@@ -184,7 +184,7 @@ fn taken<N: Number>(case: &Case) -> bool {
     let last = N::length_from_f64(tmax.min(200_000.0));
     let cull = N::Cull::new(&ray);
     let taken = cull.root(&case.bounds, N::Cull::limit(last));
-    let exact = Culling::<N>::root(&cull.exact(&ray), &case.bounds, N::Cull::limit(last));
+    let exact = PairCulling::<N>::root(&cull.exact(&ray), &case.bounds, N::Cull::limit(last));
     taken.near <= taken.far && exact.near <= exact.far
 }
 

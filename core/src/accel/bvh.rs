@@ -1,6 +1,6 @@
 //! The bounding volume hierarchy with ordinary traversal: all planes of both children are tested.
 
-use super::cull::Culling;
+use super::cull::PairCulling;
 use super::link::Node;
 use super::pairs::{PairRecord, Pairs, Walk};
 use super::{Accel, Leaf, StackView, Structure};

@@ -8,7 +8,7 @@
 //! [tight cube](super::cylinder_cube_tight) are.
 
 use super::candidates::ListSections;
-use super::cull::Culling;
+use super::cull::PairCulling;
 use super::gridel_table::{Table, along};
 use super::link::Node;
 use super::pairs::Walk;

@@ -22,8 +22,8 @@
 //! holds: so no node on the way to a hit is left out. A side that no plane bounds costs visits, not
 //! hits, and a region may even be empty, where there is nothing in it.
 
-use super::cull::{Cull, Culling, Interval};
-use super::{Accel, Entry, Leaf, MAX_STACK_DEPTH, Records, StackView, Structure};
+use super::cull::{Cull, Interval, PairCulling};
+use super::{Accel, Entry, Leaf, MAX_LEVELS, Records, StackView, Structure};
 use crate::blob::record::{DualNode, UnitBox};
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
 use crate::count::Count;
@@ -88,8 +88,8 @@ impl Accel for DualSplit {
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
         let nodes = scene.held.dual_split.0;
-        let mut limit = <Cull as Culling<N>>::limit(ray.tmax);
-        let mut interval = Culling::<N>::root(cull, scene.bounds(), limit);
+        let mut limit = <Cull as PairCulling<N>>::limit(ray.tmax);
+        let mut interval = PairCulling::<N>::root(cull, scene.bounds(), limit);
         tested(count, 6, || Event::Tested {
             place: place(0),
             sides: scene.bounds().0.map(|axis| axis.map(Some)),
@@ -132,7 +132,7 @@ impl Accel for DualSplit {
                     let Some(tmax) = leaf(range, count) else {
                         return;
                     };
-                    limit = <Cull as Culling<N>>::limit(tmax);
+                    limit = <Cull as PairCulling<N>>::limit(tmax);
                 }
                 Next::Nothing => {}
             }
@@ -344,12 +344,12 @@ impl<'a> Records<'a> for Held<'a> {
     /// Proves that nodes lie breadth first, so that children come after their parents and every
     /// node and leaf is reached once, and that primitives lie in their leaves' regions.
     ///
-    /// Costs the depth of each leaf, and [`MAX_STACK_DEPTH`] words of stack.
+    /// Costs the depth of each leaf, and [`MAX_LEVELS`] words of stack.
     #[inline(never)]
     fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
         let depth = check_order(self.0, scene.leaves.len())?;
         // The nodes above the current one: twice their number, and 1 where it is above the split.
-        let mut path: Vec<u32, MAX_STACK_DEPTH> = Vec::new();
+        let mut path: Vec<u32, MAX_LEVELS> = Vec::new();
         let mut current = 0;
         while let Some(record) = self.0.get(current as usize) {
             let way = Way(record.way);
@@ -457,11 +457,11 @@ fn check_order(nodes: &[DualNode], leaves: usize) -> Result<usize, BlobError> {
         }
     }
     levels += usize::from(splits);
-    if levels > MAX_STACK_DEPTH {
+    if levels > MAX_LEVELS {
         return Err(BlobError::Header {
             field: "stack depth",
             found: levels as u64,
-            expected: MAX_STACK_DEPTH as u64,
+            expected: MAX_LEVELS as u64,
         });
     }
     Ok(levels)

@@ -6,7 +6,7 @@
 //! the child that does *not* touch it, and one bit that says which child that is (its owner). A ray
 //! brings its interval in the parent and narrows it by six planes instead of twelve.
 
-use super::cull::{Cull, Culling, Interval};
+use super::cull::{Cull, Interval, PairCulling};
 use super::link::{Link, Node};
 use super::pairs::{PairRecord, Pairs, Walk};
 use super::{Accel, Leaf, StackView, Structure};
@@ -34,9 +34,9 @@ impl Accel for Flagged {
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let root = |limit| Culling::<N>::root(cull, scene.bounds(), limit);
+        let root = |limit| PairCulling::<N>::root(cull, scene.bounds(), limit);
         let narrow = |pair: &FlaggedPair, parent, _| narrow(pair, parent, cull);
-        let limit = <Cull as Culling<N>>::limit;
+        let limit = <Cull as PairCulling<N>>::limit;
         let walk = Walk {
             scene,
             pairs: scene.held.flagged.0,
@@ -155,6 +155,7 @@ fn narrow_by<const PATTERN: u32>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::accel::cull::Culling;
     use crate::number::Fixed;
 
     /// Both ways to narrow are the same function.
@@ -166,7 +167,7 @@ mod tests {
                 |axis: u32| f64::from(axis + 1) * if signs >> axis & 1 == 0 { 1.0 } else { -1.0 };
             let direction = [component(0), component(1), component(2)];
             let ray = Ray::<Fixed>::from_f64(&bounds, [3.0, -7.0, 11.0], direction, 0.0, 1e9);
-            let cull = Cull::new(&ray.expect("a ray"));
+            let cull = Culling::new(&ray.expect("a ray"));
             let pair = FlaggedPair {
                 planes: [0x0123_ff00, 0x0040_ffc0, 0x0300_0100],
                 link: 0,

@@ -6,7 +6,7 @@
 //! below 2^17), so a box's interval here holds its interval there. Hits are clamped to the latter,
 //! so the answers are the same.
 
-use super::cull::{Cull, Culling, Interval};
+use super::cull::{Cull, Culling, Interval, PairCulling};
 use crate::blob::record::{Pair, UnitBox};
 use crate::number::Number;
 use crate::ray::Ray;
@@ -82,6 +82,13 @@ impl<N: Number> Culling<N> for Lanes {
         Cull::new(ray)
     }
 
+    #[inline(always)]
+    fn holds(ray: &Ray<N>, t: N, bounds: &UnitBox) -> bool {
+        super::cull::holds(ray, t, bounds)
+    }
+}
+
+impl<N: Number> PairCulling<N> for Lanes {
     #[inline(always)]
     fn root(&self, bounds: &UnitBox, limit: i32) -> Interval {
         let planes = bounds.0.map(|[low, high]| [[low, low], [high, high]]);

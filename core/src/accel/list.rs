@@ -14,6 +14,7 @@ pub enum List {}
 
 impl Accel for List {
     const STRUCTURE: Structure = Structure::List;
+    const HAS_CLUSTERS: bool = cfg!(feature = "wide");
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Count>(
@@ -26,7 +27,7 @@ impl Accel for List {
     ) {
         for kind in Kind::ALL {
             let mut first = 0;
-            let end = scene.shapes.count(kind) as u32;
+            let end = scene.shapes.records(kind) as u32;
             while first < end {
                 let size = (end - first).min(Leaf::MAX_COUNT);
                 let range = Leaf {
@@ -38,6 +39,17 @@ impl Accel for List {
                     return;
                 }
                 first += size;
+            }
+            #[cfg(feature = "wide")]
+            for cluster in 0..scene.shapes.sole_clusters(kind) as u32 {
+                let cluster = Leaf {
+                    kind,
+                    first: cluster,
+                    count: 0,
+                };
+                if leaf(cluster, count).is_none() {
+                    return;
+                }
             }
         }
     }

@@ -41,6 +41,8 @@ mod pairs;
 #[cfg(feature = "ray-classes")]
 pub mod ray_classes;
 mod registry;
+#[cfg(feature = "wide")]
+pub mod wide;
 
 #[cfg(feature = "apex")]
 pub use apex::Apex;
@@ -65,6 +67,8 @@ pub use ray_classes::RayClasses;
 pub use registry::Chosen;
 pub(crate) use registry::{Held, Records};
 pub use registry::{Structure, StructureVisitor};
+#[cfg(feature = "wide")]
+pub use wide::Wide;
 
 use crate::blob::Scene;
 use crate::count::Count;
@@ -80,6 +84,9 @@ pub trait Accel: Send + Sync {
     const STRUCTURE: Structure;
     /// The form in which its rays cull.
     type Cull<N: Number>: Culling<N>;
+    /// Whether its leaves can be [clusters](crate::blob::cluster): code for these is only compiled
+    /// where they are.
+    const HAS_CLUSTERS: bool = false;
 
     /// What a scene must hold to be walked.
     fn needs(_: &Scene<'_>) -> Structure {
@@ -132,12 +139,15 @@ impl<const DEPTH: usize> Stack<DEPTH> {
 }
 
 /// The largest stack depth that a blob may need.
-pub const MAX_STACK_DEPTH: usize = 48;
+pub const MAX_STACK_DEPTH: usize = 160;
+
+/// Most levels of a hierarchy of pairs, and the largest stack depth that one needs.
+pub const MAX_LEVELS: usize = 48;
 
 /// A range of slots, all of one kind of primitive: one word.
 ///
 /// Bits 0 to 23 are the first slot of that kind, 24 to 28 the number of slots (1 to 31), 29 to 31
-/// the kind.
+/// the kind. No slots stand for a [cluster](crate::blob::cluster) of the kind, by its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Leaf {
     /// The kind of its primitives.

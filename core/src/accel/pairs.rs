@@ -2,7 +2,7 @@
 
 use super::cull::Interval;
 use super::link::Node;
-use super::{Entry, Leaf, MAX_STACK_DEPTH, Records, StackView};
+use super::{Entry, Leaf, MAX_LEVELS, Records, StackView};
 use crate::blob::record::UnitBox;
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
 use crate::count::Count;
@@ -221,7 +221,7 @@ fn root<P>(pairs: &[P]) -> Node {
 /// every node is reached once), boxes inside their parents', primitives inside their leaves, and
 /// every leaf used. Returns the stack that a walk needs.
 ///
-/// Costs the depth of each leaf, and [`MAX_STACK_DEPTH`] words of stack.
+/// Costs the depth of each leaf, and [`MAX_LEVELS`] words of stack.
 #[inline(never)]
 fn check_pairs<P: PairRecord>(
     pairs: &[P],
@@ -244,7 +244,7 @@ fn check_pairs<P: PairRecord>(
     }
 
     // The pairs above the current node: twice their number, and 1 where it is the right child's.
-    let mut path: Vec<u32, MAX_STACK_DEPTH> = Vec::new();
+    let mut path: Vec<u32, MAX_LEVELS> = Vec::new();
     let (mut node, mut parent) = (root(pairs), *bounds);
     loop {
         let number = node.number() as usize;
@@ -336,11 +336,11 @@ fn check_order<P: PairRecord>(pairs: &[P]) -> Result<usize, BlobError> {
             });
         }
     }
-    if levels > MAX_STACK_DEPTH {
+    if levels > MAX_LEVELS {
         return Err(BlobError::Header {
             field: "stack depth",
             found: levels as u64,
-            expected: MAX_STACK_DEPTH as u64,
+            expected: MAX_LEVELS as u64,
         });
     }
     Ok(levels)

@@ -77,6 +77,7 @@ macro_rules! structures {
         #[cfg(feature = "all-structures")]
         impl Accel for Chosen {
             const STRUCTURE: Structure = Structure::List;
+            const HAS_CLUSTERS: bool = cfg!(feature = "wide");
             type Cull<N: Number> = N::Cull;
 
             fn needs(scene: &Scene<'_>) -> Structure {
@@ -170,6 +171,9 @@ structures! {
         if feature = "cylinder-cube-entry";
     /// Lists for classes of rays by origin and direction; rays without one walk `bvh`.
     RayClasses = 8, "ray-classes", ray_classes, if feature = "ray-classes";
+    /// A hierarchy of eight children a node over strips of triangles and packs of spheres, for
+    /// machines with SIMD registers.
+    Wide = 9, "wide", wide, if feature = "wide";
 }
 
 impl Structure {

@@ -10,6 +10,8 @@ use crate::accel::{Entry, Held, Leaf, MAX_STACK_DEPTH, Structure};
 use crate::number::{Fixed, Number};
 use crate::render::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use crate::shade::Effects;
+#[cfg(feature = "wide")]
+use crate::shape::{Clusters, Packs, Strips};
 use crate::shape::{Kind, Shapes, Spheres, Triangles, Vertices, WIDE_INDICES, WIDE_LATTICE};
 use core::mem::size_of;
 
@@ -328,7 +330,12 @@ fn read_shapes<'a>(sections: &Sections<'a>, header: &Header) -> Result<Shapes<'a
         (!short && !WIDE_LATTICE, "wide-lattice"),
         (triangles > 0 && !narrow && !WIDE_INDICES, "wide-indices"),
     ];
-    for (is_missing, missing) in kinds.into_iter().chain(stored) {
+    // Triangles and spheres that lie in clusters alone.
+    let holds = |kind| sections.len(kind) > 0;
+    let sole = holds(SectionKind::Strips) && triangles == 0
+        || holds(SectionKind::Packs) && !holds(SectionKind::Spheres);
+    let clusters = [(sole && cfg!(not(feature = "wide")), "wide")];
+    for (is_missing, missing) in kinds.into_iter().chain(stored).chain(clusters) {
         if is_missing {
             return Err(BlobError::MissingShape { missing });
         }
@@ -352,6 +359,21 @@ fn read_shapes<'a>(sections: &Sections<'a>, header: &Header) -> Result<Shapes<'a
         boxes: sections.records::<Cuboid>(SectionKind::Boxes)?,
         discs: sections.records::<Disc>(SectionKind::Discs)?,
         cones: sections.records::<Cone>(SectionKind::Cones)?,
+        #[cfg(feature = "wide")]
+        clusters: Clusters {
+            strips: if short {
+                Strips::S16(sections.records(SectionKind::Strips)?)
+            } else {
+                Strips::S24(sections.records(SectionKind::Strips)?)
+            },
+            packs: if short {
+                Packs::P16(sections.records(SectionKind::Packs)?)
+            } else {
+                Packs::P24(sections.records(SectionKind::Packs)?)
+            },
+            members: Indices::read(sections, SectionKind::Members)?,
+            homes: sections.records(SectionKind::Homes)?,
+        },
     })
 }
 
@@ -393,7 +415,7 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
             shapes.vertices.position(index).unwrap_or_default(),
         )?;
     }
-    for index in 0..shapes.count(Kind::Triangle) {
+    for index in 0..shapes.records(Kind::Triangle) {
         let at = At {
             section: SectionKind::Triangles,
             index,
@@ -406,7 +428,7 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
             vertices as i64 - 1,
         )?;
     }
-    for index in 0..shapes.count(Kind::Sphere) {
+    for index in 0..shapes.records(Kind::Sphere) {
         let at = At {
             section: SectionKind::Spheres,
             index,
@@ -416,7 +438,7 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
         point(at, "lowest coordinate", center.map(|x| x - length))?;
         point(at, "highest coordinate", center.map(|x| x + length))?;
     }
-    for (index, cuboid) in (0..shapes.count(Kind::Box)).zip(shapes.boxes) {
+    for (index, cuboid) in (0..shapes.records(Kind::Box)).zip(shapes.boxes) {
         let at = At {
             section: SectionKind::Boxes,
             index,
@@ -430,7 +452,7 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
             .filter(|(low, high)| low > high);
         at.within("number of inverted sides", inverted.count() as i64, 0, 0)?;
     }
-    for (index, disc) in (0..shapes.count(Kind::Disc)).zip(shapes.discs) {
+    for (index, disc) in (0..shapes.records(Kind::Disc)).zip(shapes.discs) {
         let at = At {
             section: SectionKind::Discs,
             index,
@@ -446,7 +468,7 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
         at.within("radius", disc.radius.into(), 1, radius)?;
         inside(at, "number of boxes outside the scene's", &disc.bounds)?;
     }
-    for (index, cone) in (0..shapes.count(Kind::Cone)).zip(shapes.cones) {
+    for (index, cone) in (0..shapes.records(Kind::Cone)).zip(shapes.cones) {
         let at = At {
             section: SectionKind::Cones,
             index,
@@ -591,11 +613,12 @@ fn check_leaves(scene: &Scene<'_>, hierarchies: bool) -> Result<u32, BlobError> 
         // Below 2^24 and 31.
         *next = next.wrapping_add(leaf.count);
         longest = longest.max(leaf.count);
-        let most = scene.shapes.count(leaf.kind) as i64;
+        let most = scene.shapes.records(leaf.kind) as i64;
         at.within("end of the slots", (*next).into(), 0, most)?;
     }
     if hierarchies {
         for kind in Kind::ALL {
+            // Those that lie in clusters alone would be missing.
             let (found, expected) = (next[kind as usize] as usize, scene.shapes.count(kind));
             if found != expected {
                 return Err(BlobError::Count {

@@ -3,6 +3,8 @@
 //! `FORMAT.md` beside the crate's manifest specifies every byte.
 
 mod check;
+#[cfg(feature = "wide")]
+pub mod cluster;
 mod error;
 mod index;
 pub mod record;
@@ -15,7 +17,7 @@ pub(crate) use section::Sections;
 
 use crate::accel::{Held, Leaf, Structure};
 use crate::shade::Effects;
-use crate::shape::{Kind, Shapes};
+use crate::shape::{Kind, Place, Shapes};
 use record::{Cone, Cuboid, Disc, Header, Light, Material, UnitBox, View};
 
 /// A checked view of a blob: a few hundred bytes that borrow from it.
@@ -149,6 +151,53 @@ impl<'a> Scene<'a> {
     /// primitives; only a forged blob has two slots of one number.
     #[inline]
     pub fn primitive(&self, kind: Kind, slot: u32) -> u32 {
+        self.primitive_at(self.shapes.place(kind, slot))
+    }
+
+    /// The number, in scene-file order, of a primitive that lies somewhere.
+    #[inline]
+    pub(crate) fn primitive_at(&self, place: Place) -> u32 {
+        self.key(place).0
+    }
+
+    /// What decides between hits at the same t: the primitive's number, and between primitives of
+    /// one number, which only a forged blob has, kind and slot; so its answers do not depend on the
+    /// structure either.
+    #[inline]
+    pub(crate) fn key(&self, place: Place) -> (u32, u8, u32) {
+        match place {
+            Place::Slot(kind, slot) => (self.in_slot(kind, slot), kind as u8, slot),
+            #[cfg(feature = "wide")]
+            Place::Strip(strip, place) => {
+                let members = self.shapes.clusters.strips.members(strip);
+                let member = members.map_or(0, |members| members.member(place.into()));
+                self.member(Kind::Triangle, member, 0)
+            }
+            #[cfg(feature = "wide")]
+            Place::Pack(pack, lane) => {
+                let clusters = &self.shapes.clusters;
+                let first = clusters.packs.members(pack).map_or(0, |it| it.first());
+                self.member(Kind::Sphere, first + u32::from(lane), clusters.triangles())
+            }
+        }
+    }
+
+    /// The key of a member of a cluster, by its number among those of its kind and the number of
+    /// members before them.
+    #[cfg(feature = "wide")]
+    fn member(&self, kind: Kind, number: u32, before: usize) -> (u32, u8, u32) {
+        let clusters = &self.shapes.clusters;
+        let member = clusters.members.get(before + number as usize).unwrap_or(0);
+        if clusters.homes.is_empty() {
+            (member, kind as u8, number)
+        } else {
+            (self.in_slot(kind, member), kind as u8, member)
+        }
+    }
+
+    /// The primitive in a slot of a kind that has records of its own.
+    #[inline(always)]
+    fn in_slot(&self, kind: Kind, slot: u32) -> u32 {
         let slot = self.shapes.slot(kind, slot);
         self.order.get(slot).unwrap_or(slot as u32)
     }

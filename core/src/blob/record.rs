@@ -335,6 +335,40 @@ pub struct ApexWindow {
     pub a_step: u32,
 }
 
+/// A node of the eight-wide hierarchy: 128 bytes.
+#[cfg(feature = "wide")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct WideNode {
+    /// `[axis][side][child]`: the children's lower sides, then their upper ones. Missing children,
+    /// which are the last ones, have a box that nothing meets: [`EMPTY`](Self::EMPTY).
+    pub planes: [[[i16; 8]; 2]; 3],
+    /// What the children are: see [`Child`](crate::accel::wide::Child).
+    pub children: [u32; 8],
+}
+
+#[cfg(feature = "wide")]
+impl WideNode {
+    /// The box of a missing child: no ray meets it, because it is inside out by more than the
+    /// margins of culling.
+    pub const EMPTY: UnitBox = UnitBox([[i16::MAX, i16::MIN]; 3]);
+
+    /// The box of a child.
+    #[inline(always)]
+    pub fn child_box(&self, lane: usize) -> UnitBox {
+        UnitBox(
+            self.planes
+                .map(|[low, high]| [low[lane & 7], high[lane & 7]]),
+        )
+    }
+
+    /// What a child is.
+    #[inline(always)]
+    pub fn child(&self, lane: usize) -> crate::accel::wide::Child {
+        crate::accel::wide::Child(self.children[lane & 7])
+    }
+}
+
 /// Two 16-bit planes as one word, the way pairs hold them.
 pub const fn plane_word(planes: [i16; 2]) -> u32 {
     planes[0] as u16 as u32 | (planes[1] as u16 as u32) << 16

@@ -112,6 +112,17 @@ kinds! {
     ClassEntries = 40, "class-entries";
     /// For each entry, the level at which it can begin (1 byte).
     ClassKeys = 41, "class-keys";
+    /// [`WideNode`](super::record::WideNode)s.
+    WideNodes = 42, "wide-nodes";
+    /// [`Strip16`](super::cluster::Strip16)s or [`Strip24`](super::cluster::Strip24)s.
+    Strips = 43, "strips";
+    /// [`Pack16`](super::cluster::Pack16)s or [`Pack24`](super::cluster::Pack24)s.
+    Packs = 44, "packs";
+    /// For each [member](super::cluster) of the strips and packs, its primitive (2 to 4 bytes).
+    Members = 45, "members";
+    /// For each slot, where the primitive lies in the eight-wide hierarchy: `u32` each. Only where
+    /// the blob has other structures.
+    Homes = 46, "homes";
 }
 
 /// A section's place, proved to lie in the blob.

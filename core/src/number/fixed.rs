@@ -221,6 +221,8 @@ impl Neg for Product {
 impl Number for Fixed {
     type Wide = Product;
     type Cull = Cull;
+    #[cfg(feature = "wide")]
+    type WideCull = Cull;
 
     const FORMAT: Format = Format::Fixed;
     const ZERO: Self = Fixed(0);

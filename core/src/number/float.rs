@@ -105,6 +105,8 @@ macro_rules! float_number {
         impl Number for $float {
             type Wide = $float;
             type Cull = FloatCulling;
+            #[cfg(feature = "wide")]
+            type WideCull = crate::accel::wide::cull::WideLanes;
 
             const FORMAT: Format = $format;
             const ZERO: Self = 0.0;

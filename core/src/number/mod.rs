@@ -23,7 +23,9 @@ mod float;
 
 pub use fixed::Fixed;
 
-use crate::accel::cull::Culling;
+use crate::accel::cull::PairCulling;
+#[cfg(feature = "wide")]
+use crate::accel::wide::cull::WideCulling;
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Sub};
 
@@ -103,7 +105,10 @@ pub trait Number:
     /// The name of this format.
     const FORMAT: Format;
     /// How rays of this format cull boxes on this machine.
-    type Cull: Culling<Self>;
+    type Cull: PairCulling<Self>;
+    /// How rays of this format cull eight boxes at once.
+    #[cfg(feature = "wide")]
+    type WideCull: WideCulling<Self>;
     /// Zero of every quantity.
     const ZERO: Self;
     /// The ratio 1.

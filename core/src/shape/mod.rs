@@ -4,13 +4,21 @@
 //! leaves the primitive, behind the origin too. What of that is a hit is decided here, once for
 //! all of them, in [`accept`].
 
+#[cfg(feature = "wide")]
+mod cluster;
 pub(crate) mod cone;
 pub(crate) mod cuboid;
 pub(crate) mod disc;
 mod kind;
+#[cfg(feature = "wide")]
+pub(crate) mod pack;
 pub(crate) mod sphere;
+#[cfg(feature = "wide")]
+pub(crate) mod strip;
 pub(crate) mod triangle;
 
+#[cfg(feature = "wide")]
+pub(crate) use cluster::{Clusters, Packs, Strips};
 pub use kind::Kind;
 pub(crate) use kind::{WIDE_INDICES, WIDE_LATTICE};
 
@@ -20,6 +28,32 @@ use crate::blob::record::{Cone, Corners, Cuboid, Disc, Sphere, Sphere16, Sphere2
 use crate::blob::record::{Vertex, Vertex16, Vertex24};
 use crate::number::Number;
 use crate::ray::Ray;
+
+/// Where a blob keeps a primitive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Place {
+    /// Among the records of its kind.
+    Slot(Kind, u32),
+    /// In a strip, at a place of it.
+    #[cfg(feature = "wide")]
+    Strip(u32, u8),
+    /// In a pack, in a lane of it.
+    #[cfg(feature = "wide")]
+    Pack(u32, u8),
+}
+
+impl Place {
+    /// The kind of the primitive.
+    pub(crate) fn kind(self) -> Kind {
+        match self {
+            Place::Slot(kind, _) => kind,
+            #[cfg(feature = "wide")]
+            Place::Strip(..) => Kind::Triangle,
+            #[cfg(feature = "wide")]
+            Place::Pack(..) => Kind::Sphere,
+        }
+    }
+}
 
 /// The part of a primitive's surface that a crossing lies on; each kernel numbers its own.
 pub(crate) type Part = u8;
@@ -77,13 +111,17 @@ impl<N: Number> Surface<N> {
 /// `t` is clamped to the interval of the primitive's own box, which holds the true one: that never
 /// adds to an error, and makes culling conservative whatever a kernel rounded. A NaN is no hit.
 #[inline(always)]
-pub(crate) fn accept<N: Number>(
+pub(crate) fn accept<N: Number, K: Culling<N>>(
     ray: &Ray<N>,
-    cull: &impl Culling<N>,
+    cull: &K,
     crossing: Crossing<N>,
     bounds: UnitBox,
     tmax: N,
 ) -> Option<(N, Part)> {
+    let enter = crossing.enter;
+    if enter.0 >= ray.tmin && crossing.leave.0 >= enter.0 && K::holds(ray, enter.0, &bounds) {
+        return (enter.0 <= tmax).then_some(enter);
+    }
     let interval = cull.exact(ray).interval(&bounds);
     if interval.near > interval.far {
         return None;
@@ -208,11 +246,28 @@ pub(crate) struct Shapes<'a> {
     pub(crate) boxes: &'a [Cuboid],
     pub(crate) discs: &'a [Disc],
     pub(crate) cones: &'a [Cone],
+    /// Where there are both, the same triangles and spheres lie in clusters as in the arrays above.
+    #[cfg(feature = "wide")]
+    pub(crate) clusters: Clusters<'a>,
 }
 
 impl Shapes<'_> {
     /// Number of primitives of a kind.
     pub(crate) fn count(&self, kind: Kind) -> usize {
+        let records = self.records(kind);
+        #[cfg(feature = "wide")]
+        if records == 0 {
+            return match kind {
+                Kind::Triangle => self.clusters.triangles(),
+                Kind::Sphere => self.clusters.spheres(),
+                _ => 0,
+            };
+        }
+        records
+    }
+
+    /// Number of primitives of a kind that have records of their own.
+    pub(crate) fn records(&self, kind: Kind) -> usize {
         match kind {
             _ if !kind.is_available() => 0,
             Kind::Triangle => self.triangles.len(),
@@ -223,12 +278,44 @@ impl Shapes<'_> {
         }
     }
 
-    /// Number of primitives.
+    /// Number of primitives that have records of their own.
     pub(crate) fn total(&self) -> usize {
         self.before(Kind::ALL.len())
     }
 
-    /// The slot of a primitive among those of all kinds.
+    /// Number of clusters of a kind whose primitives lie nowhere else.
+    #[cfg(feature = "wide")]
+    pub(crate) fn sole_clusters(&self, kind: Kind) -> usize {
+        match kind {
+            Kind::Triangle if self.triangles.len() == 0 => self.clusters.strips.len(),
+            Kind::Sphere if self.spheres.len() == 0 => self.clusters.packs.len(),
+            _ => 0,
+        }
+    }
+
+    /// Where the primitive of a slot lies: triangles and spheres that have no records of their own
+    /// are counted in the order of the clusters.
+    pub(crate) fn place(&self, kind: Kind, slot: u32) -> Place {
+        #[cfg(feature = "wide")]
+        if self.records(kind) == 0 {
+            let index = slot as usize;
+            let found = match kind {
+                Kind::Triangle => {
+                    let found = self.clusters.find_triangle(index);
+                    found.map(|(strip, place)| Place::Strip(strip, place as u8))
+                }
+                Kind::Sphere => {
+                    let found = self.clusters.find_sphere(index);
+                    found.map(|(pack, lane)| Place::Pack(pack, lane as u8))
+                }
+                _ => None,
+            };
+            return found.unwrap_or(Place::Slot(kind, slot));
+        }
+        Place::Slot(kind, slot)
+    }
+
+    /// The slot of a primitive among those of all kinds that have records of their own.
     pub(crate) fn slot(&self, kind: Kind, index: u32) -> usize {
         self.before(kind as usize).wrapping_add(index as usize)
     }
@@ -237,7 +324,7 @@ impl Shapes<'_> {
     /// memory, so no sum wraps.
     fn before(&self, kinds: usize) -> usize {
         let kinds = Kind::ALL.iter().take(kinds);
-        kinds.fold(0, |sum: usize, &kind| sum.wrapping_add(self.count(kind)))
+        kinds.fold(0, |sum: usize, &kind| sum.wrapping_add(self.records(kind)))
     }
 
     /// The primitive of a slot among those of all kinds, as a leaf of its own; an empty leaf beyond
@@ -246,7 +333,7 @@ impl Shapes<'_> {
     pub(crate) fn single(&self, slot: u32) -> Leaf {
         let mut first = slot;
         for kind in Kind::ALL {
-            let count = self.count(kind) as u32;
+            let count = self.records(kind) as u32;
             if first < count {
                 let count = 1;
                 return Leaf { kind, first, count };
@@ -260,8 +347,16 @@ impl Shapes<'_> {
         }
     }
 
-    /// The corners of a triangle in 1/256 unit.
-    pub(crate) fn triangle(&self, index: usize) -> Option<[[i32; 3]; 3]> {
+    /// The corners of a triangle in 1/256 unit, given by its slot.
+    pub(crate) fn triangle(&self, slot: usize) -> Option<[[i32; 3]; 3]> {
+        match self.place(Kind::Triangle, slot as u32) {
+            #[cfg(feature = "wide")]
+            Place::Strip(strip, place) => self.clusters.strips.triangle(strip, place.into()),
+            _ => self.indexed_triangle(slot),
+        }
+    }
+
+    pub(crate) fn indexed_triangle(&self, index: usize) -> Option<[[i32; 3]; 3]> {
         let [a, b, c] = self.triangles.corners(index)?;
         let position = |corner| self.vertices.position(corner);
         Some([position(a)?, position(b)?, position(c)?])
@@ -273,7 +368,11 @@ impl Shapes<'_> {
             _ if !kind.is_available() => return None,
             Kind::Triangle => triangle::bounds(self.triangle(index)?),
             Kind::Sphere => {
-                let (center, radius) = self.spheres.get(index)?;
+                let (center, radius) = match self.place(kind, index as u32) {
+                    #[cfg(feature = "wide")]
+                    Place::Pack(pack, lane) => self.clusters.packs.sphere(pack, lane.into())?,
+                    _ => self.spheres.get(index)?,
+                };
                 sphere::bounds(center, radius)
             }
             Kind::Box => self.boxes.get(index)?.bounds(),
@@ -295,34 +394,34 @@ impl Shapes<'_> {
     /// which the normal points.
     pub(crate) fn surface<N: Number>(
         &self,
-        kind: Kind,
-        index: usize,
+        place: Place,
         part: Part,
         ray: &Ray<N>,
         point: [N; 3],
     ) -> Option<(Surface<N>, bool)> {
         let leaves = part & LEAVING != 0;
         let part = part & !LEAVING;
-        let surface = match kind {
-            _ if !kind.is_available() => return None,
-            Kind::Triangle => triangle::surface(self.triangle(index)?),
-            Kind::Sphere => {
-                let (center, radius) = self.spheres.get(index)?;
+        let surface = match place {
+            #[cfg(feature = "wide")]
+            Place::Strip(strip, place) => {
+                triangle::surface(self.clusters.strips.triangle(strip, place.into())?)
+            }
+            #[cfg(feature = "wide")]
+            Place::Pack(pack, lane) => {
+                let (center, radius) = self.clusters.packs.sphere(pack, lane.into())?;
                 sphere::surface(center, radius, point)
             }
-            Kind::Box => self.boxes.get(index)?.surface(part),
-            Kind::Disc => self.discs.get(index)?.surface(),
-            Kind::Cone => {
+            Place::Slot(kind, slot) => {
                 let toward = if leaves {
                     ray.slope
                 } else {
                     ray.slope.map(|x| -x)
                 };
-                self.cones.get(index)?.surface(part, point, toward)
+                self.surface_in_slot(kind, slot as usize, part, [point, toward])?
             }
         };
         let against = N::dot(surface.normal, ray.slope) < N::Wide::default();
-        let front = match kind {
+        let front = match place.kind() {
             Kind::Triangle | Kind::Disc => against,
             Kind::Sphere | Kind::Box | Kind::Cone => !leaves,
         };
@@ -330,6 +429,29 @@ impl Shapes<'_> {
             (surface, front)
         } else {
             (surface.level_with(ray), front)
+        })
+    }
+
+    /// The surface of a primitive that has a record of its own, at a point, and the way towards where
+    /// it is seen from.
+    #[inline(always)]
+    fn surface_in_slot<N: Number>(
+        &self,
+        kind: Kind,
+        index: usize,
+        part: Part,
+        [point, toward]: [[N; 3]; 2],
+    ) -> Option<Surface<N>> {
+        Some(match kind {
+            _ if !kind.is_available() => return None,
+            Kind::Triangle => triangle::surface(self.indexed_triangle(index)?),
+            Kind::Sphere => {
+                let (center, radius) = self.spheres.get(index)?;
+                sphere::surface(center, radius, point)
+            }
+            Kind::Box => self.boxes.get(index)?.surface(part),
+            Kind::Disc => self.discs.get(index)?.surface(),
+            Kind::Cone => self.cones.get(index)?.surface(part, point, toward),
         })
     }
 

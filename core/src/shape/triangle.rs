@@ -17,8 +17,8 @@ use crate::ray::Ray;
 /// axes in the order of their roles (the two minor ones, then the major one).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projection<N> {
-    origin: [N; 3],
-    shear: [N; 2],
+    pub(super) origin: [N; 3],
+    pub(super) shear: [N; 2],
 }
 
 impl<N: Number> Projection<N> {

@@ -137,6 +137,6 @@ impl Image {
                 }
             }
         }
-        write_png(out, [width, height], &pixels, Some(text))
+        write_png(out, [width, height], &pixels, Some(("Description", text)))
     }
 }

@@ -5,6 +5,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use gridel_core::render::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use gridel_core::{Format, Scene as CoreScene, Settings, Structure};
 use gridel_host::board::{BOARDS, Board};
+use gridel_host::compile::Quality;
 use gridel_host::report::Target;
 use gridel_host::scene::{MoleculeOptions, MoleculeStyle, Scene};
 use std::num::NonZeroUsize;
@@ -55,7 +56,8 @@ pub struct TraceOptions {
     #[arg(long, value_name = "NAME", value_parser = format(), default_value = "f32")]
     pub format: Format,
 
-    /// Acceleration structure [default: the best that the blob holds]
+    /// Acceleration structure [default: the best that the blob holds; of a scene file, render and
+    /// trace build wide]
     #[arg(long, value_name = "NAME", value_parser = structure())]
     pub accel: Option<Structure>,
 }
@@ -113,6 +115,10 @@ pub struct SceneOptions {
     #[arg(long, value_name = "X", value_parser = cutoff)]
     cutoff: Option<f64>,
 
+    /// Time taken to build the structure wide [default: good]
+    #[arg(long, value_name = "NAME")]
+    pub quality: Option<Quality>,
+
     /// How molecules look [default: space-filling]
     #[arg(long, value_parser = style())]
     style: Option<MoleculeStyle>,
@@ -132,6 +138,7 @@ impl SceneOptions {
         [
             (self.lattice_bits.is_some(), "--lattice-bits"),
             (self.cutoff.is_some(), "--cutoff"),
+            (self.quality.is_some(), "--quality"),
             (self.style.is_some(), "--style"),
             (self.model.is_some(), "--model"),
             (self.altloc.is_some(), "--altloc"),

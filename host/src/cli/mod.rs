@@ -22,6 +22,7 @@ mod check;
 mod compare;
 mod explain;
 mod inspect;
+mod merge;
 mod render;
 mod sample;
 mod trace;
@@ -45,6 +46,7 @@ enum Verb {
     Compare(compare::Arguments),
     Inspect(inspect::Arguments),
     Render(render::Arguments),
+    Merge(merge::Arguments),
     Trace(trace::Arguments),
     Accuracy(accuracy::Arguments),
     Verify(verify::Arguments),
@@ -74,6 +76,7 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
         Verb::Compare(arguments) => compare::run(&arguments, memory),
         Verb::Inspect(arguments) => inspect::run(&arguments),
         Verb::Render(arguments) => render::run(&arguments),
+        Verb::Merge(arguments) => merge::run(&arguments),
         Verb::Trace(arguments) => trace::run(&arguments),
         Verb::Accuracy(arguments) => accuracy::run(&arguments),
         Verb::Verify(arguments) => verify::run(&arguments),

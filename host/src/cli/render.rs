@@ -6,7 +6,7 @@ use super::output::{print, print_json, refuse_same, write_file};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
-use gridel_core::{Counters, Scene, Settings};
+use gridel_core::{Counters, Scene, Settings, Structure};
 use gridel_host::picture::PictureFormat;
 use gridel_host::render::{Job, Picture, render};
 use gridel_host::report::{Align, HeatMap, Table, counted, grouped};
@@ -113,11 +113,8 @@ struct HeatMapFile {
 /// Renders a picture and writes it.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let format = check_outputs(arguments)?;
-    let source = Source::open(
-        &arguments.input,
-        &arguments.scene_options,
-        arguments.with.accel,
-    )?;
+    let structure = arguments.with.accel.unwrap_or(Structure::Wide);
+    let source = Source::open(&arguments.input, &arguments.scene_options, Some(structure))?;
     let scene = source.scene()?;
     source.warn_of_collapsed(&scene);
     let job = job(arguments, &source, &scene)?;

@@ -25,7 +25,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// Reads a blob, or compiles a scene file for `structure`.
+    /// Reads a blob, or compiles a scene file for `structure`, or else for the default.
     pub fn open(
         path: &Path,
         options: &SceneOptions,
@@ -81,6 +81,7 @@ impl Source {
         if let Some(bits) = options.lattice_bits {
             compiling.lattice_bits = bits;
         }
+        compiling.quality = options.quality.unwrap_or_default();
         let progress = Progress::unknown("compiling");
         let mut imported = scene::load(path, &options.molecule())
             .map_err(|error| Failure::Failed(miette::Report::new(error)))?;

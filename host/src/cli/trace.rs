@@ -6,7 +6,7 @@ use super::output::{print, print_json, refuse_same, write_file};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
-use gridel_core::{Count, Counters, NoCount, Scene};
+use gridel_core::{Count, Counters, NoCount, Scene, Structure};
 use gridel_host::npy::{read_rays, write_hits};
 use gridel_host::report::grouped;
 use gridel_host::trace::{Frame, Query, SceneHit, SceneRay, trace};
@@ -103,11 +103,8 @@ struct Tests {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     refuse_same(&arguments.input, &arguments.output)?;
     refuse_same(&arguments.rays, &arguments.output)?;
-    let source = Source::open(
-        &arguments.input,
-        &arguments.scene_options,
-        arguments.with.accel,
-    )?;
+    let structure = arguments.with.accel.unwrap_or(Structure::Wide);
+    let source = Source::open(&arguments.input, &arguments.scene_options, Some(structure))?;
     let scene = source.scene()?;
     source.warn_of_collapsed(&scene);
     let query = Query {

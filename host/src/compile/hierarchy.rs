@@ -6,10 +6,10 @@
 //!
 //! The builder cannot run away: where all centroids are equal, or where the depth that is left
 //! would not do otherwise, a node is cut in two halves of equal count. So the depth never exceeds
-//! [`MAX_STACK_DEPTH`], and time is `O(n log n)` a level at the most.
+//! [`MAX_LEVELS`], and time is `O(n log n)` a level at the most.
 
 use gridel_core::Kind;
-use gridel_core::accel::{Leaf, MAX_STACK_DEPTH};
+use gridel_core::accel::{Leaf, MAX_LEVELS};
 use gridel_core::blob::record::UnitBox;
 
 /// A primitive as the builder sees it.
@@ -23,7 +23,7 @@ pub struct Primitive {
 
 impl Primitive {
     /// Twice the box's centre.
-    fn centroid(&self, axis: usize) -> i32 {
+    pub fn centroid(&self, axis: usize) -> i32 {
         let [low, high] = self.bounds.0[axis];
         i32::from(low) + i32::from(high)
     }
@@ -70,7 +70,7 @@ pub fn build(primitives: &mut [Primitive], leaf_size: usize) -> Option<Node> {
         return None;
     }
     // A leaf is reached after at most this many pairs.
-    Some(build_node(primitives, 0, MAX_STACK_DEPTH, leaf_size))
+    Some(build_node(primitives, 0, MAX_LEVELS, leaf_size))
 }
 
 /// The box of all primitives; `None` without any.

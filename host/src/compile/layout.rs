@@ -10,6 +10,7 @@ use super::lattice::Lattice;
 use super::pairs::Flat;
 use super::primitives::Primitives;
 use super::surroundings::Surroundings;
+use super::wide::Wide;
 use super::writer::{self, Section, section};
 use super::{CompileError, Options};
 use crate::scene::Scene;
@@ -38,6 +39,8 @@ pub struct Ground<'g> {
     pub scene: &'g Scene,
     pub lattice: &'g Lattice,
     pub flat: &'g Flat,
+    /// Empty unless it is asked for.
+    pub wide: &'g Wide,
     pub primitives: &'g Primitives,
     pub bounds: UnitBox,
     pub surroundings: &'g Surroundings,
@@ -70,7 +73,7 @@ impl Ground<'_> {
 
 /// Whether a structure is laid out over the hierarchy; the others leave primitives as they are.
 pub fn takes_hierarchy(structure: Structure) -> bool {
-    structure != Structure::List
+    !matches!(structure, Structure::List | Structure::Wide)
 }
 
 impl Layout {
@@ -136,6 +139,16 @@ impl Layout {
                 let Surroundings { view, lights, .. } = ground.surroundings;
                 let budget = ground.budget(usual_budget(structure));
                 Self::of_apexes(apex::build(&ground.targets(), view, lights, budget))
+            }
+            Structure::Wide => {
+                let wide = ground.wide;
+                Self {
+                    structure,
+                    sections: wide.sections(ground.primitives, ground.lattice.bits),
+                    uses_leaves: false,
+                    stack_depth: wide.stack_depth,
+                    table: None,
+                }
             }
         })
     }

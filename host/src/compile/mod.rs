@@ -8,12 +8,14 @@ mod layout;
 mod pairs;
 mod primitives;
 mod surroundings;
+mod wide;
 mod writer;
 
 pub use candidates::census::{Census, CubeCensus};
 pub use candidates::lists::Figures;
 pub use lattice::BITS as LATTICE_BITS;
 pub use layout::usual_budget;
+pub use wide::Quality;
 
 use crate::scene::{Object, Scene};
 use candidates::target::Targets;
@@ -25,6 +27,7 @@ use lattice::Lattice;
 use layout::{Ground, Layout};
 use primitives::Primitives;
 use std::time::{Duration, Instant};
+use wide::Wide;
 
 /// Most primitives of a leaf.
 pub const LARGEST_LEAF: usize = gridel_core::accel::Leaf::MAX_COUNT as usize;
@@ -39,6 +42,8 @@ pub struct Options {
     /// Primitives that make a leaf of a hierarchy whatever rays pay for it, at most
     /// [`LARGEST_LEAF`]: fewer nodes and more tests. With 0 the costs alone decide.
     pub leaf_size: usize,
+    /// Time that the builder of the eight-wide hierarchy takes.
+    pub quality: Quality,
     /// Refuse a blob that would be larger.
     pub max_bytes: Option<u64>,
     /// Gridels along a side of a cylinder cube's faces, 1 to 64; otherwise as many as the budget
@@ -54,6 +59,7 @@ impl Default for Options {
             structures: vec![Structure::DualSplit],
             lattice_bits: 24,
             leaf_size: 0,
+            quality: Quality::default(),
             max_bytes: None,
             gridels: None,
             budget: None,
@@ -201,16 +207,33 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
         Some(root) if structures.contains(&Structure::DualSplit) => dual_split::lay_out(root),
         _ => Vec::new(),
     };
-    let flat = match &root {
+    // The eight-wide hierarchy holds triangles and spheres itself; alone it needs no slots of them.
+    let has_wide = structures.contains(&Structure::Wide);
+    let wide_alone = has_wide
+        && structures
+            .iter()
+            .all(|it| [Structure::Wide, Structure::List].contains(it));
+    let mut flat = match &root {
         Some(root) => pairs::flatten(root, &order),
+        None if wide_alone => pairs::Flat::default(),
         None => pairs::Flat::in_file_order(&order),
     };
-    let flat = pairs::Flat { dual, ..flat };
-    let sah_cost = root.as_ref().map_or(0.0, hierarchy::sah_cost);
+    flat.dual = dual;
+    let wide = if has_wide {
+        let shared = (!wide_alone).then_some(&flat);
+        Wide::build(&snapped, &order, options.quality, shared)?
+    } else {
+        Wide::default()
+    };
+    if wide_alone {
+        flat.slots.clone_from(&wide.slots);
+    }
+    let sah_cost = root.as_ref().map_or(wide.cost, hierarchy::sah_cost);
     let ground = Ground {
         scene,
         lattice: &lattice,
         flat: &flat,
+        wide: &wide,
         primitives: &snapped,
         bounds: bounds.unwrap_or(UnitBox([[0; 2]; 3])),
         surroundings: &surroundings,

@@ -39,7 +39,7 @@ impl<'p> HeatMap<'p> {
             self.maximum
         );
         let size = [self.picture.width.into(), self.picture.rows.len() as u32];
-        write_png(out, size, &pixels, Some(description))
+        write_png(out, size, &pixels, Some(("Description", description)))
     }
 }
 
@@ -92,6 +92,7 @@ mod tests {
     fn the_maximum_is_white_and_named() {
         let picture = Picture {
             width: 3,
+            height: 2,
             rows: 0..1,
             pixels: vec![[0; 3]; 3],
             counters: None,

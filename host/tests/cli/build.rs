@@ -40,9 +40,15 @@ fn structures_are_those_asked_for() {
         (&["--accel", "list"][..], &[Structure::List][..]),
         (&["--accel", "bvh"], &[Structure::List, Structure::Bvh]),
         (
-            &["--accel", "bvh", "--accel", "flagged"],
-            &[Structure::List, Structure::Bvh, Structure::Flagged],
+            &["--accel", "bvh", "--accel", "flagged", "--accel", "wide"],
+            &[
+                Structure::List,
+                Structure::Bvh,
+                Structure::Flagged,
+                Structure::Wide,
+            ],
         ),
+        (&["--accel", "wide"], &[Structure::List, Structure::Wide]),
         // Rays without a list need a hierarchy.
         (
             &["--accel", "apex"],

@@ -7,6 +7,7 @@ mod check;
 mod compare;
 mod ending;
 mod inspect;
+mod merge;
 mod render;
 mod sample;
 mod trace;

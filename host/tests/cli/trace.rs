@@ -88,6 +88,8 @@ fn traced(folder: &Folder, options: &[&str]) -> Vec<SceneHit> {
 #[test]
 fn the_file_holds_what_the_library_finds() {
     let folder = Folder::with_quick();
+    let accels = ["--accel", "bvh", "--accel", "flagged", "--accel", "wide"];
+    folder.done(&[&["build", "quick.toml", "-o", "quick.gridel"], &accels[..]].concat());
     let rows = rows(10_000);
     let blob = Blob::new(&folder.read("quick.gridel"));
     let scene = blob.scene().unwrap();
@@ -108,7 +110,7 @@ fn the_file_holds_what_the_library_finds() {
                 &mut NoCount,
             );
             assert!(expected.iter().any(|hit| hit.object == 2));
-            for accel in ["list", "bvh", "flagged"] {
+            for accel in ["list", "bvh", "flagged", "wide"] {
                 let found = traced(&folder, &["--format", format.name(), "--accel", accel]);
                 assert!(found == expected, "{element} {} {accel}", format.name());
             }

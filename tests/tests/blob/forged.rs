@@ -5,7 +5,7 @@ use glam::DVec3;
 use gridel_core::accel::Link;
 use gridel_core::accel::dual_split::Way;
 use gridel_core::blob::SectionKind;
-use gridel_core::blob::record::{DualNode, FlaggedPair, Header, Pair, SectionEntry};
+use gridel_core::blob::record::{DualNode, FlaggedPair, Header, Pair, SectionEntry, WideNode};
 use gridel_core::{Number, Scene, Structure};
 use gridel_host::scene::Shape;
 use gridel_tests::query::{UnitRay, held, through};
@@ -229,6 +229,24 @@ fn cycles_and_orphans_are_refused() {
             }
         }
         forge(end - 4, way.0 | 1 << 31);
+    }
+    let nodes = section(&bytes, SectionKind::WideNodes).1;
+    for index in 0..nodes.count {
+        let end = nodes.offset as usize + (index as usize + 1) * size_of::<WideNode>();
+        for place in (end - 32..end).step_by(4) {
+            let word = word_at(place);
+            for number in [
+                0,
+                index,
+                word.wrapping_add(1),
+                word ^ 1 << 31,
+                word | 1 << 24,
+                nodes.count,
+            ] {
+                forge(place, number);
+                forge(place, number | 7 << 29);
+            }
+        }
     }
     eprintln!("forged links: {fate:?}");
     // A leaf's pair may count no pairs before it and mean the same.

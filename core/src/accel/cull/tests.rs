@@ -1,4 +1,4 @@
-use super::{Cull, Culling};
+use super::{Cull, Culling, PairCulling};
 use crate::blob::record::UnitBox;
 use crate::number::{Fixed, Number};
 use crate::ray::Ray;
@@ -74,7 +74,7 @@ fn holds_the_true_interval<N: Number>(
     let interval = <Cull as Culling<N>>::new(&ray).interval(&around);
     prop_assert!(interval.near <= interval.far);
     // The form that this machine culls with takes the box, too.
-    let taken = N::Cull::new(&ray).root(&around, N::Cull::limit(ray.tmax));
+    let taken = PairCulling::root(&N::Cull::new(&ray), &around, N::Cull::limit(ray.tmax));
     prop_assert!(taken.near <= taken.far);
     for k in 0..3 {
         if slopes[k] == 0 {

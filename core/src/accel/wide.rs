@@ -1,0 +1,212 @@
+//! The eight-wide hierarchy, for hosts: nodes of eight children, leaves of one cluster.
+//!
+//! A node is 128 bytes: the children's planes on the box lattice in rows of eight
+//! ([`WideNode`]), so that one instruction of a machine with SIMD registers takes a side of eight
+//! (or four) children, and a word for each child. A leaf is one [cluster](crate::blob::cluster),
+//! tested in eight lanes too, or a single primitive of the kinds that have no clusters.
+//!
+//! The answers are the list's, bit for bit: culling is conservative, lane by lane (see
+//! [`cull`](self::cull)), and what a cluster's lanes do not reject goes through the same scalar
+//! code as everywhere else. Children that are met are pushed in no order, but the nearest is taken
+//! at once: sorting costs more than it saves.
+
+mod check;
+pub mod cull;
+
+use super::cull::{Cull, Culling};
+use super::{Accel, Entry, Leaf, Records, StackView, Structure};
+use crate::blob::cluster::LANES;
+use crate::blob::record::WideNode;
+use crate::blob::{BlobError, Scene, SectionKind, Sections};
+use crate::count::Count;
+use crate::event::{Event, Place};
+use crate::number::Number;
+use crate::ray::Ray;
+use crate::shape::Kind;
+use cull::WideCulling;
+
+/// The hierarchy of eight children a node, for machines with SIMD registers.
+#[derive(Clone, Copy, Debug)]
+pub enum Wide {}
+
+/// What a child of a node is: one word.
+///
+/// Bits 29 to 31 are 7 for a node, whose number is in bits 0 to 23. Any other word is a [`Leaf`];
+/// one of no slots is the cluster of that number: a strip where its kind is triangles, a pack
+/// where it is spheres.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Child(pub u32);
+
+impl Child {
+    /// In the lanes behind a node's last child.
+    pub const NONE: Self = Self(u32::MAX);
+    /// Number of nodes that a word can tell apart.
+    pub const NODES: u32 = (1 << 24) - 1;
+
+    const NODE: u32 = 7 << 29;
+
+    /// A node.
+    pub const fn node(number: u32) -> Self {
+        Self(Self::NODE | number)
+    }
+
+    /// A leaf.
+    pub const fn leaf(leaf: Leaf) -> Self {
+        Self(leaf.to_word())
+    }
+
+    /// The child as events tell it.
+    fn place(self) -> Place {
+        let (what, number) = match (self.as_node(), Leaf::from_word(self.0)) {
+            (Some(number), _) => ("node", number),
+            (None, Some(leaf)) if leaf.count > 0 => (leaf.kind.name(), leaf.first),
+            (None, Some(leaf)) if leaf.kind == Kind::Triangle => ("strip", leaf.first),
+            (None, leaf) => ("pack", leaf.map_or(0, |leaf| leaf.first)),
+        };
+        Place { what, number }
+    }
+
+    /// The node's number, if it is a node.
+    #[inline(always)]
+    pub(crate) const fn as_node(self) -> Option<u32> {
+        if self.0 >= Self::NODE {
+            Some(self.0 & 0xff_ffff)
+        } else {
+            None
+        }
+    }
+}
+
+/// The nodes of a scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Held<'a> {
+    nodes: &'a [WideNode],
+}
+
+impl<'a> Records<'a> for Held<'a> {
+    const SECTIONS: &'static [SectionKind] = &[
+        SectionKind::WideNodes,
+        SectionKind::Strips,
+        SectionKind::Packs,
+        SectionKind::Members,
+        SectionKind::Homes,
+    ];
+    const USES_LEAVES: bool = false;
+
+    fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
+        Ok(Self {
+            nodes: sections.records(SectionKind::WideNodes)?,
+        })
+    }
+
+    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
+        check::check(self.nodes, scene)
+    }
+}
+
+impl Accel for Wide {
+    const STRUCTURE: Structure = Structure::Wide;
+    const HAS_CLUSTERS: bool = true;
+    type Cull<N: Number> = N::WideCull;
+
+    #[inline]
+    fn walk<N: Number, C: Count>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        cull: &N::WideCull,
+        stack: &mut StackView,
+        count: &mut C,
+        mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+    ) {
+        let nodes = scene.held.wide.nodes;
+        let mut limit = N::WideCull::limit(ray.tmax);
+        let mut current = Child::node(0);
+        stack.clear();
+        loop {
+            if C::TELLS {
+                count.tell(Event::Opened(current.place()));
+            }
+            if let Some(number) = current.as_node() {
+                let Some(node) = nodes.get(number as usize) else {
+                    return;
+                };
+                let (mut met, near) = cull.children(node, limit);
+                count.planes(48);
+                count.boxes(8);
+                if C::TELLS {
+                    tell_tested(node, ray, count);
+                }
+                if met != 0 {
+                    let mut nearest = take_lowest(&mut met, &near);
+                    while met != 0 {
+                        let other = take_lowest(&mut met, &near);
+                        // No branches, which would be guessed wrong every other time.
+                        let later = nearest.max(other);
+                        nearest = nearest.min(other);
+                        let entry = Entry {
+                            node: node.child(lane(later)).0,
+                            near: (later >> 32) as i32,
+                            far: 0,
+                        };
+                        if stack.push(entry).is_err() {
+                            return;
+                        }
+                    }
+                    current = node.child(lane(nearest));
+                    continue;
+                }
+            } else {
+                let Some(cluster) = Leaf::from_word(current.0) else {
+                    return;
+                };
+                let Some(tmax) = leaf(cluster, count) else {
+                    return;
+                };
+                limit = N::WideCull::limit(tmax);
+            }
+            loop {
+                let Some(entry) = stack.pop() else { return };
+                if entry.near <= limit {
+                    current = Child(entry.node);
+                    break;
+                }
+                if C::TELLS {
+                    let place = Child(entry.node).place();
+                    count.tell(Event::GivenUp {
+                        place,
+                        enters: <N::WideCull as WideCulling<N>>::units(entry.near),
+                    });
+                }
+            }
+        }
+    }
+}
+
+/// Tells of the tests of a node's children, with the intervals that hits are clamped to: those of
+/// the lanes are a little wider.
+fn tell_tested<N: Number, C: Count>(node: &WideNode, ray: &Ray<N>, count: &mut C) {
+    let exact: Cull = Culling::new(ray);
+    for lane in (0..8).filter(|&lane| node.child(lane) != Child::NONE) {
+        let bounds = node.child_box(lane);
+        count.tell(Event::Tested {
+            place: node.child(lane).place(),
+            sides: bounds.0.map(|axis| axis.map(Some)),
+            span: exact.interval(&bounds).units(),
+        });
+    }
+}
+
+/// The lowest lane of a set that is not empty, which is removed: where it is entered, which is not
+/// negative, in the high half of what is returned, and its number in the low half.
+#[inline(always)]
+fn take_lowest(lanes: &mut u32, near: &[i32; LANES]) -> u64 {
+    let lowest = lanes.trailing_zeros();
+    *lanes &= lanes.wrapping_sub(1);
+    (near[(lowest & 7) as usize] as u64) << 32 | u64::from(lowest)
+}
+
+/// The lane of [`take_lowest`].
+#[inline(always)]
+fn lane(entered: u64) -> usize {
+    (entered & 7) as usize
+}

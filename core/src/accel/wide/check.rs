@@ -1,0 +1,320 @@
+//! The proof that a blob's eight-wide hierarchy is sound.
+
+use super::Child;
+use crate::accel::{Leaf, MAX_STACK_DEPTH};
+use crate::blob::cluster::LANES;
+use crate::blob::record::{UnitBox, WideNode};
+use crate::blob::{BlobError, Scene, SectionKind};
+use crate::shape::{Clusters, Kind};
+use heapless::Vec;
+
+/// Proves that nodes and clusters are numbered breadth first, so that every one is reached once
+/// and every walk ends; that boxes lie inside their parents' and clusters inside their boxes; that
+/// all primitives are in it. Returns the stack that a walk needs.
+///
+/// Linear; uses [`MAX_STACK_DEPTH`] times 20 bytes of stack.
+pub(super) fn check(nodes: &[WideNode], scene: &Scene<'_>) -> Result<usize, BlobError> {
+    check_members(scene)?;
+    check_order(nodes, scene)?;
+    check_homes(nodes, scene)?;
+    check_boxes(nodes, scene)
+}
+
+fn wrong(
+    section: SectionKind,
+    index: usize,
+    what: &'static str,
+    found: usize,
+    expected: usize,
+) -> BlobError {
+    BlobError::Record {
+        section,
+        index,
+        what,
+        found: found as i64,
+        expected: expected as i64,
+    }
+}
+
+/// Proves that members ascend from cluster to cluster, and that there are as many as primitives.
+fn check_members(scene: &Scene<'_>) -> Result<(), BlobError> {
+    let clusters = &scene.shapes.clusters;
+    let mut next = 0;
+    for strip in 0..clusters.strips.len() {
+        let section = SectionKind::Strips;
+        let Some(members) = clusters.strips.members(strip as u32) else {
+            continue;
+        };
+        let (what, found) = ("number of the first member", members.first() as usize);
+        if found != next {
+            return Err(wrong(section, strip, what, found, next));
+        }
+        for place in (0..8).filter(|place| members.places() >> place & 1 != 0) {
+            if members.corners(place).is_none() {
+                let what = "arrangement that means nothing, of place";
+                return Err(wrong(section, strip, what, place as usize, LANES));
+            }
+        }
+        next += members.count() as usize;
+    }
+    let triangles = next;
+    next = 0;
+    for pack in 0..clusters.packs.len() {
+        let section = SectionKind::Packs;
+        let Some(members) = clusters.packs.members(pack as u32) else {
+            continue;
+        };
+        let (what, found) = ("number of the first member", members.first() as usize);
+        if found != next {
+            return Err(wrong(section, pack, what, found, next));
+        }
+        let count = members.count() as usize;
+        if count > LANES {
+            return Err(wrong(section, pack, "number of spheres", count, LANES));
+        }
+        for lane in 0..members.count() {
+            let radius = clusters
+                .packs
+                .sphere(pack as u32, lane)
+                .map_or(0, |it| it.1);
+            if !(1..=i32::from(i16::MAX) << 9).contains(&radius) {
+                let section = SectionKind::Packs;
+                return Err(wrong(section, pack, "radius", radius as usize, 1));
+            }
+        }
+        next += count;
+    }
+    let section = SectionKind::Members;
+    for (found, expected) in [
+        (clusters.members.len(), triangles + next),
+        (scene.shapes.count(Kind::Triangle), triangles),
+        (scene.shapes.count(Kind::Sphere), next),
+    ] {
+        if found != expected {
+            return Err(BlobError::Count {
+                section,
+                found,
+                expected,
+            });
+        }
+    }
+    // Homes lead to members, where there are any.
+    let own = clusters.homes.is_empty();
+    for index in 0..clusters.members.len() * usize::from(own) {
+        let primitive = clusters.members.get(index).unwrap_or(u32::MAX);
+        if primitive >= scene.header().primitives {
+            let most = scene.header().primitives as usize;
+            return Err(wrong(section, index, "primitive", primitive as usize, most));
+        }
+    }
+    Ok(())
+}
+
+/// Proves breadth-first order.
+fn check_order(nodes: &[WideNode], scene: &Scene<'_>) -> Result<(), BlobError> {
+    let section = SectionKind::WideNodes;
+    let Clusters { strips, packs, .. } = &scene.shapes.clusters;
+    let (mut next_node, mut next_strip, mut next_pack) = (1, 0, 0);
+    let mut others = [0; Kind::ALL.len()];
+    // Where other structures share the slots, these are in the order of theirs.
+    let own_order = scene.shapes.clusters.homes.is_empty();
+    for (index, node) in nodes.iter().enumerate() {
+        let mut ended = false;
+        for lane in 0..LANES {
+            let child = node.child(lane);
+            if child == Child::NONE {
+                let empty = node.child_box(lane) == WideNode::EMPTY;
+                if !empty || lane == 0 {
+                    let what = "lane of a missing child that is not empty, or is the first,";
+                    return Err(wrong(section, index, what, lane, LANES));
+                }
+                ended = true;
+                continue;
+            }
+            if ended {
+                let what = "lane of a child behind a missing one";
+                return Err(wrong(section, index, what, lane, LANES));
+            }
+            let (found, next) = match (child.as_node(), Leaf::from_word(child.0)) {
+                (Some(number), _) => (number as usize, &mut next_node),
+                (None, Some(leaf)) => match (leaf.kind, leaf.count) {
+                    (Kind::Triangle, 0) => (leaf.first as usize, &mut next_strip),
+                    (Kind::Sphere, 0) => (leaf.first as usize, &mut next_pack),
+                    (Kind::Box | Kind::Disc | Kind::Cone, 1) => {
+                        let next = &mut others[leaf.kind as usize];
+                        let slots = scene.shapes.count(leaf.kind);
+                        let first = leaf.first as usize;
+                        if !own_order && first < slots {
+                            *next += 1;
+                            continue;
+                        }
+                        (first, next)
+                    }
+                    _ => {
+                        let what = "number of slots of a leaf";
+                        return Err(wrong(section, index, what, leaf.count as usize, 1));
+                    }
+                },
+                (None, None) => {
+                    let (what, kind) = ("kind of a leaf", (child.0 >> 29) as usize);
+                    return Err(wrong(section, index, what, kind, Kind::ALL.len() - 1));
+                }
+            };
+            if found != *next {
+                let what = "number of a child, which must follow breadth first,";
+                return Err(wrong(section, index, what, found, *next));
+            }
+            *next += 1;
+        }
+        // A node that nothing leads to, or a child beyond the last node.
+        if next_node <= index + 1 && index + 1 < nodes.len() || next_node > nodes.len() {
+            let what = "number of nodes that are reached up to here";
+            return Err(wrong(section, index, what, next_node, nodes.len()));
+        }
+    }
+    let all = |kind: Kind| (others[kind as usize], scene.shapes.count(kind));
+    let reached = [
+        (next_strip, strips.len()),
+        (next_pack, packs.len()),
+        all(Kind::Box),
+        all(Kind::Disc),
+        all(Kind::Cone),
+    ];
+    for (found, expected) in reached {
+        if found != expected {
+            return Err(BlobError::Count {
+                section,
+                found,
+                expected,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Proves, where other structures share the primitives, that the hierarchy holds each of them once:
+/// every slot has a home that leads back to it, and there are as many homes as places.
+fn check_homes(nodes: &[WideNode], scene: &Scene<'_>) -> Result<(), BlobError> {
+    let section = SectionKind::Homes;
+    let (shapes, clusters) = (&scene.shapes, &scene.shapes.clusters);
+    let homes = clusters.homes;
+    if homes.is_empty() {
+        // Then the clusters' are the only triangles and spheres.
+        for (section, kind) in [
+            (SectionKind::Triangles, Kind::Triangle),
+            (SectionKind::Spheres, Kind::Sphere),
+        ] {
+            let found = shapes.records(kind);
+            if found > 0 {
+                return Err(BlobError::Count {
+                    section,
+                    found,
+                    expected: 0,
+                });
+            }
+        }
+        return Ok(());
+    }
+    if homes.len() != shapes.total() {
+        return Err(BlobError::Count {
+            section,
+            found: homes.len(),
+            expected: shapes.total(),
+        });
+    }
+    let mut rest = homes.iter().enumerate();
+    for kind in Kind::ALL {
+        for (slot, (index, &home)) in (0..shapes.records(kind) as u32).zip(rest.by_ref()) {
+            let (cluster, lane) = (home >> 3, home & 7);
+            let leads_back = match kind {
+                Kind::Triangle => {
+                    let members = clusters.strips.members(cluster);
+                    members.is_some_and(|it| it.places() >> lane & 1 != 0)
+                        && clusters.triangle_member(cluster, lane) == Some(slot)
+                        && clusters.strips.triangle(cluster, lane) == shapes.triangle(slot as usize)
+                }
+                Kind::Sphere => {
+                    let sphere = clusters.packs.sphere(cluster, lane);
+                    clusters.sphere_member(cluster, lane) == Some(slot)
+                        && sphere == shapes.spheres.get(slot as usize)
+                        && sphere.is_some()
+                }
+                Kind::Box | Kind::Disc | Kind::Cone => {
+                    let leaf = Leaf {
+                        kind,
+                        first: slot,
+                        count: 1,
+                    };
+                    let node = nodes.get(home as usize);
+                    node.is_some_and(|node| node.children.contains(&leaf.to_word()))
+                }
+            };
+            if !leads_back {
+                return Err(wrong(
+                    section,
+                    index,
+                    "home does not lead back to the slot: distance",
+                    1,
+                    0,
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Proves that boxes hold what is below them, and returns the most entries that a walk has waiting.
+fn check_boxes(nodes: &[WideNode], scene: &Scene<'_>) -> Result<usize, BlobError> {
+    let section = SectionKind::WideNodes;
+    let clusters = &scene.shapes.clusters;
+    let mut deepest = 0;
+    if nodes.is_empty() {
+        return Ok(0);
+    }
+    // Children that wait, their boxes, and how many wait before they are reached.
+    let mut waiting: Vec<(u32, UnitBox, u16), { MAX_STACK_DEPTH + 1 }> = Vec::new();
+    let mut current = Some((0, *scene.bounds(), 0));
+    while let Some((number, parent, before)) = current {
+        let index = number as usize;
+        if let Some(node) = nodes.get(index) {
+            let count = (0..LANES).filter(|&lane| node.child(lane) != Child::NONE);
+            let after = before + count.count().saturating_sub(1) as u16;
+            deepest = deepest.max(after.into());
+            if deepest > MAX_STACK_DEPTH {
+                return Err(BlobError::Header {
+                    field: "stack depth",
+                    found: deepest as u64,
+                    expected: MAX_STACK_DEPTH as u64,
+                });
+            }
+            for lane in 0..LANES {
+                let child = node.child(lane);
+                if child == Child::NONE {
+                    break;
+                }
+                let bounds = node.child_box(lane);
+                let within = match (child.as_node(), Leaf::from_word(child.0)) {
+                    (Some(number), _) => {
+                        // It fits: no more wait here than in a walk, and that was proved above.
+                        let _ = waiting.push((number, bounds, after));
+                        true
+                    }
+                    (None, Some(leaf)) if leaf.count == 0 => match leaf.kind {
+                        Kind::Triangle => clusters.strips.bounds(leaf.first),
+                        _ => clusters.packs.bounds(leaf.first),
+                    }
+                    .is_some_and(|inner| bounds.contains(&inner)),
+                    (None, Some(leaf)) => scene.shapes.leaf_inside(leaf, &bounds),
+                    (None, None) => false,
+                };
+                if !within || !parent.contains(&bounds) {
+                    let what =
+                        "box lies outside its parent's, or a primitive outside its box: lane";
+                    return Err(wrong(section, index, what, lane, LANES));
+                }
+            }
+        }
+        current = waiting.pop();
+    }
+    Ok(deepest)
+}

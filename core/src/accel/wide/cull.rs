@@ -1,0 +1,139 @@
+//! Which of a node's eight children a ray can meet, in the ray's own arithmetic: lanes of single
+//! precision for floats, integers for [`Fixed`](crate::Fixed).
+//!
+//! In lanes the rule and the margins are those of the pairs' culling in single precision: half a
+//! unit aside and four units along the ray, against a quarter and two for the integers' intervals,
+//! which hits are clamped to. Rounding moves `p / s - o / s` by less than 2^-5 unit aside, because
+//! coordinates are below 2^17. So a box's interval here holds its interval there, for every ray;
+//! the margins lie in the ray's constants, and a node pays nothing for them. No number is NaN: an
+//! inverse slope is at most 4096 in magnitude, and all products are finite.
+
+use crate::accel::cull::{Cull, Culling};
+use crate::blob::cluster::LANES;
+use crate::blob::record::{UnitBox, WideNode};
+use crate::eight::Eight;
+use crate::number::Number;
+use crate::ray::Ray;
+use glam::Vec4;
+
+/// A form of a ray that culls eight boxes at once.
+pub trait WideCulling<N: Number>: Culling<N> {
+    /// The limit for hits at or before a length.
+    fn limit(t: N) -> i32;
+    /// Where a child is entered, in units.
+    fn units(near: i32) -> f64;
+    /// The children that the ray can meet up to a limit, a bit each, and where it enters them; what
+    /// compares with a limit.
+    fn children(&self, node: &WideNode, limit: i32) -> (u32, [i32; LANES]);
+}
+
+/// The culling form of a ray in eight lanes of `f32`: t in units.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WideLanes {
+    /// One over the slope, an axis each; below zero where the ray runs down the axis and the planes
+    /// change roles.
+    inverse: Vec4,
+    /// What the near plane's product lacks to t; and the ray's start.
+    near: Vec4,
+    /// What the far plane's product lacks to t.
+    far: Vec4,
+    /// Which of a node's two rows an axis has the near planes: 1, the upper ones, where the ray runs
+    /// down it.
+    near_rows: [u32; 3],
+}
+
+impl<N: Number> Culling<N> for WideLanes {
+    #[inline(always)]
+    fn new(ray: &Ray<N>) -> Self {
+        let lanes = |v: [N; 3]| Vec4::new(v[0].to_f32(), v[1].to_f32(), v[2].to_f32(), 1.0);
+        let (origin, slope) = (lanes(ray.origin), lanes(ray.slope));
+        let level = Vec4::splat(1.0 / 4096.0);
+        let steepness = slope.abs();
+        let parallel = steepness.cmple(level);
+        let magnitude = Vec4::ONE / steepness.max(level);
+        let inverse = magnitude.copysign(slope);
+        let middle = -(origin * inverse);
+        let margin = magnitude * 0.5 + 4.0;
+        let far = middle + margin + Vec4::select(parallel, Vec4::splat(65_536.0), Vec4::ZERO);
+        let descending = inverse.is_negative_bitmask();
+        Self {
+            inverse,
+            near: (middle - margin).with_w(ray.tmin.to_f32()),
+            far,
+            near_rows: [descending & 1, descending >> 1 & 1, descending >> 2 & 1],
+        }
+    }
+
+    #[inline(always)]
+    fn exact(&self, ray: &Ray<N>) -> Cull {
+        Cull::new(ray)
+    }
+
+    #[inline(always)]
+    fn holds(ray: &Ray<N>, t: N, bounds: &UnitBox) -> bool {
+        crate::accel::cull::holds(ray, t, bounds)
+    }
+}
+
+impl<N: Number> WideCulling<N> for WideLanes {
+    #[inline(always)]
+    fn limit(t: N) -> i32 {
+        // The next number above, whatever the conversion rounded; below 0 there is nothing.
+        let t = t.to_f32();
+        if t < 0.0 { -1 } else { t.to_bits() as i32 + 1 }
+    }
+
+    fn units(near: i32) -> f64 {
+        f32::from_bits(near as u32).into()
+    }
+
+    #[inline(always)]
+    fn children(&self, node: &WideNode, limit: i32) -> (u32, [i32; LANES]) {
+        let Self {
+            inverse, near, far, ..
+        } = self;
+        let axis = |axis: usize, inverse: f32, to_near: f32, to_far: f32| {
+            let (rows, near) = (&node.planes[axis], self.near_rows[axis] as usize & 1);
+            let inverse = Eight::splat(inverse);
+            (
+                Eight::from_i16(&rows[near]) * inverse + Eight::splat(to_near),
+                Eight::from_i16(&rows[near ^ 1]) * inverse + Eight::splat(to_far),
+            )
+        };
+        let (near_x, far_x) = axis(0, inverse.x, near.x, far.x);
+        let (near_y, far_y) = axis(1, inverse.y, near.y, far.y);
+        let (near_z, far_z) = axis(2, inverse.z, near.z, far.z);
+        let start = near.w;
+        let limit = f32::from_bits(limit as u32);
+        let near = near_x.max(near_y).max(near_z.max(Eight::splat(start)));
+        let far = far_x.min(far_y).min(far_z.min(Eight::splat(limit)));
+        // Not below zero, so integers of the same bits have the same order.
+        (
+            near.at_most(far),
+            near.to_array().map(|t| t.to_bits() as i32),
+        )
+    }
+}
+
+impl<N: Number> WideCulling<N> for Cull {
+    #[inline(always)]
+    fn limit(t: N) -> i32 {
+        t.to_cull().saturating_add(1)
+    }
+
+    fn units(near: i32) -> f64 {
+        f64::from(near) / 2.0
+    }
+
+    #[inline(always)]
+    fn children(&self, node: &WideNode, limit: i32) -> (u32, [i32; LANES]) {
+        let mut met = 0;
+        let mut near = [0; LANES];
+        for (lane, near) in near.iter_mut().enumerate() {
+            let interval = self.interval(&node.child_box(lane));
+            *near = interval.near.max(self.start());
+            met |= u32::from(*near <= interval.far.min(limit)) << lane;
+        }
+        (met, near)
+    }
+}

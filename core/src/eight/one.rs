@@ -1,0 +1,132 @@
+//! Eight lanes in one register, or in two where the machine has none of that size.
+
+use core::ops::{Add, Mul, Sub};
+use wide::{f32x8, i16x8, i32x8, u16x8};
+
+/// Eight lanes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Eight(f32x8);
+
+impl Eight {
+    /// The same number in every lane.
+    #[inline(always)]
+    pub(crate) fn splat(value: f32) -> Self {
+        Self(f32x8::splat(value))
+    }
+
+    #[cfg(test)]
+    pub(crate) fn new(lanes: [f32; 8]) -> Self {
+        Self(f32x8::new(lanes))
+    }
+
+    #[inline(always)]
+    pub(crate) fn to_array(self) -> [f32; 8] {
+        self.0.to_array()
+    }
+
+    /// Integers as numbers; exact.
+    #[inline(always)]
+    pub(crate) fn from_i16(lanes: &[i16; 8]) -> Self {
+        Self(f32x8::from_i32x8(i32x8::from_i16x8(i16x8::new(*lanes))))
+    }
+
+    /// Integers as numbers; exact.
+    #[inline(always)]
+    pub(crate) fn from_u16(lanes: &[u16; 8]) -> Self {
+        Self(f32x8::from_i32x8(i32x8::from_u16x8(u16x8::new(*lanes))))
+    }
+
+    /// The signed bytes of words as numbers, the low ones in the first four lanes; exact.
+    #[inline(always)]
+    pub(crate) fn from_signed_bytes(&[a, b, c, d]: &[u16; 4]) -> Self {
+        let words = i16x8::new([a, b, c, d, a, b, c, d].map(|word| word as i16));
+        let words = i32x8::from_i16x8(words);
+        let sign = i32x8::splat(0x80);
+        let low = ((words & i32x8::splat(0xff)) ^ sign) - sign;
+        Self::from_halves(low, words.unbounded_shr_scalar(8))
+    }
+
+    /// The bytes of words as numbers, the low ones in the first four lanes; exact.
+    #[inline(always)]
+    pub(crate) fn from_bytes(&[a, b, c, d]: &[u16; 4]) -> Self {
+        let words = i32x8::from_u16x8(u16x8::new([a, b, c, d, a, b, c, d]));
+        let low = words & i32x8::splat(0xff);
+        Self::from_halves(low, words.unbounded_shr_scalar(8))
+    }
+
+    /// The first four lanes of one and the last four of the other as numbers.
+    #[inline(always)]
+    fn from_halves(first: i32x8, last: i32x8) -> Self {
+        let mask = i32x8::new([-1, -1, -1, -1, 0, 0, 0, 0]);
+        Self(f32x8::from_i32x8((first & mask) | (last & !mask)))
+    }
+
+    /// The smaller in every lane; which zero and which NaN is not said.
+    #[inline(always)]
+    pub(crate) fn min(self, other: Self) -> Self {
+        Self(self.0.fast_min(other.0))
+    }
+
+    /// The larger in every lane; which zero and which NaN is not said.
+    #[inline(always)]
+    pub(crate) fn max(self, other: Self) -> Self {
+        Self(self.0.fast_max(other.0))
+    }
+
+    #[inline(always)]
+    pub(crate) fn abs(self) -> Self {
+        Self(self.0.abs())
+    }
+
+    /// Every lane's neighbour above; the last stays.
+    #[inline(always)]
+    pub(crate) fn next(self) -> Self {
+        let [_, b, c, d, e, f, g, h] = self.0.to_array();
+        Self(f32x8::new([b, c, d, e, f, g, h, h]))
+    }
+
+    /// A bit for each lane that is at most the other's.
+    #[inline(always)]
+    pub(crate) fn at_most(self, other: Self) -> u32 {
+        self.0.simd_le(other.0).to_bitmask()
+    }
+
+    /// A bit for each lane whose sign is minus.
+    #[inline(always)]
+    pub(crate) fn signs(self) -> u32 {
+        self.0.to_bitmask()
+    }
+
+    /// A bit for each lane that is zero.
+    #[inline(always)]
+    pub(crate) fn zero(self) -> u32 {
+        self.0.simd_eq(f32x8::ZERO).to_bitmask()
+    }
+}
+
+impl Add for Eight {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+impl Sub for Eight {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 - other.0)
+    }
+}
+
+impl Mul for Eight {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self(self.0 * other.0)
+    }
+}

@@ -1,0 +1,180 @@
+//! All clusters of a blob: see [`blob::cluster`](crate::blob::cluster).
+
+use super::{sphere, triangle};
+use crate::blob::Indices;
+use crate::blob::cluster::{
+    Pack, Pack16, Pack24, PackMembers, Strip, Strip16, Strip24, StripMembers,
+};
+use crate::blob::record::UnitBox;
+
+/// All strips.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Strips<'a> {
+    S16(&'a [Strip16]),
+    S24(&'a [Strip24]),
+}
+
+/// All packs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Packs<'a> {
+    P16(&'a [Pack16]),
+    P24(&'a [Pack24]),
+}
+
+impl Strips<'_> {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Strips::S16(strips) => strips.len(),
+            Strips::S24(strips) => strips.len(),
+        }
+    }
+
+    pub(crate) fn members(&self, strip: u32) -> Option<&StripMembers> {
+        match self {
+            Strips::S16(strips) => strips.get(strip as usize).map(Strip::members),
+            Strips::S24(strips) => strips.get(strip as usize).map(Strip::members),
+        }
+    }
+
+    /// The corners of a triangle in 1/256 unit.
+    pub(crate) fn triangle(&self, strip: u32, place: u32) -> Option<[[i32; 3]; 3]> {
+        match self {
+            Strips::S16(strips) => strips.get(strip as usize)?.triangle(place),
+            Strips::S24(strips) => strips.get(strip as usize)?.triangle(place),
+        }
+    }
+
+    /// Number of triangles in all strips.
+    fn triangles(&self) -> usize {
+        let last = (self.len() as u32).checked_sub(1);
+        let members = last.and_then(|last| self.members(last));
+        members.map_or(0, |last| (last.first() + last.count()) as usize)
+    }
+
+    /// The box around a strip's triangles.
+    pub(crate) fn bounds(&self, strip: u32) -> Option<UnitBox> {
+        let places = self.members(strip)?.places();
+        (0..8).filter(|place| places >> place & 1 != 0).try_fold(
+            None,
+            |bounds: Option<UnitBox>, place| {
+                let next = triangle::bounds(self.triangle(strip, place)?);
+                Some(Some(bounds.map_or(next, |bounds| bounds.union(&next))))
+            },
+        )?
+    }
+}
+
+impl Packs<'_> {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Packs::P16(packs) => packs.len(),
+            Packs::P24(packs) => packs.len(),
+        }
+    }
+
+    pub(crate) fn members(&self, pack: u32) -> Option<&PackMembers> {
+        match self {
+            Packs::P16(packs) => packs.get(pack as usize).map(Pack::members),
+            Packs::P24(packs) => packs.get(pack as usize).map(Pack::members),
+        }
+    }
+
+    /// Centre and radius of a sphere in 1/256 unit.
+    pub(crate) fn sphere(&self, pack: u32, lane: u32) -> Option<([i32; 3], i32)> {
+        match self {
+            Packs::P16(packs) => packs.get(pack as usize)?.sphere(lane),
+            Packs::P24(packs) => packs.get(pack as usize)?.sphere(lane),
+        }
+    }
+
+    /// Number of spheres in all packs.
+    fn spheres(&self) -> usize {
+        let last = (self.len() as u32).checked_sub(1);
+        let members = last.and_then(|last| self.members(last));
+        members.map_or(0, |last| (last.first() + last.count()) as usize)
+    }
+
+    /// The box around a pack's spheres.
+    pub(crate) fn bounds(&self, pack: u32) -> Option<UnitBox> {
+        let count = self.members(pack)?.count();
+        (0..count).try_fold(None, |bounds: Option<UnitBox>, lane| {
+            let (center, radius) = self.sphere(pack, lane)?;
+            let next = sphere::bounds(center, radius);
+            Some(Some(bounds.map_or(next, |bounds| bounds.union(&next))))
+        })?
+    }
+}
+
+/// All clusters of a blob, and the primitives in them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Clusters<'a> {
+    pub(crate) strips: Strips<'a>,
+    pub(crate) packs: Packs<'a>,
+    /// The primitive of each member, or its slot where other structures share the primitives.
+    pub(crate) members: Indices<'a>,
+    /// Where other structures share the primitives: where each slot lies in the hierarchy.
+    pub(crate) homes: &'a [u32],
+}
+
+impl Clusters<'_> {
+    /// Number of triangles.
+    pub(crate) fn triangles(&self) -> usize {
+        self.strips.triangles()
+    }
+
+    /// Number of spheres.
+    pub(crate) fn spheres(&self) -> usize {
+        self.packs.spheres()
+    }
+
+    /// The strip and the place of a triangle by its number among the members.
+    pub(crate) fn find_triangle(&self, member: usize) -> Option<(u32, u32)> {
+        let first = |strip| Some(self.strips.members(strip)?.first() as usize);
+        let strip = last_at_or_before(self.strips.len(), member, first)?;
+        let members = self.strips.members(strip)?;
+        let place = (0..8).find(|&place| {
+            members.places() >> place & 1 != 0 && members.member(place) as usize == member
+        })?;
+        Some((strip, place))
+    }
+
+    /// The pack and the lane of a sphere by its number among the spheres of all packs.
+    pub(crate) fn find_sphere(&self, member: usize) -> Option<(u32, u32)> {
+        let first = |pack| Some(self.packs.members(pack)?.first() as usize);
+        let pack = last_at_or_before(self.packs.len(), member, first)?;
+        let lane = member.checked_sub(first(pack)?)? as u32;
+        Some((pack, lane))
+    }
+
+    /// The member that is a triangle: its primitive, or its slot.
+    #[inline]
+    pub(crate) fn triangle_member(&self, strip: u32, place: u32) -> Option<u32> {
+        let member = self.strips.members(strip)?.member(place);
+        self.members.get(member as usize)
+    }
+
+    /// The member that is a sphere: its primitive, or its slot.
+    #[inline]
+    pub(crate) fn sphere_member(&self, pack: u32, lane: u32) -> Option<u32> {
+        let member = self.packs.members(pack)?.first() + lane;
+        self.members.get(self.triangles() + member as usize)
+    }
+}
+
+/// The last of `count` ascending numbers that is not beyond `value`.
+fn last_at_or_before(
+    count: usize,
+    value: usize,
+    number: impl Fn(u32) -> Option<usize>,
+) -> Option<u32> {
+    let (mut low, mut high) = (0, count as u32);
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if number(middle)? <= value {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    low.checked_sub(1)
+}

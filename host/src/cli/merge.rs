@@ -1,0 +1,126 @@
+//! `gridel merge`: parts of a picture become one.
+
+use super::failure::Failure;
+use super::output::{print, print_json, refuse_same, write_file};
+use super::progress::Progress;
+use clap::Args;
+use gridel_host::merge::{Merge, MergeError, Part};
+use gridel_host::picture::PictureFormat;
+use serde::Serialize;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+/// Put a picture together from parts that `render --rows` wrote
+///
+/// A part says in its file which rows of which picture it has, so several machines can share a
+/// picture and the parts may come in any order. Parts may overlap if they agree. The picture has
+/// the bytes that one machine would have written.
+#[derive(Args)]
+#[command(after_help = super::EXIT_CODES)]
+pub struct Arguments {
+    /// Parts, .png or .ppm
+    #[arg(required = true, value_name = "PART")]
+    parts: Vec<PathBuf>,
+
+    /// The picture to write, with the extension of the parts
+    #[arg(short, long, value_name = "PICTURE")]
+    output: PathBuf,
+
+    /// Print what was done as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// What was merged.
+#[derive(Serialize)]
+struct Merged {
+    picture: String,
+    width: u32,
+    height: u32,
+    parts: usize,
+}
+
+/// Merges parts and writes the picture.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let output = &arguments.output;
+    let format = format_of(output)?;
+    for part in &arguments.parts {
+        if format_of(part)? != format {
+            return Err(Failure::usage(
+                format!(
+                    "{} and {} are not of one format",
+                    part.display(),
+                    output.display()
+                ),
+                "render the parts in the format of the picture",
+            ));
+        }
+        refuse_same(part, output)?;
+    }
+    let progress = Progress::steps("merging", arguments.parts.len() as u64);
+    let mut merge = Merge::default();
+    for path in &arguments.parts {
+        let file = File::open(path).map_err(|error| Failure::reading(path, &error))?;
+        let part = Part::read(format, BufReader::new(file)).map_err(|error| {
+            Failure::failed(
+                format!("{} cannot be merged: {error}", path.display()),
+                "parts are what `gridel render --rows A..B` writes",
+            )
+        })?;
+        merge
+            .add(&part)
+            .map_err(|error| failure(arguments, &error))?;
+        progress.step();
+    }
+    drop(progress);
+    let whole = merge.finish().map_err(|error| failure(arguments, &error))?;
+    write_file(output, |out| whole.write(format, out))?;
+    let merged = Merged {
+        picture: output.display().to_string(),
+        width: whole.size[0],
+        height: whole.size[1],
+        parts: arguments.parts.len(),
+    };
+    if arguments.json {
+        print_json(&merged)
+    } else {
+        print(format!(
+            "{}: {}x{} pixels from {} parts\n",
+            merged.picture, merged.width, merged.height, merged.parts
+        ))
+    }
+}
+
+fn format_of(path: &Path) -> Result<PictureFormat, Failure> {
+    match PictureFormat::of(path) {
+        Some(format @ (PictureFormat::Png | PictureFormat::Ppm)) => Ok(format),
+        Some(PictureFormat::Rgb565) => Err(Failure::usage(
+            format!("{} does not say which rows it has", path.display()),
+            "render parts as .png or .ppm; .rgb565 files have nothing but pixels, and joined in the \
+             order of their rows, as with `cat`, they are the whole",
+        )),
+        None => Err(Failure::usage(
+            format!("{} does not end as a picture's name does", path.display()),
+            "use .png or .ppm",
+        )),
+    }
+}
+
+fn failure(arguments: &Arguments, error: &MergeError) -> Failure {
+    let name = |number: usize| arguments.parts[number].display();
+    match error {
+        MergeError::Sizes([one, other], _) => Failure::failed(
+            format!("{} and {} do not fit: {error}", name(*one), name(*other)),
+            "merge parts of one picture",
+        ),
+        MergeError::Differ([one, other], _) => Failure::failed(
+            format!("{} and {} do not fit: {error}", name(*one), name(*other)),
+            "render both with the same scene, number format and settings",
+        ),
+        MergeError::Missing(rows) => Failure::failed(
+            format!("the picture is not whole: {error}"),
+            format!("render them with `--rows {}..{}`", rows.start, rows.end),
+        ),
+    }
+}

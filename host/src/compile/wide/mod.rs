@@ -1,0 +1,347 @@
+//! Builds the eight-wide hierarchy: clusters first, then a tree over them.
+//!
+//! Clusters are found in the mesh and among the spheres as they are, not in the leaves of a tree:
+//! so strips are long and packs full, and the tree is built over a fifth of the objects. The tree
+//! is swept by the surface area heuristic on all three axes, improved by reinsertion, and collapsed
+//! to eight children a node by dynamic programming. All of it gives the same bytes with any number
+//! of threads. Memory is linear: some 100 bytes a triangle.
+
+mod collapse;
+mod packs;
+mod strips;
+mod tree;
+
+use super::CompileError;
+use super::hierarchy::Primitive;
+use super::pairs::Flat;
+use super::primitives::Primitives;
+use super::writer::{Section, indices, section};
+use clap::ValueEnum;
+use collapse::Forests;
+use gridel_core::Kind;
+use gridel_core::accel::wide::Child;
+use gridel_core::accel::{Leaf, MAX_STACK_DEPTH};
+use gridel_core::blob::SectionKind;
+use gridel_core::blob::cluster::{
+    LANES, Pack16, Pack24, PackMembers, Rows16, Rows24, Strip16, Strip24, StripMembers, high_bytes,
+};
+use gridel_core::blob::record::{UnitBox, WideNode};
+use packs::Pack;
+use strips::Strip;
+use tree::Tree;
+
+/// How much time the builder takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Quality {
+    /// No reinsertion.
+    Fast,
+    /// Three passes of reinsertion.
+    #[default]
+    Good,
+    /// Reinsertion until it gains nothing more, but at most 24 passes.
+    Best,
+}
+
+impl Quality {
+    fn passes(self) -> usize {
+        match self {
+            Quality::Fast => 0,
+            Quality::Good => 3,
+            Quality::Best => 24,
+        }
+    }
+}
+
+/// The hierarchy of a scene.
+#[derive(Debug, Default)]
+pub struct Wide {
+    nodes: Vec<WideNode>,
+    /// In the order in which the nodes lead to them.
+    strips: Vec<Strip>,
+    packs: Vec<Pack>,
+    /// The primitives that are in no cluster, in the order of their slots, kind by kind.
+    pub slots: [Vec<u32>; 5],
+    /// Where other structures share the primitives: for each slot, where it lies in the hierarchy.
+    homes: Vec<u32>,
+    /// Where other structures share the primitives: for each kind, the slot of each primitive.
+    shared: Option<[Vec<u32>; 5]>,
+    /// Cost by the surface area heuristic, the root's area being 1.
+    pub cost: f64,
+    pub stack_depth: usize,
+}
+
+/// What the tree is built over.
+enum Item {
+    Strip(usize),
+    Pack(usize),
+    Single(Kind, u32),
+}
+
+impl Wide {
+    /// Builds the hierarchy. Where other structures share the slots of what is in no cluster, those
+    /// are `shared`.
+    ///
+    /// # Errors
+    /// If the hierarchy is too deep for any stack.
+    pub fn build(
+        primitives: &Primitives,
+        boxes: &[Primitive],
+        quality: Quality,
+        shared: Option<&Flat>,
+    ) -> Result<Self, CompileError> {
+        let of_kind = |kind: Kind| boxes.iter().filter(move |it| it.kind == kind).copied();
+        let (strips, packs) = rayon::join(
+            || strips::find(&primitives.vertices, &primitives.triangles),
+            || packs::find(of_kind(Kind::Sphere).collect()),
+        );
+        let mut items: Vec<(UnitBox, Item)> = Vec::new();
+        items.extend(
+            (0..)
+                .zip(&strips)
+                .map(|(n, it)| (it.bounds, Item::Strip(n))),
+        );
+        items.extend((0..).zip(&packs).map(|(n, it)| (it.bounds, Item::Pack(n))));
+        for kind in [Kind::Box, Kind::Disc, Kind::Cone] {
+            items.extend(of_kind(kind).map(|it| (it.bounds, Item::Single(kind, it.index))));
+        }
+        let bounds: Vec<UnitBox> = items.iter().map(|item| item.0).collect();
+        for balanced in [false, true] {
+            let Some(mut tree) = Tree::build(&bounds, balanced) else {
+                return Ok(Self::default());
+            };
+            let passes = if balanced { 0 } else { quality.passes() };
+            for _ in 0..passes {
+                if !tree.reinsert() {
+                    break;
+                }
+            }
+            let wide = Self::flatten(&tree, &items, (&strips, &packs), shared);
+            if wide.stack_depth <= MAX_STACK_DEPTH {
+                return Ok(wide);
+            }
+        }
+        Err(CompileError::TooMany {
+            what: "clusters",
+            count: items.len(),
+            most: 1 << 20,
+        })
+    }
+
+    /// Numbers nodes and clusters breadth first.
+    fn flatten(
+        tree: &Tree,
+        items: &[(UnitBox, Item)],
+        (strips, packs): (&[Strip], &[Pack]),
+        shared: Option<&Flat>,
+    ) -> Self {
+        let forests = Forests::of(tree);
+        let mut wide = Self {
+            shared: shared.map(|flat| flat.slots.each_ref().map(|slots| inverse(slots))),
+            cost: forests.cost(tree),
+            ..Self::default()
+        };
+        // Nodes of the tree that become wide ones, and how many children wait before them.
+        let mut queue = vec![(tree.root, 0)];
+        while let Some(&(node, before)) = queue.get(wide.nodes.len()) {
+            let children = forests.children(tree, node);
+            let waiting = before + children.len() - 1;
+            wide.stack_depth = wide.stack_depth.max(waiting);
+            let mut record = WideNode {
+                planes: WideNode::EMPTY
+                    .0
+                    .map(|[low, high]| [[low; LANES], [high; LANES]]),
+                children: [Child::NONE.0; LANES],
+            };
+            for (lane, &child) in children.iter().enumerate() {
+                for (axis, [low, high]) in tree.bounds(child).0.into_iter().enumerate() {
+                    record.planes[axis][0][lane] = low;
+                    record.planes[axis][1][lane] = high;
+                }
+                let child = if tree.children(child).is_some() {
+                    queue.push((child, waiting));
+                    Child::node(queue.len() as u32 - 1)
+                } else {
+                    let item = &items[child as usize].1;
+                    Child::leaf(wide.leaf(item, strips, packs))
+                };
+                record.children[lane] = child.0;
+            }
+            wide.nodes.push(record);
+        }
+        wide
+    }
+
+    fn leaf(&mut self, item: &Item, strips: &[Strip], packs: &[Pack]) -> Leaf {
+        let cluster = |kind, number: usize| Leaf {
+            kind,
+            first: number as u32,
+            count: 0,
+        };
+        match *item {
+            Item::Strip(number) => {
+                for (place, triangle) in strips[number].triangles.iter().enumerate() {
+                    if let &Some(triangle) = triangle {
+                        let home = self.strips.len() << 3 | place;
+                        self.set_home(Kind::Triangle, triangle, home);
+                    }
+                }
+                self.strips.push(strips[number].clone());
+                cluster(Kind::Triangle, self.strips.len() - 1)
+            }
+            Item::Pack(number) => {
+                for (lane, &sphere) in packs[number].spheres.iter().enumerate() {
+                    self.set_home(Kind::Sphere, sphere, self.packs.len() << 3 | lane);
+                }
+                self.packs.push(packs[number].clone());
+                cluster(Kind::Sphere, self.packs.len() - 1)
+            }
+            Item::Single(kind, index) => {
+                let slots = &mut self.slots[kind as usize];
+                slots.push(index);
+                let own = slots.len() as u32 - 1;
+                let first = self.slot(kind, index).unwrap_or(own);
+                self.set_home(kind, index, self.nodes.len());
+                Leaf {
+                    kind,
+                    first,
+                    count: 1,
+                }
+            }
+        }
+    }
+
+    /// The slot of a primitive, where other structures share it.
+    fn slot(&self, kind: Kind, index: u32) -> Option<u32> {
+        let shared = self.shared.as_ref()?;
+        Some(shared[kind as usize][index as usize])
+    }
+
+    fn set_home(&mut self, kind: Kind, index: u32, home: usize) {
+        let (Some(shared), Some(slot)) = (&self.shared, self.slot(kind, index)) else {
+            return;
+        };
+        let before = shared[..kind as usize].iter().map(Vec::len);
+        let place = before.sum::<usize>() + slot as usize;
+        let all = shared.iter().map(Vec::len).sum();
+        self.homes.resize(all, 0);
+        self.homes[place] = home as u32;
+    }
+
+    /// The hierarchy's sections in a blob.
+    pub fn sections(&self, primitives: &Primitives, lattice_bits: u8) -> Vec<Section> {
+        let (strips, packs) = (self.strip_rows(primitives), self.pack_rows(primitives));
+        let (strips, packs) = if lattice_bits <= 16 {
+            let strips: Vec<_> = strips
+                .map(|(points, members)| Strip16 {
+                    rows: rows_16(&points),
+                    members,
+                })
+                .collect();
+            let packs: Vec<_> = packs
+                .map(|(points, radii, members)| Pack16 {
+                    rows: rows_16(&points),
+                    radii: radii.map(|radius| (radius >> 8) as u16),
+                    members,
+                })
+                .collect();
+            (
+                section(SectionKind::Strips, &strips),
+                section(SectionKind::Packs, &packs),
+            )
+        } else {
+            let strips: Vec<_> = strips
+                .map(|(points, members)| Strip24 {
+                    rows: rows_24(&points),
+                    members,
+                })
+                .collect();
+            let packs: Vec<_> = packs
+                .map(|(points, radii, members)| Pack24 {
+                    rows: rows_24(&points),
+                    radii_low: radii.map(|radius| radius as u16),
+                    radii_high: high_bytes(radii.map(|radius| (radius >> 16) as u8)),
+                    members,
+                })
+                .collect();
+            (
+                section(SectionKind::Strips, &strips),
+                section(SectionKind::Packs, &packs),
+            )
+        };
+        let number = |kind: Kind, index: u32| {
+            let slot = self.slot(kind, index);
+            slot.unwrap_or_else(|| primitives.numbers[kind as usize][index as usize])
+        };
+        let triangles = self
+            .strips
+            .iter()
+            .flat_map(|strip| &strip.triangles)
+            .flatten();
+        let spheres = self.packs.iter().flat_map(|pack| &pack.spheres);
+        let members: Vec<u32> = triangles
+            .map(|&index| number(Kind::Triangle, index))
+            .chain(spheres.map(|&index| number(Kind::Sphere, index)))
+            .collect();
+        vec![
+            section(SectionKind::WideNodes, &self.nodes),
+            strips,
+            packs,
+            indices(SectionKind::Members, &members, 2),
+            section(SectionKind::Homes, &self.homes),
+        ]
+    }
+
+    /// Vertices and members of every strip; lanes that are not needed repeat the last vertex.
+    fn strip_rows(
+        &self,
+        primitives: &Primitives,
+    ) -> impl Iterator<Item = ([[i32; 3]; LANES], StripMembers)> {
+        self.strips.iter().scan(0, |first, strip| {
+            let members = StripMembers::new(*first, strip.arrangements(&primitives.triangles));
+            *first += members.count();
+            let points = lanes(&strip.vertices).map(|it| primitives.vertices[it as usize]);
+            Some((points, members))
+        })
+    }
+
+    /// Centres, radii and members of every pack; lanes that are not needed repeat the last sphere.
+    fn pack_rows(
+        &self,
+        primitives: &Primitives,
+    ) -> impl Iterator<Item = ([[i32; 3]; LANES], [i32; LANES], PackMembers)> {
+        self.packs.iter().scan(0, |first, pack| {
+            let count = pack.spheres.len() as u8;
+            let members = PackMembers::new(*first, count);
+            *first += u32::from(count);
+            let spheres = lanes(&pack.spheres).map(|it| primitives.spheres[it as usize]);
+            let (points, radii) = (spheres.map(|it| it.center), spheres.map(|it| it.radius));
+            Some((points, radii, members))
+        })
+    }
+}
+
+/// Where each value lies.
+fn inverse(values: &[u32]) -> Vec<u32> {
+    let mut places = vec![0; values.len()];
+    for (place, &value) in (0..).zip(values) {
+        places[value as usize] = place;
+    }
+    places
+}
+
+/// Up to eight values, the last repeated.
+fn lanes(values: &[u32]) -> [u32; LANES] {
+    std::array::from_fn(|lane| values[lane.min(values.len() - 1)])
+}
+
+fn rows_16(points: &[[i32; 3]; LANES]) -> Rows16 {
+    Rows16([0, 1, 2].map(|axis: usize| points.map(|point| (point[axis] >> 8) as i16)))
+}
+
+fn rows_24(points: &[[i32; 3]; LANES]) -> Rows24 {
+    Rows24 {
+        low: [0, 1, 2].map(|axis: usize| points.map(|point| point[axis] as u16)),
+        high: [0, 1, 2]
+            .map(|axis: usize| high_bytes(points.map(|point| (point[axis] >> 16) as u8))),
+    }
+}

@@ -1,0 +1,315 @@
+//! Finds generalised strips in a mesh: up to 6 triangles on 8 vertices, each on three in a row.
+//!
+//! Greedy: the triangle with the fewest neighbours that are still free goes first, along the
+//! longest way through it that zigzags over free triangles; of equal ones along the one with the
+//! smallest box. What is left over is joined, two strips in one, where one box around both costs
+//! no more than two. Places between them hold no triangle.
+
+use super::super::hierarchy::area;
+use gridel_core::blob::cluster::{LANES, STRIP_TRIANGLES, StripMembers};
+use gridel_core::blob::record::UnitBox;
+use rayon::prelude::*;
+use std::collections::BinaryHeap;
+
+/// A strip: its vertices, and its triangles by place.
+#[derive(Clone, Debug)]
+pub struct Strip {
+    pub vertices: Vec<u32>,
+    /// Triangles at their places; at most [`STRIP_TRIANGLES`].
+    pub triangles: Vec<Option<u32>>,
+    pub bounds: UnitBox,
+}
+
+/// No triangle, as a neighbour.
+const NOBODY: u32 = u32::MAX;
+/// Strips that are looked at, in the order of their places in space, to join one with.
+const REACH: usize = 24;
+/// What a joined box may cost, the sum of the two being 1: a node has one child less.
+const JOINED_COST: f64 = 1.25;
+
+/// Finds strips that hold every triangle once.
+pub fn find(vertices: &[[i32; 3]], triangles: &[[u32; 3]]) -> Vec<Strip> {
+    let mesh = Mesh {
+        vertices,
+        triangles,
+        neighbours: neighbours(triangles),
+    };
+    join(mesh.strips())
+}
+
+impl Strip {
+    /// The arrangement of the corners at every place, as a blob writes it.
+    pub fn arrangements(&self, triangles: &[[u32; 3]]) -> [Option<u32>; STRIP_TRIANGLES] {
+        let mut arrangements = [None; STRIP_TRIANGLES];
+        for (place, triangle) in self.triangles.iter().enumerate() {
+            let Some(triangle) = triangle else { continue };
+            let corners = triangles[*triangle as usize];
+            let number = StripMembers::ARRANGEMENTS
+                .iter()
+                .position(|it| it.map(|vertex| self.vertices[place + vertex]) == corners);
+            arrangements[place] = number.map(|number| number as u32);
+        }
+        arrangements
+    }
+}
+
+struct Mesh<'m> {
+    vertices: &'m [[i32; 3]],
+    triangles: &'m [[u32; 3]],
+    /// For each triangle, the neighbour over the edge opposite to each corner.
+    neighbours: Vec<[u32; 3]>,
+}
+
+/// Pairs triangles over their edges; where more than two meet, in the order of their numbers.
+fn neighbours(triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    let mut edges: Vec<(u64, u32, u32)> = (0..)
+        .zip(triangles)
+        .flat_map(|(triangle, corners)| {
+            [0, 1, 2].map(|corner: usize| {
+                let (a, b) = (corners[(corner + 1) % 3], corners[(corner + 2) % 3]);
+                let edge = u64::from(a.min(b)) << 32 | u64::from(a.max(b));
+                (edge, triangle, corner as u32)
+            })
+        })
+        .collect();
+    edges.par_sort_unstable();
+    let mut neighbours = vec![[NOBODY; 3]; triangles.len()];
+    let mut rest = &edges[..];
+    while let [(edge, one, corner), tail @ ..] = rest {
+        rest = tail;
+        if let [(same, other, its_corner), tail @ ..] = tail
+            && same == edge
+            && one != other
+        {
+            neighbours[*one as usize][*corner as usize] = *other;
+            neighbours[*other as usize][*its_corner as usize] = *one;
+            rest = tail;
+        }
+    }
+    neighbours
+}
+
+/// A way through free triangles, each of which shares an edge with the one before.
+#[derive(Clone, Copy)]
+struct Way {
+    vertices: [u32; LANES],
+    triangles: [u32; STRIP_TRIANGLES],
+    count: usize,
+}
+
+impl Mesh<'_> {
+    fn strips(&self) -> Vec<Strip> {
+        let mut free = vec![true; self.triangles.len()];
+        let degree = |triangle: u32, free: &[bool]| {
+            let neighbours = self.neighbours[triangle as usize].iter();
+            let free = neighbours.filter(|&&it| it != NOBODY && free[it as usize]);
+            free.count() as u32
+        };
+        // The fewest free neighbours first, then the lowest number; entries may be out of date.
+        let mut queue: BinaryHeap<_> = (0..self.triangles.len() as u32)
+            .map(|triangle| std::cmp::Reverse((degree(triangle, &free), triangle)))
+            .collect();
+        let mut strips = Vec::with_capacity(self.triangles.len() / 4);
+        while let Some(std::cmp::Reverse((known, triangle))) = queue.pop() {
+            if !free[triangle as usize] || degree(triangle, &free) != known {
+                continue;
+            }
+            let strip = self.best_through(triangle, &free);
+            let members = || strip.triangles.iter().flatten().copied();
+            for member in members() {
+                free[member as usize] = false;
+            }
+            for member in members() {
+                for &neighbour in &self.neighbours[member as usize] {
+                    if neighbour != NOBODY && free[neighbour as usize] {
+                        let entry = (degree(neighbour, &free), neighbour);
+                        queue.push(std::cmp::Reverse(entry));
+                    }
+                }
+            }
+            strips.push(strip);
+        }
+        strips
+    }
+
+    /// The best strip of free triangles through one of them.
+    fn best_through(&self, triangle: u32, free: &[bool]) -> Strip {
+        let [a, b, c] = self.triangles[triangle as usize];
+        let mut best: Option<(usize, f64, Way, UnitBox)> = None;
+        // The same zigzag backwards is another of the six.
+        for vertices in [[a, b, c], [b, c, a], [c, a, b]] {
+            let ahead = self.zigzag(triangle, vertices, free);
+            let [first, second, third] = vertices;
+            let behind = self.zigzag(triangle, [third, second, first], free);
+            for back in 0..behind.count {
+                let Some(way) = Way::through(&behind, back, &ahead) else {
+                    continue;
+                };
+                let bounds = self.bounds(&way.vertices[..way.count + 2]);
+                let cost = area(&bounds);
+                let better = best.as_ref().is_none_or(|(count, least, ..)| {
+                    way.count > *count || way.count == *count && cost < *least
+                });
+                if better {
+                    best = Some((way.count, cost, way, bounds));
+                }
+            }
+        }
+        let (count, _, way, bounds) = best.expect("a triangle is a strip");
+        Strip {
+            vertices: way.vertices[..count + 2].to_vec(),
+            triangles: way.triangles[..count].iter().map(|&it| Some(it)).collect(),
+            bounds,
+        }
+    }
+
+    /// Goes on from a triangle over the edge of its last two vertices, as far as it is free.
+    fn zigzag(&self, start: u32, corners: [u32; 3], free: &[bool]) -> Way {
+        let mut way = Way {
+            vertices: [0; LANES],
+            triangles: [NOBODY; STRIP_TRIANGLES],
+            count: 1,
+        };
+        way.vertices[..3].copy_from_slice(&corners);
+        way.triangles[0] = start;
+        while way.count < STRIP_TRIANGLES {
+            let last = way.triangles[way.count - 1] as usize;
+            let left_behind = way.vertices[way.count - 1];
+            let corners = self.triangles[last];
+            let Some(corner) = corners.iter().position(|&it| it == left_behind) else {
+                break;
+            };
+            let next = self.neighbours[last][corner];
+            let taken = &way.triangles[..way.count];
+            if next == NOBODY || !free[next as usize] || taken.contains(&next) {
+                break;
+            }
+            let edge = [way.vertices[way.count], way.vertices[way.count + 1]];
+            let fresh = self.triangles[next as usize];
+            let Some(&fresh) = fresh.iter().find(|it| !edge.contains(it)) else {
+                break;
+            };
+            way.triangles[way.count] = next;
+            way.vertices[way.count + 2] = fresh;
+            way.count += 1;
+        }
+        way
+    }
+
+    fn bounds(&self, vertices: &[u32]) -> UnitBox {
+        let points = || vertices.iter().map(|&it| self.vertices[it as usize]);
+        let extreme = |axis: usize| {
+            points().fold((i32::MAX, i32::MIN), |(low, high), point| {
+                (low.min(point[axis]), high.max(point[axis]))
+            })
+        };
+        let (x, y, z) = (extreme(0), extreme(1), extreme(2));
+        UnitBox::around([x.0, y.0, z.0], [x.1, y.1, z.1])
+    }
+}
+
+impl Way {
+    /// The way that comes `back` triangles from behind a start and goes ahead as far as fits;
+    /// `None` if it comes over a triangle twice.
+    fn through(behind: &Way, back: usize, ahead: &Way) -> Option<Way> {
+        let count = (back + ahead.count).min(STRIP_TRIANGLES);
+        let mut way = *ahead;
+        way.count = count;
+        for place in 0..back {
+            way.triangles[place] = behind.triangles[back - place];
+            way.vertices[place] = behind.vertices[back + 2 - place];
+        }
+        let forward = count - back;
+        way.triangles[back..count].copy_from_slice(&ahead.triangles[..forward]);
+        way.vertices[back..count + 2].copy_from_slice(&ahead.vertices[..forward + 2]);
+        let (before, after) = way.triangles[..count].split_at(back);
+        (!before.iter().any(|it| after.contains(it))).then_some(way)
+    }
+}
+
+/// Joins short strips that lie side by side.
+fn join(strips: Vec<Strip>) -> Vec<Strip> {
+    // Two of 3 vertices each are the shortest, so one of 6 or more has no room.
+    let (mut short, mut done): (Vec<_>, Vec<_>) = strips
+        .into_iter()
+        .partition(|strip| strip.vertices.len() <= LANES - 2);
+    short.par_sort_by_cached_key(|strip| (morton(&strip.bounds), strip.triangles[0]));
+    let mut short: Vec<Option<Strip>> = short.into_iter().map(Some).collect();
+    for index in 0..short.len() {
+        while let Some(strip) = &short[index] {
+            let cost = area(&strip.bounds);
+            let others = short.iter().enumerate().skip(index + 1).take(REACH);
+            let best = others
+                .filter_map(|(place, other)| {
+                    let other = other.as_ref()?;
+                    let joined = strip.and(other)?;
+                    let alone = (cost + area(&other.bounds)).max(1.0);
+                    let ratio = area(&joined.bounds) / alone;
+                    (ratio <= JOINED_COST).then_some((ratio, place, joined))
+                })
+                .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            let Some((_, place, joined)) = best else {
+                break;
+            };
+            short[place] = None;
+            short[index] = Some(joined);
+        }
+    }
+    done.extend(short.into_iter().flatten());
+    done
+}
+
+impl Strip {
+    /// Both strips as one, if it has room for them: end to end, over a vertex or an edge that ends
+    /// of theirs share.
+    fn and(&self, other: &Strip) -> Option<Strip> {
+        let turned = [(false, false), (false, true), (true, false), (true, true)];
+        let joints = turned.into_iter().map(|(turn, turn_other)| {
+            let (front, back) = (self.turned(turn), other.turned(turn_other));
+            let shared = if front.vertices.last() == back.vertices.first() {
+                1
+            } else {
+                0
+            };
+            (shared, front, back)
+        });
+        let (shared, mut front, back) = joints.max_by_key(|joint| joint.0)?;
+        let gap = 2 - shared;
+        if front.vertices.len() + back.vertices.len() - shared > LANES {
+            return None;
+        }
+        front.vertices.extend(&back.vertices[shared..]);
+        front.triangles.extend(std::iter::repeat_n(None, gap));
+        front.triangles.extend(&back.triangles);
+        front.bounds = front.bounds.union(&back.bounds);
+        Some(front)
+    }
+
+    fn turned(&self, turn: bool) -> Strip {
+        let mut strip = self.clone();
+        if turn {
+            strip.vertices.reverse();
+            strip.triangles.reverse();
+        }
+        strip
+    }
+}
+
+/// The place of a box's middle along a curve that keeps neighbours together.
+fn morton(bounds: &UnitBox) -> u64 {
+    let spread = |axis: usize| {
+        let [low, high] = bounds.0[axis].map(i64::from);
+        let mut bits = (low + high + (1 << 16)) as u64 & 0x1_ffff;
+        for shift in [16, 8, 4, 2] {
+            let mask = match shift {
+                16 => 0x001f_0000_0000_ffff,
+                8 => 0x001f_0000_ff00_00ff,
+                4 => 0x100f_00f0_0f00_f00f,
+                _ => 0x10c3_0c30_c30c_30c3,
+            };
+            bits = (bits | bits << (2 * shift)) & mask;
+        }
+        (bits | bits << 2) & 0x1249_2492_4924_9249
+    };
+    spread(0) | spread(1) << 1 | spread(2) << 2
+}

@@ -1,0 +1,319 @@
+//! A binary hierarchy over clusters: swept by the surface area heuristic, then improved by
+//! reinsertion.
+//!
+//! Reinsertion is that of Meister and Bittner ("Parallel Reinsertion for Bounding Volume Hierarchy
+//! Optimization", 2018), one node at a time: a node is taken out and put where the sum of areas is
+//! least, found by branch and bound.
+
+use super::super::hierarchy::area;
+use gridel_core::blob::record::UnitBox;
+
+/// A binary tree: nodes below the number of items are the items, the others have two children.
+#[derive(Clone, Debug)]
+pub struct Tree {
+    items: usize,
+    pub root: u32,
+    bounds: Vec<UnitBox>,
+    parents: Vec<u32>,
+    /// Of the nodes that are no items.
+    children: Vec<[u32; 2]>,
+}
+
+/// From this many items on, the two halves are built in parallel.
+const PARALLEL_SIZE: usize = 2048;
+/// Below this depth nodes are halved, so that no scene makes the builder recurse without end.
+const DEEP: usize = 96;
+const NOBODY: u32 = u32::MAX;
+
+/// An inner node while the tree is built.
+#[derive(Clone, Copy)]
+struct Inner {
+    children: [u32; 2],
+    bounds: UnitBox,
+}
+
+impl Tree {
+    /// A tree over items, at most one of which may be missing.
+    pub fn build(items: &[UnitBox], balanced: bool) -> Option<Self> {
+        let first = *items.first()?;
+        let mut orders = [0, 1, 2].map(|axis| {
+            let mut order: Vec<u32> = (0..items.len() as u32).collect();
+            order.sort_unstable_by_key(|&item| key(items, axis, item));
+            order
+        });
+        let mut inner = vec![
+            Inner {
+                children: [0; 2],
+                bounds: first
+            };
+            items.len() - 1
+        ];
+        let [x, y, z] = &mut orders;
+        let builder = Builder { items, balanced };
+        let root = builder.build([x, y, z], &mut inner, items.len() as u32, 0);
+        let mut bounds = items.to_vec();
+        bounds.extend(inner.iter().map(|node| node.bounds));
+        let mut parents = vec![NOBODY; bounds.len()];
+        for (number, node) in (items.len() as u32..).zip(&inner) {
+            for child in node.children {
+                parents[child as usize] = number;
+            }
+        }
+        Some(Self {
+            items: items.len(),
+            root,
+            bounds,
+            parents,
+            children: inner.iter().map(|node| node.children).collect(),
+        })
+    }
+
+    /// The children of a node, unless it is an item.
+    pub fn children(&self, node: u32) -> Option<[u32; 2]> {
+        let inner = (node as usize).checked_sub(self.items)?;
+        Some(self.children[inner])
+    }
+
+    pub fn bounds(&self, node: u32) -> &UnitBox {
+        &self.bounds[node as usize]
+    }
+
+    pub fn area(&self, node: u32) -> f64 {
+        area(&self.bounds[node as usize])
+    }
+
+    /// All nodes, children before their parents.
+    pub fn bottom_up(&self) -> Vec<u32> {
+        let mut order = vec![self.root];
+        let mut next = 0;
+        while let Some(&node) = order.get(next) {
+            order.extend(self.children(node).into_iter().flatten());
+            next += 1;
+        }
+        order.reverse();
+        order
+    }
+
+    /// Takes every node out once, large ones first, and puts it where it costs least. Returns
+    /// whether any was moved.
+    pub fn reinsert(&mut self) -> bool {
+        let mut nodes: Vec<u32> = (0..self.bounds.len() as u32).collect();
+        nodes.retain(|&node| self.grandparent(node).is_some());
+        nodes.sort_by(|&a, &b| self.area(b).total_cmp(&self.area(a)).then(a.cmp(&b)));
+        let mut stack = Vec::new();
+        let mut moved = false;
+        for node in nodes {
+            if let Some(to) = self.best_place(node, &mut stack) {
+                self.put(node, to);
+                moved = true;
+            }
+        }
+        moved
+    }
+
+    fn parent(&self, node: u32) -> Option<u32> {
+        let parent = self.parents[node as usize];
+        (parent != NOBODY).then_some(parent)
+    }
+
+    fn grandparent(&self, node: u32) -> Option<u32> {
+        self.parent(self.parent(node)?)
+    }
+
+    fn sibling(&self, node: u32) -> Option<u32> {
+        let [left, right] = self.children(self.parent(node)?)?;
+        Some(if left == node { right } else { left })
+    }
+
+    /// The node beside which another would cost least, if that is better than where it is.
+    fn best_place(&self, node: u32, stack: &mut Vec<(f64, u32)>) -> Option<u32> {
+        let own = self.area(node);
+        let parent = self.parent(node)?;
+        self.parent(parent)?;
+        let sibling = self.sibling(node)?;
+        let mut best = (0.0, None);
+        // What is saved up to here by taking the node out.
+        let mut saved = self.area(parent);
+        let mut without = *self.bounds(sibling);
+        let (mut beside, mut pivot) = (sibling, parent);
+        loop {
+            stack.push((saved, beside));
+            while let Some((saved, place)) = stack.pop() {
+                if saved - own <= best.0 {
+                    continue;
+                }
+                let joined = area(&self.bounds(place).union(self.bounds(node)));
+                let gain = saved - joined;
+                if gain > best.0 {
+                    best = (gain, Some(place));
+                }
+                if let Some(children) = self.children(place) {
+                    let saved = gain + self.area(place);
+                    stack.extend(children.map(|child| (saved, child)));
+                }
+            }
+            if pivot != parent {
+                without = without.union(self.bounds(beside));
+                saved += self.area(pivot) - area(&without);
+            }
+            let Some(next) = self.parent(pivot) else {
+                break;
+            };
+            beside = self.sibling(pivot)?;
+            pivot = next;
+        }
+        best.1.filter(|&place| place != sibling && place != parent)
+    }
+
+    /// Moves a node beside another one.
+    fn put(&mut self, node: u32, to: u32) {
+        let (Some(parent), Some(sibling)) = (self.parent(node), self.sibling(node)) else {
+            return;
+        };
+        let Some(grandparent) = self.parent(parent) else {
+            return;
+        };
+        self.replace(grandparent, parent, sibling);
+        self.refit(grandparent);
+        let above = self.parents[to as usize];
+        if above == NOBODY {
+            self.root = parent;
+            self.parents[parent as usize] = NOBODY;
+        } else {
+            self.replace(above, to, parent);
+        }
+        self.children[parent as usize - self.items] = [to, node];
+        self.parents[to as usize] = parent;
+        self.parents[node as usize] = parent;
+        // Whatever its box was elsewhere, those above have not seen it here.
+        self.bounds[parent as usize] = self.bounds(to).union(self.bounds(node));
+        self.refit(above);
+    }
+
+    fn replace(&mut self, parent: u32, old: u32, new: u32) {
+        for child in &mut self.children[parent as usize - self.items] {
+            if *child == old {
+                *child = new;
+            }
+        }
+        self.parents[new as usize] = parent;
+    }
+
+    /// Makes the boxes from a node upwards fit their children's.
+    fn refit(&mut self, node: u32) {
+        let mut next = (node != NOBODY).then_some(node);
+        while let Some(node) = next {
+            let Some([left, right]) = self.children(node) else {
+                return;
+            };
+            let bounds = self.bounds(left).union(self.bounds(right));
+            if bounds == *self.bounds(node) {
+                return;
+            }
+            self.bounds[node as usize] = bounds;
+            next = self.parent(node);
+        }
+    }
+}
+
+/// What items are sorted by along an axis; no two are equal.
+fn key(items: &[UnitBox], axis: usize, item: u32) -> (i32, u32) {
+    let [low, high] = items[item as usize].0[axis].map(i32::from);
+    (low + high, item)
+}
+
+struct Builder<'b> {
+    items: &'b [UnitBox],
+    /// Whether halves are of equal count, whatever it costs, so that the tree is not deep.
+    balanced: bool,
+}
+
+impl Builder<'_> {
+    /// Builds a tree over items that are given in order along each axis, with its root in the first
+    /// of `inner`, whose number is `number`. Returns the root.
+    fn build(
+        &self,
+        orders: [&mut [u32]; 3],
+        inner: &mut [Inner],
+        number: u32,
+        depth: usize,
+    ) -> u32 {
+        let [x, y, z] = orders;
+        let Some((own, inner)) = inner.split_first_mut() else {
+            return x[0];
+        };
+        let count = x.len();
+        let (axis, left_count) = self.split([x, y, z], self.balanced || depth > DEEP);
+        let pivot = key(self.items, axis, [&*x, &*y, &*z][axis][left_count]);
+        let is_left = |item: u32| key(self.items, axis, item) < pivot;
+        let [(lx, rx), (ly, ry), (lz, rz)] =
+            [x, y, z].map(|order| partition(order, left_count, is_left));
+        let (left_inner, right_inner) = inner.split_at_mut(left_count - 1);
+        let left_number = number + 1;
+        let right_number = number + left_count as u32;
+        let mut left = || self.build([lx, ly, lz], left_inner, left_number, depth + 1);
+        let mut right = || self.build([rx, ry, rz], right_inner, right_number, depth + 1);
+        let (left, right) = if count >= PARALLEL_SIZE {
+            rayon::join(left, right)
+        } else {
+            (left(), right())
+        };
+        let bounds = |child: u32, inner: &[Inner], first: u32| match child.checked_sub(first) {
+            Some(_) if child as usize >= self.items.len() => inner[0].bounds,
+            _ => self.items[child as usize],
+        };
+        let bounds =
+            bounds(left, left_inner, left_number).union(&bounds(right, right_inner, right_number));
+        *own = Inner {
+            children: [left, right],
+            bounds,
+        };
+        number
+    }
+
+    /// The axis of the cheapest split and the number of items on its left.
+    fn split(&self, orders: [&[u32]; 3], balanced: bool) -> (usize, usize) {
+        let count = orders[0].len();
+        let mut best = (f64::INFINITY, 0, count / 2);
+        let mut right_costs = vec![0.0; count];
+        for (axis, order) in orders.iter().enumerate() {
+            let mut bounds = self.items[order[count - 1] as usize];
+            for place in (1..count).rev() {
+                bounds = bounds.union(&self.items[order[place] as usize]);
+                right_costs[place] = area(&bounds) * (count - place) as f64;
+            }
+            let mut bounds = self.items[order[0] as usize];
+            for place in 1..count {
+                bounds = bounds.union(&self.items[order[place - 1] as usize]);
+                let cost = area(&bounds) * place as f64 + right_costs[place];
+                if cost < best.0 && (!balanced || place == count / 2) {
+                    best = (cost, axis, place);
+                }
+            }
+        }
+        (best.1, best.2)
+    }
+}
+
+/// Moves the items on the left to the front, keeping the order on both sides.
+fn partition(
+    order: &mut [u32],
+    left_count: usize,
+    is_left: impl Fn(u32) -> bool,
+) -> (&mut [u32], &mut [u32]) {
+    let right: Vec<u32> = order
+        .iter()
+        .copied()
+        .filter(|&item| !is_left(item))
+        .collect();
+    let mut next = 0;
+    for place in 0..order.len() {
+        let item = order[place];
+        if is_left(item) {
+            order[next] = item;
+            next += 1;
+        }
+    }
+    order[left_count..].copy_from_slice(&right);
+    order.split_at_mut(left_count)
+}

@@ -1,0 +1,241 @@
+//! Puts a picture together from parts that were rendered on their own.
+//!
+//! A part says in its file which rows of which picture it is ([`Rows`]), so parts may come in any
+//! order, and may overlap where they agree: what two machines rendered twice is the same.
+
+use crate::picture::{PictureFormat, Rows, write_png};
+use std::fmt;
+use std::io::{self, BufRead, Read, Write};
+use std::ops::Range;
+
+/// One part: rows of a picture, three bytes a pixel.
+#[derive(Clone, Debug)]
+pub struct Part {
+    width: u32,
+    rows: Rows,
+    pixels: Vec<u8>,
+}
+
+/// Why a file is no part of a picture.
+#[derive(Debug, thiserror::Error)]
+pub enum PartError {
+    #[error("it cannot be read: {0}")]
+    Read(#[from] io::Error),
+    #[error("it is no PNG picture of three bytes a pixel: {0}")]
+    Png(String),
+    #[error("it is no PPM picture (P6) of three bytes a pixel")]
+    Ppm,
+    #[error("it does not say which rows it has, so it is no part of a picture")]
+    Whole,
+    #[error("it says that it has the rows {rows}, but it has {found}")]
+    Rows { rows: Rows, found: u32 },
+}
+
+/// Why parts make no picture; parts are told by their number among those that were added.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum MergeError {
+    /// Two parts are of pictures of different sizes: width and height of each.
+    Sizes([usize; 2], [[u32; 2]; 2]),
+    /// Two parts have a row that is not the same in both.
+    Differ([usize; 2], u32),
+    /// No part has these rows.
+    Missing(Range<u32>),
+}
+
+impl Part {
+    /// Reads a part.
+    ///
+    /// # Errors
+    /// If the file is not a picture of the format that says which rows it has.
+    pub fn read(format: PictureFormat, input: impl BufRead + io::Seek) -> Result<Self, PartError> {
+        let (width, height, note, pixels) = match format {
+            PictureFormat::Png => read_png(input)?,
+            PictureFormat::Ppm => read_ppm(input)?,
+            PictureFormat::Rgb565 => return Err(PartError::Whole),
+        };
+        let rows: Rows = note
+            .and_then(|note| note.parse().ok())
+            .ok_or(PartError::Whole)?;
+        if rows.part.len() != height as usize {
+            let found = height;
+            return Err(PartError::Rows { rows, found });
+        }
+        Ok(Self {
+            width,
+            rows,
+            pixels,
+        })
+    }
+}
+
+/// Width, height, what is said about the rows, and the pixels of a picture.
+type Read4 = (u32, u32, Option<String>, Vec<u8>);
+
+fn read_png(input: impl BufRead + io::Seek) -> Result<Read4, PartError> {
+    let wrong = |error: png::DecodingError| match error {
+        png::DecodingError::IoError(error) => PartError::Read(error),
+        error => PartError::Png(error.to_string()),
+    };
+    let mut reader = png::Decoder::new(input).read_info().map_err(wrong)?;
+    if reader.output_color_type() != (png::ColorType::Rgb, png::BitDepth::Eight) {
+        let found = reader.output_color_type();
+        return Err(PartError::Png(format!("its pixels are {found:?}")));
+    }
+    if reader.info().interlaced {
+        return Err(PartError::Png(String::from("it is interlaced")));
+    }
+    // Row by row, because the header may claim more than there is.
+    let mut pixels = Vec::new();
+    while let Some(row) = reader.next_row().map_err(wrong)? {
+        pixels.extend(row.data());
+    }
+    let info = reader.info();
+    let texts = info.uncompressed_latin1_text.iter();
+    let note = texts
+        .filter(|chunk| chunk.keyword == Rows::KEYWORD)
+        .map(|chunk| chunk.text.clone())
+        .next();
+    Ok((info.width, info.height, note, pixels))
+}
+
+fn read_ppm(mut input: impl BufRead) -> Result<Read4, PartError> {
+    let mut note = None;
+    let mut words = Vec::new();
+    while words.len() < 4 {
+        let mut line = Vec::new();
+        input.by_ref().take(256).read_until(b'\n', &mut line)?;
+        let line = String::from_utf8(line).map_err(|_| PartError::Ppm)?;
+        let text = line.strip_suffix('\n').ok_or(PartError::Ppm)?;
+        match text.strip_prefix("# rows ") {
+            Some(rows) => note = Some(rows.to_owned()),
+            None if text.starts_with('#') => {}
+            None => words.extend(text.split_ascii_whitespace().map(str::to_owned)),
+        }
+    }
+    let number = |word: &String| word.parse::<u16>().ok().filter(|&it| it > 0);
+    let ([magic, width, height, white], Some(_)) = (&words[..], words.get(3)) else {
+        return Err(PartError::Ppm);
+    };
+    let (Some(width), Some(height), "P6", "255") = (
+        number(width),
+        number(height),
+        magic.as_str(),
+        white.as_str(),
+    ) else {
+        return Err(PartError::Ppm);
+    };
+    let size = 3 * u64::from(width) * u64::from(height);
+    let mut pixels = Vec::new();
+    input.take(size + 1).read_to_end(&mut pixels)?;
+    if pixels.len() as u64 != size {
+        return Err(PartError::Ppm);
+    }
+    Ok((width.into(), height.into(), note, pixels))
+}
+
+/// A picture whose rows come part by part.
+#[derive(Debug, Default)]
+pub struct Merge {
+    /// Width and height, once there is a part.
+    size: Option<[u32; 2]>,
+    /// For each row, the part that it came with, and its pixels.
+    rows: Vec<Option<(usize, Vec<u8>)>>,
+    parts: usize,
+}
+
+impl Merge {
+    /// Adds a part.
+    ///
+    /// # Errors
+    /// If it is of a picture of another size, or a row is not what another part says it is.
+    pub fn add(&mut self, part: &Part) -> Result<(), MergeError> {
+        let number = self.parts;
+        self.parts += 1;
+        let size = [part.width, u32::from(part.rows.height)];
+        let known = *self.size.get_or_insert(size);
+        if known != size {
+            return Err(MergeError::Sizes([0, number], [known, size]));
+        }
+        self.rows.resize(size[1] as usize, None);
+        let pixels = part.pixels.chunks_exact(3 * part.width as usize);
+        for (row, pixels) in part.rows.part.clone().zip(pixels) {
+            match &mut self.rows[usize::from(row)] {
+                Some((other, theirs)) if theirs != pixels => {
+                    return Err(MergeError::Differ([*other, number], row.into()));
+                }
+                Some(_) => {}
+                empty => *empty = Some((number, pixels.to_vec())),
+            }
+        }
+        Ok(())
+    }
+
+    /// Width and height of the whole picture, once there is a part.
+    pub fn size(&self) -> Option<[u32; 2]> {
+        self.size
+    }
+
+    /// The pixels of the whole picture.
+    ///
+    /// # Errors
+    /// If rows are missing.
+    pub fn finish(self) -> Result<Whole, MergeError> {
+        let missing = |row: &Option<_>| row.is_none();
+        if let Some(first) = self.rows.iter().position(missing) {
+            let behind = self.rows[first..].iter().take_while(|row| missing(row));
+            let end = first + behind.count();
+            return Err(MergeError::Missing(first as u32..end as u32));
+        }
+        let pixels = self
+            .rows
+            .into_iter()
+            .flatten()
+            .flat_map(|(_, pixels)| pixels);
+        Ok(Whole {
+            size: self.size.unwrap_or_default(),
+            pixels: pixels.collect(),
+        })
+    }
+}
+
+/// A picture that is whole again.
+#[derive(Debug)]
+pub struct Whole {
+    pub size: [u32; 2],
+    pixels: Vec<u8>,
+}
+
+impl Whole {
+    /// Writes the bytes that one machine would have written.
+    ///
+    /// # Errors
+    /// If `out` has one.
+    pub fn write(&self, format: PictureFormat, out: &mut dyn Write) -> io::Result<()> {
+        let [width, height] = self.size;
+        match format {
+            PictureFormat::Png => write_png(out, self.size, &self.pixels, None),
+            _ => {
+                write!(out, "P6\n{width} {height}\n255\n")?;
+                out.write_all(&self.pixels)
+            }
+        }
+    }
+}
+
+impl fmt::Display for MergeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            MergeError::Sizes(_, [known, other]) => write!(
+                f,
+                "one is of a picture of {}x{} pixels, the other of {}x{}",
+                known[0], known[1], other[0], other[1]
+            ),
+            MergeError::Differ(_, row) => write!(f, "they have different pixels in row {row}"),
+            MergeError::Missing(rows) => {
+                write!(f, "no part has the rows {}..{}", rows.start, rows.end)
+            }
+        }
+    }
+}
+
+impl std::error::Error for MergeError {}

@@ -1,0 +1,130 @@
+//! The eight-wide hierarchy alone in a blob, where triangles and spheres lie in its clusters only.
+
+use gridel_core::{Kind, List, NoCount, Number, Structure, Wide};
+use gridel_host::blob::Blob;
+use gridel_host::compile::{Options, Quality, compile};
+use gridel_host::scene::Scene;
+use gridel_tests::query::{HitBits, any, closest};
+use gridel_tests::{every_format, rays, scenes};
+
+fn alone(scene: &Scene, lattice_bits: u8, quality: Quality) -> Blob {
+    let options = Options {
+        structures: vec![Structure::Wide],
+        lattice_bits,
+        quality,
+        ..Options::default()
+    };
+    compile(scene, &options).expect("compiles").blob
+}
+
+/// Meshes whose strips are full, soups whose strips are joined, and every other shape.
+fn some_scenes() -> Vec<(String, Scene)> {
+    let mut all = vec![
+        (String::from("soup of 60"), scenes::soup(11, 60, 0.4)),
+        (String::from("soup of 900"), scenes::soup(12, 900, 0.1)),
+    ];
+    all.extend(scenes::fixtures());
+    let real = ["meshes/cow.obj", "meshes/soup.stl", "spd/balls_s2.nff"];
+    all.extend(real.iter().filter_map(|name| {
+        let path = scenes::real(name)?;
+        Some(((*name).to_owned(), scenes::read(&path)))
+    }));
+    all
+}
+
+/// Hits through the list of an ordinary blob, and through the list and the hierarchy of one that
+/// has nothing but clusters.
+fn agrees<N: Number>(name: &str, ordinary: &gridel_core::Scene<'_>, own: &gridel_core::Scene<'_>) {
+    let total: usize = Kind::ALL.iter().map(|&kind| own.count(kind)).sum();
+    let rays = 3_000_000 / (total + 200);
+    let mut hits = 0;
+    for ray in rays::rays(ordinary, 23).take(rays) {
+        let Some(ready) = ray.ready::<N>(ordinary) else {
+            continue;
+        };
+        let bits = |hit: Option<gridel_core::Hit<N>>| hit.as_ref().map(HitBits::of);
+        let expected = bits(closest::<N, List>(ordinary, &ready, &mut NoCount));
+        let listed = bits(closest::<N, List>(own, &ready, &mut NoCount));
+        let found = bits(closest::<N, Wide>(own, &ready, &mut NoCount));
+        let about = || format!("{name}, {}: {ray:?}", N::FORMAT.name());
+        assert_eq!(expected, listed, "list: {}", about());
+        assert_eq!(expected, found, "wide: {}", about());
+        assert_eq!(
+            expected.is_some(),
+            any::<N, Wide>(own, &ready),
+            "{}",
+            about()
+        );
+        hits += usize::from(expected.is_some());
+    }
+    eprintln!("{name:24} {:5}: {rays} rays, {hits} hits", N::FORMAT.name());
+}
+
+#[test]
+fn clusters_alone_give_the_answers_of_the_list() {
+    for (name, scene) in some_scenes() {
+        for (bits, quality) in [
+            (24, Quality::Good),
+            (16, Quality::Best),
+            (12, Quality::Fast),
+        ] {
+            let (ordinary, own) = (scenes::blob(&scene, bits), alone(&scene, bits, quality));
+            let (ordinary, own) = (
+                ordinary.scene().expect("sound"),
+                own.scene().expect("sound"),
+            );
+            for kind in Kind::ALL {
+                assert_eq!(ordinary.count(kind), own.count(kind), "{name}");
+            }
+            every_format!(agrees(&name, &ordinary, &own));
+        }
+    }
+}
+
+/// The slots of primitives that lie in clusters lead to all of them.
+#[test]
+fn slots_of_clusters_are_all_primitives() {
+    let scene = scenes::soup(13, 500, 0.2);
+    let (ordinary, own) = (scenes::blob(&scene, 24), alone(&scene, 24, Quality::Good));
+    let (ordinary, own) = (
+        ordinary.scene().expect("sound"),
+        own.scene().expect("sound"),
+    );
+    for kind in Kind::ALL {
+        let all = |scene: &gridel_core::Scene<'_>| {
+            let slots = 0..scene.count(kind);
+            let mut all: Vec<_> = slots
+                .map(|slot| {
+                    let bounds = scene.primitive_bounds(kind, slot).expect("a primitive");
+                    (
+                        scene.primitive(kind, slot as u32),
+                        bounds.0,
+                        scene.triangle(slot),
+                    )
+                })
+                .collect();
+            all.iter_mut().for_each(|it| {
+                if kind != Kind::Triangle {
+                    it.2 = None;
+                }
+            });
+            all.sort();
+            all
+        };
+        assert_eq!(all(&ordinary), all(&own), "{}", kind.name());
+    }
+}
+
+#[test]
+fn the_number_of_threads_changes_no_byte() {
+    let scene = scenes::soup(14, 6000, 0.03);
+    let build = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let blob = pool
+            .expect("threads")
+            .install(|| alone(&scene, 20, Quality::Good));
+        blob.bytes().to_vec()
+    };
+    let one = build(1);
+    assert!(one == build(2) && one == build(5));
+}
