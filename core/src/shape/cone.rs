@@ -289,14 +289,8 @@ impl Cone {
         [k(0), k(1), k(2)]
     }
 
-    /// Outward. Every normal of the mantle supports the tip, so there it is the one that is nearest to
-    /// `toward`, from where the ray comes that enters, or where it goes that leaves.
-    pub(crate) fn surface<N: Number>(
-        &self,
-        part: Part,
-        point: [N; 3],
-        toward: [N; 3],
-    ) -> Surface<N> {
+    /// Outward. Every normal of the mantle supports the tip, so there any of them will do.
+    pub(crate) fn surface<N: Number>(&self, part: Part, point: [N; 3]) -> Surface<N> {
         let frame = self.frame::<N>();
         let middle = self.middle::<N>();
         let normal = match part {
@@ -310,11 +304,10 @@ impl Cone {
                 let axial = N::from_wide(N::dot(q, frame.axis));
                 let axis = |k: usize| q[k] - axial * frame.axis[k];
                 let (mut outward, distance) = N::normalize([axis(0), axis(1), axis(2)]);
-                // On the axis, and next to it where what is left is rounding and leans, any way is
-                // outward.
+                // Next to the axis what is left may be rounding, and lean; on it, any way is outward.
                 let lean = N::from_wide(N::dot(outward, frame.axis));
                 if lean.abs() > N::ratio(1 << 20) || distance == N::ZERO {
-                    outward = upright(toward, frame.axis);
+                    outward = upright(outward, frame.axis);
                 }
                 let axis = |k: usize| outward[k] * frame.cos + frame.axis[k] * frame.sin;
                 N::normalize([axis(0), axis(1), axis(2)]).0
