@@ -6,7 +6,7 @@
 //! tested in eight lanes too, or a single primitive of the kinds that have no clusters.
 //!
 //! The answers are the list's, bit for bit: culling is conservative, lane by lane (see
-//! [`cull`](self::cull)), and what a cluster's lanes do not reject goes through the same scalar
+//! [`cull`]), and what a cluster's lanes do not reject goes through the same scalar
 //! code as everywhere else. Children that are met are pushed in no order, but the nearest is taken
 //! at once: sorting costs more than it saves.
 
