@@ -47,7 +47,10 @@ fn glass_on_boards() {
         "mps2-an505",
     ];
     let boards = names.map(board).into_iter().chain([&WASM]);
-    pictures_are_the_hosts(boards.map(|board| (board, board.format(), &scene)));
+    let boards = boards.map(|board| (board, board.format()));
+    // With floats or without: `gridel accuracy` compares them.
+    let both = boards.chain([(board("mps2-an386"), Format::Fixed)]);
+    pictures_are_the_hosts(both.map(|(board, format)| (board, format, &scene)));
 }
 
 /// What 8 KiB of RAM and 128 KiB of flash are enough for, and 16 KiB and 256 KiB.
