@@ -5,7 +5,7 @@
 //! `RUSTFLAGS='-C target-cpu=native'` for what this machine can do. Options: `--only NAME` for one
 //! scene, `--repeats N`, `--side N` for the pictures of primary rays, `--json FILE`. Scenes come from
 //! `GRIDEL_SCENES` or `../shared/scenes`; what is absent is left out, loudly. What is recorded in
-//! `fixtures/recorded/peers-baseline.json` and `peers-native.json` makes the README's tables.
+//! `fixtures/recorded/peers.json` makes the README's table.
 //!
 //! Only ratios within one run mean anything. A rate is the median over the repeats, in which the
 //! contenders take turns. An answer is wrong where it is a miss and Gridel's in double precision is
