@@ -22,7 +22,7 @@
 //! Values are monotone in `p`, so a child's interval lies in its parent's, whatever was rounded.
 
 use crate::blob::record::{Pair, UnitBox, plane_word};
-use crate::number::{CullAxis, Number};
+use crate::number::{CullAxis, NARROW_PRODUCTS, Number};
 use crate::ray::Ray;
 
 /// The steps at which a ray enters and leaves something; it misses where `near > far`.
@@ -67,10 +67,11 @@ pub trait PairCulling<N: Number>: Culling<N> {
 
 /// The culling form of a ray in integers: 52 bytes.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub struct Cull {
-    pub(crate) axes: [CullAxis; 3],
     /// The step at or below the ray's tmin.
     start: i32,
+    pub(crate) axes: [CullAxis; 3],
 }
 
 impl<N: Number> Culling<N> for Cull {
@@ -149,7 +150,13 @@ impl CullAxis {
     /// A plane's product: the upper bits of 48.
     #[inline(always)]
     fn step(&self, plane: i16) -> i32 {
-        if UPPER_HALF {
+        if NARROW_PRODUCTS {
+            // Both products fit 32 bits.
+            let (high, low) = (self.inverse >> 16, self.inverse & 0xffff);
+            let plane = plane as i32;
+            high.wrapping_mul(plane)
+                .wrapping_add(low.wrapping_mul(plane) >> 16)
+        } else if UPPER_HALF {
             ((self.inverse as i64 * ((plane as i32) << 16) as i64) >> 32) as i32
         } else {
             ((self.inverse as i64 * plane as i64) >> 16) as i32

@@ -195,8 +195,7 @@ enum Next {
     Both(u32, Entry),
 }
 
-/// Narrows a ray's interval to a node's and then to the child's where the walk goes on: by the one
-/// of 16 pieces of code that fits the axes, so that none is looked up.
+/// Narrows a ray's interval to a node's and then to the child's where the walk goes on.
 #[inline(always)]
 fn visit<C: Count>(
     record: &DualNode,
@@ -205,43 +204,18 @@ fn visit<C: Count>(
     cull: &Cull,
     count: &mut C,
 ) -> Next {
-    macro_rules! by_axes {
-        ($($axes:literal)*) => {
-            match record.way >> 24 & 15 {
-                $($axes => visit_by::<{ $axes & 3 }, { $axes >> 2 }, C>(
-                    record, number, interval, cull, count,
-                ),)*
-                _ => Next::Nothing,
-            }
-        };
-    }
-    by_axes!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15)
-}
-
-#[inline(always)]
-fn visit_by<const SPLIT: usize, const CARVE: usize, C: Count>(
-    record: &DualNode,
-    number: u32,
-    interval: &mut Interval,
-    cull: &Cull,
-    count: &mut C,
-) -> Next {
     let way = Way(record.way);
-    if let Some(form) = cull.axes.get(CARVE) {
-        carve_ray(form, CARVE, record.carves[0], number, interval, count);
+    for (axis, planes) in way.carves().into_iter().zip(record.carves) {
+        let Some(form) = cull.axes.get(axis) else {
+            break;
+        };
+        carve_ray(form, axis, planes, number, interval, count);
         if interval.near > interval.far {
             return Next::Nothing;
         }
-        let axis = way.carves()[1];
-        if let Some(&form) = cull.axes.get(axis) {
-            carve_ray(&form, axis, record.carves[1], number, interval, count);
-            if interval.near > interval.far {
-                return Next::Nothing;
-            }
-        }
     }
-    match cull.axes.get(SPLIT) {
-        Some(form) => split::<SPLIT, C>(record.split, way.number(), interval, form, count),
+    match cull.axes.get(way.split()) {
+        Some(form) => split(record, interval, form, count),
         None => Next::Leaf(way.number()),
     }
 }
@@ -266,52 +240,52 @@ fn carve_ray<C: Count>(
 
 /// Chooses among the children of a split.
 #[inline(always)]
-fn split<const AXIS: usize, C: Count>(
-    planes: u32,
-    first: u32,
+fn split<C: Count>(
+    record: &DualNode,
     interval: &mut Interval,
     form: &CullAxis,
     count: &mut C,
 ) -> Next {
+    let (planes, way) = (record.split, Way(record.way));
+    let first = way.number();
     let [leave, enter] = form.ordered(planes);
     let (leave, enter) = (form.exit(leave), form.entry(enter));
-    let side = form.rotation >> 4;
-    let (near, far) = (first + side, first + (side ^ 1));
+    // The rotation is 0 or 16.
+    let near = first + (form.rotation >> 4);
+    let far = first + (16_u32.wrapping_sub(form.rotation) >> 4);
     let whole = *interval;
-    let near_interval = Interval {
-        near: whole.near,
-        far: whole.far.min(leave),
-    };
-    let far_interval = Interval {
-        near: whole.near.max(enter),
-        far: whole.far,
-    };
-    for (child, span) in [(near, near_interval), (far, far_interval)] {
-        tested(count, 1, || Event::Tested {
-            place: place(child),
-            sides: if child == first {
-                sides(AXIS, [None, Some(planes as i16)])
+    count.planes(2);
+    count.boxes(2);
+    if C::TELLS {
+        let to_near = [whole.near, whole.far.min(leave)];
+        let to_far = [whole.near.max(enter), whole.far];
+        for (child, [near, far]) in [(near, to_near), (far, to_far)] {
+            let planes = [planes as i16, (planes >> 16) as i16].map(Some);
+            let planes = if child == first {
+                [None, planes[0]]
             } else {
-                sides(AXIS, [Some((planes >> 16) as i16), None])
-            },
-            span: span.units(),
-        });
+                [planes[1], None]
+            };
+            count.tell(Event::Tested {
+                place: place(child),
+                sides: sides(way.split(), planes),
+                span: Interval { near, far }.units(),
+            });
+        }
     }
     if whole.near > leave {
-        if enter > whole.far {
-            return Next::Nothing;
-        }
-        *interval = far_interval;
+        // That the ray misses this child too is rare, and found out by the child's own planes.
+        interval.near = whole.near.max(enter);
         return Next::Near(far);
     }
-    *interval = near_interval;
+    interval.far = whole.far.min(leave);
     if enter > whole.far {
         return Next::Near(near);
     }
     let later = Entry {
         node: far,
-        near: far_interval.near,
-        far: far_interval.far,
+        near: whole.near.max(enter),
+        far: whole.far,
     };
     Next::Both(near, later)
 }

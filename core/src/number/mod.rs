@@ -54,6 +54,11 @@ impl Format {
     }
 }
 
+/// Whether this core multiplies 32 bits to 32 and no more: the Cortex-M0, the one family of Arm's
+/// without an instruction that compares and swaps.
+pub(crate) const NARROW_PRODUCTS: bool =
+    cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
+
 /// A component by number. Unlike an index it keeps the vector in registers.
 #[inline(always)]
 pub(crate) fn pick<T: Copy>(v: [T; 3], axis: usize) -> T {
