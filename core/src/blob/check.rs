@@ -334,8 +334,10 @@ fn read_shapes<'a>(sections: &Sections<'a>, header: &Header) -> Result<Shapes<'a
     let holds = |kind| sections.len(kind) > 0;
     let sole = holds(SectionKind::Strips) && triangles == 0
         || holds(SectionKind::Packs) && !holds(SectionKind::Spheres);
-    let clusters = [(sole && cfg!(not(feature = "wide")), "wide")];
-    for (is_missing, missing) in kinds.into_iter().chain(stored).chain(clusters) {
+    if sole && cfg!(not(feature = "wide")) {
+        return Err(BlobError::MissingShape { missing: "wide" });
+    }
+    for (is_missing, missing) in kinds.into_iter().chain(stored) {
         if is_missing {
             return Err(BlobError::MissingShape { missing });
         }
