@@ -60,8 +60,18 @@ pub use accel::CylinderCubeTight;
 pub use accel::DualSplit;
 #[cfg(feature = "flagged")]
 pub use accel::Flagged;
+#[cfg(feature = "flagged-slabs")]
+pub use accel::FlaggedSlabs;
+#[cfg(feature = "grid")]
+pub use accel::Grid;
+#[cfg(feature = "octree")]
+pub use accel::Octree;
 #[cfg(feature = "ray-classes")]
 pub use accel::RayClasses;
+#[cfg(feature = "slabs")]
+pub use accel::Slabs;
+#[cfg(feature = "spheres")]
+pub use accel::Spheres;
 #[cfg(feature = "wide")]
 pub use accel::Wide;
 pub use accel::{Accel, List, Stack, StackView, Structure, StructureVisitor};

@@ -7,6 +7,7 @@ use gridel_tests::bounds::{CROSSING, NORMAL, markdown};
 use gridel_tests::scenes;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
 fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -229,13 +230,138 @@ fn the_readme_shows_what_parts_cost() {
             ["code-bytes", "call-stack-bytes", "picture-instructions"].map(cell);
         table += &format!("| {name} | {code} | {stack} | {work} |\n");
     }
+    holds_table("parts", &table);
+}
+
+/// Holds a part of the README to what was recorded; `GRIDEL_BLESS=1` writes it anew.
+fn holds_table(mark: &str, table: &str) {
+    static README: Mutex<()> = Mutex::new(());
+    // Tests that write it run at the same time; one that failed says so itself.
+    let _one_at_a_time = README.lock().unwrap_or_else(|poison| poison.into_inner());
     let readme = text("README.md");
-    let (before, rest) = readme.split_once("<!-- parts -->\n").expect("a mark");
+    let mark = format!("<!-- {mark} -->\n");
+    let (before, rest) = readme.split_once(&mark).expect("a mark");
     let (shown, after) = rest.split_once("<!-- end -->").expect("its end");
     if std::env::var_os("GRIDEL_BLESS").is_some_and(|value| value == "1") {
-        let new = format!("{before}<!-- parts -->\n{table}<!-- end -->{after}");
+        let new = format!("{before}{mark}{table}<!-- end -->{after}");
         fs::write(repository().join("README.md"), new).expect("README.md can be written to");
         return;
     }
     assert_eq!(shown, table, "GRIDEL_BLESS=1 writes the table anew");
+}
+
+/// The paper's tables beside ours, as the test `tables` recorded them.
+#[test]
+fn the_readme_shows_the_papers_tables() {
+    let recorded = text("fixtures/recorded/structures.json");
+    let recorded: serde_json::Value = serde_json::from_str(&recorded).expect("tables");
+    let scenes = &recorded["256 by 256 pixels"];
+    let scenes = ["glass-chess", "diamond", "diamond-large"].map(|name| &scenes[name]);
+    let whole = |value: &serde_json::Value| value.as_u64().expect("a count");
+    let count = |scene: &serde_json::Value, structure: &str, what: &str| {
+        let count = scene["a ray"][structure][what].as_f64();
+        count.unwrap_or_else(|| panic!("no {what} of {structure}"))
+    };
+
+    let mut hierarchies = String::from(
+        "| objects, theirs / ours | time, theirs | planes a ray, boxes | below the root | slabs | \
+         below the root | bytes, boxes | slabs |\n|---|---|---|---|---|---|---|---|\n",
+    );
+    for scene in scenes {
+        let paper = &scene["paper"];
+        let (plain, flagged) = (whole(&paper["plain"]), whole(&paper["flagged"]));
+        hierarchies += &format!(
+            "| {} / {} | {plain} : {flagged} = {:.2} |",
+            grouped(whole(&paper["objects"])),
+            grouped(whole(&scene["primitives"])),
+            plain as f64 / flagged as f64
+        );
+        for (plain, flagged, root) in [("bvh", "flagged", 6.0), ("slabs", "flagged-slabs", 14.0)] {
+            let [plain, flagged] = [plain, flagged].map(|name| count(scene, name, "planes"));
+            let below = (plain - root) / (flagged - root);
+            hierarchies += &format!(
+                " {plain:.1} : {flagged:.1} = {:.2} | {below:.2} |",
+                plain / flagged
+            );
+        }
+        for (plain, flagged) in [("bvh", "flagged"), ("slabs", "flagged-slabs")] {
+            let bytes = |name| grouped(count(scene, name, "bytes") as u64);
+            hierarchies += &format!(" {} : {} |", bytes(plain), bytes(flagged));
+        }
+        hierarchies += "\n";
+    }
+    holds_table("paper-hierarchies", &hierarchies);
+
+    let mut cubes = String::from("| |");
+    for scene in scenes {
+        let primitives = grouped(whole(&scene["primitives"]));
+        cubes += &format!(" {primitives} objects: planes, cells, objects | longest list | bytes |");
+    }
+    cubes += "\n|---|---|---|---|---|---|---|---|---|---|\n";
+    for structure in [
+        "grid 4x4x4",
+        "grid",
+        "octree",
+        "cylinder-cube",
+        "cylinder-cube-tight",
+        "cylinder-cube-entry",
+        "apex",
+        "ray-classes",
+        "bvh",
+        "flagged",
+        "dual-split",
+        "spheres",
+    ] {
+        cubes += &format!("| `{structure}` |");
+        for scene in scenes {
+            let count = |what| count(scene, structure, what);
+            cubes += &format!(
+                " {:.1}, {:.1}, {:.1} | {} | {} |",
+                count("planes"),
+                count("cells"),
+                count("objects"),
+                grouped(count("longest list") as u64),
+                grouped(count("bytes") as u64)
+            );
+        }
+        cubes += "\n";
+    }
+    holds_table("paper-cube", &cubes);
+}
+
+/// What the paper's cylinder cube takes, as the test `cylinder_cube` recorded it.
+#[test]
+fn the_readme_explains_the_papers_loss() {
+    let recorded = text("fixtures/recorded/cylinder-cube.toml");
+    let recorded: toml::Table = toml::from_str(&recorded).expect("figures");
+    let mut table = String::from(
+        "| objects | lists | count | objects a list | longest | entries | 2 bytes | 4 bytes | \
+         8 bytes |\n|---|---|---|---|---|---|---|---|---|\n",
+    );
+    for scene in ["glass-chess", "diamond-2800", "diamond-27000"] {
+        let figure = |name: &str| {
+            let figure = recorded[scene][name].as_integer();
+            figure.expect("a figure") as u64
+        };
+        for (kind, name) in [
+            ("opposite", "3 n^4"),
+            ("all", "15 n^4"),
+            ("tight", "15 n^4, tight"),
+        ] {
+            let of = |what: &str| figure(&format!("{kind}-{what}"));
+            let (lists, entries) = (of("lists"), of("entries"));
+            table += &format!(
+                "| {} | {name} | {} | {:.1} | {} | {} | {} | {} | {} |\n",
+                grouped(figure("objects")),
+                grouped(lists),
+                entries as f64 / lists as f64,
+                grouped(of("longest")),
+                grouped(entries),
+                grouped(2 * entries),
+                grouped(4 * entries),
+                grouped(8 * entries)
+            );
+        }
+    }
+    holds_table("paper-loss", &table);
 }

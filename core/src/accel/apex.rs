@@ -79,21 +79,14 @@ impl Accel for Apex {
         } else {
             way.level(ray.tmin.to_cull())
         };
-        for index in lists.list(way.cell) {
-            if lists.key(index) > end {
-                return;
-            }
-            let Some(slot) = lists.entry(index) else {
-                return;
-            };
-            let Some(limit) = leaf(scene.shapes.single(slot), count) else {
-                return;
-            };
+        lists.ascend(way.cell, end, |slot| {
+            let limit = leaf(scene.shapes.single(slot), count)?;
             if way.outward && limit < tmax {
                 tmax = limit;
                 end = way.level(tmax.to_cull());
             }
-        }
+            Some(end)
+        });
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::cull::PairCulling;
 use super::link::Node;
-use super::pairs::{PairRecord, Pairs, Walk};
+use super::pairs::{BoxPair, Pairs, Walk};
 use super::{Accel, Leaf, StackView, Structure};
 use crate::blob::record::{Pair, UnitBox};
 use crate::blob::{Scene, SectionKind};
@@ -28,23 +28,37 @@ impl Accel for Bvh {
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let root = |limit| cull.root(scene.bounds(), limit);
-        let narrow = |pair: &Pair, _, limit| cull.children(pair, limit);
-        let walk = Walk {
-            scene,
-            pairs: scene.held.bvh.0,
-            root,
-            narrow,
-            limit: N::Cull::limit,
-        };
-        walk.run(ray.tmax, stack, count, leaf);
+        walk(scene, ray, cull, stack, count, leaf);
     }
+}
+
+/// [`Bvh`]'s walk with any form of culling. Where floats cull in SIMD registers, the margins of
+/// [`Cull`](super::cull::Cull) are those of the flagged hierarchy: only with them are the two
+/// compared plane for plane.
+#[inline]
+pub fn walk<N: Number, K: PairCulling<N>, C: Count>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    cull: &K,
+    stack: &mut StackView,
+    count: &mut C,
+    leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+) {
+    let walk = Walk {
+        scene,
+        pairs: scene.held.bvh,
+        root: |limit| cull.root(scene.bounds(), limit),
+        root_planes: 6,
+        narrow: |pair: &Pair, _, limit| cull.children(pair, limit),
+        limit: K::limit,
+    };
+    walk.run(ray.tmax, stack, count, leaf);
 }
 
 /// The pairs of a scene.
 pub(crate) type Held<'a> = Pairs<'a, Pair>;
 
-impl PairRecord for Pair {
+impl BoxPair for Pair {
     const SECTION: SectionKind = SectionKind::Pairs;
     const PLANES: u32 = 12;
 

@@ -147,6 +147,21 @@ impl<'a> Candidates<'a> {
         }
     }
 
+    /// Visits the entries of a cell's list in order, as long as their keys, which ascend, lie at or
+    /// below an end. `visit` returns the end from then on, or `None` to end the walk.
+    #[inline(always)]
+    pub(super) fn ascend(&self, cell: u32, mut end: u8, mut visit: impl FnMut(u32) -> Option<u8>) {
+        for index in self.list(cell) {
+            if self.key(index) > end {
+                return;
+            }
+            match self.entry(index).and_then(&mut visit) {
+                Some(new_end) => end = new_end,
+                None => return,
+            }
+        }
+    }
+
     /// An entry by number.
     #[inline(always)]
     pub(super) fn entry(&self, index: usize) -> Option<u32> {

@@ -147,6 +147,12 @@ impl CullAxis {
         self.step(plane).wrapping_add(self.far)
     }
 
+    /// Whether the ray runs down the axis.
+    #[inline(always)]
+    pub(crate) fn descends(&self) -> bool {
+        self.rotation != 0
+    }
+
     /// A plane's product: the upper bits of 48.
     #[inline(always)]
     fn step(&self, plane: i16) -> i32 {
@@ -193,10 +199,27 @@ impl Interval {
 }
 
 impl Cull {
-    /// The step at or below the ray's tmin.
-    #[cfg(feature = "wide")]
+    /// The step at which the ray enters what begins at a plane, as it comes along an axis.
     #[inline(always)]
-    pub(crate) fn start(&self) -> i32 {
+    pub(super) fn enters(&self, axis: usize, plane: i16) -> i32 {
+        self.axes[axis].entry(plane)
+    }
+
+    /// The step at which the ray leaves what ends at a plane, as it comes along an axis.
+    #[inline(always)]
+    pub(super) fn leaves(&self, axis: usize, plane: i16) -> i32 {
+        self.axes[axis].exit(plane)
+    }
+
+    /// Whether the ray runs down an axis.
+    #[inline(always)]
+    pub(super) fn descends(&self, axis: usize) -> bool {
+        self.axes[axis].descends()
+    }
+
+    /// The step at which the ray starts.
+    #[inline(always)]
+    pub(super) fn start(&self) -> i32 {
         self.start
     }
 

@@ -11,7 +11,7 @@ use super::candidates::ListSections;
 use super::cull::PairCulling;
 use super::gridel_table::{Table, along};
 use super::link::Node;
-use super::pairs::Walk;
+use super::pairs::{PairArray, Walk};
 use super::{Accel, Leaf, Records, StackView, Structure};
 use crate::blob::record::Pair;
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
@@ -47,11 +47,12 @@ impl Accel for CylinderCubeEntry {
             return;
         };
         count.cells(1);
-        let pairs = scene.held.bvh.0;
+        let pairs = scene.held.bvh;
         let walk = Walk {
             scene,
             pairs,
             root: |limit| cull.root(scene.bounds(), limit),
+            root_planes: 6,
             narrow: |pair: &Pair, _, limit| cull.children(pair, limit),
             limit: N::Cull::limit,
         };

@@ -8,7 +8,7 @@
 
 use super::cull::{Cull, Interval, PairCulling};
 use super::link::{Link, Node};
-use super::pairs::{PairRecord, Pairs, Walk};
+use super::pairs::{BoxPair, Pairs, Walk};
 use super::{Accel, Leaf, StackView, Structure};
 use crate::blob::record::{FlaggedPair, UnitBox};
 use crate::blob::{Scene, SectionKind};
@@ -39,8 +39,9 @@ impl Accel for Flagged {
         let limit = <Cull as PairCulling<N>>::limit;
         let walk = Walk {
             scene,
-            pairs: scene.held.flagged.0,
+            pairs: scene.held.flagged,
             root,
+            root_planes: 6,
             narrow,
             limit,
         };
@@ -51,7 +52,7 @@ impl Accel for Flagged {
 /// The pairs of a scene.
 pub(crate) type Held<'a> = Pairs<'a, FlaggedPair>;
 
-impl PairRecord for FlaggedPair {
+impl BoxPair for FlaggedPair {
     const SECTION: SectionKind = SectionKind::FlaggedPairs;
     const PLANES: u32 = 6;
 

@@ -13,6 +13,8 @@ pub mod apex;
 #[cfg(feature = "bvh")]
 pub mod bvh;
 mod candidates;
+#[cfg(any(feature = "grid", feature = "octree"))]
+pub mod cells;
 pub mod cull;
 #[cfg(feature = "cylinder-cube")]
 pub mod cylinder_cube;
@@ -24,6 +26,10 @@ pub mod cylinder_cube_tight;
 pub mod dual_split;
 #[cfg(feature = "flagged")]
 pub mod flagged;
+#[cfg(feature = "flagged-slabs")]
+pub mod flagged_slabs;
+#[cfg(feature = "grid")]
+pub mod grid;
 mod gridel_table;
 pub mod gridels;
 #[cfg(any(
@@ -33,14 +39,32 @@ pub mod gridels;
 ))]
 mod lanes;
 mod line;
-#[cfg(any(feature = "bvh", feature = "flagged"))]
+#[cfg(any(
+    feature = "bvh",
+    feature = "flagged",
+    feature = "slabs",
+    feature = "spheres"
+))]
 mod link;
 pub mod list;
-#[cfg(any(feature = "bvh", feature = "flagged"))]
+#[cfg(feature = "octree")]
+pub mod octree;
+#[cfg(any(
+    feature = "bvh",
+    feature = "flagged",
+    feature = "slabs",
+    feature = "spheres"
+))]
 mod pairs;
 #[cfg(feature = "ray-classes")]
 pub mod ray_classes;
+#[cfg(any(feature = "slabs", feature = "spheres"))]
+pub mod reach;
 mod registry;
+#[cfg(any(feature = "slabs", feature = "spheres"))]
+pub mod slabs;
+#[cfg(feature = "spheres")]
+pub mod spheres;
 #[cfg(feature = "wide")]
 pub mod wide;
 
@@ -58,15 +82,30 @@ pub use cylinder_cube_tight::CylinderCubeTight;
 pub use dual_split::DualSplit;
 #[cfg(feature = "flagged")]
 pub use flagged::Flagged;
-#[cfg(any(feature = "bvh", feature = "flagged"))]
+#[cfg(feature = "flagged-slabs")]
+pub use flagged_slabs::FlaggedSlabs;
+#[cfg(feature = "grid")]
+pub use grid::Grid;
+#[cfg(any(
+    feature = "bvh",
+    feature = "flagged",
+    feature = "slabs",
+    feature = "spheres"
+))]
 pub use link::Link;
 pub use list::List;
+#[cfg(feature = "octree")]
+pub use octree::Octree;
 #[cfg(feature = "ray-classes")]
 pub use ray_classes::RayClasses;
 #[cfg(feature = "all-structures")]
 pub use registry::Chosen;
 pub(crate) use registry::{Held, Records};
 pub use registry::{Structure, StructureVisitor};
+#[cfg(feature = "slabs")]
+pub use slabs::Slabs;
+#[cfg(feature = "spheres")]
+pub use spheres::Spheres;
 #[cfg(feature = "wide")]
 pub use wide::Wide;
 

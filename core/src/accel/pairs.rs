@@ -1,4 +1,4 @@
-//! What the ordinary and the flagged hierarchy share: the walk, and the proof that it is sound.
+//! What hierarchies of pairs share: the walk, and the proof that it is sound.
 
 use super::cull::Interval;
 use super::link::Node;
@@ -12,7 +12,33 @@ use crate::shape::Shapes;
 use heapless::Vec;
 
 /// A record of two children.
-pub(super) trait PairRecord: bytemuck::Pod {
+pub(super) trait PairRecord: Copy {
+    /// The section that holds these records.
+    const SECTION: SectionKind;
+
+    /// Planes that are tested for this record.
+    fn planes(&self) -> u32;
+
+    /// The left (0) or right (1) child of this record, whose number is given.
+    fn child(&self, number: u32, side: u32) -> Node;
+
+    /// The planes that are tested for the left and the right child, as far as they are boxes'.
+    fn sides(&self) -> [Sides; 2] {
+        [Sides::default(); 2]
+    }
+
+    /// The test of a child, as events tell it.
+    fn tested(&self, number: u32, side: u32, interval: Interval) -> Event {
+        Event::Tested {
+            place: self.child(number, side).place(),
+            sides: self.sides()[(side & 1) as usize],
+            span: interval.units(),
+        }
+    }
+}
+
+/// A record of two children that are boxes.
+pub(super) trait BoxPair: bytemuck::Pod {
     /// The section that holds these records.
     const SECTION: SectionKind;
     /// Planes that are tested for a record.
@@ -24,24 +50,58 @@ pub(super) trait PairRecord: bytemuck::Pod {
     /// The planes that are tested for the left and the right child.
     fn sides(&self) -> [Sides; 2];
 
-    /// The test of a child, as events tell it.
-    fn tested(&self, number: u32, side: u32, interval: Interval) -> Event {
-        Event::Tested {
-            place: self.child(number, side).place(),
-            sides: self.sides()[(side & 1) as usize],
-            span: interval.units(),
-        }
-    }
-
     /// The children's boxes, given their parent's.
     fn boxes(&self, parent: &UnitBox) -> [UnitBox; 2];
 }
 
-/// The pairs of a hierarchy.
+impl<P: BoxPair> PairRecord for &P {
+    const SECTION: SectionKind = P::SECTION;
+
+    #[inline(always)]
+    fn planes(&self) -> u32 {
+        P::PLANES
+    }
+
+    #[inline(always)]
+    fn child(&self, number: u32, side: u32) -> Node {
+        P::child(self, number, side)
+    }
+
+    fn sides(&self) -> [Sides; 2] {
+        P::sides(self)
+    }
+}
+
+/// The pairs of a hierarchy, by number.
+pub(super) trait PairArray: Copy {
+    /// One of them.
+    type Pair: PairRecord;
+
+    /// How many there are.
+    fn len(self) -> usize;
+
+    /// One of them.
+    fn pair(self, number: usize) -> Option<Self::Pair>;
+}
+
+/// The pairs of a hierarchy of boxes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pairs<'a, P>(pub(super) &'a [P]);
 
-impl<'a, P: PairRecord> Records<'a> for Pairs<'a, P> {
+impl<'a, P: BoxPair> PairArray for Pairs<'a, P> {
+    type Pair = &'a P;
+
+    fn len(self) -> usize {
+        self.0.len()
+    }
+
+    #[inline(always)]
+    fn pair(self, number: usize) -> Option<&'a P> {
+        self.0.get(number)
+    }
+}
+
+impl<'a, P: BoxPair> Records<'a> for Pairs<'a, P> {
     const SECTIONS: &'static [SectionKind] = &[P::SECTION];
     const USES_LEAVES: bool = true;
 
@@ -50,27 +110,29 @@ impl<'a, P: PairRecord> Records<'a> for Pairs<'a, P> {
     }
 
     fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
-        check_pairs(self.0, scene.leaves, &scene.shapes, scene.bounds())
+        check_pairs(*self, scene.leaves, &scene.shapes, scene.bounds())
     }
 }
 
 /// A walk through a hierarchy: what the ray brings to it.
-pub(super) struct Walk<'w, 'a, P, R, F, L> {
+pub(super) struct Walk<'w, 'a, A, R, F, L> {
     pub(super) scene: &'w Scene<'a>,
-    pub(super) pairs: &'a [P],
+    pub(super) pairs: A,
     /// The scene's interval, given the limit.
     pub(super) root: R,
+    /// Planes that are tested for it.
+    pub(super) root_planes: u32,
     /// The children's intervals, given the pair, their parent's and the limit.
     pub(super) narrow: F,
     /// The limit of an interval for a t.
     pub(super) limit: L,
 }
 
-impl<P, R, F, L> Walk<'_, '_, P, R, F, L>
+impl<A, R, F, L> Walk<'_, '_, A, R, F, L>
 where
-    P: PairRecord,
+    A: PairArray,
     R: Fn(i32) -> Interval,
-    F: Fn(&P, Interval, i32) -> [Interval; 2],
+    F: Fn(A::Pair, Interval, i32) -> [Interval; 2],
 {
     /// Visits the leaves whose boxes the ray can meet, the nearer child first.
     #[inline(always)]
@@ -83,7 +145,7 @@ where
     ) where
         L: Fn(N) -> i32,
     {
-        count.planes(6);
+        count.planes(self.root_planes);
         count.boxes(1);
         let limit = (self.limit)(tmax);
         let interval = (self.root)(limit);
@@ -146,11 +208,11 @@ where
                 };
                 limit = (self.limit)(tmax);
             } else {
-                let Some(pair) = self.pairs.get(node.number() as usize) else {
+                let Some(pair) = self.pairs.pair(node.number() as usize) else {
                     return;
                 };
                 let [left, right] = (self.narrow)(pair, interval, limit);
-                count.planes(P::PLANES);
+                count.planes(pair.planes());
                 count.boxes(2);
                 let number = node.number();
                 if C::TELLS {
@@ -209,8 +271,8 @@ where
 }
 
 /// The root of a hierarchy: its first pair, or its only leaf.
-fn root<P>(pairs: &[P]) -> Node {
-    if pairs.is_empty() {
+fn root(pairs: impl PairArray) -> Node {
+    if pairs.len() == 0 {
         Node::leaf(0)
     } else {
         Node::pair(0)
@@ -223,13 +285,14 @@ fn root<P>(pairs: &[P]) -> Node {
 ///
 /// Costs the depth of each leaf, and [`MAX_LEVELS`] words of stack.
 #[inline(never)]
-fn check_pairs<P: PairRecord>(
-    pairs: &[P],
+fn check_pairs<P: BoxPair>(
+    array: Pairs<'_, P>,
     leaves: &[u32],
     shapes: &Shapes<'_>,
     bounds: &UnitBox,
 ) -> Result<usize, BlobError> {
     let section = P::SECTION;
+    let pairs = array.0;
     let expected = leaves.len().saturating_sub(1);
     if pairs.len() != expected {
         return Err(BlobError::Count {
@@ -238,14 +301,14 @@ fn check_pairs<P: PairRecord>(
             expected,
         });
     }
-    let depth = check_order(pairs)?;
+    let depth = check_order(array)?;
     if leaves.is_empty() {
         return Ok(depth);
     }
 
     // The pairs above the current node: twice their number, and 1 where it is the right child's.
     let mut path: Vec<u32, MAX_LEVELS> = Vec::new();
-    let (mut node, mut parent) = (root(pairs), *bounds);
+    let (mut node, mut parent) = (root(array), *bounds);
     loop {
         let number = node.number() as usize;
         if node.is_leaf() {
@@ -297,12 +360,90 @@ fn check_pairs<P: PairRecord>(
     }
 }
 
+/// Proves a hierarchy of volumes other than boxes in the same way: volumes as `children` asks, and
+/// primitives in their leaves as `holds` asks. Returns the stack that a walk needs.
+///
+/// `children` gives the volumes of a pair's children from their parent's, or the number of a child
+/// that is not as it must be; `holds` is given a leaf and the volumes from the root to it.
+///
+/// Linear in pairs and primitives. Takes a volume and 8 bytes of stack for each of
+/// [`MAX_LEVELS`] levels.
+#[inline(never)]
+pub(super) fn check_tree<A: PairArray, V>(
+    pairs: A,
+    leaves: &[u32],
+    root_volume: V,
+    children: impl Fn(&A::Pair, &V) -> Result<[V; 2], usize>,
+    holds: impl Fn(Leaf, &[V]) -> bool,
+) -> Result<usize, BlobError> {
+    let section = A::Pair::SECTION;
+    let expected = leaves.len().saturating_sub(1);
+    if pairs.len() != expected {
+        return Err(BlobError::Count {
+            section,
+            found: pairs.len(),
+            expected,
+        });
+    }
+    let depth = check_order(pairs)?;
+    if leaves.is_empty() {
+        return Ok(depth);
+    }
+
+    let mut path: Vec<V, { MAX_LEVELS + 1 }> = Vec::new();
+    // Pairs whose right child waits, and the length of the path to them. All pushes fit: the depth
+    // was proved.
+    let mut waiting: Vec<(usize, usize), MAX_LEVELS> = Vec::new();
+    let mut node = root(pairs);
+    let _ = path.push(root_volume);
+    loop {
+        let number = node.number() as usize;
+        if node.is_leaf() {
+            let leaf = leaves.get(number).and_then(|&word| Leaf::from_word(word));
+            if !leaf.is_some_and(|leaf| holds(leaf, &path)) {
+                return Err(BlobError::Record {
+                    section: SectionKind::Leaves,
+                    index: number,
+                    what: "leaf, or a primitive of it, lies outside its box: excess",
+                    found: 1,
+                    expected: 0,
+                });
+            }
+        } else if let (Some(pair), Some(parent)) = (pairs.pair(number), path.last()) {
+            let [left, _] = children(&pair, parent).map_err(|child| BlobError::Record {
+                section,
+                index: number,
+                what: "box lies outside its parent's: the number of the child",
+                found: child as i64,
+                expected: -1,
+            })?;
+            let _ = waiting.push((number, path.len()));
+            let _ = path.push(left);
+            node = pair.child(number as u32, 0);
+            continue;
+        }
+        let Some((number, length)) = waiting.pop() else {
+            return Ok(depth);
+        };
+        path.truncate(length);
+        if let (Some(pair), Some(parent)) = (pairs.pair(number), path.last()) {
+            if let Ok([_, right]) = children(&pair, parent) {
+                let _ = path.push(right);
+            }
+            node = pair.child(number as u32, 1);
+        }
+    }
+}
+
 /// Proves breadth-first order and returns the number of levels of pairs.
-fn check_order<P: PairRecord>(pairs: &[P]) -> Result<usize, BlobError> {
-    let section = P::SECTION;
+fn check_order<A: PairArray>(pairs: A) -> Result<usize, BlobError> {
+    let section = A::Pair::SECTION;
     let (mut levels, mut level_end) = (0, 0);
     let (mut next_pair, mut next_leaf) = (1, 0);
-    for (index, pair) in pairs.iter().enumerate() {
+    for index in 0..pairs.len() {
+        let Some(pair) = pairs.pair(index) else {
+            break;
+        };
         if index == level_end {
             levels += 1;
             level_end = next_pair;

@@ -190,21 +190,14 @@ impl Accel for RayClasses {
         };
         let mut tmax = ray.tmax;
         let mut end = level(tmax);
-        for index in held.lists.list(cell) {
-            if held.lists.key(index) > end {
-                return;
-            }
-            let Some(slot) = held.lists.entry(index) else {
-                return;
-            };
-            let Some(limit) = leaf(scene.shapes.single(slot), count) else {
-                return;
-            };
+        held.lists.ascend(cell, end, |slot| {
+            let limit = leaf(scene.shapes.single(slot), count)?;
             if limit < tmax {
                 tmax = limit;
                 end = level(tmax);
             }
-        }
+            Some(end)
+        });
     }
 }
 

@@ -174,6 +174,16 @@ structures! {
     /// A hierarchy of eight children a node over strips of triangles and packs of spheres, for
     /// machines with SIMD registers.
     Wide = 9, "wide", wide, if feature = "wide";
+    /// A hierarchy of volumes between planes of 3, 7 or 13 directions, with all planes.
+    Slabs = 10, "slabs", slabs, if feature = "slabs";
+    /// The same hierarchy without the planes that coincide with the parent's.
+    FlaggedSlabs = 11, "flagged-slabs", flagged_slabs, if feature = "flagged-slabs";
+    /// A hierarchy of bounding spheres.
+    Spheres = 12, "spheres", spheres, if feature = "spheres";
+    /// A regular grid, walked cell by cell.
+    Grid = 13, "grid", grid, if feature = "grid";
+    /// An octree, walked on integer coordinates.
+    Octree = 14, "octree", octree, if feature = "octree";
 }
 
 impl Structure {

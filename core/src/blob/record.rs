@@ -369,6 +369,43 @@ impl WideNode {
     }
 }
 
+/// A bounding sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Ball {
+    /// Centre in units.
+    pub center: [i16; 3],
+    /// Radius in units.
+    pub radius: u16,
+}
+
+/// A pair of children in bounding spheres.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct BallPair {
+    /// The left and the right child's.
+    pub balls: [Ball; 2],
+    /// The children: the number of a pair, or that of a leaf with bit 31 set.
+    pub children: [u32; 2],
+}
+
+/// The shape of a grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct GridShape {
+    /// Divisions of each axis: 1 to 1024.
+    pub divisions: [u16; 3],
+    /// Zero.
+    pub spare: u16,
+}
+
+impl GridShape {
+    /// The divisions as numbers.
+    pub fn counts(&self) -> [u32; 3] {
+        self.divisions.map(u32::from)
+    }
+}
+
 /// Two 16-bit planes as one word, the way pairs hold them.
 pub const fn plane_word(planes: [i16; 2]) -> u32 {
     planes[0] as u16 as u32 | (planes[1] as u16 as u32) << 16
@@ -496,4 +533,5 @@ const _: () = {
     assert!(size_of::<ApexWindow>() == 32 && offset_of!(ApexWindow, cells) == 16);
     assert!(size_of::<Pair>() == 32 && size_of::<FlaggedPair>() == 16);
     assert!(size_of::<DualNode>() == 16);
+    assert!(size_of::<BallPair>() == 24 && size_of::<GridShape>() == 8);
 };

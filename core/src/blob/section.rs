@@ -123,6 +123,28 @@ kinds! {
     /// For each slot, where the primitive lies in the eight-wide hierarchy: `u32` each. Only where
     /// the blob has other structures.
     Homes = 46, "homes";
+    /// The planes of the root of slabs, a word a direction.
+    SlabRoot = 47, "slab-root";
+    /// Pairs of slabs: see [`slabs`](crate::accel::slabs).
+    SlabPairs = 48, "slab-pairs";
+    /// The planes of the root of flagged slabs, a word a direction.
+    FlaggedSlabRoot = 49, "flagged-slab-root";
+    /// Flagged pairs of slabs.
+    FlaggedSlabPairs = 50, "flagged-slab-pairs";
+    /// [`BallPair`](super::record::BallPair)s.
+    BallPairs = 51, "ball-pairs";
+    /// One [`GridShape`](super::record::GridShape).
+    GridShape = 52, "grid-shape";
+    /// For each cell of the grid, where its list begins; then where the last one ends (1 to 4 bytes).
+    GridStarts = 53, "grid-starts";
+    /// The slots in the cells of the grid (1 to 4 bytes).
+    GridSlots = 54, "grid-slots";
+    /// [`OctreeNode`](crate::accel::octree::OctreeNode)s.
+    OctreeNodes = 55, "octree-nodes";
+    /// For each list of the octree, where it begins; then where the last one ends (1 to 4 bytes).
+    OctreeStarts = 56, "octree-starts";
+    /// The slots in the leaves of the octree (1 to 4 bytes).
+    OctreeSlots = 57, "octree-slots";
 }
 
 /// A section's place, proved to lie in the blob.
@@ -236,6 +258,23 @@ impl<'a> Sections<'a> {
                 section: kind,
                 found: section.stride,
                 expected: size_of::<T>(),
+            });
+        }
+        bytemuck::try_cast_slice(section.bytes).map_err(|_| BlobError::Misaligned)
+    }
+
+    /// The words of a section whose records have so many each.
+    pub(crate) fn words(&self, kind: SectionKind, width: usize) -> Result<&'a [u32], BlobError> {
+        let section = self.get(kind);
+        let expected = width * size_of::<u32>();
+        if section.bytes.is_empty() {
+            return Ok(&[]);
+        }
+        if section.stride != expected {
+            return Err(BlobError::Stride {
+                section: kind,
+                found: section.stride,
+                expected,
             });
         }
         bytemuck::try_cast_slice(section.bytes).map_err(|_| BlobError::Misaligned)

@@ -2,10 +2,11 @@
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use gridel_core::accel::slabs::DIRECTION_COUNTS;
 use gridel_core::render::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use gridel_core::{Format, Scene as CoreScene, Settings, Structure};
 use gridel_host::board::{BOARDS, Board};
-use gridel_host::compile::Quality;
+use gridel_host::compile::{self, Builder, Quality};
 use gridel_host::report::Target;
 use gridel_host::scene::{MoleculeOptions, MoleculeStyle, Scene};
 use std::num::NonZeroUsize;
@@ -179,6 +180,82 @@ fn cutoff(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| String::from("write a number from 0 to 1, such as 0.002"))
 }
 
+/// How structures are built.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Options for structures")]
+pub struct StructureOptions {
+    /// Directions of slabs: 3, 7 or 13
+    #[arg(long, value_name = "N", value_parser = directions(), default_value = "7")]
+    slabs: usize,
+
+    /// Divisions of the grid, 1 to 1024: one number for all axes, or three, such as 8x8x2 [default:
+    /// four cells a primitive, fewer where these would take more than 256M to build]
+    #[arg(long, value_name = "N|NxNxN", value_parser = divisions)]
+    grid: Option<[u32; 3]>,
+
+    /// Gridels along a side of a cylinder cube's faces, 1 to 64 [default: as many as the budget
+    /// holds, the paper's 4 at the most for `cylinder-cube`]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    gridels: Option<u32>,
+
+    /// Most bytes of each table of candidate lists, for `apex` of the lists of each point; 64K and
+    /// 1M are understood [default: 48M for `cylinder-cube`, 4M for `cylinder-cube-tight` and
+    /// `ray-classes`, 2M for `cylinder-cube-entry`, 1M for `apex`]
+    #[arg(long, value_name = "N", value_parser = bytes)]
+    budget: Option<u64>,
+}
+
+impl StructureOptions {
+    /// The options for the compiler.
+    pub fn apply(&self, options: compile::Options) -> compile::Options {
+        compile::Options {
+            slab_directions: self.slabs,
+            grid: self.grid,
+            gridels: self.gridels,
+            budget: self.budget,
+            ..options
+        }
+    }
+}
+
+fn directions() -> impl TypedValueParser<Value = usize> {
+    PossibleValuesParser::new(DIRECTION_COUNTS.map(|count| match count {
+        3 => "3",
+        7 => "7",
+        _ => "13",
+    }))
+    .try_map(|count| count.parse())
+}
+
+/// Reads divisions of three axes, such as `8` or `8x8x2`.
+fn divisions(text: &str) -> Result<[u32; 3], String> {
+    let numbers: Option<Vec<u32>> = text
+        .split(['x', 'X'])
+        .map(|number| {
+            number
+                .parse()
+                .ok()
+                .filter(|number| (1..=1024).contains(number))
+        })
+        .collect();
+    match numbers.as_deref() {
+        Some(&[all]) => Ok([all; 3]),
+        Some(&[x, y, z]) => Ok([x, y, z]),
+        _ => Err(String::from(
+            "write one number or three, each 1 to 1024, such as 8 or 8x8x2",
+        )),
+    }
+}
+
+/// The name of a builder of hierarchies.
+pub fn builder() -> impl TypedValueParser<Value = Builder> {
+    PossibleValuesParser::new(Builder::ALL.map(Builder::name)).try_map(|name| {
+        let mut all = Builder::ALL.into_iter();
+        all.find(|builder| builder.name() == name)
+            .ok_or("no such builder")
+    })
+}
+
 /// The name of an acceleration structure.
 pub fn structure() -> impl TypedValueParser<Value = Structure> {
     PossibleValuesParser::new(Structure::ALL.map(Structure::name)).try_map(|name| {
@@ -291,6 +368,15 @@ mod tests {
         ];
         for wrong in wrongs {
             assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn grids_have_one_number_or_three() {
+        assert_eq!(divisions("8"), Ok([8; 3]));
+        assert_eq!(divisions("1x2X1024"), Ok([1, 2, 1024]));
+        for wrong in ["", "0", "1025", "8x8", "8x8x8x8", "8x0x8", "-1", "a"] {
+            assert!(divisions(wrong).is_err(), "{wrong}");
         }
     }
 

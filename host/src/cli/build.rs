@@ -1,13 +1,13 @@
 //! `gridel build`: a scene file becomes a blob.
 
-use super::arguments::{self, SceneOptions, TargetOptions};
+use super::arguments::{self, SceneOptions, StructureOptions, TargetOptions};
 use super::effects::CalledFor;
 use super::failure::Failure;
 use super::output::{print, print_json, refuse_same, write_file};
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Format, Scene, Structure};
-use gridel_host::compile::{self, Figures, Report, Tabled};
+use gridel_host::compile::{self, Builder, Figures, Report, Tabled};
 use gridel_host::emit::{self, Emitted};
 use gridel_host::report::{Align, Ledger, Table, grouped, power_of_two};
 use serde::Serialize;
@@ -46,20 +46,14 @@ pub struct Arguments {
     )]
     leaf_size: Option<u8>,
 
+    /// How the hierarchy is built that the structures share
+    #[arg(long, value_name = "NAME", value_parser = arguments::builder(),
+        default_value = Builder::Sah.name())]
+    builder: Builder,
+
     /// Refuse to write a blob of more bytes, and say what to change; 64K and 1M are understood
     #[arg(long, value_name = "N", value_parser = arguments::bytes)]
     max_bytes: Option<u64>,
-
-    /// Gridels along a side of a cylinder cube's faces, 1 to 64 [default: as many as the budget
-    /// holds, the paper's 4 at the most for `cylinder-cube`]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
-    gridels: Option<u32>,
-
-    /// Most bytes of each table of candidate lists, for `apex` of the lists of each point; 64K and
-    /// 1M are understood [default: 48M for `cylinder-cube`, 4M for `cylinder-cube-tight` and
-    /// `ray-classes`, 2M for `cylinder-cube-entry`, 1M for `apex`]
-    #[arg(long, value_name = "N", value_parser = arguments::bytes)]
-    budget: Option<u64>,
 
     /// Write the scene as a Rust module, scene.rs and scene.gridel, into this folder as well
     #[arg(long, value_name = "DIR")]
@@ -75,6 +69,9 @@ pub struct Arguments {
     /// Print the report as JSON
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    structure_options: StructureOptions,
 
     #[command(flatten)]
     scene_options: SceneOptions,
@@ -111,11 +108,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let compiling = compile::Options {
         structures: arguments.accel.clone(),
         leaf_size: arguments.leaf_size.map_or(0, usize::from),
+        builder: arguments.builder,
         max_bytes: arguments.max_bytes,
-        gridels: arguments.gridels,
-        budget: arguments.budget,
         ..compile::Options::default()
     };
+    let compiling = arguments.structure_options.apply(compiling);
     let source = Source::compile(&arguments.scene, &arguments.scene_options, compiling)?;
     let scene = source.scene()?;
     let target = arguments.target.target();

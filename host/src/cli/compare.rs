@@ -1,6 +1,6 @@
 //! `gridel compare`: structures side by side on a scene's own rays.
 
-use super::arguments::{self, SceneOptions};
+use super::arguments::{self, SceneOptions, StructureOptions};
 use super::failure::Failure;
 use super::output::{print, print_json, warn, write_file};
 use super::progress::Progress;
@@ -9,6 +9,7 @@ use gridel_core::{Format, Structure};
 use gridel_host::compare::{
     Comparison, Growth, Options, Work, Works, charts, compare, findings, growth,
 };
+use gridel_host::compile::{self, Builder};
 use gridel_host::report::{Align, Table, counted, grouped};
 use gridel_host::scene;
 use peak_alloc::PeakAlloc;
@@ -34,6 +35,12 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", value_parser = arguments::structure())]
     accel: Vec<Structure>,
 
+    /// How the hierarchy is built that structures share; given several times, each structure is
+    /// built in each way
+    #[arg(long, value_name = "NAME", value_parser = arguments::builder(),
+        default_value = Builder::Sah.name())]
+    builder: Vec<Builder>,
+
     /// Arithmetic to trace in
     #[arg(long, value_name = "NAME", value_parser = arguments::format(), default_value = "f32")]
     format: Format,
@@ -55,6 +62,9 @@ pub struct Arguments {
     /// Print everything as JSON
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    structure_options: StructureOptions,
 
     #[command(flatten)]
     scene_options: SceneOptions,
@@ -92,10 +102,14 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         },
         format: arguments.format,
         size: arguments.size,
-        lattice_bits: arguments
-            .scene_options
-            .lattice_bits
-            .unwrap_or(default.lattice_bits),
+        builders: arguments.builder.clone(),
+        compiling: arguments.structure_options.apply(compile::Options {
+            lattice_bits: arguments
+                .scene_options
+                .lattice_bits
+                .unwrap_or(default.compiling.lattice_bits),
+            ..default.compiling
+        }),
         repeats: arguments.repeat.into(),
         memory: Some(memory),
         ..default
@@ -165,6 +179,7 @@ fn text(report: &Report<'_>) -> String {
     );
     let mut makes = Table::new([
         ("to make and hold", Align::Left),
+        ("SAH cost", Align::Right),
         ("set-up ms", Align::Right),
         ("peak KiB", Align::Right),
         ("own bytes", Align::Right),
@@ -174,7 +189,9 @@ fn text(report: &Report<'_>) -> String {
     ]);
     for row in &comparison.rows {
         makes.row([
-            row.structure.to_owned(),
+            row.name.clone(),
+            row.sah_cost
+                .map_or(String::from("-"), |cost| format!("{cost:.1}")),
             format!("{:.2}", 1e3 * row.setup_seconds),
             row.peak_bytes
                 .map_or(String::from("-"), |bytes| grouped(bytes.div_ceil(1024))),
@@ -215,7 +232,7 @@ fn tests(title: &str, comparison: &Comparison, of: fn(&Works) -> Option<Work>) -
         };
         let rate = work.and_then(|work| work.rays_per_second);
         table.row([
-            row.structure.to_owned(),
+            row.name.clone(),
             figure(|work| work.planes),
             figure(|work| work.boxes),
             figure(|work| work.cells),

@@ -13,11 +13,7 @@ pub fn charts(
     comparison: &Comparison,
     growth: &Growth,
 ) -> Result<Vec<(&'static str, String)>, ChartError> {
-    let groups: Vec<String> = comparison
-        .rows
-        .iter()
-        .map(|row| row.structure.to_owned())
-        .collect();
+    let groups: Vec<String> = comparison.rows.iter().map(|row| row.name.clone()).collect();
     let bar = |name: &str, of: &dyn Fn(&Row) -> Option<f64>| Series {
         name: name.to_owned(),
         values: comparison.rows.iter().map(of).collect(),
@@ -40,7 +36,7 @@ pub fn charts(
                 .iter()
                 .filter_map(|step| {
                     let mut rows = step.rows.iter();
-                    let row = rows.find(|row| row.structure == name.as_str())?;
+                    let row = rows.find(|row| row.name == *name)?;
                     Some((step.primitives as f64, of(row)?))
                 })
                 .collect(),

@@ -40,7 +40,7 @@ pub fn findings(comparison: &Comparison) -> Vec<String> {
     let mut findings: Vec<_> = refused.map(|refused| refused.why.clone()).collect();
     for row in &comparison.rows {
         if row.wrong.is_some() {
-            findings.push(format!("{} is wrong", row.structure));
+            findings.push(format!("{} is wrong", row.name));
             continue;
         }
         let mut beaten = Vec::new();
@@ -58,7 +58,7 @@ pub fn findings(comparison: &Comparison) -> Vec<String> {
                 .rows
                 .iter()
                 .filter(|other| other.structure != list || row.structure == list)
-                .filter_map(|other| Some((better_by(other)?, other.structure)));
+                .filter_map(|other| Some((better_by(other)?, &other.name)));
             if let Some((factor, rival)) = rivals.max_by(|a, b| a.0.total_cmp(&b.0)) {
                 let factor = if factor.is_finite() {
                     format!("{factor:.2} times")
@@ -69,9 +69,9 @@ pub fn findings(comparison: &Comparison) -> Vec<String> {
             }
         }
         findings.push(if beaten.is_empty() {
-            format!("{} is beaten nowhere", row.structure)
+            format!("{} is beaten nowhere", row.name)
         } else {
-            format!("{} is beaten in {}", row.structure, beaten.join(", "))
+            format!("{} is beaten in {}", row.name, beaten.join(", "))
         });
     }
     findings

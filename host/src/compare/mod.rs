@@ -19,7 +19,7 @@ pub use judge::Wrong;
 pub use measure::Work;
 pub use picture::{MOST_RAYS, PictureRays};
 
-use crate::compile::{self, CompileError, Compiled, compile};
+use crate::compile::{self, Builder, CompileError, Compiled, compile, takes_hierarchy};
 use crate::report::working_memory;
 use crate::scene;
 use gridel_core::render::RenderError;
@@ -33,10 +33,13 @@ use std::time::Duration;
 #[derive(Clone, Debug)]
 pub struct Options<'o> {
     pub structures: Vec<Structure>,
+    /// How hierarchies are built; a structure that takes one is a contender with each.
+    pub builders: Vec<Builder>,
+    /// How everything else is compiled.
+    pub compiling: compile::Options,
     pub format: Format,
     /// Width and height of the picture whose rays are traced; one sample a pixel.
     pub size: [u16; 2],
-    pub lattice_bits: u8,
     /// How often everything is timed; 0 for counts alone.
     pub repeats: usize,
     /// Tests of primitives that a row may spend on one pass over the rays. A row that would take
@@ -50,9 +53,10 @@ impl Default for Options<'_> {
     fn default() -> Self {
         Self {
             structures: Structure::ALL.to_vec(),
+            builders: vec![Builder::default()],
+            compiling: compile::Options::default(),
             format: Format::F32,
             size: [256, 256],
-            lattice_bits: 24,
             repeats: 5,
             tests: 400_000_000,
             memory: None,
@@ -112,7 +116,13 @@ pub struct RayCounts {
 /// One contender.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
+    /// The structure, and the builder where there are several.
+    pub name: String,
     pub structure: &'static str,
+    /// `None` where there is no hierarchy.
+    pub builder: Option<&'static str>,
+    /// Of the hierarchy's boxes, by the surface area heuristic.
+    pub sah_cost: Option<f64>,
     /// Of building the structure, from primitives on the lattice to records.
     pub setup_seconds: f64,
     /// The most memory at any time while the scene was compiled, beyond the scene itself.
@@ -160,9 +170,9 @@ fn compare_in<N: Number>(
     options: &Options<'_>,
     progress: &dyn Fn(&str),
 ) -> Result<Comparison, CompareError> {
-    let build = |structure| build(scene, options, structure);
-    let list = build(Structure::List)?;
-    let flagged = build(Structure::Flagged)?;
+    let build = |contender| build(scene, options, contender);
+    let list = build((Structure::List, None))?;
+    let flagged = build((Structure::Flagged, None))?;
     let [width, height] = options.size;
     let settings = Settings {
         width,
@@ -174,12 +184,12 @@ fn compare_in<N: Number>(
     let rays = PictureRays::<N>::of(&flagged.compiled.blob.scene()?, settings)?;
     let mut built = Vec::new();
     let mut refused = Vec::new();
-    for &structure in &options.structures {
-        progress(&format!("building {}", structure.name()));
-        match build(structure) {
+    for contender in contenders(options) {
+        progress(&format!("building {}", contender.0.name()));
+        match build(contender) {
             Err(CompareError::Compile(error @ CompileError::OverBudget { .. })) => {
                 refused.push(Refused {
-                    structure: structure.name(),
+                    structure: contender.0.name(),
                     why: error.to_string(),
                 });
             }
@@ -222,7 +232,7 @@ fn compare_in<N: Number>(
         .zip(verdict.wrong)
         .map(|((built, scene), wrong)| {
             let works = if wrong.is_none() { works.next() } else { None };
-            built.row(scene, &list, wrong, works, options.format)
+            built.row(scene, &list, wrong, works, options)
         })
         .collect();
     Ok(Comparison {
@@ -240,9 +250,27 @@ fn compare_in<N: Number>(
     })
 }
 
+/// A structure and the builder of its hierarchy, if it takes one.
+type Contender = (Structure, Option<Builder>);
+
+fn contenders(options: &Options<'_>) -> Vec<Contender> {
+    let with_builders = |&structure| {
+        let builders: Vec<Option<Builder>> = if takes_hierarchy(structure) {
+            options.builders.iter().copied().map(Some).collect()
+        } else {
+            vec![None]
+        };
+        builders
+            .into_iter()
+            .map(move |builder| (structure, builder))
+    };
+    options.structures.iter().flat_map(with_builders).collect()
+}
+
 /// A structure in a blob of its own.
 struct Built {
     structure: Structure,
+    builder: Option<Builder>,
     compiled: Compiled,
     setup: Duration,
     peak_bytes: Option<usize>,
@@ -251,12 +279,12 @@ struct Built {
 fn build(
     scene: &scene::Scene,
     options: &Options<'_>,
-    structure: Structure,
+    (structure, builder): Contender,
 ) -> Result<Built, CompareError> {
     let compiling = compile::Options {
         structures: vec![structure],
-        lattice_bits: options.lattice_bits,
-        ..compile::Options::default()
+        builder: builder.unwrap_or_default(),
+        ..options.compiling.clone()
     };
     let before = options.memory.map(|memory| {
         memory.reset_peak_usage();
@@ -278,6 +306,7 @@ fn build(
     }
     Ok(Built {
         structure,
+        builder,
         compiled,
         setup,
         peak_bytes,
@@ -291,24 +320,28 @@ impl Built {
         list: &Self,
         wrong: Option<Wrong>,
         work: Option<Works>,
-        format: Format,
+        options: &Options<'_>,
     ) -> Row {
-        let header = scene.header();
         let blob_bytes = self.compiled.blob.bytes().len();
         let stack = working_memory(scene)
             .into_iter()
-            .find(|memory| memory.format == format.name() && memory.word_bits == 32);
+            .find(|memory| memory.format == options.format.name() && memory.word_bits == 32);
+        let builder = self.builder.map(Builder::name);
         Row {
+            name: match builder {
+                Some(builder) if options.builders.len() > 1 => {
+                    format!("{} {builder}", self.structure.name())
+                }
+                _ => self.structure.name().to_owned(),
+            },
             structure: self.structure.name(),
+            builder,
+            sah_cost: builder.map(|_| self.compiled.report.sah_cost),
             setup_seconds: self.setup.as_secs_f64(),
             peak_bytes: self.peak_bytes,
             own_bytes: blob_bytes.saturating_sub(list.compiled.blob.bytes().len()),
             blob_bytes,
-            longest_list: if self.structure == Structure::List {
-                header.primitives as usize
-            } else {
-                header.longest_leaf.into()
-            },
+            longest_list: self.compiled.report.longest_list,
             stack_bytes: stack.map_or(0, |memory| memory.stack),
             wrong,
             work,

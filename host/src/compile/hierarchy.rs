@@ -52,25 +52,34 @@ impl Node {
 }
 
 /// What a step down the hierarchy costs, a primitive's test being 1.
-const STEP_COST: f64 = 1.5;
+pub const STEP_COST: f64 = 1.5;
 /// Most primitives in a leaf, unless they cannot be told apart.
-const LEAF_SIZE: usize = 4;
+pub const LEAF_SIZE: usize = 4;
 /// Nodes with at most this many primitives are swept, others binned.
 const SWEEP_SIZE: usize = 4096;
 const BINS: usize = 32;
 /// From this many primitives on, the two halves are built in parallel.
 const PARALLEL_SIZE: usize = 4096;
 
+/// Which splits of a node are tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Splits {
+    /// All of them where there are few primitives, those between bins where there are many.
+    Swept,
+    /// Those between bins.
+    Binned,
+}
+
 /// Builds a hierarchy and puts the primitives in the order of its leaves. `None` without primitives.
 ///
 /// With `leaf_size` not 0, so many primitives of one kind make a leaf, whatever rays pay for it;
 /// the heuristic decides about more than that.
-pub fn build(primitives: &mut [Primitive], leaf_size: usize) -> Option<Node> {
+pub fn build(primitives: &mut [Primitive], splits: Splits, leaf_size: usize) -> Option<Node> {
     if primitives.is_empty() {
         return None;
     }
     // A leaf is reached after at most this many pairs.
-    Some(build_node(primitives, 0, MAX_LEVELS, leaf_size))
+    Some(build_node(primitives, 0, MAX_LEVELS, splits, leaf_size))
 }
 
 /// The box of all primitives; `None` without any.
@@ -91,7 +100,25 @@ pub fn sah_cost(root: &Node) -> f64 {
     sum(root) / area(root.bounds()).max(1.0)
 }
 
-fn build_node(primitives: &mut [Primitive], first: usize, levels: usize, leaf_size: usize) -> Node {
+/// Levels that halving needs: as many as the count has bits, and kinds may have to be told apart
+/// below.
+pub fn halvings(count: usize) -> usize {
+    usize::BITS as usize - count.leading_zeros() as usize + Kind::ALL.len()
+}
+
+/// A hierarchy of halves of equal count over primitives that lie from `first` on.
+pub fn build_halved(primitives: &mut [Primitive], first: usize, levels: usize) -> Node {
+    let levels = levels.min(halvings(primitives.len()));
+    build_node(primitives, first, levels, Splits::Binned, 0)
+}
+
+fn build_node(
+    primitives: &mut [Primitive],
+    first: usize,
+    levels: usize,
+    splits: Splits,
+    leaf_size: usize,
+) -> Node {
     let bounds = union(primitives);
     let count = primitives.len();
     let leaf = Node::Leaf {
@@ -103,12 +130,10 @@ fn build_node(primitives: &mut [Primitive], first: usize, levels: usize, leaf_si
     if count == 1 || one_kind && count <= leaf_size {
         return leaf;
     }
-    // Halving needs as many levels as the count has bits; kinds may have to be told apart below.
-    let halvings = usize::BITS as usize - count.leading_zeros() as usize + Kind::ALL.len();
-    let split = if levels <= halvings {
+    let split = if levels <= halvings(count) {
         None
     } else {
-        best_split(primitives, &bounds)
+        best_split(primitives, &bounds, splits)
     };
     let leaf_cost = count as f64;
     let worth_it = split.as_ref().is_some_and(|split| split.cost < leaf_cost);
@@ -129,8 +154,8 @@ fn build_node(primitives: &mut [Primitive], first: usize, levels: usize, leaf_si
         None => halve(primitives, &bounds),
     };
     let (left, right) = primitives.split_at_mut(middle);
-    let build_left = |left| build_node(left, first, levels - 1, leaf_size);
-    let build_right = |right| build_node(right, first + middle, levels - 1, leaf_size);
+    let build_left = |left| build_node(left, first, levels - 1, splits, leaf_size);
+    let build_right = |right| build_node(right, first + middle, levels - 1, splits, leaf_size);
     let children = if count >= PARALLEL_SIZE {
         rayon::join(|| build_left(left), || build_right(right))
     } else {
@@ -168,21 +193,22 @@ impl Split {
 }
 
 /// The cheapest split, or `None` where no plane separates the centroids.
-fn best_split(primitives: &mut [Primitive], bounds: &UnitBox) -> Option<Split> {
+fn best_split(primitives: &mut [Primitive], bounds: &UnitBox, splits: Splits) -> Option<Split> {
     let scale = 1.0 / area(bounds).max(1.0);
-    let splits = (0..3).filter_map(|axis| {
+    let swept = splits == Splits::Swept && primitives.len() <= SWEEP_SIZE;
+    let best_of_axes = (0..3).filter_map(|axis| {
         let centroids = || primitives.iter().map(|p| p.centroid(axis));
         let (low, high) = (centroids().min()?, centroids().max()?);
         if low == high {
             return None;
         }
-        if primitives.len() <= SWEEP_SIZE {
+        if swept {
             sweep(primitives, axis, scale)
         } else {
             bin(primitives, axis, low, high, scale)
         }
     });
-    splits.min_by(|a, b| a.cost.total_cmp(&b.cost))
+    best_of_axes.min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
 /// Tries every split of the primitives in order of their centroids.

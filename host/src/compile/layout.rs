@@ -6,10 +6,13 @@ use super::candidates::lists::Figures;
 use super::candidates::own_rays::own_rays;
 use super::candidates::target::Targets;
 use super::candidates::{Budget, apex, ray_classes};
+use super::cells::{self, Cells, slot_boxes};
+use super::hierarchy::{Node, Primitive};
 use super::lattice::Lattice;
 use super::pairs::Flat;
 use super::primitives::Primitives;
 use super::surroundings::Surroundings;
+use super::volumes::Tree;
 use super::wide::Wide;
 use super::writer::{self, Section, section};
 use super::{CompileError, Options};
@@ -29,6 +32,8 @@ pub struct Layout {
     pub uses_leaves: bool,
     /// Entries that a walk's stack must hold.
     pub stack_depth: usize,
+    /// Primitives of the longest list that it leads to.
+    pub longest_list: usize,
     /// What its lists of candidates came to, if it has such.
     pub table: Option<Figures>,
 }
@@ -38,17 +43,27 @@ pub struct Layout {
 pub struct Ground<'g> {
     pub scene: &'g Scene,
     pub lattice: &'g Lattice,
+    /// The hierarchy, if a structure takes it.
+    pub root: Option<&'g Node>,
     pub flat: &'g Flat,
     /// Empty unless it is asked for.
     pub wide: &'g Wide,
+    /// In the order of the hierarchy's leaves.
+    pub order: &'g [Primitive],
     pub primitives: &'g Primitives,
+    /// The box of all primitives; a point without any.
     pub bounds: UnitBox,
     pub surroundings: &'g Surroundings,
     pub options: &'g Options,
 }
 
-impl Ground<'_> {
-    fn targets(&self) -> Targets<'_> {
+impl<'g> Ground<'g> {
+    fn tree(&self) -> Option<Tree<'g>> {
+        let root = self.root?;
+        Some(Tree::new(root, self.flat, self.order, self.primitives))
+    }
+
+    fn targets(&self) -> Targets<'g> {
         Targets::new(self.primitives, self.flat, self.bounds)
     }
 
@@ -73,71 +88,84 @@ impl Ground<'_> {
 
 /// Whether a structure is laid out over the hierarchy; the others leave primitives as they are.
 pub fn takes_hierarchy(structure: Structure) -> bool {
-    !matches!(structure, Structure::List | Structure::Wide)
+    !matches!(
+        structure,
+        Structure::List | Structure::Wide | Structure::Grid | Structure::Octree
+    )
 }
 
 impl Layout {
-    /// Lays a structure out over the shared hierarchy.
+    /// Lays a structure out.
     ///
     /// # Errors
-    /// If its tables do not fit their budget.
+    /// If it would exceed its budget.
     pub fn of(structure: Structure, ground: &Ground<'_>) -> Result<Self, CompileError> {
         let flat = ground.flat;
+        let budget = ground.budget(usual_budget(structure));
         Ok(match structure {
-            Structure::List => Self {
+            Structure::List => Self::apart(
                 structure,
-                sections: Vec::new(),
-                uses_leaves: false,
-                stack_depth: 0,
-                table: None,
-            },
-            Structure::Bvh => Self {
+                Cells {
+                    longest_list: ground.order.len(),
+                    ..Cells::default()
+                },
+            ),
+            Structure::Bvh => Self::over_leaves(
                 structure,
-                sections: vec![section(SectionKind::Pairs, &flat.pairs)],
-                uses_leaves: true,
-                stack_depth: flat.depth,
-                table: None,
-            },
-            Structure::Flagged => Self {
+                vec![section(SectionKind::Pairs, &flat.pairs)],
+                flat,
+            ),
+            Structure::Flagged => Self::over_leaves(
                 structure,
-                sections: vec![section(SectionKind::FlaggedPairs, &flat.flagged)],
-                uses_leaves: true,
-                stack_depth: flat.depth,
-                table: None,
-            },
-            Structure::DualSplit => Self {
+                vec![section(SectionKind::FlaggedPairs, &flat.flagged)],
+                flat,
+            ),
+            Structure::DualSplit => Self::over_leaves(
                 structure,
-                sections: vec![section(SectionKind::DualNodes, &flat.dual)],
-                uses_leaves: true,
-                stack_depth: flat.depth,
-                table: None,
-            },
+                vec![section(SectionKind::DualNodes, &flat.dual)],
+                flat,
+            ),
+            Structure::Slabs | Structure::FlaggedSlabs => {
+                let directions = ground.options.slab_directions;
+                let flagged = structure == Structure::FlaggedSlabs;
+                let tree = ground.tree();
+                let slabs = tree.map(|tree| tree.slabs(directions, flagged));
+                Self::over_leaves(structure, slabs.unwrap_or_default(), flat)
+            }
+            Structure::Spheres => {
+                let balls = ground.tree().map(|tree| vec![tree.balls()]);
+                Self::over_leaves(structure, balls.unwrap_or_default(), flat)
+            }
+            Structure::Grid => {
+                let boxes = slot_boxes(flat, ground.order);
+                let grid = cells::grid(&ground.bounds, &boxes, ground.options.grid)?;
+                Self::apart(structure, grid)
+            }
+            Structure::Octree => {
+                let boxes = slot_boxes(flat, ground.order);
+                Self::apart(structure, cells::octree(&ground.bounds, &boxes)?)
+            }
             Structure::CylinderCube => {
                 let targets = ground.targets();
                 let form = Cylinders::new(&targets);
-                let budget = ground.budget(usual_budget(structure));
                 Self::of_cube(structure, cylinder_cube::build(&form, &targets, budget)?)
             }
             Structure::CylinderCubeTight => {
                 let targets = ground.targets();
-                let budget = ground.budget(usual_budget(structure));
                 let cube = cylinder_cube::build(&Hulls(&targets), &targets, budget)?;
                 Self::of_cube(structure, cube)
             }
             Structure::CylinderCubeEntry => {
                 let targets = ground.targets();
-                let budget = ground.budget(usual_budget(structure));
                 let cube = cylinder_cube::build(&EntryNodes(&targets), &targets, budget)?;
                 Self::of_cube(structure, cube)
             }
             Structure::RayClasses => {
-                let budget = ground.budget(usual_budget(structure));
                 let rays = ground.own_rays()?;
                 Self::of_classes(ray_classes::build(&ground.targets(), &rays, budget)?)
             }
             Structure::Apex => {
                 let Surroundings { view, lights, .. } = ground.surroundings;
-                let budget = ground.budget(usual_budget(structure));
                 Self::of_apexes(apex::build(&ground.targets(), view, lights, budget))
             }
             Structure::Wide => {
@@ -147,10 +175,35 @@ impl Layout {
                     sections: wide.sections(ground.primitives, ground.lattice.bits),
                     uses_leaves: false,
                     stack_depth: wide.stack_depth,
+                    longest_list: wide.longest_list(),
                     table: None,
                 }
             }
         })
+    }
+
+    /// A structure over the leaves that hierarchies share, as deep as their pairs.
+    fn over_leaves(structure: Structure, sections: Vec<Section>, flat: &Flat) -> Self {
+        Self {
+            structure,
+            sections,
+            uses_leaves: true,
+            stack_depth: flat.depth,
+            longest_list: flat.longest_leaf,
+            table: None,
+        }
+    }
+
+    /// A structure that leads to primitives by itself.
+    fn apart(structure: Structure, cells: Cells) -> Self {
+        Self {
+            structure,
+            sections: cells.sections,
+            uses_leaves: false,
+            stack_depth: cells.stack_depth,
+            longest_list: cells.longest_list,
+            table: None,
+        }
     }
 
     /// Bytes of its own sections.

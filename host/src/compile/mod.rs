@@ -1,6 +1,8 @@
 //! Compiles a scene into a blob: lattice, primitives, hierarchy, effects, bytes.
 
+mod builder;
 mod candidates;
+mod cells;
 mod dual_split;
 mod hierarchy;
 mod lattice;
@@ -8,13 +10,15 @@ mod layout;
 mod pairs;
 mod primitives;
 mod surroundings;
+mod volumes;
 mod wide;
 mod writer;
 
+pub use builder::Builder;
 pub use candidates::census::{Census, CubeCensus};
 pub use candidates::lists::Figures;
 pub use lattice::BITS as LATTICE_BITS;
-pub use layout::usual_budget;
+pub use layout::{takes_hierarchy, usual_budget};
 pub use wide::Quality;
 
 use crate::scene::{Object, Scene};
@@ -22,7 +26,7 @@ use candidates::target::Targets;
 use glam::DVec3;
 use gridel_core::Structure;
 use gridel_core::blob::record::{Gridels, UnitBox};
-use hierarchy::Primitive;
+use hierarchy::{Primitive, Splits};
 use lattice::Lattice;
 use layout::{Ground, Layout};
 use primitives::Primitives;
@@ -44,6 +48,12 @@ pub struct Options {
     pub leaf_size: usize,
     /// Time that the builder of the eight-wide hierarchy takes.
     pub quality: Quality,
+    /// How the hierarchy is built that all structures but the list, `wide`, the grid and the octree share.
+    pub builder: Builder,
+    /// Directions of slabs: 3, 7 or 13.
+    pub slab_directions: usize,
+    /// Divisions of the grid along each axis, 1 to 1024; four cells a primitive without.
+    pub grid: Option<[u32; 3]>,
     /// Refuse a blob that would be larger.
     pub max_bytes: Option<u64>,
     /// Gridels along a side of a cylinder cube's faces, 1 to 64; otherwise as many as the budget
@@ -60,6 +70,9 @@ impl Default for Options {
             lattice_bits: 24,
             leaf_size: 0,
             quality: Quality::default(),
+            builder: Builder::default(),
+            slab_directions: 7,
+            grid: None,
             max_bytes: None,
             gridels: None,
             budget: None,
@@ -87,6 +100,8 @@ pub struct Report {
     pub sah_cost: f64,
     /// Length of the blob.
     pub bytes: usize,
+    /// Primitives of the longest list that a ray can be led to.
+    pub longest_list: usize,
     /// Effects and the names of what calls for each.
     pub effects: Vec<(String, Vec<String>)>,
     /// What the compiler supplied because the scene has none.
@@ -142,17 +157,16 @@ pub enum CompileError {
         "the table of {structure}{size} takes {at_least}{needed} bytes, more than its budget of \
          {budget}"
     )]
-    #[diagnostic(help(
-        "raise `--budget`, or ask for fewer gridels with `--gridels`, or leave both out"
-    ))]
+    #[diagnostic(help("{remedy}"))]
     OverBudget {
         structure: &'static str,
-        /// Such as ` with 4 gridels a side`.
+        /// Such as ` with 4 gridels a side` or ` with 8 by 8 by 2 cells`.
         size: String,
         needed: u64,
         /// `at least ` where the whole was not worth counting.
         at_least: &'static str,
         budget: u64,
+        remedy: &'static str,
     },
     #[error("the blob would have {bytes} bytes, {over} more than --max-bytes allows")]
     #[diagnostic(help("{advice}"))]
@@ -198,7 +212,12 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
     let mut order: Vec<Primitive> = snapped.boxes();
     let bounds = hierarchy::bounds(&order);
     let mut root = if structures.iter().copied().any(layout::takes_hierarchy) {
-        hierarchy::build(&mut order, options.leaf_size.min(LARGEST_LEAF))
+        builder::build(
+            options.builder,
+            &mut order,
+            options.leaf_size.min(LARGEST_LEAF),
+            |primitive| snapped.groups(scene, primitive),
+        )
     } else {
         None
     };
@@ -232,8 +251,10 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
     let ground = Ground {
         scene,
         lattice: &lattice,
+        root: root.as_ref(),
         flat: &flat,
         wide: &wide,
+        order: &order,
         primitives: &snapped,
         bounds: bounds.unwrap_or(UnitBox([[0; 2]; 3])),
         surroundings: &surroundings,
@@ -253,6 +274,8 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
             })
         })
         .collect();
+    let longest_lists = layouts.iter().map(|layout| layout.longest_list);
+    let longest_list = longest_lists.max().unwrap_or(0);
     let sizes: Vec<_> = layouts
         .iter()
         .map(|layout| (layout.structure, layout.bytes()))
@@ -273,6 +296,7 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
         collapsed: snapped.collapsed.clone(),
         sah_cost,
         bytes,
+        longest_list,
         effects: surroundings.called_for.clone(),
         supplied: surroundings.supplied.clone(),
         setup,
@@ -291,7 +315,7 @@ pub fn cube_census(scene: &Scene, gridels: u32) -> Result<CubeCensus, CompileErr
     let lattice = Lattice::around(lowest, highest, Options::default().lattice_bits)?;
     let snapped = Primitives::snap(scene, &lattice)?;
     let mut order: Vec<Primitive> = snapped.boxes();
-    let root = hierarchy::build(&mut order, Options::default().leaf_size);
+    let root = hierarchy::build(&mut order, Splits::Swept, Options::default().leaf_size);
     let flat = root.as_ref().map(|root| pairs::flatten(root, &order));
     let bounds = root.map_or(UnitBox([[0; 2]; 3]), |root| *root.bounds());
     let flat = flat.unwrap_or_default();

@@ -161,6 +161,15 @@ impl Primitives {
         .concat()
     }
 
+    /// The groups that a primitive is in, the largest first, as the parts of its object's name say
+    /// (`A/CYS 3/CA` is the atom CA of the residue CYS 3 of the chain A), and its number.
+    pub fn groups<'s>(&self, scene: &'s Scene, primitive: &Primitive) -> (Vec<&'s str>, u32) {
+        let number = self.numbers[primitive.kind as usize][primitive.index as usize];
+        let behind = self.object_first.partition_point(|&first| first <= number);
+        let object = &scene.objects[behind - 1];
+        (object.name.split('/').collect(), number)
+    }
+
     fn add(
         &mut self,
         object: &Object,

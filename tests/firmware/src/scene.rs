@@ -14,12 +14,16 @@ pub type Number = f64;
 #[cfg(feature = "fixed")]
 pub type Number = gridel_core::Fixed;
 
+#[cfg(feature = "apex")]
+pub type Accel = gridel_core::Apex;
 #[cfg(feature = "bvh")]
 pub type Accel = gridel_core::Bvh;
 #[cfg(feature = "dual-split")]
 pub type Accel = gridel_core::DualSplit;
 #[cfg(feature = "flagged")]
 pub type Accel = gridel_core::Flagged;
+#[cfg(feature = "grid")]
+pub type Accel = gridel_core::Grid;
 
 /// A workspace that is exactly large enough.
 pub type Space = Workspace<Number, STACK_DEPTH, WORK_DEPTH>;

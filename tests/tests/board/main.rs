@@ -315,6 +315,60 @@ fn primary_rays_of_suzanne_in_16_kib() {
     figures.check();
 }
 
+/// The paper's claims, on its own sorts of scenes, and what was made of its ideas: instructions of
+/// whole pictures, and of rays without shading.
+#[test]
+fn the_papers_scenes() {
+    if !firmware::available() {
+        return;
+    }
+    const STRUCTURES: [Structure; 5] = [
+        Structure::Bvh,
+        Structure::Flagged,
+        Structure::DualSplit,
+        Structure::Grid,
+        Structure::Apex,
+    ];
+    let mut figures = Figures::new();
+    for scene in scenes::papers(&STRUCTURES) {
+        for (name, format) in [("mps2-an386", Format::F32), ("mps2-an385", Format::Fixed)] {
+            let board = board(name);
+            let spent: Vec<[f64; 3]> = STRUCTURES
+                .into_iter()
+                .map(|structure| {
+                    let build = Build::new(board, format, structure, &scene);
+                    let program = build.program("picture");
+                    let report = program.run();
+                    let picture = program.file("picture.rgb");
+                    assert!(picture == scene.picture(format), "{build}: another picture");
+                    figures.add(&build.to_string(), &report);
+                    ["picture", "ray", "shadow-ray"]
+                        .map(|phase| report[&format!("{phase}-instructions")] as f64)
+                })
+                .collect();
+            let [plain, flagged, dual, grid, apex] = spent[..] else {
+                unreachable!("five structures");
+            };
+            let about = format!("{} {}", scene.name, format.name());
+            println!(
+                "{about}: picture, plain over flagged {:.3}, over dual-split {:.3}",
+                plain[0] / flagged[0],
+                plain[0] / dual[0]
+            );
+            for (ray, phase) in [(1, "primary"), (2, "shadow")] {
+                println!(
+                    "{about}: {phase} ray, apex of grid {:.3}, of bvh {:.3}, of dual-split {:.3}",
+                    apex[ray] / grid[ray],
+                    apex[ray] / plain[ray],
+                    apex[ray] / dual[ray]
+                );
+            }
+            assert!(flagged[0] < plain[0], "{about}: flagged sides do not pay");
+        }
+    }
+    figures.check();
+}
+
 #[test]
 fn the_cores_own_tests_pass_on_boards() {
     if !firmware::available() {

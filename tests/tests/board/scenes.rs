@@ -31,6 +31,23 @@ pub fn glass_chess() -> Compiled {
     compiled
 }
 
+/// Scenes of the paper's sorts and sizes, a glass chessboard and two crystals for its molecules, with
+/// some structures.
+pub fn papers(structures: &[Structure]) -> [Compiled; 3] {
+    [
+        ("paper-150", load(&fixture_path("glass-chess"))),
+        ("paper-2800", sample::diamond(sample::DIAMOND_2_800)),
+        ("paper-27000", sample::diamond(sample::DIAMOND_27_000)),
+    ]
+    .map(|(name, scene)| {
+        let options = Options {
+            structures: structures.to_vec(),
+            ..Options::default()
+        };
+        compile_with(name, scene, [48, 36], options)
+    })
+}
+
 fn view_depth(compiled: &Compiled) -> u8 {
     let scene = compiled.blob.scene().expect("the compiler's own blob");
     scene.view().depth

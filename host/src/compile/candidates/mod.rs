@@ -80,6 +80,7 @@ impl From<OverBudget> for CompileError {
             needed: over.needed,
             at_least: if over.at_least { "at least " } else { "" },
             budget: over.bytes,
+            remedy: "raise `--budget`, or ask for fewer gridels with `--gridels`, or leave both out",
         }
     }
 }
@@ -118,7 +119,7 @@ impl Layout {
             entries: SectionKind::ClassEntries,
             keys: Some(SectionKind::ClassKeys),
         };
-        let table = Some(classes.lists.figures);
+        let figures = classes.lists.figures;
         let mut sections = vec![section(SectionKind::ClassNodes, &classes.nodes)];
         sections.extend(kinds.of(classes.lists));
         Self {
@@ -126,7 +127,8 @@ impl Layout {
             sections,
             uses_leaves: false,
             stack_depth: 0,
-            table,
+            longest_list: figures.longest as usize,
+            table: Some(figures),
         }
     }
 
@@ -138,7 +140,7 @@ impl Layout {
             entries: SectionKind::ApexEntries,
             keys: Some(SectionKind::ApexKeys),
         };
-        let table = Some(apexes.lists.figures);
+        let figures = apexes.lists.figures;
         let mut sections = vec![
             section(SectionKind::ApexPoints, &apexes.points),
             section(SectionKind::ApexWindows, &apexes.windows),
@@ -149,7 +151,8 @@ impl Layout {
             sections,
             uses_leaves: false,
             stack_depth: 0,
-            table,
+            longest_list: figures.longest as usize,
+            table: Some(figures),
         }
     }
 
@@ -184,15 +187,22 @@ impl Layout {
                 },
             ),
         };
-        let table = Some(cube.lists.figures);
+        let figures = cube.lists.figures;
+        let holds_nodes = structure == Structure::CylinderCubeEntry;
         let mut sections = vec![section(gridels, &[cube.gridels])];
         sections.extend(kinds.of(cube.lists));
         Self {
             structure,
             sections,
-            uses_leaves: structure == Structure::CylinderCubeEntry,
+            uses_leaves: holds_nodes,
             stack_depth: 0,
-            table,
+            // Nodes are not primitives: the hierarchy's leaves are what they lead to.
+            longest_list: if holds_nodes {
+                0
+            } else {
+                figures.longest as usize
+            },
+            table: Some(figures),
         }
     }
 }

@@ -227,6 +227,17 @@ impl Wide {
         self.homes[place] = home as u32;
     }
 
+    /// Primitives of the fullest cluster or leaf.
+    pub fn longest_list(&self) -> usize {
+        let strips = self
+            .strips
+            .iter()
+            .map(|it| it.triangles.iter().flatten().count());
+        let packs = self.packs.iter().map(|it| it.spheres.len());
+        let singles = usize::from(self.slots.iter().any(|slots| !slots.is_empty()));
+        strips.chain(packs).max().unwrap_or(0).max(singles)
+    }
+
     /// The hierarchy's sections in a blob.
     pub fn sections(&self, primitives: &Primitives, lattice_bits: u8) -> Vec<Section> {
         let (strips, packs) = (self.strip_rows(primitives), self.pack_rows(primitives));

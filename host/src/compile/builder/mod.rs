@@ -1,0 +1,100 @@
+//! The ways to build a hierarchy: the paper's, its foils, and the best there is time for offline.
+//!
+//! | file | builders |
+//! |---|---|
+//! | `../hierarchy.rs` | top down by the surface area heuristic, swept or binned |
+//! | `insertion.rs` | the paper's: one primitive after the other, by the least increase of volume |
+//! | `pairing.rs` | bottom up, pairs at random or nearest |
+//! | `modelled.rs` | the groups of the scene file |
+//! | `reinsertion.rs` | swept, then improved by taking subtrees out and putting them back |
+//! | `tree.rs` | the tree that all but the first build, and how it becomes a hierarchy |
+//!
+//! All are bounded: none takes more than `O(n log n)` steps a level or pass, some hundred bytes a
+//! primitive, and [`MAX_LEVELS`](gridel_core::accel::MAX_LEVELS) levels: below where a
+//! tree would be deeper, its subtrees are halved instead.
+
+mod insertion;
+mod modelled;
+mod pairing;
+mod reinsertion;
+mod tree;
+
+use super::hierarchy::{self, Node, Primitive, Splits};
+
+/// A way to build a hierarchy.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Builder {
+    /// Top down by the surface area heuristic: all splits where there are few primitives, 32 bins
+    /// where there are many.
+    #[default]
+    Sah,
+    /// The same with bins throughout.
+    Binned,
+    /// That of [`Sah`](Self::Sah), improved by reinsertion: takes longest, and is best for boxes.
+    Reinsertion,
+    /// The paper's: each primitive enters at the root and goes where it adds least volume.
+    Insertion,
+    /// Bottom up: the nearest two become one.
+    NearestPairing,
+    /// Bottom up: any two become one.
+    RandomPairing,
+    /// The groups of the scene file: objects of OBJ, chains and residues of molecules.
+    Modelled,
+}
+
+impl Builder {
+    /// All builders, the default first.
+    pub const ALL: [Builder; 7] = [
+        Builder::Sah,
+        Builder::Binned,
+        Builder::Reinsertion,
+        Builder::Insertion,
+        Builder::NearestPairing,
+        Builder::RandomPairing,
+        Builder::Modelled,
+    ];
+
+    /// The name that command lines and tables use.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Builder::Sah => "sah",
+            Builder::Binned => "binned",
+            Builder::Reinsertion => "reinsertion",
+            Builder::Insertion => "insertion",
+            Builder::NearestPairing => "nearest-pairing",
+            Builder::RandomPairing => "random-pairing",
+            Builder::Modelled => "modelled",
+        }
+    }
+}
+
+/// Builds a hierarchy and puts the primitives in the order of its leaves; `None` without primitives.
+/// `group` gives the names of the groups that a primitive is in, the largest first, and its number
+/// in scene-file order. Builders other than the first two make leaves of the usual size where
+/// `leaf_size` asks for larger ones.
+pub fn build<'g>(
+    builder: Builder,
+    primitives: &mut [Primitive],
+    leaf_size: usize,
+    group: impl Fn(&Primitive) -> (Vec<&'g str>, u32),
+) -> Option<Node> {
+    if primitives.len() < 2 {
+        return hierarchy::build(primitives, Splits::Swept, leaf_size);
+    }
+    let tree = match builder {
+        Builder::Sah => return hierarchy::build(primitives, Splits::Swept, leaf_size),
+        Builder::Binned => return hierarchy::build(primitives, Splits::Binned, leaf_size),
+        Builder::Reinsertion => {
+            let root = hierarchy::build(primitives, Splits::Swept, leaf_size)?;
+            reinsertion::improve(&root)
+        }
+        Builder::Insertion => insertion::build(primitives),
+        Builder::NearestPairing => pairing::nearest(primitives),
+        Builder::RandomPairing => pairing::random(primitives),
+        Builder::Modelled => modelled::build(primitives, group),
+    };
+    Some(tree.finish(primitives))
+}
+
+#[cfg(test)]
+mod tests;
