@@ -113,6 +113,17 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         }
     }
 
+    /// Tells of those primitives of a cluster that lanes rejected.
+    #[cfg(feature = "wide")]
+    #[inline(always)]
+    fn tell_missed<C: Count>(&self, missed: u32, place: impl Fn(u8) -> Place, count: &mut C) {
+        if C::TELLS {
+            for lane in (0..8).filter(|&lane| missed >> lane & 1 != 0) {
+                self.tell(place(lane), None, count);
+            }
+        }
+    }
+
     /// Tests the primitives of a leaf.
     #[inline(always)]
     fn leaf<A: Accel, C: Count>(&mut self, leaf: Leaf, count: &mut C) {
@@ -139,6 +150,8 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         };
         count.objects(strip.members().count());
         let mut met = strip::met(&self.projection, self.ray.major, strip);
+        let missed = strip.members().places() & !met;
+        self.tell_missed(missed, |place| Place::Strip(number, place), count);
         while met != 0 {
             let place = met.trailing_zeros();
             met &= met - 1;
@@ -166,6 +179,8 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         };
         count.objects(pack.members().count());
         let mut met = pack::met(self.ray, self.recip_norm2, pack);
+        let missed = ((1 << pack.members().count()) - 1) & !met;
+        self.tell_missed(missed, |lane| Place::Pack(number, lane), count);
         while met != 0 {
             let lane = met.trailing_zeros();
             met &= met - 1;
@@ -297,7 +312,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                 continue;
             };
             if projection.meets::<MAJOR, V>(a, b, c) {
-                self.triangle_in_slot(index, count);
+                self.triangle_in_slot([a, b, c].map(Vertex::position), index, count);
             } else {
                 self.tell(Place::Slot(Kind::Triangle, index), None, count);
             }
@@ -306,10 +321,8 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
 
     /// Takes a triangle of its own record that the ray meets somewhere on its line.
     #[inline(never)]
-    fn triangle_in_slot<C: Count>(&mut self, index: u32, count: &mut C) {
-        if let Some(corners) = self.scene.shapes.indexed_triangle(index as usize) {
-            self.triangle(corners, Place::Slot(Kind::Triangle, index), count);
-        }
+    fn triangle_in_slot<C: Count>(&mut self, corners: [[i32; 3]; 3], index: u32, count: &mut C) {
+        self.triangle(corners, Place::Slot(Kind::Triangle, index), count);
     }
 
     /// Takes a triangle that the ray meets somewhere on its line.

@@ -62,7 +62,7 @@ fn structures_are_those_asked_for() {
             assert_eq!(scene.holds(structure), held.contains(&structure));
         }
     }
-    for unknown in ["octree", "BVH", ""] {
+    for unknown in ["kd-tree", "BVH", ""] {
         folder.fails(
             2,
             &["build", "quick.toml", "-o", "new", "--accel", unknown],

@@ -148,7 +148,7 @@ fn wrong_numbers_are_usage_errors() {
     }
     fails(&["--depth", "17"], &["--depth"]);
     fails(&["--format", "f16"], &["fixed, f32, f64"]);
-    fails(&["--accel", "grid"], &["list, bvh, flagged, dual-split"]);
+    fails(&["--accel", "kd-tree"], &["list, bvh, flagged, dual-split"]);
     fails(&["--heat-map", "a.png"], &["another name"]);
     fails(&["--heat-map", "heat.ppm"], &[".png"]);
     fails(
