@@ -312,7 +312,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                 continue;
             };
             if projection.meets::<MAJOR, V>(a, b, c) {
-                self.triangle_in_slot([a, b, c].map(Vertex::position), index, count);
+                self.triangle_in_slot(vertices, record, index, count);
             } else {
                 self.tell(Place::Slot(Kind::Triangle, index), None, count);
             }
@@ -320,9 +320,22 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     }
 
     /// Takes a triangle of its own record that the ray meets somewhere on its line.
+    ///
+    /// Its corners are read again: handed on, they would take up memory for those that are not met.
     #[inline(never)]
-    fn triangle_in_slot<C: Count>(&mut self, corners: [[i32; 3]; 3], index: u32, count: &mut C) {
-        self.triangle(corners, Place::Slot(Kind::Triangle, index), count);
+    fn triangle_in_slot<V: Vertex, I: Corners, C: Count>(
+        &mut self,
+        vertices: &[V],
+        record: &I,
+        index: u32,
+        count: &mut C,
+    ) {
+        let [a, b, c] = record.corners();
+        let corners = (vertices.get(a), vertices.get(b), vertices.get(c));
+        if let (Some(a), Some(b), Some(c)) = corners {
+            let corners = [a, b, c].map(Vertex::position);
+            self.triangle(corners, Place::Slot(Kind::Triangle, index), count);
+        }
     }
 
     /// Takes a triangle that the ray meets somewhere on its line.

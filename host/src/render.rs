@@ -6,8 +6,8 @@
 use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
 use gridel_core::render::{MAX_RAY_DEPTH, RenderError};
 use gridel_core::{
-    Accel, Bvh, Count, Counters, DualSplit, Effects, Fixed, Format, NoCount, Number, Renderer,
-    Scene, Settings, Structure, Wide, Workspace,
+    Accel, Count, Counters, DualSplit, Effects, Fixed, Format, NoCount, Number, Renderer, Scene,
+    Settings, Structure, Wide, Workspace,
 };
 use rayon::prelude::*;
 use std::ops::Range;
@@ -71,7 +71,6 @@ fn with_format<N: Number>(
     // Pictures are made through these; the others are there to be compared.
     if !job.count && scene.holds(job.structure) {
         match job.structure {
-            Structure::Bvh => return fast::<N, Bvh>(scene, job, progress),
             Structure::DualSplit => return fast::<N, DualSplit>(scene, job, progress),
             Structure::Wide => return fast::<N, Wide>(scene, job, progress),
             _ => {}
@@ -103,9 +102,7 @@ fn fast<N: Number, A: Accel>(
     progress: &(dyn Fn() + Sync),
 ) -> Result<Picture, RenderError> {
     let fits = |set| Effects(set).contains(scene.effects());
-    if fits(0) {
-        rows::<N, A, 0>(scene, job, progress)
-    } else if fits(SHADOWED) {
+    if fits(SHADOWED) {
         rows::<N, A, SHADOWED>(scene, job, progress)
     } else if fits(OPAQUE) {
         rows::<N, A, OPAQUE>(scene, job, progress)

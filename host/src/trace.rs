@@ -1,12 +1,11 @@
 //! Traces rays of the user's own through a blob.
 
 use glam::DVec3;
-use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
 use gridel_core::{
-    Accel, Count, Fixed, Format, Number, Ray, Scene, Stack, Structure, StructureVisitor, any_hit,
-    closest_hit,
+    Accel, Bvh, Count, DualSplit, Fixed, Flagged, Format, Number, Ray, Scene, Stack, Structure,
+    Wide, any_hit, closest_hit,
 };
-use std::marker::PhantomData;
 
 /// A ray in scene units; t counts multiples of the direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,29 +67,18 @@ fn with_format<N: Number, C: Count>(
     hits: &mut [SceneHit],
     count: &mut C,
 ) {
-    struct Through<'t, N, C> {
-        scene: &'t Scene<'t>,
-        rays: &'t [SceneRay],
-        any: bool,
-        hits: &'t mut [SceneHit],
-        count: &'t mut C,
-        format: PhantomData<N>,
+    let any = query.any;
+    // What hosts and boards trace with; the others are there to be compared.
+    match query.structure {
+        Structure::Bvh => trace_through::<N, Bvh, C>(scene, rays, any, hits, count),
+        Structure::Flagged => trace_through::<N, Flagged, C>(scene, rays, any, hits, count),
+        Structure::DualSplit => trace_through::<N, DualSplit, C>(scene, rays, any, hits, count),
+        Structure::Wide => trace_through::<N, Wide, C>(scene, rays, any, hits, count),
+        other => match scene.choose(other) {
+            Some(scene) => trace_through::<N, Chosen, C>(&scene, rays, any, hits, count),
+            None => hits.fill(SceneHit::MISS),
+        },
     }
-    impl<N: Number, C: Count> StructureVisitor for Through<'_, N, C> {
-        type Output = ();
-
-        fn visit<A: Accel>(self) {
-            trace_through::<N, A, C>(self.scene, self.rays, self.any, self.hits, self.count);
-        }
-    }
-    query.structure.visit(Through {
-        scene,
-        rays,
-        any: query.any,
-        hits,
-        count,
-        format: PhantomData::<N>,
-    });
 }
 
 fn trace_through<N: Number, A: Accel, C: Count>(

@@ -13,6 +13,7 @@ use gridel_host::{compile, sample, scene};
 use gridel_tests::scenes;
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use std::{env, fs};
 
 /// A scene of the paper.
@@ -162,6 +163,8 @@ fn hold(size: u16) {
         all.insert(name.to_owned(), scene);
     }
     let counted = Value::Object(all);
+    static FILE: Mutex<()> = Mutex::new(());
+    let _one_at_a_time = FILE.lock().unwrap_or_else(PoisonError::into_inner);
     let mut recorded: Map<String, Value> = fs::read(path())
         .ok()
         .map(|bytes| serde_json::from_slice(&bytes).expect("a table"))

@@ -24,6 +24,7 @@ use super::{Accel, Leaf, Records, StackView, Structure};
 use crate::blob::record::GridShape;
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
 use crate::count::Count;
+use crate::event::{Event, Place};
 use crate::number::Number;
 use crate::ray::Ray;
 
@@ -59,6 +60,16 @@ impl Accel for Grid {
         count.boxes(1);
         let limit = <Cull as PairCulling<N>>::limit;
         let root = PairCulling::<N>::root(cull, scene.bounds(), limit(ray.tmax));
+        if C::TELLS {
+            count.tell(Event::Tested {
+                place: Place {
+                    what: "grid",
+                    number: 0,
+                },
+                sides: scene.bounds().0.map(|axis| axis.map(Some)),
+                span: root.units(),
+            });
+        }
         if root.near > root.far {
             return;
         }
@@ -67,7 +78,14 @@ impl Accel for Grid {
         let mut steps = Steps::new(cull, divide(scene.bounds(), shape.counts()), root.near);
         loop {
             count.cells(1);
-            match tester.list::<N, C>(steps.cell() as usize, count) {
+            let cell = steps.cell();
+            if C::TELLS {
+                count.tell(Event::Opened(Place {
+                    what: "cell",
+                    number: cell,
+                }));
+            }
+            match tester.list::<N, C>(cell as usize, count) {
                 Ok(None) => {}
                 Ok(Some(tmax)) => end = end.min(limit(tmax)),
                 Err(()) => return,

@@ -15,6 +15,7 @@ use super::cull::{Cull, Interval, PairCulling};
 use super::{Accel, Entry, Leaf, Records, StackView, Structure};
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
 use crate::count::Count;
+use crate::event::{self, Event, Sides};
 use crate::number::Number;
 use crate::ray::Ray;
 use heapless::Vec;
@@ -122,6 +123,13 @@ impl Accel for Octree {
         count.planes(6);
         count.boxes(1);
         let root = PairCulling::<N>::root(cull, scene.bounds(), end);
+        if C::TELLS {
+            count.tell(Event::Tested {
+                place: told(0),
+                sides: scene.bounds().0.map(|axis| axis.map(Some)),
+                span: root.units(),
+            });
+        }
         if root.near > root.far {
             return;
         }
@@ -132,6 +140,9 @@ impl Accel for Octree {
         let (mut number, mut place) = (0_u32, Place::root(held.levels));
         stack.clear();
         loop {
+            if C::TELLS {
+                count.tell(Event::Opened(told(number)));
+            }
             let node = OctreeNode(held.nodes.get(number as usize).copied().unwrap_or(u32::MAX));
             if node == OctreeNode::EMPTY {
             } else if node.is_leaf() {
@@ -160,6 +171,13 @@ impl Accel for Octree {
                     let near = x.near.max(y.near).max(z.near);
                     let far = x.far.min(y.far).min(z.far);
                     let child = node.0.wrapping_add(sides);
+                    if C::TELLS {
+                        count.tell(Event::Tested {
+                            place: told(child),
+                            sides: Sides::default(),
+                            span: Interval { near, far }.units(),
+                        });
+                    }
                     let empty = held.nodes.get(child as usize) == Some(&OctreeNode::EMPTY.0);
                     if near > far || empty {
                         continue;
@@ -183,6 +201,14 @@ impl Accel for Octree {
                 }
             }
         }
+    }
+}
+
+/// A node as events tell it.
+fn told(number: u32) -> event::Place {
+    event::Place {
+        what: "node",
+        number,
     }
 }
 

@@ -5,7 +5,7 @@
 //! contenders differ. What all of them have in common on the other rays is not doubted.
 
 use super::measure::{Answer, Question, Questions, ask, stride};
-use gridel_core::{NoCount, Number, Ray, Scene, Structure};
+use gridel_core::{Number, Ray, Scene, Structure};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -92,8 +92,8 @@ fn all_answers<N: Number>(
     let mut answers = Vec::with_capacity(rays.len());
     // Runs of one question.
     for run in rays.chunk_by(|a, b| a.0 == b.0) {
-        let same = run.iter().map(|&(_, ray)| ray);
-        ask(contender, run[0].0, same, &mut NoCount, |answer| {
+        let mut same = run.iter().map(|&(_, ray)| ray);
+        ask(contender, run[0].0, &mut same, &mut |answer| {
             answers.push(answer);
         });
     }

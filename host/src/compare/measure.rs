@@ -1,7 +1,7 @@
 //! Tracing with counters, and tracing against the clock.
 
 use super::{Options, PictureRays, Works};
-use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
 use gridel_core::{
     Accel, Count, Counters, NoCount, Number, Ray, Scene, Stack, Structure, StructureVisitor,
     any_hit, closest_primitive,
@@ -55,56 +55,53 @@ impl<N: Number> Questions<'_, N> {
     }
 }
 
-/// Asks one ray after the other through one structure, and hands over what comes of it.
-pub struct Ask<'a, N: Number, R, C, S> {
-    pub scene: &'a Scene<'a>,
-    pub rays: R,
-    pub question: Question,
-    pub count: &'a mut C,
-    pub sink: S,
-    pub format: std::marker::PhantomData<N>,
-}
+/// Rays, one after the other.
+pub type Rays<'i, 'r, N> = &'i mut dyn Iterator<Item = &'r Ray<N>>;
 
-impl<'r, N: Number, R: Iterator<Item = &'r Ray<N>>, C: Count, S: FnMut(Answer)> StructureVisitor
-    for Ask<'_, N, R, C, S>
-{
-    type Output = ();
-
-    fn visit<A: Accel>(mut self) {
-        let mut stack = Stack::<MAX_STACK_DEPTH>::new();
-        for ray in self.rays {
-            (self.sink)(match self.question {
-                Question::Closest => {
-                    closest_primitive::<N, A, C>(self.scene, ray, stack.as_view(), self.count)
-                        .map_or(NOTHING, |found| {
-                            (found.primitive, N::far_to_f64(found.t).to_bits())
-                        })
-                }
-                Question::Any => {
-                    let any = any_hit::<N, A, C>(self.scene, ray, stack.as_view(), self.count);
-                    (u32::from(any), 0)
-                }
-            });
-        }
-    }
-}
-
-/// Asks rays through a structure.
-pub fn ask<'r, N: Number, C: Count>(
+/// Asks rays through a structure of its own code, and hands over what comes of it.
+pub fn ask<N: Number>(
     (scene, structure): (&Scene<'_>, Structure),
     question: Question,
-    rays: impl Iterator<Item = &'r Ray<N>>,
-    count: &mut C,
-    sink: impl FnMut(Answer),
+    rays: Rays<'_, '_, N>,
+    sink: &mut dyn FnMut(Answer),
 ) {
-    structure.visit(Ask {
-        scene,
-        rays,
-        question,
-        count,
-        sink,
-        format: std::marker::PhantomData::<N>,
-    });
+    struct Ask<'a, 'i, 'r, N: Number>(
+        &'a Scene<'a>,
+        Question,
+        Rays<'i, 'r, N>,
+        &'a mut dyn FnMut(Answer),
+    );
+    impl<N: Number> StructureVisitor for Ask<'_, '_, '_, N> {
+        type Output = ();
+
+        fn visit<A: Accel>(self) {
+            let Self(scene, question, rays, sink) = self;
+            ask_through::<N, A, _>(scene, question, rays, &mut NoCount, sink);
+        }
+    }
+    structure.visit(Ask(scene, question, rays, sink));
+}
+
+fn ask_through<N: Number, A: Accel, C: Count>(
+    scene: &Scene<'_>,
+    question: Question,
+    rays: Rays<'_, '_, N>,
+    count: &mut C,
+    sink: &mut dyn FnMut(Answer),
+) {
+    let mut stack = Stack::<MAX_STACK_DEPTH>::new();
+    for ray in rays {
+        sink(match question {
+            Question::Closest => closest_primitive::<N, A, C>(scene, ray, stack.as_view(), count)
+                .map_or(NOTHING, |found| {
+                    (found.primitive, N::far_to_f64(found.t).to_bits())
+                }),
+            Question::Any => {
+                let any = any_hit::<N, A, C>(scene, ray, stack.as_view(), count);
+                (u32::from(any), 0)
+            }
+        });
+    }
 }
 
 /// What some rays took.
@@ -159,17 +156,20 @@ pub fn measure<N: Number>(
         counts.push([0, 1].map(|group: usize| {
             let (mut counters, mut rays) = (Counters::default(), 0);
             for &(question, all) in &groups[group] {
-                let some = all.iter().step_by(stride);
+                let mut some = all.iter().step_by(stride);
                 rays += some.len();
-                ask(
-                    (scene, structure),
-                    question,
-                    some,
-                    &mut counters,
-                    |answer| {
-                        black_box(answer);
-                    },
-                );
+                // The work is the same as through the structure's own code.
+                if let Some(scene) = scene.choose(structure) {
+                    ask_through::<N, Chosen, _>(
+                        &scene,
+                        question,
+                        &mut some,
+                        &mut counters,
+                        &mut |answer| {
+                            black_box(answer);
+                        },
+                    );
+                }
             }
             (counters, rays)
         }));
@@ -188,8 +188,8 @@ pub fn measure<N: Number>(
             for (group, seconds) in groups.iter().zip(seconds) {
                 let started = Instant::now();
                 for &(question, all) in group {
-                    let some = all.iter().step_by(stride);
-                    ask((scene, structure), question, some, &mut NoCount, |answer| {
+                    let mut some = all.iter().step_by(stride);
+                    ask((scene, structure), question, &mut some, &mut |answer| {
                         black_box(answer);
                     });
                 }
