@@ -131,8 +131,9 @@ impl Accel for Wide {
                     return;
                 };
                 let (mut met, near) = cull.children(node, limit);
-                count.planes(48);
-                count.boxes(8);
+                let children = children(node).count() as u32;
+                count.planes(6 * children);
+                count.boxes(children);
                 if C::TELLS {
                     tell_tested(node, ray, count);
                 }
@@ -182,11 +183,16 @@ impl Accel for Wide {
     }
 }
 
+/// The lanes of a node that hold children.
+fn children(node: &WideNode) -> impl Iterator<Item = usize> + '_ {
+    (0..LANES).filter(|&lane| node.child(lane) != Child::NONE)
+}
+
 /// Tells of the tests of a node's children, with the intervals that hits are clamped to: those of
 /// the lanes are a little wider.
 fn tell_tested<N: Number, C: Count>(node: &WideNode, ray: &Ray<N>, count: &mut C) {
     let exact: Cull = Culling::new(ray);
-    for lane in (0..8).filter(|&lane| node.child(lane) != Child::NONE) {
+    for lane in children(node) {
         let bounds = node.child_box(lane);
         count.tell(Event::Tested {
             place: node.child(lane).place(),
