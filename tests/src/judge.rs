@@ -5,7 +5,7 @@ use crate::cases::shape_of;
 use crate::exact::{Real, dot, norm, vector};
 use crate::query::{UnitRay, closest, point_of};
 use crate::scenes;
-use crate::solid::{Line, Solid};
+use crate::solid::{Line, Normal, Solid};
 use glam::DVec3;
 use gridel_core::{Hit, List, NoCount, Number, Scene};
 use gridel_host::blob::Blob;
@@ -119,10 +119,12 @@ pub fn verdict<N: Number>(
     let point = point_of(&hit);
     assert!(point.iter().all(|x| x.is_finite()), "{ray:?}");
     let normal = hit.normal.map(N::ratio_to_f64);
-    let off = solid.normals(point).into_iter().map(|face| {
-        let step = normal_step::<N>(&face);
+    let apart = |face: &Normal| {
         let apart = |k: usize| (&face.exact[k] - Real::of(normal[k])).to_f64().abs();
-        let off = apart(0).max(apart(1)).max(apart(2)) / step;
+        apart(0).max(apart(1)).max(apart(2)) / normal_step::<N>(face)
+    };
+    let off = solid.normals(point).into_iter().map(|face| {
+        let off = apart(&face);
         // Where the point's rounding turned the normal to the wrong side of the ray, the hit's is
         // level with the ray.
         let against = dot(&face.exact, &line.slope).is_negative();
@@ -132,7 +134,11 @@ pub fn verdict<N: Number>(
         let level = dot(&vector(normal), &line.slope) / norm(&line.slope);
         off.min(level.to_f64().abs() / ratio_step::<N>())
     });
-    verdict.normal = off.fold(f64::INFINITY, f64::min);
+    let towards = solid.normal_towards(normal, point, hit.error.length_to_f64());
+    let towards = towards
+        .filter(|face| dot(&face.exact, &line.slope).is_negative() == hit.front)
+        .map_or(f64::INFINITY, |face| apart(&face));
+    verdict.normal = off.fold(towards, f64::min);
     let length: f64 = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
     verdict.length = (length - 1.0).abs() / ulp_of_one::<N>();
     verdict.point = solid.excesses(point)[0].abs() / hit.error.length_to_f64();

@@ -289,8 +289,14 @@ impl Cone {
         [k(0), k(1), k(2)]
     }
 
-    /// Outward. Every normal of the mantle supports the tip, so there any of them will do.
-    pub(crate) fn surface<N: Number>(&self, part: Part, point: [N; 3]) -> Surface<N> {
+    /// Outward. Where the point says too little about the mantle's normal, at the tip above all, it is
+    /// at least turned to `toward`: where the ray comes from that enters, or goes that leaves.
+    pub(crate) fn surface<N: Number>(
+        &self,
+        part: Part,
+        point: [N; 3],
+        toward: [N; 3],
+    ) -> Surface<N> {
         let frame = self.frame::<N>();
         let middle = self.middle::<N>();
         let normal = match part {
@@ -309,8 +315,15 @@ impl Cone {
                 if lean.abs() > N::ratio(1 << 20) || distance == N::ZERO {
                     outward = upright(outward, frame.axis);
                 }
-                let axis = |k: usize| outward[k] * frame.cos + frame.axis[k] * frame.sin;
-                N::normalize([axis(0), axis(1), axis(2)]).0
+                let normal = |outward: [N; 3]| {
+                    let axis = |k: usize| outward[k] * frame.cos + frame.axis[k] * frame.sin;
+                    N::normalize([axis(0), axis(1), axis(2)]).0
+                };
+                // No rounding of a good normal comes to as much. Every normal supports the tip.
+                if N::from_wide(N::dot(normal(outward), toward)) < -N::ratio(1 << 22) {
+                    outward = upright(toward, frame.axis);
+                }
+                normal(outward)
             }
         };
         Surface {

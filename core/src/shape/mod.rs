@@ -411,7 +411,14 @@ impl Shapes<'_> {
                 let (center, radius) = self.clusters.packs.sphere(pack, lane.into())?;
                 sphere::surface(center, radius, point)
             }
-            Place::Slot(kind, slot) => self.surface_in_slot(kind, slot as usize, part, point)?,
+            Place::Slot(kind, slot) => {
+                let toward = if leaves {
+                    ray.slope
+                } else {
+                    ray.slope.map(|x| -x)
+                };
+                self.surface_in_slot(kind, slot as usize, part, [point, toward])?
+            }
         };
         let against = N::dot(surface.normal, ray.slope) < N::Wide::default();
         let front = match place.kind() {
@@ -425,14 +432,15 @@ impl Shapes<'_> {
         })
     }
 
-    /// The surface of a primitive that has a record of its own, at a point.
+    /// The surface of a primitive that has a record of its own, at a point, and the way towards where
+    /// it is seen from.
     #[inline(always)]
     fn surface_in_slot<N: Number>(
         &self,
         kind: Kind,
         index: usize,
         part: Part,
-        point: [N; 3],
+        [point, toward]: [[N; 3]; 2],
     ) -> Option<Surface<N>> {
         Some(match kind {
             _ if !kind.is_available() => return None,
@@ -443,7 +451,7 @@ impl Shapes<'_> {
             }
             Kind::Box => self.boxes.get(index)?.surface(part),
             Kind::Disc => self.discs.get(index)?.surface(),
-            Kind::Cone => self.cones.get(index)?.surface(part, point),
+            Kind::Cone => self.cones.get(index)?.surface(part, point, toward),
         })
     }
 

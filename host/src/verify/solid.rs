@@ -324,6 +324,23 @@ impl Solid {
         }
     }
 
+    /// The mantle's normal on the side of a direction, where a point is as near to the axis as it may be
+    /// off by: there the side is not to be told, and at a tip every one of the mantle's normals supports
+    /// the solid.
+    pub fn normal_towards(&self, direction: [f64; 3], point: [f64; 3], off: f64) -> Option<Normal> {
+        let frame = self.frame()?;
+        let across = |v: &Vector| along(v, &-dot(v, &frame.axis), &frame.axis);
+        if norm(&across(&minus(&vector(point), &frame.middle))).to_f64() > off {
+            return None;
+        }
+        let radial = scaled(&unit(&across(&vector(direction))), &frame.cos);
+        Some(Normal {
+            exact: along(&radial, &frame.sin, &frame.axis),
+            condition: 1.0,
+            size: (&frame.half_height / &frame.cos).to_f64(),
+        })
+    }
+
     /// The largest magnitude of a coordinate of the shape.
     pub fn extent(&self) -> f64 {
         let largest = |v: &[f64; 3]| v.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
