@@ -1,12 +1,9 @@
 //! Culling on machines with SIMD registers: the planes of one axis of both children at once.
 //!
-//! The rule is that of [`Cull`] in single precision, with wider margins: half a unit aside instead
-//! of a quarter, and four units along the ray where the integers' three steps and roundings come to
-//! less than three. Rounding moves `p / s - o / s` by less than 2^-5 unit aside (coordinates are
-//! below 2^17), so a box's interval here holds its interval there. Hits are clamped to the latter,
-//! so the answers are the same.
+//! Rule and margins are those of [`Single`].
 
-use super::cull::{Cull, Culling, Interval, PairCulling};
+use super::cull::{self, Cull, Culling, Interval, PairCulling};
+use super::single::Single;
 use crate::blob::record::{Pair, UnitBox};
 use crate::number::Number;
 use crate::ray::Ray;
@@ -51,18 +48,8 @@ impl Lanes {
 impl<N: Number> Culling<N> for Lanes {
     #[inline(always)]
     fn new(ray: &Ray<N>) -> Self {
-        let lanes = |v: [N; 3]| Vec4::new(v[0].to_f32(), v[1].to_f32(), v[2].to_f32(), 1.0);
-        let (origin, slope) = (lanes(ray.origin), lanes(ray.slope));
-        let level = Vec4::splat(1.0 / 4096.0);
-        let steepness = slope.abs();
-        let parallel = steepness.cmple(level);
-        let magnitude = Vec4::ONE / steepness.max(level);
-        let inverse = magnitude.copysign(slope);
-        let middle = -(origin * inverse);
-        let margin = magnitude * 0.5 + 4.0;
-        let near = middle - margin;
-        let far = middle + margin + Vec4::select(parallel, Vec4::splat(65_536.0), Vec4::ZERO);
-        let descending = slope.cmplt(Vec4::ZERO);
+        let Single { inverse, near, far } = Single::of(ray);
+        let descending = inverse.cmplt(Vec4::ZERO);
         let lower = Vec4::select(descending, far, near).to_array();
         let upper = Vec4::select(descending, near, far).to_array();
         let offset = |axis: usize| Vec4::new(lower[axis], lower[axis], upper[axis], upper[axis]);
@@ -84,7 +71,7 @@ impl<N: Number> Culling<N> for Lanes {
 
     #[inline(always)]
     fn holds(ray: &Ray<N>, t: N, bounds: &UnitBox) -> bool {
-        super::cull::holds(ray, t, bounds)
+        cull::holds(ray, t, bounds)
     }
 }
 
@@ -101,9 +88,7 @@ impl<N: Number> PairCulling<N> for Lanes {
 
     #[inline(always)]
     fn limit(t: N) -> i32 {
-        // The next number above, whatever the conversion rounded; below 0 there is nothing.
-        let t = t.to_f32();
-        if t < 0.0 { -1 } else { in_order(t) + 1 }
+        Single::limit(t)
     }
 
     #[inline(always)]

@@ -61,6 +61,13 @@ pub mod ray_classes;
 #[cfg(any(feature = "slabs", feature = "spheres"))]
 pub mod reach;
 mod registry;
+#[cfg(any(
+    feature = "wide",
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+))]
+mod single;
 #[cfg(any(feature = "slabs", feature = "spheres"))]
 pub mod slabs;
 #[cfg(feature = "spheres")]

@@ -293,15 +293,7 @@ fn check_pairs<P: BoxPair>(
 ) -> Result<usize, BlobError> {
     let section = P::SECTION;
     let pairs = array.0;
-    let expected = leaves.len().saturating_sub(1);
-    if pairs.len() != expected {
-        return Err(BlobError::Count {
-            section,
-            found: pairs.len(),
-            expected,
-        });
-    }
-    let depth = check_order(array)?;
+    let depth = check_order(array, leaves.len())?;
     if leaves.is_empty() {
         return Ok(depth);
     }
@@ -377,15 +369,7 @@ pub(super) fn check_tree<A: PairArray, V>(
     holds: impl Fn(Leaf, &[V]) -> bool,
 ) -> Result<usize, BlobError> {
     let section = A::Pair::SECTION;
-    let expected = leaves.len().saturating_sub(1);
-    if pairs.len() != expected {
-        return Err(BlobError::Count {
-            section,
-            found: pairs.len(),
-            expected,
-        });
-    }
-    let depth = check_order(pairs)?;
+    let depth = check_order(pairs, leaves.len())?;
     if leaves.is_empty() {
         return Ok(depth);
     }
@@ -435,9 +419,18 @@ pub(super) fn check_tree<A: PairArray, V>(
     }
 }
 
-/// Proves breadth-first order and returns the number of levels of pairs.
-fn check_order<A: PairArray>(pairs: A) -> Result<usize, BlobError> {
+/// Proves that there are as many pairs as the leaves call for, in breadth-first order, and returns
+/// the number of levels of pairs.
+fn check_order<A: PairArray>(pairs: A, leaves: usize) -> Result<usize, BlobError> {
     let section = A::Pair::SECTION;
+    let expected = leaves.saturating_sub(1);
+    if pairs.len() != expected {
+        return Err(BlobError::Count {
+            section,
+            found: pairs.len(),
+            expected,
+        });
+    }
     let (mut levels, mut level_end) = (0, 0);
     let (mut next_pair, mut next_leaf) = (1, 0);
     for index in 0..pairs.len() {

@@ -1,14 +1,10 @@
 //! Which of a node's eight children a ray can meet, in the ray's own arithmetic: lanes of single
 //! precision for floats, integers for [`Fixed`](crate::Fixed).
 //!
-//! In lanes the rule and the margins are those of the pairs' culling in single precision: half a
-//! unit aside and four units along the ray, against a quarter and two for the integers' intervals,
-//! which hits are clamped to. Rounding moves `p / s - o / s` by less than 2^-5 unit aside, because
-//! coordinates are below 2^17. So a box's interval here holds its interval there, for every ray;
-//! the margins lie in the ray's constants, and a node pays nothing for them. No number is NaN: an
-//! inverse slope is at most 4096 in magnitude, and all products are finite.
+//! In lanes, rule and margins are those of [`Single`].
 
-use crate::accel::cull::{Cull, Culling};
+use crate::accel::cull::{self, Cull, Culling};
+use crate::accel::single::Single;
 use crate::blob::cluster::LANES;
 use crate::blob::record::{UnitBox, WideNode};
 use crate::eight::Eight;
@@ -30,8 +26,7 @@ pub trait WideCulling<N: Number>: Culling<N> {
 /// The culling form of a ray in eight lanes of `f32`: t in units.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WideLanes {
-    /// One over the slope, an axis each; below zero where the ray runs down the axis and the planes
-    /// change roles.
+    /// One over the slope, an axis each.
     inverse: Vec4,
     /// What the near plane's product lacks to t; and the ray's start.
     near: Vec4,
@@ -45,20 +40,11 @@ pub struct WideLanes {
 impl<N: Number> Culling<N> for WideLanes {
     #[inline(always)]
     fn new(ray: &Ray<N>) -> Self {
-        let lanes = |v: [N; 3]| Vec4::new(v[0].to_f32(), v[1].to_f32(), v[2].to_f32(), 1.0);
-        let (origin, slope) = (lanes(ray.origin), lanes(ray.slope));
-        let level = Vec4::splat(1.0 / 4096.0);
-        let steepness = slope.abs();
-        let parallel = steepness.cmple(level);
-        let magnitude = Vec4::ONE / steepness.max(level);
-        let inverse = magnitude.copysign(slope);
-        let middle = -(origin * inverse);
-        let margin = magnitude * 0.5 + 4.0;
-        let far = middle + margin + Vec4::select(parallel, Vec4::splat(65_536.0), Vec4::ZERO);
+        let Single { inverse, near, far } = Single::of(ray);
         let descending = inverse.is_negative_bitmask();
         Self {
             inverse,
-            near: (middle - margin).with_w(ray.tmin.to_f32()),
+            near: near.with_w(ray.tmin.to_f32()),
             far,
             near_rows: [descending & 1, descending >> 1 & 1, descending >> 2 & 1],
         }
@@ -71,16 +57,14 @@ impl<N: Number> Culling<N> for WideLanes {
 
     #[inline(always)]
     fn holds(ray: &Ray<N>, t: N, bounds: &UnitBox) -> bool {
-        crate::accel::cull::holds(ray, t, bounds)
+        cull::holds(ray, t, bounds)
     }
 }
 
 impl<N: Number> WideCulling<N> for WideLanes {
     #[inline(always)]
     fn limit(t: N) -> i32 {
-        // The next number above, whatever the conversion rounded; below 0 there is nothing.
-        let t = t.to_f32();
-        if t < 0.0 { -1 } else { t.to_bits() as i32 + 1 }
+        Single::limit(t)
     }
 
     fn units(near: i32) -> f64 {

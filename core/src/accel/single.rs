@@ -1,0 +1,52 @@
+//! A ray's culling form in single precision, for lanes.
+//!
+//! The rule is that of [`Cull`](super::cull::Cull), with wider margins: half a unit aside instead of
+//! a quarter, and four units along the ray where the integers' three steps and roundings come to
+//! less than three. Rounding moves `p / s - o / s` by less than 2^-5 unit aside (coordinates are
+//! below 2^17), so a box's interval here holds its interval there. Hits are held to the latter, so
+//! the answers are the same. The margins lie in the ray's constants, and a box pays nothing for
+//! them. No number is NaN: an inverse slope is at most 4096 in magnitude, and all products are
+//! finite.
+
+use crate::number::Number;
+use crate::ray::Ray;
+use glam::Vec4;
+
+/// What planes are multiplied with, and what the products lack to t in units; an axis each.
+pub(super) struct Single {
+    /// One over the slope, at least 1 in magnitude; below zero where the ray runs down the axis and
+    /// the planes change roles.
+    pub(super) inverse: Vec4,
+    /// For the plane through which the ray enters.
+    pub(super) near: Vec4,
+    /// For the plane through which it leaves.
+    pub(super) far: Vec4,
+}
+
+impl Single {
+    #[inline(always)]
+    pub(super) fn of<N: Number>(ray: &Ray<N>) -> Self {
+        let lanes = |v: [N; 3]| Vec4::new(v[0].to_f32(), v[1].to_f32(), v[2].to_f32(), 1.0);
+        let (origin, slope) = (lanes(ray.origin), lanes(ray.slope));
+        let level = Vec4::splat(1.0 / 4096.0);
+        let steepness = slope.abs();
+        let parallel = steepness.cmple(level);
+        let magnitude = Vec4::ONE / steepness.max(level);
+        let inverse = magnitude.copysign(slope);
+        let middle = -(origin * inverse);
+        let margin = magnitude * 0.5 + 4.0;
+        Self {
+            inverse,
+            near: middle - margin,
+            far: middle + margin + Vec4::select(parallel, Vec4::splat(65_536.0), Vec4::ZERO),
+        }
+    }
+
+    /// The limit for hits at or before a length, as the bits of a number: the next above, whatever
+    /// the conversion rounded; below 0 there is nothing.
+    #[inline(always)]
+    pub(super) fn limit<N: Number>(t: N) -> i32 {
+        let t = t.to_f32();
+        if t < 0.0 { -1 } else { t.to_bits() as i32 + 1 }
+    }
+}
