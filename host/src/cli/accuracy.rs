@@ -47,7 +47,7 @@ use std::path::{Path, PathBuf};
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES, verbatim_doc_comment)]
 pub struct Arguments {
-    /// Scene file: .toml, .obj, .nff, .pdb, .ent, .cif or .mmcif
+    /// Scene file: .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif
     scene: PathBuf,
 
     /// The folder to write into; it is made if need be [default: accuracy-SCENE]

@@ -21,7 +21,7 @@ use std::path::PathBuf;
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
-    /// Scene file: .toml, .obj, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif
+    /// Scene file: .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif
     scene: PathBuf,
 
     /// The blob to write

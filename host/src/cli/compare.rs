@@ -28,7 +28,7 @@ use std::path::PathBuf;
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
-    /// Scene file: .toml, .obj, .nff, .pdb, .ent, .cif or .mmcif
+    /// Scene file: .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif
     scene: PathBuf,
 
     /// Acceleration structure, once for each that shall be compared [default: all]

@@ -117,6 +117,9 @@ fn damaged_files() {
     ] {
         damage(extension, text.as_bytes(), text.len(), 3000);
     }
+    let (text, binary) = (super::gltf::tests::text(), super::gltf::tests::binary());
+    damage("gltf", text.as_bytes(), text.len(), 3000);
+    damage("glb", &binary, binary.len(), 3000);
 }
 
 #[test]
@@ -127,7 +130,7 @@ fn bad_files_of_other_projects() {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-        if ["obj", "nff", "pdb", "stl", "ply"].contains(&extension) {
+        if ["obj", "gltf", "glb", "nff", "pdb", "stl", "ply"].contains(&extension) {
             damage(extension, &std::fs::read(&path).unwrap(), 100, 100);
         }
     }

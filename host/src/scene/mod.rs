@@ -7,6 +7,7 @@
 #[cfg(test)]
 mod damaged;
 mod error;
+mod gltf;
 pub(crate) mod molecule;
 mod nff;
 mod obj;
@@ -254,6 +255,7 @@ pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneEr
     match extension.as_str() {
         "toml" => toml::load(path, molecule),
         "obj" => obj::load(path),
+        "gltf" | "glb" => gltf::load(path),
         "stl" => stl::load(path),
         "ply" => ply::load(path),
         "nff" => nff::load(path),
@@ -261,7 +263,7 @@ pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneEr
         _ => Err(SceneError::new(
             path,
             format!("the extension {extension:?} names no scene format"),
-            "use .toml, .obj, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif",
+            "use .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif",
         )),
     }
 }

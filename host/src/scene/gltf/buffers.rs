@@ -1,0 +1,208 @@
+//! The binary side of a glTF file: buffers, and what accessors read from them.
+//!
+//! The crate's own readers trust offsets, counts and types; here nothing is read that is not there.
+
+use super::MOST;
+use crate::scene::SceneError;
+use crate::scene::text::read_file;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use gltf::accessor::sparse::IndexType;
+use gltf::accessor::{Accessor, DataType, Dimensions};
+use gltf::buffer::{Source, View};
+use gltf::{Buffer, Document};
+use std::path::Path;
+
+/// The bytes of a file's buffers, in their order.
+pub(super) struct Buffers<'a> {
+    path: &'a Path,
+    bytes: Vec<Vec<u8>>,
+}
+
+impl<'a> Buffers<'a> {
+    /// Reads all buffers; `blob` is the one in the file itself.
+    pub(super) fn read(
+        path: &'a Path,
+        document: &Document,
+        mut blob: Option<Vec<u8>>,
+    ) -> Result<Self, SceneError> {
+        let bytes = document
+            .buffers()
+            .map(|buffer| {
+                let bytes = match buffer.source() {
+                    Source::Bin => blob.take().unwrap_or_default(),
+                    Source::Uri(uri) => fetch(path, &buffer, uri)?,
+                };
+                if bytes.len() < buffer.length() {
+                    return Err(SceneError::new(
+                        path,
+                        format!(
+                            "buffer {} has {} bytes, and {} are announced",
+                            buffer.index(),
+                            bytes.len(),
+                            buffer.length()
+                        ),
+                        "copy the file again, as binary, or export it again",
+                    ));
+                }
+                Ok(bytes)
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self { path, bytes })
+    }
+
+    /// Reads positions.
+    pub(super) fn positions(&self, accessor: &Accessor<'_>) -> Result<Vec<[f32; 3]>, SceneError> {
+        match (accessor.data_type(), accessor.dimensions()) {
+            (DataType::F32, Dimensions::Vec3) => {
+                self.values(accessor, [0.0; 3], bytemuck::pod_read_unaligned)
+            }
+            (kind, dimensions) => Err(self.error(
+                accessor,
+                format!("is to hold positions and holds {dimensions:?} of {kind:?}"),
+            )),
+        }
+    }
+
+    /// Reads the numbers of vertices.
+    pub(super) fn indices(&self, accessor: &Accessor<'_>) -> Result<Vec<u32>, SceneError> {
+        match (accessor.data_type(), accessor.dimensions()) {
+            (DataType::U8, Dimensions::Scalar) => self.values(accessor, 0, narrow::<1>),
+            (DataType::U16, Dimensions::Scalar) => self.values(accessor, 0, narrow::<2>),
+            (DataType::U32, Dimensions::Scalar) => self.values(accessor, 0, narrow::<4>),
+            (kind, dimensions) => Err(self.error(
+                accessor,
+                format!("is to hold numbers of vertices and holds {dimensions:?} of {kind:?}"),
+            )),
+        }
+    }
+
+    /// Reads all elements of an accessor, those that are replaced included.
+    fn values<T: Clone>(
+        &self,
+        accessor: &Accessor<'_>,
+        zero: T,
+        parse: fn(&[u8]) -> T,
+    ) -> Result<Vec<T>, SceneError> {
+        let count = accessor.count();
+        if count > MOST {
+            return Err(self.error(
+                accessor,
+                format!("has {count} elements, and {MOST} are the most"),
+            ));
+        }
+        let size = accessor.size();
+        let mut values: Vec<T> = match accessor.view() {
+            Some(view) => {
+                let elements = self.elements(accessor, &view, accessor.offset(), count, size)?;
+                elements.map(parse).collect()
+            }
+            None => vec![zero; count],
+        };
+        let Some(sparse) = accessor.sparse() else {
+            return Ok(values);
+        };
+        let (indices, replaced) = (sparse.indices(), sparse.values());
+        let (width, number): (usize, fn(&[u8]) -> u32) = match indices.index_type() {
+            IndexType::U8 => (1, narrow::<1>),
+            IndexType::U16 => (2, narrow::<2>),
+            IndexType::U32 => (4, narrow::<4>),
+        };
+        let count = sparse.count();
+        let places = self.elements(accessor, &indices.view(), indices.offset(), count, width)?;
+        let elements = self.elements(accessor, &replaced.view(), replaced.offset(), count, size)?;
+        for (place, element) in places.map(number).zip(elements.map(parse)) {
+            let value = values.get_mut(place as usize).ok_or_else(|| {
+                self.error(
+                    accessor,
+                    format!("replaces element {place}, which it lacks"),
+                )
+            })?;
+            *value = element;
+        }
+        Ok(values)
+    }
+
+    /// The bytes of each of `count` elements of `size` bytes in a view, from an offset on.
+    fn elements<'s>(
+        &'s self,
+        accessor: &Accessor<'_>,
+        view: &View<'_>,
+        offset: usize,
+        count: usize,
+        size: usize,
+    ) -> Result<impl Iterator<Item = &'s [u8]> + use<'s>, SceneError> {
+        let stride = view.stride().unwrap_or(size).max(1);
+        let bytes = self.bytes.get(view.buffer().index());
+        let bytes = bytes
+            .and_then(|bytes| {
+                bytes
+                    .get(view.offset()..)?
+                    .get(..view.length())?
+                    .get(offset..)
+            })
+            .unwrap_or(&[]);
+        // What pads an element may be missing behind the last.
+        let before_last = stride.checked_mul(count.saturating_sub(1));
+        let needed = before_last.and_then(|bytes| bytes.checked_add(size));
+        if count > 0 && (stride < size || needed.is_none_or(|needed| needed > bytes.len())) {
+            return Err(self.error(
+                accessor,
+                format!(
+                    "reads {count} elements of {size} bytes, {stride} bytes apart, of which \
+                     buffer view {} has {} bytes",
+                    view.index(),
+                    bytes.len()
+                ),
+            ));
+        }
+        let elements = bytes.chunks(stride).take(count);
+        Ok(elements.map(move |element| &element[..size]))
+    }
+
+    fn error(&self, accessor: &Accessor<'_>, cause: String) -> SceneError {
+        SceneError::new(
+            self.path,
+            format!("accessor {} {cause}", accessor.index()),
+            "export the file again",
+        )
+    }
+}
+
+/// A number of `N` bytes, the lowest first.
+fn narrow<const N: usize>(bytes: &[u8]) -> u32 {
+    let bytes = bytes[..N].iter().rev();
+    bytes.fold(0, |number, &byte| number << 8 | u32::from(byte))
+}
+
+/// What a URI stands for: bytes in base 64, or a file beside the scene's.
+fn fetch(path: &Path, buffer: &Buffer<'_>, uri: &str) -> Result<Vec<u8>, SceneError> {
+    let wrong = |cause: String, remedy: &str| {
+        SceneError::new(path, format!("buffer {} {cause}", buffer.index()), remedy)
+    };
+    if let Some(data) = uri.strip_prefix("data:") {
+        let encoded = data.split_once(";base64,").map(|(_, encoded)| encoded);
+        return encoded
+            .and_then(|encoded| STANDARD.decode(encoded).ok())
+            .ok_or_else(|| {
+                wrong(
+                    String::from("is a data URI that is not in base 64"),
+                    "export the file again, or as .glb",
+                )
+            });
+    }
+    if uri.contains("://") {
+        return Err(wrong(
+            format!("lies at {uri:?}, and nothing is fetched from a network"),
+            "put the file beside the scene file and name it there",
+        ));
+    }
+    let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
+    let file = path.parent().unwrap_or(Path::new("")).join(&*name);
+    read_file(&file).map_err(|error| {
+        wrong(
+            format!("is in {}: {}", file.display(), error.cause),
+            "put the file of the buffer beside the scene file",
+        )
+    })
+}

@@ -1,0 +1,79 @@
+//! The materials of glTF in terms of light that is diffuse, mirrored, or let through.
+//!
+//! With base colour c, metalness m, roughness r and transmission t:
+//!
+//! | here | from |
+//! |---|---|
+//! | diffuse | c ((1 - m) (1 - t) + m r): what a rough metal scatters counts as diffuse |
+//! | mirror | c m (1 - r) |
+//! | highlight | F0 (n + 8) / 8, at most 1, where F0 = 0.04 (1 - m) + c m; none at r = 1 |
+//! | shininess n | 2 / r^4 - 2, from 1 to 1024, the Blinn-Phong exponent of that roughness |
+//! | transmit | c t (1 - m) |
+//! | index of refraction | that of `KHR_materials_ior` where the glass has a volume, else 1: a pane |
+//! | absorption | -ln(attenuation colour) / attenuation distance |
+//!
+//! Where the alpha mode is `BLEND`, alpha is what of the material is there, and the rest is a pane.
+
+use crate::scene::{Color, Diffuse, Material};
+use gltf::material::AlphaMode;
+
+/// Reads a material; and a sentence on what of it is passed over.
+pub(super) fn read(material: &gltf::Material<'_>) -> (Material, Option<String>) {
+    let default = Material::default();
+    let name = material.name().map_or_else(
+        || match material.index() {
+            Some(index) => format!("material {index}"),
+            None => default.name.clone(),
+        },
+        str::to_owned,
+    );
+    let unit = |x: f32| f64::from(x).clamp(0.0, 1.0);
+    let surface = material.pbr_metallic_roughness();
+    let [red, green, blue, alpha] = surface.base_color_factor().map(unit);
+    let base = [red, green, blue];
+    let [metal, rough] = [surface.metallic_factor(), surface.roughness_factor()].map(unit);
+    let through = material.transmission();
+    let through = through.map_or(0.0, |through| unit(through.transmission_factor()));
+    let there = match material.alpha_mode() {
+        AlphaMode::Blend => alpha,
+        AlphaMode::Opaque | AlphaMode::Mask => 1.0,
+    };
+    let times = |factor: f64| base.map(|channel| channel * factor * there);
+    let power = 2.0 / (rough * rough * rough * rough).max(1e-9) - 2.0;
+    let shininess = power.round().clamp(1.0, 1024.0);
+    let facing = base.map(|channel| 0.04 * (1.0 - metal) + channel * metal);
+    let volume = material.volume().filter(|v| v.thickness_factor() > 0.0);
+    let glass = times(through * (1.0 - metal));
+    let made = Material {
+        diffuse: Diffuse::Plain(times((1.0 - metal) * (1.0 - through) + metal * rough)),
+        highlight: if rough < 1.0 {
+            facing.map(|channel| (channel * (shininess + 8.0) / 8.0).min(1.0) * there)
+        } else {
+            [0.0; 3]
+        },
+        shininess: shininess as u16,
+        mirror: times(metal * (1.0 - rough)),
+        transmit: glass.map(|channel| channel + 1.0 - there),
+        ior: match &volume {
+            Some(_) => f64::from(material.ior().unwrap_or(1.5)).clamp(1.0, 4.0),
+            None => 1.0,
+        },
+        absorption: volume.map_or([0.0; 3], |volume| {
+            absorption(volume.attenuation_color(), volume.attenuation_distance())
+        }),
+        name,
+    };
+    let glows = material.emissive_factor().iter().any(|&x| x > 0.0);
+    let warning = glows.then(|| format!("material {:?} glows, which is passed over", made.name));
+    (made, warning)
+}
+
+/// The coefficient of Beer's law by which white light turns into a colour over a distance.
+fn absorption(color: [f32; 3], distance: f32) -> Color {
+    let distance = f64::from(distance);
+    if !distance.is_finite() || distance <= 0.0 {
+        return [0.0; 3];
+    }
+    // Black would take an infinite coefficient.
+    color.map(|channel| -libm::log(f64::from(channel).clamp(1e-6, 1.0)) / distance)
+}

@@ -1,0 +1,147 @@
+//! The cameras and lights of a glTF file.
+//!
+//! Lights do not fall off with distance here. So each has the strength that it has in the middle of
+//! the scene, and all are scaled alike so that the strongest is 1, as a photographer would expose.
+
+use crate::scene::{Camera, Color, Light, RenderSettings, Scene, Shape};
+use glam::{DMat4, DVec3};
+use gltf::camera::Projection;
+use gltf::khr_lights_punctual::Kind;
+
+/// Cameras and lights on their way into a scene.
+#[derive(Default)]
+pub(super) struct View {
+    camera: Option<Camera>,
+    cameras: usize,
+    lights: Vec<(Light, f64)>,
+    has_spots: bool,
+    has_broken: bool,
+}
+
+impl View {
+    /// Takes a camera, if it is the first that has a perspective.
+    pub(super) fn camera(
+        &mut self,
+        camera: &gltf::Camera<'_>,
+        world: &DMat4,
+        render: &mut RenderSettings,
+    ) {
+        self.cameras += 1;
+        let Projection::Perspective(perspective) = camera.projection() else {
+            return;
+        };
+        let eye = world.transform_point3(DVec3::ZERO);
+        let ahead = world.transform_vector3(-DVec3::Z).try_normalize();
+        let up = world.transform_vector3(DVec3::Y);
+        let fov_degrees = f64::from(perspective.yfov()).to_degrees();
+        let Some(ahead) = ahead.filter(|ahead| ahead.cross(up).length() > 1e-6 * up.length())
+        else {
+            return;
+        };
+        let target = eye + ahead * eye.abs().max_element().max(1.0);
+        if self.camera.is_some() || !(fov_degrees > 0.0 && fov_degrees < 180.0) || eye == target {
+            return;
+        }
+        if let Some(aspect) = perspective.aspect_ratio().filter(|a| *a > 0.0) {
+            let width = f64::from(render.height) * f64::from(aspect);
+            render.width = width.round().clamp(1.0, 65_535.0) as u32;
+        }
+        self.camera = Some(Camera {
+            eye,
+            target,
+            up,
+            fov_degrees,
+        });
+    }
+
+    pub(super) fn light(&mut self, light: &gltf::khr_lights_punctual::Light<'_>, world: &DMat4) {
+        let color = light.color().map(|c| f64::from(c).clamp(0.0, 1.0));
+        let intensity = f64::from(light.intensity());
+        let made = match light.kind() {
+            Kind::Directional => Light::Directional {
+                direction: world.transform_vector3(-DVec3::Z),
+                color,
+            },
+            kind => {
+                self.has_spots |= matches!(kind, Kind::Spot { .. });
+                Light::Point {
+                    position: world.transform_point3(DVec3::ZERO),
+                    color,
+                }
+            }
+        };
+        let aims = match made {
+            Light::Directional { direction, .. } => direction.try_normalize().is_some(),
+            Light::Point { position, .. } => position.is_finite(),
+        };
+        if aims && intensity.is_finite() && intensity >= 0.0 {
+            self.lights.push((made, intensity));
+        } else {
+            self.has_broken = true;
+        }
+    }
+
+    /// Puts camera and lights into a scene whose objects are all there.
+    pub(super) fn finish(self, scene: &mut Scene, warnings: &mut Vec<String>) {
+        for (there, sentence) in [
+            (
+                self.cameras > 0 && self.camera.is_none(),
+                "no camera of the file has a perspective; one is made to see all",
+            ),
+            (
+                self.cameras > 1 && self.camera.is_some(),
+                "the file has several cameras, of which the first is used",
+            ),
+            (
+                self.has_spots,
+                "spot lights shine in all directions, as point lights do",
+            ),
+            (
+                self.has_broken,
+                "lights without a direction or a strength are left out",
+            ),
+        ] {
+            if there {
+                warnings.push(String::from(sentence));
+            }
+        }
+        scene.camera = self.camera;
+        let middle = middle(scene);
+        let strength = |(light, intensity): &(Light, f64)| match light {
+            Light::Directional { .. } => *intensity,
+            Light::Point { position, .. } => {
+                intensity / position.distance_squared(middle).max(1e-30)
+            }
+        };
+        let strongest = self.lights.iter().map(strength).fold(0.0, f64::max);
+        if strongest == 0.0 {
+            return;
+        }
+        let exposed = |light: &(Light, f64)| {
+            let dim = |color: Color| color.map(|channel| channel * strength(light) / strongest);
+            match light.0 {
+                Light::Directional { direction, color } => Light::Directional {
+                    direction,
+                    color: dim(color),
+                },
+                Light::Point { position, color } => Light::Point {
+                    position,
+                    color: dim(color),
+                },
+            }
+        };
+        scene.lights = self.lights.iter().map(exposed).collect();
+    }
+}
+
+/// The middle of the box around all meshes.
+fn middle(scene: &Scene) -> DVec3 {
+    let vertices = scene.objects.iter().flat_map(|object| match &object.shape {
+        Shape::Mesh { vertices, .. } => vertices.as_slice(),
+        _ => &[],
+    });
+    let (low, high) = vertices.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), v| {
+        (low.min(*v), high.max(*v))
+    });
+    (low + high) * 0.5
+}
