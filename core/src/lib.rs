@@ -10,7 +10,7 @@
 //!
 //! Both are generic over the number format (see [`Number`]): [`Fixed`] for cores without a
 //! floating-point unit, `f32`, `f64`; and over the acceleration structure ([`List`], [`Bvh`],
-//! [`Flagged`], [`DualSplit`]). The structure never changes a bit of an answer.
+//! [`Flagged`], [`DualSplit`] and others in [`accel`]). The structure never changes a bit of an answer.
 //!
 //! The page [`boards`] leads from a scene file to a picture on your own board.
 //!
@@ -19,7 +19,7 @@
 //! 12 bytes an entry, whose depth the blob's header states and `from_bytes` proves, and, for
 //! pictures, a list of rays that wait (see [`Workspace`]).
 //!
-//! # A ray through a hole in the world
+//! # Units
 //! The length unit of the core is the *unit*, one step of the 16-bit box lattice; see
 //! [`blob::record::Header`] for how units relate to scene coordinates.
 #![cfg_attr(not(any(test, feature = "std")), no_std)]

@@ -6,6 +6,7 @@
 //!
 //! Secondary rays start beside the surface, on the side to which they go, at the distance of the
 //! hit's own error bound: close enough to lose no contact, and too far to meet the surface again.
+//! What goes on inside of a solid starts beneath all of its faces (see [`Hit::inside`]).
 //!
 //! Everything is compiled for a set of effects: what is not in it costs neither code nor time.
 

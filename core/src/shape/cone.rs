@@ -299,6 +299,7 @@ impl Cone {
     ) -> Surface<N> {
         let frame = self.frame::<N>();
         let middle = self.middle::<N>();
+        let size = extent(middle) + frame.half_height + frame.radius + frame.radius;
         let normal = match part {
             BASE => frame.axis.map(|x| -x),
             APEX => frame.axis,
@@ -309,18 +310,18 @@ impl Cone {
                 let q = q.map(|x| x.scale_up(bits));
                 let axial = N::from_wide(N::dot(q, frame.axis));
                 let axis = |k: usize| q[k] - axial * frame.axis[k];
-                let (mut outward, distance) = N::normalize([axis(0), axis(1), axis(2)]);
-                // Next to the axis what is left may be rounding, and lean; on it, any way is outward.
-                let lean = N::from_wide(N::dot(outward, frame.axis));
-                if lean.abs() > N::ratio(1 << 20) || distance == N::ZERO {
-                    outward = upright(outward, frame.axis);
-                }
+                let (outward, distance) = N::normalize([axis(0), axis(1), axis(2)]);
+                // What is left next to the axis is rounding in part, and leans; a ray that goes along the
+                // mantle would meet it again. On the axis any way is outward.
+                let mut outward = upright(outward, frame.axis);
                 let normal = |outward: [N; 3]| {
                     let axis = |k: usize| outward[k] * frame.cos + frame.axis[k] * frame.sin;
                     N::normalize([axis(0), axis(1), axis(2)]).0
                 };
-                // No rounding of a good normal comes to as much. Every normal supports the tip.
-                if N::from_wide(N::dot(normal(outward), toward)) < -N::ratio(1 << 22) {
+                // So near the axis the point may lie on the wrong side of it. Every normal supports the
+                // tip; elsewhere one that is wrong by a little is levelled with the ray.
+                let astray = distance.scale_down(bits) <= N::error_bound(size);
+                if astray && N::from_wide(N::dot(normal(outward), toward)) < -N::ratio(1 << 22) {
                     outward = upright(toward, frame.axis);
                 }
                 normal(outward)
@@ -328,14 +329,13 @@ impl Cone {
         };
         Surface {
             normal,
-            extent: extent(middle) + frame.half_height + frame.radius + frame.radius,
+            extent: size,
         }
     }
 }
 
 /// A direction at right angles to an axis: `lean` without its part along the axis, or without that
 /// the axis of coordinates that is farthest from it.
-#[cold]
 fn upright<N: Number>(lean: [N; 3], axis: [N; 3]) -> [N; 3] {
     let without = |v: [N; 3]| {
         let along = N::from_wide(N::dot(v, axis));

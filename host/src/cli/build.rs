@@ -3,10 +3,11 @@
 use super::arguments::{self, SceneOptions, StructureOptions, TargetOptions};
 use super::effects::CalledFor;
 use super::failure::Failure;
-use super::output::{print, print_json, refuse_same, write_file};
+use super::output::{print, print_json, refuse_same, warn, write_file};
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Format, Scene, Structure};
+use gridel_host::board::Board;
 use gridel_host::compile::{self, Builder, Figures, Report, Tabled};
 use gridel_host::emit::{self, Emitted};
 use gridel_host::report::{Align, Ledger, Table, grouped, power_of_two};
@@ -116,24 +117,43 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::compile(&arguments.scene, &arguments.scene_options, compiling)?;
     let scene = source.scene()?;
     let target = arguments.target.target();
-    let ledger = target.map(|target| Ledger::of(&scene, source.blob.bytes(), &target));
+    let board = target.map(|target| target.board);
+    let format = arguments
+        .format
+        .unwrap_or_else(|| board.map_or(Format::Fixed, Board::format));
+    if let Some(board) = board.filter(|board| !board.formats.contains(&format)) {
+        let formats = board.formats.iter().map(|format| format.name());
+        return Err(Failure::usage(
+            format!(
+                "{} would compute {} in software, which was not measured",
+                board.name,
+                format.name()
+            ),
+            format!("use {}", formats.collect::<Vec<_>>().join(" or ")),
+        ));
+    }
+    let ledger = target.map(|target| Ledger::of(&scene, source.blob.bytes(), &target, format));
     if let Some(ledger) = &ledger
         && let Some(shortage) = ledger.shortage()
     {
         return Err(Failure::refused(shortage, ledger.advice(&scene)));
     }
+    if let Some(ledger) = ledger.as_ref().filter(|ledger| ledger.estimated) {
+        warn(format!(
+            "code and call stack were measured on boards through dual-split nodes; {} may take more",
+            ledger.structure
+        ));
+    }
     write_file(&arguments.output, |out| out.write_all(source.blob.bytes()))?;
     if let Some(folder) = &arguments.emit_rust {
         let room = ledger.as_ref().zip(target).map(|(ledger, target)| {
-            let code = ledger.flash.used() - source.blob.bytes().len() as u64;
+            let code = ledger.flash.used - source.blob.bytes().len() as u64;
             (target.flash - code, target.board)
         });
         let emitted = Emitted {
             scene: &scene,
             structure: source.structure(&scene, None)?,
-            format: arguments
-                .format
-                .unwrap_or_else(|| target.map_or(Format::Fixed, |target| target.board.format())),
+            format,
             budget: room,
         };
         std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;

@@ -93,7 +93,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ledger: arguments
             .target
             .target()
-            .map(|target| Ledger::of(&scene, source.blob.bytes(), &target)),
+            .map(|target| Ledger::of(&scene, source.blob.bytes(), &target, target.board.format())),
     };
     if arguments.json {
         print_json(&inspection)
@@ -235,24 +235,32 @@ impl Inspection {
 
 /// Flash and RAM on a board, and what remains of each.
 fn ledger_table(ledger: &Ledger) -> String {
-    let title = format!("{}, {}, {}", ledger.board, ledger.core, ledger.format);
+    let title = format!(
+        "{}, {}, {}, {}",
+        ledger.board, ledger.core, ledger.format, ledger.structure
+    );
     let mut table = Table::new([(&title, Align::Left), ("bytes", Align::Right)]);
     let mut account = |name: &str, account: &Account| {
         for item in &account.items {
             table.row([format!("{name}  {}", item.what), grouped(item.bytes)]);
         }
-        table.row([format!("{name}  in all"), grouped(account.used())]);
+        table.row([format!("{name}  in all"), grouped(account.used)]);
         let missing = account.missing();
         table.row(if missing > 0 {
             [format!("{name}  MISSING"), grouped(missing)]
         } else {
-            let rest = account.available - account.used();
-            [format!("{name}  remains"), grouped(rest)]
+            [format!("{name}  remains"), grouped(account.remains())]
         });
     };
     account("flash", &ledger.flash);
     account("RAM", &ledger.ram);
-    format!("\n{table}")
+    let estimated = match ledger.estimated {
+        true => {
+            "Code and call stack were measured through dual-split nodes; other structures may take more.\n"
+        }
+        false => "",
+    };
+    format!("\n{table}{estimated}")
 }
 
 fn working_memory_table(needs: &[WorkingMemory]) -> Table {

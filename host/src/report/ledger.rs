@@ -1,11 +1,14 @@
 //! What a scene takes on a board, in flash and in RAM: a line an item, and what remains.
 //!
 //! Sizes of the blob and of working memory are exact. Code and call stack were measured on the
-//! boards by the project's tests (`fixtures/recorded/board.json`): for a program that holds every
-//! shape and every effect, so that they are bounds for one that holds what the scene calls for; on
-//! cores where each part was measured alone, code is listed by shape and effect.
+//! boards by the project's tests (`fixtures/recorded/board.json`), for a program that holds every
+//! shape and every effect and walks dual-split nodes: bounds for one that holds what the scene calls
+//! for and walks them, too, and estimates for other structures. On cores where each part was measured
+//! alone, code is listed by shape and effect; what all of them take together beyond the sum of each
+//! is shared out among them.
 
 use super::{MemoryMap, grouped, working_memory};
+use crate::blob::best_structures;
 use crate::board::Board;
 use gridel_core::{Effects, Format, Kind, Rgb565, Scene, Structure};
 use serde::Serialize;
@@ -35,6 +38,10 @@ pub struct Ledger {
     pub board: &'static str,
     pub core: &'static str,
     pub format: &'static str,
+    /// What walks the rays.
+    pub structure: &'static str,
+    /// Whether code and call stack were measured with another structure, and are estimates.
+    pub estimated: bool,
     pub flash: Account,
     pub ram: Account,
 }
@@ -43,6 +50,8 @@ pub struct Ledger {
 #[derive(Clone, Debug, Serialize)]
 pub struct Account {
     pub available: u64,
+    /// Bytes of all items.
+    pub used: u64,
     pub items: Vec<Item>,
 }
 
@@ -54,29 +63,33 @@ pub struct Item {
 }
 
 impl Account {
-    /// Bytes of all items.
-    pub fn used(&self) -> u64 {
-        self.items.iter().map(|item| item.bytes).sum()
-    }
-
     /// Bytes that are missing, 0 where all fits.
     pub fn missing(&self) -> u64 {
-        self.used().saturating_sub(self.available)
+        self.used.saturating_sub(self.available)
+    }
+
+    /// Bytes that remain, 0 where it does not fit.
+    pub fn remains(&self) -> u64 {
+        self.available.saturating_sub(self.used)
     }
 
     fn add(&mut self, what: impl Into<String>, bytes: u64) {
         let what = what.into();
+        self.used += bytes;
         self.items.push(Item { what, bytes });
     }
 }
 
 impl Ledger {
-    /// The ledger of a scene that `blob` holds, in the board's best number format.
-    pub fn of(scene: &Scene<'_>, blob: &[u8], target: &Target) -> Self {
+    /// The ledger of a scene that `blob` holds, in one of the board's number formats, through the
+    /// best structure that the blob holds.
+    pub fn of(scene: &Scene<'_>, blob: &[u8], target: &Target, format: Format) -> Self {
         let board = target.board;
-        let format = board.format();
+        let structure = best_structures(scene).next().unwrap_or(Structure::List);
+        let estimated = structure != Structure::DualSplit;
         let empty = |available| Account {
             available,
+            used: 0,
             items: Vec::new(),
         };
         let (mut flash, mut ram) = (empty(target.flash), empty(target.ram));
@@ -103,11 +116,14 @@ impl Ledger {
         let row = u64::from(width) * size_of::<Rgb565>() as u64;
         ram.add(format!("row of {width} pixels, RGB565"), row);
         let stack = recorded.figure(EVERYTHING, board, format, "call-stack-bytes");
-        ram.add("call stack, at most", stack);
+        let how = if estimated { "about" } else { "at most" };
+        ram.add(format!("call stack, {how}"), stack);
         Self {
             board: board.name,
             core: board.core,
             format: format.name(),
+            structure: structure.name(),
+            estimated,
             flash,
             ram,
         }
@@ -122,7 +138,7 @@ impl Ledger {
             .map(|(what, account)| {
                 format!(
                     "{} bytes of {what}, {} more than the {} there are",
-                    grouped(account.used()),
+                    grouped(account.used),
                     grouped(account.missing()),
                     grouped(account.available)
                 )
@@ -234,15 +250,18 @@ impl Recorded {
             return;
         };
         let code = |part: &str| self.figure(part, by_part, format, "code-bytes");
-        let base = code(BASE);
+        let (base, glass) = (code(BASE), code("glass"));
+        let alone = |part: &str| match part {
+            // It comes with glass.
+            "absorption" => code(part).saturating_sub(glass),
+            _ => code(part).saturating_sub(base),
+        };
+        let parts = Kind::ALL.map(Kind::name).into_iter();
+        let sum: u64 = parts.chain(Effects::ALL.names()).map(alone).sum();
+        let together = everything.saturating_sub(base).max(sum);
         flash.add("code: loading, triangles, diffuse light", base);
-        let glass = code("glass");
         for part in scene.features() {
-            let bytes = match part {
-                // It comes with glass.
-                "absorption" => code(part).saturating_sub(glass),
-                _ => code(part).saturating_sub(base),
-            };
+            let bytes = (alone(part) * together).div_ceil(sum.max(1));
             if bytes > 0 {
                 flash.add(format!("code: {part}"), bytes);
             }

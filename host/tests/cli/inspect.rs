@@ -187,3 +187,60 @@ fn the_ledger_of_a_board_adds_up() {
         assert!(text.contains("remains"), "{text}");
     }
 }
+
+/// What a program that holds everything was measured to take is what its parts add up to.
+#[test]
+fn the_ledger_is_a_bound() {
+    let folder = Folder::new();
+    folder.write("quick.toml", &fixture("quick"));
+    let recorded = include_str!("../../../fixtures/recorded/board.json");
+    let recorded: serde_json::Value = serde_json::from_str(recorded).unwrap();
+    let measured = &recorded["quick stm32vldiscovery fixed dual-split"]["code-bytes"];
+    let inspect = ["inspect", "quick.toml", "--target", "stm32vldiscovery"];
+    let code: u64 = folder.json(&inspect)["ledger"]["flash"]["items"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|item| item["what"].as_str().unwrap().starts_with("code"))
+        .map(|item| item["bytes"].as_u64().unwrap())
+        .sum();
+    let measured = measured.as_u64().unwrap();
+    assert!(
+        code >= measured && code < measured + 100,
+        "{code}, {measured}"
+    );
+}
+
+/// Figures hold for what was measured: dual-split nodes, and formats that a board computes itself.
+#[test]
+fn what_was_not_measured_is_said() {
+    let folder = Folder::new();
+    folder.write("quick.toml", &fixture("quick"));
+    let build = [
+        "build",
+        "quick.toml",
+        "-o",
+        "flagged.gridel",
+        "--accel",
+        "flagged",
+    ];
+    let said = folder.run(&[&build[..], &["--target", "mps2-an385"]].concat());
+    let said = said.stderr;
+    assert!(said.contains("flagged may take more"), "{said}");
+    let text = folder.done(&["inspect", "flagged.gridel", "--target", "mps2-an385"]);
+    assert!(text.contains("call stack, about"), "{text}");
+    let soft = [
+        "--target",
+        "mps2-an385",
+        "--format",
+        "f64",
+        "--emit-rust",
+        "module",
+    ];
+    folder.fails(
+        2,
+        &[&["build", "quick.toml", "-o", "soft.gridel"], &soft[..]].concat(),
+        &["f64 in software", "use fixed"],
+    );
+    assert!(!folder.path("soft.gridel").exists());
+}

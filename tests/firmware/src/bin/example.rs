@@ -12,7 +12,7 @@ type Picture<'s> = Renderer<'s, 'static, f32, DualSplit, { Effects::ALL.0 }>;
 
 #[entry]
 fn main() -> ! {
-    // Twelve entries of traversal stack, and the ray depth of 6 and one: `gridel inspect` tells.
+    // Entries of the traversal stack, at least as many as `gridel inspect` tells; the ray depth and one.
     static mut SPACE: Workspace<f32, 12, 7> = Workspace::new();
     static mut ROW: [Rgb565; 320] = [Rgb565(0); 320];
     let scene = Scene::from_bytes(BLOB).unwrap_or_else(|_| halt());
