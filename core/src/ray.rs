@@ -200,7 +200,7 @@ impl<N: Number> Pencil<N> {
 }
 
 fn is_finite<N: Number>(origin: [N::Wide; 3]) -> bool {
-    N::is_finite(origin[0] + origin[1] + origin[2])
+    origin.into_iter().all(N::is_finite)
 }
 
 impl<N: Number> Ray<N> {
@@ -322,6 +322,35 @@ mod tests {
 
     fn length() -> impl Strategy<Value = f64> {
         prop_oneof![-1e3..1e3, -1e7..1e7, Just(0.0), Just(f64::NAN), -1e12..1e12]
+    }
+
+    /// Three finite numbers may have a sum that is not.
+    #[test]
+    fn every_finite_origin_is_one() {
+        fn origins<N: Number<Wide = N>>(most: N, infinite: N) {
+            let bounds = UnitBox([[-300, 400], [-1000, 32_000], [5, 6]]);
+            let (zero, end) = (N::ZERO, N::FAR);
+            let made = |origin: [N; 3]| {
+                let direction = [N::ONE; 3];
+                let alone = Ray::<N>::new(&bounds, origin, direction, zero, end);
+                let pencil = Pencil::<N>::new(&bounds, origin, zero, end);
+                assert_eq!(alone.err(), pencil.err());
+                alone.err()
+            };
+            assert_eq!(made([most; 3]), None);
+            assert_eq!(made([-most, -most, zero]), None);
+            for axis in 0..3 {
+                for wrong in [infinite, -infinite, infinite - infinite] {
+                    let mut origin = [zero; 3];
+                    origin[axis] = wrong;
+                    assert_eq!(made(origin), Some(RayError::Origin));
+                }
+            }
+            // Nor does one that is not finite vanish beside its opposite.
+            assert_eq!(made([infinite, -infinite, zero]), Some(RayError::Origin));
+        }
+        origins::<f32>(f32::MAX, f32::INFINITY);
+        origins::<f64>(f64::MAX, f64::INFINITY);
     }
 
     proptest! {

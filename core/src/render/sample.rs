@@ -30,7 +30,7 @@ fn within(index: u16, count: u16) -> [i32; 2] {
         column ^= column >> 1;
     }
     // Half a cell of the finest power of two that holds the samples.
-    let half_cell = (SUBPIXELS / 2) >> count.next_power_of_two().min(128).trailing_zeros();
+    let half_cell = (SUBPIXELS / 2) >> count.next_power_of_two().trailing_zeros();
     [
         i32::from(mirrored) + half_cell,
         i32::from(second) + half_cell,
@@ -44,7 +44,7 @@ mod tests {
     /// Every power of two of samples puts one into each column and one into each row.
     #[test]
     fn samples_are_stratified() {
-        for bits in 1..8 {
+        for bits in 1..=8 {
             let count = 1_u16 << bits;
             for axis in 0..2 {
                 let mut seen = vec![false; count.into()];
