@@ -105,7 +105,7 @@ fn compare_one<N: Number>(
     }
     let hit = plain?;
     tally.hits += 1;
-    Some(depart(scene, &hit, if hit.front { 1.0 } else { -1.0 }))
+    Some(depart(scene, &hit, hit.front))
 }
 
 impl Tally {

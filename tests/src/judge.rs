@@ -10,6 +10,7 @@ use glam::DVec3;
 use gridel_core::{Hit, List, NoCount, Number, Scene};
 use gridel_host::blob::Blob;
 use gridel_host::scene::Shape;
+use gridel_host::verify::judge::Crossings;
 
 /// A blob of shapes whose lattice is known: one unit is one scene unit, and its zero is the
 /// scene's. Two specks at the ends of the lattice see to that; they come last.
@@ -34,26 +35,11 @@ const LADDER: [f64; 15] = [
 
 /// Whether an answer is right for a shape that differs by no more than `error`.
 fn is_right(solid: &Solid, line: &Line, answer: Option<f64>, error: f64) -> bool {
-    let zero = Real::of(0.0);
-    let grown = solid.span(line, &Real::of(error));
-    let behind = |span: &(Real, Real)| span.0 <= zero;
-    if solid.is_flat() && answer.is_none() && grown.as_ref().is_some_and(behind) {
-        return true;
+    let (crossings, begin) = (Crossings::new(solid, line, error), Real::of(0.0));
+    match answer {
+        Some(t) => crossings.may_be_met_at(&Real::of(t), &begin),
+        None => crossings.are_met_by(&begin).is_none(),
     }
-    let shrunk = solid.span(line, &Real::of(-error));
-    let Some(t) = answer.map(Real::of) else {
-        return shrunk.is_none_or(|(_, leave)| leave <= zero);
-    };
-    let Some((first, last)) = grown else {
-        return false;
-    };
-    if solid.is_flat() {
-        return first <= t && t <= last;
-    }
-    let (enter, leave) = shrunk.unwrap_or((last.clone(), first.clone()));
-    let entering = first <= t && t <= enter;
-    let leaving = leave <= t && t <= last && !first.is_positive();
-    entering || leaving
 }
 
 /// What is wrong with an answer, in the units of the table of bounds.

@@ -1,6 +1,6 @@
 //! Asks the core through one structure or another.
 
-pub use gridel_host::verify::UnitRay;
+pub use gridel_host::verify::{UnitRay, depart};
 
 use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
 use gridel_core::{
@@ -104,14 +104,4 @@ fn ask<N: Number>(structure: Structure, scene: &Scene<'_>, ray: &Ray<N>) -> Answ
 /// A point in units, from a hit.
 pub fn point_of<N: Number>(hit: &Hit<N>) -> [f64; 3] {
     hit.point.map(N::length_to_f64)
-}
-
-/// Where a ray starts that leaves a hit on the normal's side (1) or the other (-1).
-pub fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, side: f64) -> [f64; 3] {
-    let start = if side < 0.0 {
-        hit.inside(scene)
-    } else {
-        hit.outside()
-    };
-    start.map(N::length_to_f64)
 }

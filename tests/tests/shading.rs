@@ -76,7 +76,7 @@ fn path<N: Number>(
                 1.0
             }
         };
-        from = depart(scene, &hit, if hit.front { side } else { -side });
+        from = depart(scene, &hit, (side > 0.0) == hit.front);
     }
     path
 }
@@ -199,7 +199,7 @@ fn shadows_reach_up_to_the_contact() {
                 if point.distance(place) > 0.95 * radius {
                     continue;
                 }
-                let up = UnitRay::new(depart(&scene, &hit, 1.0), DVec3::Y.to_array());
+                let up = UnitRay::new(depart(&scene, &hit, true), DVec3::Y.to_array());
                 let up = up.ready::<N>(&scene).expect("a ray");
                 let dark = closest::<N, List>(&scene, &up, &mut NoCount);
                 assert!(

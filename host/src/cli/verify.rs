@@ -9,7 +9,7 @@ use clap::Args;
 use gridel_core::Structure;
 use gridel_host::compile;
 use gridel_host::report::{Align, Table, counted, grouped, significant};
-use gridel_host::verify::{Report, judge, steps, verify};
+use gridel_host::verify::{RAYS, Report, judge, steps, verify};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -37,7 +37,7 @@ pub struct Arguments {
 
     /// Rays of all sorts, and as many more from inside of closed meshes; each is put to the list, so
     /// large scenes take long
-    #[arg(long, value_name = "N", default_value_t = 10_000,
+    #[arg(long, value_name = "N", default_value_t = RAYS,
         value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     rays: u64,
 
@@ -100,30 +100,32 @@ fn text(input: &Path, report: &Report) -> String {
         ("hits", Align::Right),
         ("judged exactly", Align::Right),
         ("t off by at most", Align::Right),
+        ("where rays graze", Align::Right),
     ]);
     for format in &report.formats {
         table.row([
             format.format.to_owned(),
             grouped(format.hits),
             grouped(format.judged),
-            format!("{} steps", significant(format.worst_error)),
+            format!("{} steps", significant(format.worst.error)),
+            format!("{} steps", significant(format.worst_grazing.error)),
         ]);
     }
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{table}");
-    for format in report
-        .formats
-        .iter()
-        .filter(|f| f.worst_error > judge::STEPS)
-    {
-        if let Some(ray) = &format.worst_ray {
-            let _ = writeln!(
-                text,
-                "In {}, t is off by the most, and rightly so for a surface within {} steps, for\n  {}",
-                format.format,
-                judge::STEPS,
-                explain(input, ray, format.format, Structure::List.name())
-            );
+    let _ = writeln!(
+        text,
+        "A ray grazes within {:.0} degrees of a surface: there t is off by many steps where the \
+         surface is off by one.\nThe surface is off by no more than {}. t is off by the most for",
+        judge::GRAZING.asin().to_degrees(),
+        judge::STEPS,
+    );
+    for format in &report.formats {
+        for worst in [&format.worst, &format.worst_grazing] {
+            if let Some(ray) = &worst.ray {
+                let command = explain(input, ray, format.format, Structure::List.name());
+                let _ = writeln!(text, "  {command}");
+            }
         }
     }
     let mut table = Table::new([

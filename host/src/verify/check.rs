@@ -1,6 +1,6 @@
 //! Puts one ray to every structure in one number format, and holds the answers to the promises.
 
-use super::judge::{Answer, Judge, RoundedRay, STEPS, Wrong, step};
+use super::judge::{Answer, GRAZING, Judge, RoundedRay, STEPS, Wrong, step};
 use super::random::Random;
 use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
 use gridel_core::{
@@ -20,7 +20,8 @@ pub enum Promise {
     Answers,
     /// Numbers of a hit are finite, its t lies in the interval, its normal has the length 1.
     Numbers,
-    /// A ray that starts beside a hit does not meet the same surface again.
+    /// A ray that starts beside a hit does not meet the same surface again, and one that starts inside
+    /// of a solid leaves it.
     SelfHits,
     /// No ray leaves a closed mesh unseen.
     Leaks,
@@ -64,6 +65,8 @@ pub struct Outcome {
     pub faults: Vec<Fault>,
     /// By how many steps t is off, against the same ray in double precision.
     pub error: f64,
+    /// Whether the ray grazes what it meets, see [`GRAZING`].
+    pub grazes: bool,
     /// Whether exact arithmetic was asked.
     pub judged: bool,
 }
@@ -146,10 +149,19 @@ pub fn check<N: Number>(
     let reference = reference.and_then(|ray| ask::<f64, List>(scene, &ray).hit);
     let close = match (answer, reference) {
         (None, None) => true,
-        (Some(answer), Some(reference)) if answer.primitive == reference.primitive => {
+        // Of a solid, what is met where a ray enters it is not compared with where it leaves.
+        (Some(answer), Some(reference))
+            if answer.primitive == reference.primitive
+                && list.hit.is_some_and(|hit| hit.front == reference.front) =>
+        {
             let extent = reference.point.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             let start = rounded.start.iter().fold(extent, |m, x| m.max(x.abs()));
-            let magnitude = start.max(reference.t.abs()).max(rounded.moved.abs());
+            let reach = start.max(reference.t.abs()).max(rounded.moved.abs());
+            let solid = judge.solid(answer.primitive);
+            let magnitude = solid.map_or(reach, |solid| reach.max(solid.extent()));
+            let normals = list.hit.iter().map(|hit| hit.normal.map(N::ratio_to_f64));
+            let mut normals = normals.chain([reference.normal]);
+            outcome.grazes = normals.any(|normal| rounded.cosine(normal).abs() < GRAZING);
             outcome.error = (answer.t - reference.t).abs() / step(N::FORMAT, magnitude);
             outcome.error <= STEPS
         }
@@ -225,8 +237,18 @@ fn numbers<N: Number>(ray: &RoundedRay, hit: &Hit<N>) -> Option<String> {
     None
 }
 
+/// Where a ray starts that leaves a hit on the normal's side, or else on the other.
+pub fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, outward: bool) -> [f64; 3] {
+    let start = if outward {
+        hit.outside()
+    } else {
+        hit.inside(scene)
+    };
+    start.map(N::length_to_f64)
+}
+
 /// Lets rays leave a hit on both sides, as the ray loop does, and tells which of them meet the same
-/// surface again.
+/// surface again, or never leave the solid that they are in.
 pub fn leave<N: Number>(
     scene: &Scene<'_>,
     judge: &Judge,
@@ -239,11 +261,6 @@ pub fn leave<N: Number>(
     };
     for outward in [true, false] {
         let sign = if outward { 1.0 } else { -1.0 };
-        let beside = |axis: usize| {
-            let shift = hit.error * hit.normal[axis];
-            hit.point[axis] + if outward { shift } else { -shift }
-        };
-        let from = [beside(0), beside(1), beside(2)];
         let normal = hit.normal.map(|x| sign * x.ratio_to_f64());
         let direction = random.direction();
         let cosine: f64 = (0..3).map(|k| normal[k] * direction[k]).sum();
@@ -254,35 +271,34 @@ pub fn leave<N: Number>(
             cosine.abs()
         };
         let direction = [0, 1, 2].map(|k| direction[k] + (lift - cosine) * normal[k]);
-        let exact_from = from.map(N::length_to_f64);
-        let ray = Ray::<N>::from_f64(scene.bounds(), exact_from, direction, 0.0, f64::INFINITY);
+        let from = depart(scene, hit, outward);
+        let away = outward || solid.is_flat();
+        // Where a solid is thinner than the bound, there is no inside to start from.
+        if !away && solid.excesses(from)[0] > -0.5 * hit.error.length_to_f64() {
+            continue;
+        }
+        let ray = Ray::<N>::from_f64(scene.bounds(), from, direction, 0.0, f64::INFINITY);
         let Ok(ray) = ray else { continue };
-        let Some(again) = ask::<N, List>(scene, &ray).hit else {
-            continue;
+        let next = ask::<N, List>(scene, &ray).hit;
+        let again = next.filter(|next| next.primitive == hit.primitive);
+        let what = match (again, next) {
+            // From inside of a solid it is met again, from the inside.
+            (Some(again), _) if away || again.front => {
+                format!("meets it again at {:?}", N::far_to_f64(again.t))
+            }
+            (None, None) if !away => String::from("never leaves it"),
+            _ => continue,
         };
-        // Through a solid it is met again, from the inside.
-        let through = !outward && !solid.is_flat() && !again.front;
-        if again.primitive != hit.primitive || through {
-            continue;
-        }
-        // A solid may be thinner than the bound, and a tip's normal may lead back.
-        let inside = solid.excesses(exact_from)[0] <= 0.0;
-        let excused = !solid.is_flat()
-            && (inside != outward)
-            && (!outward || judge.meets(hit.primitive, &RoundedRay::of(&ray)));
-        if !excused {
-            faults.push(Fault {
-                promise: Promise::SelfHits,
-                format: N::FORMAT,
-                structure: Structure::List,
-                what: format!(
-                    "the ray that leaves primitive {} from {exact_from:?} along {direction:?} (in \
-                     units) meets it again at {:?}",
-                    hit.primitive,
-                    N::far_to_f64(again.t)
-                ),
-            });
-        }
+        faults.push(Fault {
+            promise: Promise::SelfHits,
+            format: N::FORMAT,
+            structure: Structure::List,
+            what: format!(
+                "the ray that goes on from primitive {}, from {from:?} along {direction:?} (in \
+                 units), {what}",
+                hit.primitive
+            ),
+        });
     }
     faults
 }

@@ -11,6 +11,13 @@ use gridel_core::{Format, Kind, Number, Ray, Scene};
 /// larger or smaller.
 pub const STEPS: f64 = 8.0;
 
+/// The cosine between a surface's normal and a ray below which the ray grazes: t is off there by more
+/// than [`STEPS`] steps if the surface is off by one.
+pub const GRAZING: f64 = 1.0 / STEPS;
+
+/// How far it is through a scene at the most, in units.
+const FARTHEST: f64 = 131_072.0;
+
 /// The step of a format: a sub-step of `fixed`, or the unit of rounding times the largest magnitude
 /// among the coordinates of ray, hit and shape.
 pub fn step(format: Format, magnitude: f64) -> f64 {
@@ -46,6 +53,12 @@ impl RoundedRay {
     pub fn in_f64(&self, bounds: &UnitBox) -> Option<Ray<f64>> {
         let [first, last] = self.interval;
         Ray::from_f64(bounds, self.start, self.slope, first, last).ok()
+    }
+
+    /// Of the angle between the ray and a vector of length 1.
+    pub fn cosine(&self, unit: [f64; 3]) -> f64 {
+        let dot = |v: [f64; 3]| (0..3).map(|k| self.slope[k] * v[k]).sum::<f64>();
+        dot(unit) / dot(self.slope).sqrt()
     }
 
     fn line(&self) -> Line {
@@ -121,33 +134,27 @@ impl Judge {
     ) -> Result<(), Wrong> {
         let line = ray.line();
         let [tmin, tmax] = ray.interval;
+        let begin = Real::of(tmin);
         let mut end = Real::of(tmax.min(1e300));
         if let Some(answer) = answer {
             let solid = self.solid(answer.primitive).ok_or(Wrong::NotThere)?;
             let off = STEPS * step(format, ray.magnitude(answer.t).max(solid.extent()));
-            let first = is_there(solid, &line, answer.t, tmin, off).ok_or(Wrong::NotThere)?;
-            if answer.t < tmin - off || answer.t > tmax + off {
+            let there =
+                Crossings::new(solid, &line, off).may_be_met_at(&Real::of(answer.t), &begin);
+            if !there || answer.t < tmin - off || answer.t > tmax + off {
                 return Err(Wrong::NotThere);
             }
-            end = first;
+            // Hits count from the ray's own start, which rounds once more.
+            end = Real::of(answer.t - off);
         }
+        let reach = ray.magnitude(answer.map_or(FARTHEST, |answer| answer.t));
         for (primitive, bounds, solid) in &self.solids {
             let itself = answer.is_some_and(|answer| answer.primitive == *primitive);
             if itself || !may_meet(ray, bounds) {
                 continue;
             }
-            // Shrunk by what the format may be off by, it is met all the same, and before.
-            let off = STEPS
-                * step(
-                    format,
-                    ray.magnitude(0.0).max(solid.extent()).max(131_072.0),
-                );
-            let Some((enter, leave)) = solid.span(&line, &Real::of(-off)) else {
-                continue;
-            };
-            let begin = Real::of(tmin + off);
-            let end = &end - Real::of(off);
-            let met = [enter, leave].into_iter().find(|t| *t > begin);
+            let off = STEPS * step(format, reach.max(solid.extent()));
+            let met = Crossings::new(solid, &line, off).are_met_by(&begin);
             if let Some(t) = met.filter(|t| *t < end) {
                 return Err(Wrong::Missed {
                     primitive: *primitive,
@@ -156,14 +163,6 @@ impl Judge {
             }
         }
         Ok(())
-    }
-
-    /// Whether a ray meets a primitive beyond its start.
-    pub fn meets(&self, primitive: u32, ray: &RoundedRay) -> bool {
-        let crossed = |solid: &Solid| solid.span(&ray.line(), &Real::of(0.0));
-        self.solid(primitive)
-            .and_then(crossed)
-            .is_some_and(|(_, leave)| leave.is_positive())
     }
 
     /// Whether a ray crosses a primitive at `t`, within [`STEPS`].
@@ -177,23 +176,50 @@ impl Judge {
     }
 }
 
-/// Whether a shape that differs by no more than `off` is met at `t`; if so, where the largest of them
-/// begins.
-fn is_there(solid: &Solid, line: &Line, t: f64, tmin: f64, off: f64) -> Option<Real> {
-    let (first, last) = solid.span(line, &Real::of(off))?;
-    let place = Real::of(t);
-    let within = first <= place && place <= last;
-    if solid.is_flat() {
-        return within.then_some(first);
+/// Where a ray may cross a shape that is only known within a length: any of the shapes counts that
+/// are larger or smaller by no more than that.
+///
+/// A ray meets a solid where it enters it; one that starts inside, where it leaves it.
+#[derive(Clone, Debug)]
+pub struct Crossings<'c> {
+    solid: &'c Solid,
+    line: &'c Line,
+    off: Real,
+}
+
+impl<'c> Crossings<'c> {
+    pub fn new(solid: &'c Solid, line: &'c Line, off: f64) -> Self {
+        let off = Real::of(off);
+        Self { solid, line, off }
     }
-    let shrunk = solid.span(line, &Real::of(-off));
-    let (enter, leave) = shrunk.unwrap_or((last.clone(), first.clone()));
-    let entering = within && place <= enter;
-    let leaving = within && leave <= place && first <= Real::of(tmin + off);
-    if entering {
-        Some(first)
-    } else {
-        leaving.then_some(leave)
+
+    /// Whether one of the shapes is met at `t` by a ray that counts from `begin`.
+    pub fn may_be_met_at(&self, t: &Real, begin: &Real) -> bool {
+        let Some((first, last)) = self.solid.span(self.line, &self.off) else {
+            return false;
+        };
+        if *t < first || *t > last {
+            return false;
+        }
+        let smallest = self.solid.span(self.line, &-&self.off);
+        let Some((enter, leave)) = smallest.filter(|_| !self.solid.is_flat()) else {
+            return true;
+        };
+        *t <= enter || leave <= *t && first <= *begin
+    }
+
+    /// By where every one of the shapes is met by a ray that counts from `begin`; `None` if one of
+    /// them may not be met at all.
+    pub fn are_met_by(&self, begin: &Real) -> Option<Real> {
+        let (enter, leave) = self.solid.span(self.line, &-&self.off)?;
+        let (first, last) = self.solid.span(self.line, &self.off)?;
+        match (first > *begin, self.solid.is_flat()) {
+            (true, true) => Some(last),
+            (true, false) => Some(enter),
+            (false, true) => None,
+            // It may start inside of one and outside of another.
+            (false, false) => (leave > *begin).then_some(last),
+        }
     }
 }
 

@@ -13,7 +13,7 @@ pub mod random;
 pub mod rays;
 pub mod solid;
 
-pub use check::{Fault, Heard, Outcome, Promise, ask, ask_all, check, leave, sealed};
+pub use check::{Fault, Heard, Outcome, Promise, ask, ask_all, check, depart, leave, sealed};
 pub use closed::ClosedMesh;
 pub use rays::{Targets, UnitRay};
 
@@ -45,12 +45,36 @@ pub struct FormatReport {
     pub hits: u64,
     /// Answers that exact arithmetic was asked about.
     pub judged: u64,
-    /// By how many steps t was off at worst: units of rounding times the largest coordinate, and
-    /// sub-steps of `fixed`. Beyond [`judge::STEPS`] only where the ray grazes, so that a surface
-    /// that is off by less is met that much later.
-    pub worst_error: f64,
+    /// Rays that do not graze what they meet.
+    pub worst: Worst,
+    /// Rays that graze ([`judge::GRAZING`]): a surface that is off by a step is met many steps later.
+    pub worst_grazing: Worst,
+}
+
+/// By how much t was off at worst against the same ray in double precision.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Worst {
+    /// In steps: units of rounding times the largest coordinate, and sub-steps of `fixed`.
+    pub error: f64,
     /// The ray with that error, as `explain --ray` takes it.
-    pub worst_ray: Option<String>,
+    pub ray: Option<String>,
+}
+
+impl Worst {
+    fn take(&mut self, error: f64, ray: &SceneRay) {
+        if error > self.error {
+            self.error = error;
+            self.ray = Some(as_argument(ray));
+        }
+    }
+
+    fn worse(self, other: Self) -> Self {
+        if other.error > self.error {
+            other
+        } else {
+            self
+        }
+    }
 }
 
 /// How a promise was kept.
@@ -82,6 +106,8 @@ impl Report {
     }
 }
 
+/// Rays of all sorts that a scene is verified with where nothing else is asked for.
+pub const RAYS: u64 = 10_000;
 /// Rays of a chunk of work.
 const CHUNK: u64 = 128;
 /// Of so many rays one is judged by exact arithmetic whatever was answered, and one hit in so many is
@@ -209,7 +235,11 @@ impl Work<'_> {
         let entry = tally.format(N::FORMAT);
         entry.hits += u64::from(hit.is_some());
         entry.judged += u64::from(outcome.judged);
-        entry.worse(outcome.error, ray);
+        if outcome.grazes {
+            entry.worst_grazing.take(outcome.error, ray);
+        } else {
+            entry.worst.take(outcome.error, ray);
+        }
         let structures = heard.len() as u64;
         tally.checked(Promise::Structures, structures - 1);
         tally.checked(Promise::AnyHit, structures);
@@ -295,15 +325,17 @@ struct Tally {
 struct FormatTally {
     hits: u64,
     judged: u64,
-    worst: f64,
-    ray: Option<SceneRay>,
+    worst: Worst,
+    worst_grazing: Worst,
 }
 
 impl FormatTally {
-    fn worse(&mut self, error: f64, ray: &SceneRay) {
-        if error > self.worst {
-            self.worst = error;
-            self.ray = Some(*ray);
+    fn plus(self, other: Self) -> Self {
+        Self {
+            hits: self.hits + other.hits,
+            judged: self.judged + other.judged,
+            worst: self.worst.worse(other.worst),
+            worst_grazing: self.worst_grazing.worse(other.worst_grazing),
         }
     }
 }
@@ -332,11 +364,7 @@ impl Tally {
 
     fn plus(mut self, other: Self) -> Self {
         for (mine, theirs) in self.formats.iter_mut().zip(other.formats) {
-            mine.hits += theirs.hits;
-            mine.judged += theirs.judged;
-            if let Some(ray) = theirs.ray {
-                mine.worse(theirs.worst, &ray);
-            }
+            *mine = std::mem::take(mine).plus(theirs);
         }
         for (promise, count) in other.checked {
             self.checked(promise, count);
@@ -357,8 +385,8 @@ impl Tally {
                 format: format.name(),
                 hits: tally.hits,
                 judged: tally.judged,
-                worst_error: tally.worst,
-                worst_ray: tally.ray.as_ref().map(as_argument),
+                worst: tally.worst,
+                worst_grazing: tally.worst_grazing,
             }
         });
         let promises = [

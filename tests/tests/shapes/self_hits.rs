@@ -49,7 +49,7 @@ fn no_self_hits<N: Number>(shape: usize, shapes: usize, rays_each: usize) {
             for side in [1.0, -1.0] {
                 let normal = side * DVec3::from_array(hit.normal.map(N::ratio_to_f64));
                 let way = outward(&mut random, normal);
-                let from = depart(&scene, &hit, side);
+                let from = depart(&scene, &hit, side > 0.0);
                 let outside = side > 0.0 || case.solid.is_flat();
                 if !outside && case.solid.excesses(from)[0] > -0.5 * hit.error.length_to_f64() {
                     thin += 1;
@@ -217,7 +217,7 @@ fn a_second_surface_close_by_is_met() {
                 let normal = DVec3::from_array(hit.normal.map(N::ratio_to_f64));
                 // Flat shapes are left steeply enough to pass below the second one.
                 let way = outward(&mut random, normal) + normal * 0.25;
-                let next = next_hit::<N>(&scene, depart(&scene, &hit, 1.0), way);
+                let next = next_hit::<N>(&scene, depart(&scene, &hit, true), way);
                 let met = next.is_some_and(|next| next.primitive == 1);
                 assert!(
                     met,
