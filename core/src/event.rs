@@ -49,6 +49,8 @@ pub enum Event {
         /// greater.
         span: [f64; 2],
     },
+    /// What was just tested holds nothing: the ray does not go into it.
+    Empty(Place),
     /// A node that was put off is given up, because a hit was found before it.
     GivenUp {
         /// What is given up.

@@ -1,11 +1,14 @@
 //! The story of a pixel is that of the pixel that is rendered: the same hits, and parts that add up.
 
 use gridel_core::{Format, NoCount, Scene, Settings, Structure};
-use gridel_host::explain::{Fall, Sample, Step, Subject, Verdict, explain};
+use gridel_host::explain::{
+    Culled, Fall, Names, Sample, Shown, Step, Story, Subject, Verdict, Walk, explain,
+};
 use gridel_host::render::{Job, render};
-use gridel_host::scene::{Color, Object, Place, Shape};
-use gridel_host::trace::{Query, SceneHit, SceneRay, trace};
+use gridel_host::scene::{Color, Light, Object, Place, Shape};
+use gridel_host::trace::{Frame, Query, SceneHit, SceneRay, trace};
 use gridel_tests::scenes;
+use std::collections::HashMap;
 
 /// The sum of what the rays of a sample add, in the arithmetic of the format.
 fn sum(format: Format, sample: &Sample) -> Color {
@@ -45,6 +48,7 @@ fn parts_add_up(name: &str, scene: &Scene<'_>, samples: u16) {
             let story = explain(scene, format, structure, settings, Subject::Pixel(pixel));
             let story = story.expect("a story");
             assert_eq!(story.linear, picture.pixels[place], "{}", about());
+            assert_eq!((story.pixel, story.picture), (Some(pixel), Some([32, 24])));
             assert_eq!(story.samples.len(), usize::from(samples));
             for sample in &story.samples {
                 assert_eq!(sum(format, sample), sample.radiance, "{}", about());
@@ -161,11 +165,11 @@ fn reasons_are_true() {
         place: Place::default(),
     });
     scene.lights = vec![
-        gridel_host::scene::Light::Directional {
+        Light::Directional {
             direction: -glam::DVec3::Y,
             color: [1.0; 3],
         },
-        gridel_host::scene::Light::Directional {
+        Light::Directional {
             direction: glam::DVec3::Y,
             color: [1.0; 3],
         },
@@ -202,4 +206,197 @@ fn reasons_are_true() {
         _ => None,
     });
     assert!(verdicts.clone().any(|v| v == (0, Verdict::Nearest)));
+}
+
+fn story(scene: &Scene<'_>, format: Format, structure: Structure, ray: SceneRay) -> Story {
+    let settings = Settings::of(scene);
+    explain(scene, format, structure, settings, Subject::Ray(ray)).expect("a story")
+}
+
+/// The way of the ray itself.
+fn way(story: &Story) -> &Walk {
+    story.samples[0].rays[0].walk.as_ref().expect("a walk")
+}
+
+fn rays(seed: u64, count: usize) -> impl Iterator<Item = SceneRay> {
+    let mut random = gridel_tests::random::Random(seed);
+    (0..count).map(move |_| {
+        let origin = glam::DVec3::from_array(random.direction()) * 3.0;
+        let target = glam::DVec3::from_array([0; 3].map(|_| random.signed()));
+        SceneRay {
+            origin,
+            direction: target - origin,
+            tmin: 0.0,
+            tmax: f64::INFINITY,
+        }
+    })
+}
+
+/// Whether a hierarchy culls in integers or in lanes, it tells where a ray is in the same units.
+#[test]
+fn spans_are_told_in_units() {
+    let blob = scenes::blob(&scenes::soup(12, 120, 0.1), 24);
+    let scene = blob.scene().expect("a scene");
+    let unit = Frame::of(&scene).length(1.0);
+    let held: Vec<_> = Structure::ALL
+        .into_iter()
+        .filter(|&s| scene.holds(s))
+        .collect();
+    for structure in held {
+        let mut compared = 0;
+        // Where something is met, how far a ray is followed depends on the order of tests.
+        let steep = |ray: &SceneRay| {
+            let along = ray.direction.abs();
+            along.min_element() > 0.2 * along.max_element()
+        };
+        for ray in rays(6, 400).filter(steep) {
+            let [fixed, f32, f64] = Format::ALL.map(|format| story(&scene, format, structure, ray));
+            if fixed.samples[0].rays[0].hit.is_some() {
+                continue;
+            }
+            let fixed = spans(way(&fixed));
+            for other in [&f32, &f64].map(|story| spans(way(story))) {
+                for (place, fixed) in &fixed {
+                    let other = other.get(place).into_iter().flatten();
+                    for (a, b) in fixed.iter().zip(other) {
+                        compared += 1;
+                        let apart = [0, 1].map(|side| (a[side] - b[side]).abs() / unit);
+                        let about = || format!("{} {place}: {a:?} {b:?}", structure.name());
+                        assert!(apart[0].max(apart[1]) < 16.0, "{}", about());
+                    }
+                }
+            }
+        }
+        eprintln!("{}: {compared} spans", structure.name());
+        let culls_in_lanes = [
+            Structure::Bvh,
+            Structure::Apex,
+            Structure::CylinderCubeEntry,
+            Structure::RayClasses,
+            Structure::Wide,
+        ];
+        assert!(compared > 100 || !culls_in_lanes.contains(&structure));
+    }
+}
+
+/// The spans of every place that was tested, in order.
+fn spans(walk: &Walk) -> HashMap<&str, Vec<[f64; 2]>> {
+    let mut spans: HashMap<&str, Vec<[f64; 2]>> = HashMap::new();
+    for step in &walk.steps {
+        if let Step::Tested(tested) = step {
+            spans.entry(&tested.place).or_default().push(tested.span);
+        }
+    }
+    spans
+}
+
+/// What is told to be left out is not gone into, and what is not is gone into or given up.
+#[test]
+fn what_is_told_is_what_is_done() {
+    let path = scenes::fixture_folder().join("glass-chess.toml");
+    let blob = scenes::blob(&scenes::read(&path), 24);
+    let scene = blob.scene().expect("a scene");
+    let of_one = SceneRay {
+        origin: glam::DVec3::new(-5.0, 3.0, 0.0),
+        direction: glam::DVec3::new(1.0, -0.5, 0.0),
+        tmin: 0.0,
+        tmax: f64::INFINITY,
+    };
+    let more = rays(7, 150).map(|ray| SceneRay {
+        origin: ray.origin * 4.0,
+        direction: ray.direction * 4.0,
+        ..ray
+    });
+    let rays: Vec<_> = std::iter::once(of_one).chain(more).collect();
+    let held: Vec<_> = Structure::ALL
+        .into_iter()
+        .filter(|&s| scene.holds(s))
+        .collect();
+    for (format, structure) in held.iter().flat_map(|&s| Format::ALL.map(|f| (f, s))) {
+        let mut empty = 0;
+        for ray in &rays {
+            let story = story(&scene, format, structure, *ray);
+            let about = || format!("{} {} {ray:?}", format.name(), structure.name());
+            let (mut left_out, mut opened, mut entered) = (vec![], vec![], vec![]);
+            for step in &way(&story).steps {
+                match step {
+                    Step::Tested(tested) if tested.culled.is_some() => {
+                        left_out.push(&tested.place);
+                        empty += usize::from(tested.culled == Some(Culled::Empty));
+                    }
+                    Step::Tested(tested) => entered.push(&tested.place),
+                    Step::Opened { place } => {
+                        assert!(!left_out.contains(&place), "{place} {}", about());
+                        opened.push(place);
+                    }
+                    Step::GivenUp { place, .. } => opened.push(place),
+                    Step::Candidate(_) => {}
+                }
+            }
+            for place in entered {
+                // A grid has no node that stands for all of it.
+                let done = opened.contains(&place) || place == "grid 0";
+                assert!(done, "{place} {}", about());
+            }
+            // No two tests read the same.
+            let names = Names::default();
+            let shown = Shown {
+                story: &story,
+                names: &names,
+                all_walks: false,
+            };
+            let text = shown.to_string();
+            let lines: Vec<_> = text.lines().filter(|line| line.contains("node")).collect();
+            let twice = lines.windows(2).find(|pair| pair[0] == pair[1]);
+            assert_eq!(twice, None, "{}", about());
+        }
+        assert_eq!(
+            empty > 0,
+            structure == Structure::Octree,
+            "{}",
+            structure.name()
+        );
+    }
+}
+
+/// A light that has no direction, because it lies where the ray to it would start, is told of, too.
+#[test]
+fn a_light_at_the_point_itself_is_told() {
+    let mut scene = scenes::of([Shape::Box {
+        min: glam::DVec3::splat(-1.0),
+        max: glam::DVec3::ONE,
+    }]);
+    let ray = SceneRay {
+        origin: glam::DVec3::new(0.0, 5.0, 0.0),
+        direction: -glam::DVec3::Y,
+        tmin: 0.0,
+        tmax: f64::INFINITY,
+    };
+    let mut told = |height: f64| {
+        scene.lights = vec![
+            Light::Point {
+                position: glam::DVec3::Y * height,
+                color: [1.0; 3],
+            },
+            Light::Directional {
+                direction: -glam::DVec3::Y,
+                color: [1.0; 3],
+            },
+        ];
+        let blob = scenes::blob(&scene, 24);
+        let scene = blob.scene().expect("a scene");
+        let story = story(&scene, Format::Fixed, Structure::Bvh, ray);
+        let ray = &story.samples[0].rays[0];
+        let falls: Vec<_> = ray
+            .lights
+            .iter()
+            .map(|l| (l.light, l.fall.clone()))
+            .collect();
+        let hit = ray.hit.as_ref().expect("a hit");
+        (falls, hit.point[1] + hit.error)
+    };
+    let (above, start) = told(3.0);
+    assert_eq!(above, [(0, Fall::Lit), (1, Fall::Lit)]);
+    let (here, _) = told(start);
+    assert_eq!(here, [(0, Fall::Here), (1, Fall::Lit)]);
 }

@@ -50,9 +50,8 @@ pub fn walk<N: Number, K: PairCulling<N>, C: Count>(
         root: |limit| cull.root(scene.bounds(), limit),
         root_planes: 6,
         narrow: |pair: &Pair, _, limit| cull.children(pair, limit),
-        limit: K::limit,
     };
-    walk.run(ray.tmax, stack, count, leaf);
+    walk.run::<N, K, C>(ray.tmax, stack, count, leaf);
 }
 
 /// The pairs of a scene.

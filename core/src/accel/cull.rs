@@ -34,19 +34,14 @@ pub struct Interval {
     pub far: i32,
 }
 
-impl Interval {
-    /// From where to where, in units, as events tell it.
-    pub(crate) fn units(self) -> [f64; 2] {
-        [self.near, self.far].map(|step| f64::from(step) / 2.0)
-    }
-}
-
 /// A form of a ray that culls boxes: [`Cull`] in integers, or lanes of floats where there is SIMD.
 pub trait Culling<N: Number>: Copy + core::fmt::Debug + Default + Send + Sync {
     /// Sets up a ray.
     fn new(ray: &Ray<N>) -> Self;
     /// The integer form, whose intervals hits are clamped to.
     fn exact(&self, ray: &Ray<N>) -> Cull;
+    /// What stands for a place on the ray in this form, in units, as events tell it.
+    fn units(place: i32) -> f64;
     /// Whether t is certain to lie in the integer form's interval of a box, where that is cheaper to
     /// see than to set up the integer form.
     #[inline(always)]
@@ -88,6 +83,10 @@ impl<N: Number> Culling<N> for Cull {
     #[inline(always)]
     fn exact(&self, _: &Ray<N>) -> Cull {
         *self
+    }
+
+    fn units(step: i32) -> f64 {
+        Self::told(step)
     }
 }
 
@@ -199,6 +198,16 @@ impl Interval {
 }
 
 impl Cull {
+    /// A step in units.
+    fn told(step: i32) -> f64 {
+        f64::from(step) / 2.0
+    }
+
+    /// From where to where in units, as events tell it.
+    pub(crate) fn span(interval: Interval) -> [f64; 2] {
+        [interval.near, interval.far].map(Self::told)
+    }
+
     /// The step at which the ray enters what begins at a plane, as it comes along an axis.
     #[inline(always)]
     pub(super) fn enters(&self, axis: usize, plane: i16) -> i32 {

@@ -54,7 +54,6 @@ impl Accel for CylinderCubeEntry {
             root: |limit| cull.root(scene.bounds(), limit),
             root_planes: 6,
             narrow: |pair: &Pair, _, limit| cull.children(pair, limit),
-            limit: N::Cull::limit,
         };
         let mut tmax = ray.tmax;
         along(&table.lists, &passage, ray, |number| {
@@ -63,7 +62,7 @@ impl Accel for CylinderCubeEntry {
                 None => Node::pair(number),
             };
             let mut limit = Some(tmax);
-            walk.enter(node, tmax, stack, count, |range, count| {
+            walk.enter::<N, N::Cull, C>(node, tmax, stack, count, |range, count| {
                 limit = leaf(range, count);
                 limit
             });

@@ -22,7 +22,7 @@
 //! holds: so no node on the way to a hit is left out. A side that no plane bounds costs visits, not
 //! hits, and a region may even be empty, where there is nothing in it.
 
-use super::cull::{Cull, Interval, PairCulling};
+use super::cull::{Cull, Culling, Interval, PairCulling};
 use super::{Accel, Entry, Leaf, MAX_LEVELS, Records, StackView, Structure};
 use crate::blob::record::{DualNode, UnitBox};
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
@@ -93,7 +93,7 @@ impl Accel for DualSplit {
         tested(count, 6, || Event::Tested {
             place: place(0),
             sides: scene.bounds().0.map(|axis| axis.map(Some)),
-            span: interval.units(),
+            span: Cull::span(interval),
         });
         if interval.near > interval.far {
             return;
@@ -152,7 +152,7 @@ impl Accel for DualSplit {
                 if C::TELLS {
                     count.tell(Event::GivenUp {
                         place: place(entry.node),
-                        enters: f64::from(entry.near) / 2.0,
+                        enters: <Cull as Culling<N>>::units(entry.near),
                     });
                 }
             }
@@ -234,7 +234,7 @@ fn carve_ray<C: Count>(
     tested(count, 2, || Event::Tested {
         place: place(number),
         sides: sides(axis, [Some(planes as i16), Some((planes >> 16) as i16)]),
-        span: interval.units(),
+        span: Cull::span(*interval),
     });
 }
 
@@ -269,13 +269,16 @@ fn split<C: Count>(
             count.tell(Event::Tested {
                 place: place(child),
                 sides: sides(way.split(), planes),
-                span: Interval { near, far }.units(),
+                span: Cull::span(Interval { near, far }),
             });
         }
     }
     if whole.near > leave {
-        // That the ray misses this child too is rare, and found out by the child's own planes.
+        // Between the two, or past the far one: its own planes may be of other axes, or none.
         interval.near = whole.near.max(enter);
+        if interval.near > whole.far {
+            return Next::Nothing;
+        }
         return Next::Near(far);
     }
     interval.far = whole.far.min(leave);

@@ -36,16 +36,14 @@ impl Accel for Flagged {
     ) {
         let root = |limit| PairCulling::<N>::root(cull, scene.bounds(), limit);
         let narrow = |pair: &FlaggedPair, parent, _| narrow(pair, parent, cull);
-        let limit = <Cull as PairCulling<N>>::limit;
         let walk = Walk {
             scene,
             pairs: scene.held.flagged,
             root,
             root_planes: 6,
             narrow,
-            limit,
         };
-        walk.run(ray.tmax, stack, count, leaf);
+        walk.run::<N, Cull, C>(ray.tmax, stack, count, leaf);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Slabs without the planes that coincide with the parent's: what [`flagged`](super::flagged) is to
 //! boxes.
 
-use super::cull::{Cull, Interval, PairCulling};
+use super::cull::{Cull, Interval};
 use super::pairs::Walk;
 use super::slabs::{Forms, SlabPair, SlabPairs, forms, in_order, planes, root_interval};
 use super::{Accel, Leaf, StackView, Structure};
@@ -37,9 +37,8 @@ impl Accel for FlaggedSlabs {
             root: |limit| root_interval(&forms, pairs.root, start, limit),
             root_planes: 2 * pairs.root.len() as u32,
             narrow: |pair, parent, _| flagged(pair, &forms, parent),
-            limit: <Cull as PairCulling<N>>::limit,
         };
-        walk.run(ray.tmax, stack, count, leaf);
+        walk.run::<N, Cull, C>(ray.tmax, stack, count, leaf);
     }
 }
 

@@ -67,7 +67,7 @@ impl Accel for Grid {
                     number: 0,
                 },
                 sides: scene.bounds().0.map(|axis| axis.map(Some)),
-                span: root.units(),
+                span: Cull::span(root),
             });
         }
         if root.near > root.far {

@@ -69,6 +69,10 @@ impl<N: Number> Culling<N> for Lanes {
         Cull::new(ray)
     }
 
+    fn units(place: i32) -> f64 {
+        Single::units(place)
+    }
+
     #[inline(always)]
     fn holds(ray: &Ray<N>, t: N, bounds: &UnitBox) -> bool {
         cull::holds(ray, t, bounds)

@@ -11,7 +11,7 @@
 //! [`cull`](super::cull). No direction is special, no interval is reflected.)
 
 use super::cells::{Divisions, Lists, Range, Tester, check_complete, divide, reach, record};
-use super::cull::{Cull, Interval, PairCulling};
+use super::cull::{Cull, Culling, Interval, PairCulling};
 use super::{Accel, Entry, Leaf, Records, StackView, Structure};
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
 use crate::count::Count;
@@ -88,6 +88,15 @@ impl Place {
         let size = 1 << self.level();
         [0, 1, 2].map(|axis| [self.first(axis), self.first(axis) + size - 1])
     }
+
+    /// Its planes, as events tell them.
+    fn planes(self, divisions: &[Divisions; 3]) -> Sides {
+        let size = 1 << self.level();
+        [0, 1, 2].map(|axis: usize| {
+            let first = self.first(axis as u32);
+            [first, first + size].map(|division| Some(divisions[axis].plane(division)))
+        })
+    }
 }
 
 /// The octree of a scene.
@@ -127,7 +136,7 @@ impl Accel for Octree {
             count.tell(Event::Tested {
                 place: told(0),
                 sides: scene.bounds().0.map(|axis| axis.map(Some)),
-                span: root.units(),
+                span: Cull::span(root),
             });
         }
         if root.near > root.far {
@@ -171,14 +180,17 @@ impl Accel for Octree {
                     let near = x.near.max(y.near).max(z.near);
                     let far = x.far.min(y.far).min(z.far);
                     let child = node.0.wrapping_add(sides);
+                    let empty = held.nodes.get(child as usize) == Some(&OctreeNode::EMPTY.0);
                     if C::TELLS {
                         count.tell(Event::Tested {
                             place: told(child),
-                            sides: Sides::default(),
-                            span: Interval { near, far }.units(),
+                            sides: place.child(sides).planes(&divisions),
+                            span: Cull::span(Interval { near, far }),
                         });
+                        if empty {
+                            count.tell(Event::Empty(told(child)));
+                        }
                     }
-                    let empty = held.nodes.get(child as usize) == Some(&OctreeNode::EMPTY.0);
                     if near > far || empty {
                         continue;
                     }
@@ -198,6 +210,12 @@ impl Accel for Octree {
                     number = entry.node;
                     place = Place(entry.far as u32);
                     break;
+                }
+                if C::TELLS {
+                    count.tell(Event::GivenUp {
+                        place: told(entry.node),
+                        enters: <Cull as Culling<N>>::units(entry.near),
+                    });
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! What hierarchies of pairs share: the walk, and the proof that it is sound.
 
-use super::cull::Interval;
+use super::cull::{Culling, Interval, PairCulling};
 use super::link::Node;
 use super::{Entry, Leaf, MAX_LEVELS, Records, StackView};
 use crate::blob::record::UnitBox;
@@ -28,11 +28,11 @@ pub(super) trait PairRecord: Copy {
     }
 
     /// The test of a child, as events tell it.
-    fn tested(&self, number: u32, side: u32, interval: Interval) -> Event {
+    fn tested(&self, number: u32, side: u32, span: [f64; 2]) -> Event {
         Event::Tested {
             place: self.child(number, side).place(),
             sides: self.sides()[(side & 1) as usize],
-            span: interval.units(),
+            span,
         }
     }
 }
@@ -115,7 +115,7 @@ impl<'a, P: BoxPair> Records<'a> for Pairs<'a, P> {
 }
 
 /// A walk through a hierarchy: what the ray brings to it.
-pub(super) struct Walk<'w, 'a, A, R, F, L> {
+pub(super) struct Walk<'w, 'a, A, R, F> {
     pub(super) scene: &'w Scene<'a>,
     pub(super) pairs: A,
     /// The scene's interval, given the limit.
@@ -124,66 +124,66 @@ pub(super) struct Walk<'w, 'a, A, R, F, L> {
     pub(super) root_planes: u32,
     /// The children's intervals, given the pair, their parent's and the limit.
     pub(super) narrow: F,
-    /// The limit of an interval for a t.
-    pub(super) limit: L,
 }
 
-impl<A, R, F, L> Walk<'_, '_, A, R, F, L>
+/// From where to where in units, as events tell it.
+fn span<N: Number, K: Culling<N>>(interval: Interval) -> [f64; 2] {
+    [interval.near, interval.far].map(K::units)
+}
+
+impl<A, R, F> Walk<'_, '_, A, R, F>
 where
     A: PairArray,
     R: Fn(i32) -> Interval,
     F: Fn(A::Pair, Interval, i32) -> [Interval; 2],
 {
-    /// Visits the leaves whose boxes the ray can meet, the nearer child first.
+    /// Visits the leaves whose boxes the ray can meet, the nearer child first. Intervals are those
+    /// of a culling form.
     #[inline(always)]
-    pub(super) fn run<N: Number, C: Count>(
+    pub(super) fn run<N: Number, K: PairCulling<N>, C: Count>(
         &self,
         tmax: N,
         stack: &mut StackView,
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
-    ) where
-        L: Fn(N) -> i32,
-    {
+    ) {
         count.planes(self.root_planes);
         count.boxes(1);
-        let limit = (self.limit)(tmax);
+        let limit = K::limit(tmax);
         let interval = (self.root)(limit);
         if C::TELLS {
             count.tell(Event::Tested {
                 place: root(self.pairs).place(),
                 sides: self.scene.bounds().0.map(|axis| axis.map(Some)),
-                span: interval.units(),
+                span: span::<N, K>(interval),
             });
         }
         if interval.near <= interval.far {
-            self.descend(root(self.pairs), interval, limit, stack, count, leaf);
+            self.descend::<N, K, C>(root(self.pairs), interval, limit, stack, count, leaf);
         }
     }
 
     /// The same from a node on, whose box is not tested. For records whose children do not depend on
     /// their parent's interval.
     #[inline(always)]
-    pub(super) fn enter<N: Number, C: Count>(
+    pub(super) fn enter<N: Number, K: PairCulling<N>, C: Count>(
         &self,
         node: Node,
         tmax: N,
         stack: &mut StackView,
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
-    ) where
-        L: Fn(N) -> i32,
-    {
-        let limit = (self.limit)(tmax);
+    ) {
+        let limit = K::limit(tmax);
         let interval = Interval {
             near: 0,
             far: limit,
         };
-        self.descend(node, interval, limit, stack, count, leaf);
+        self.descend::<N, K, C>(node, interval, limit, stack, count, leaf);
     }
 
     #[inline(always)]
-    fn descend<N: Number, C: Count>(
+    fn descend<N: Number, K: PairCulling<N>, C: Count>(
         &self,
         mut node: Node,
         mut interval: Interval,
@@ -191,9 +191,7 @@ where
         stack: &mut StackView,
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
-    ) where
-        L: Fn(N) -> i32,
-    {
+    ) {
         stack.clear();
         loop {
             if C::TELLS {
@@ -206,7 +204,7 @@ where
                 let Some(tmax) = leaf(range, count) else {
                     return;
                 };
-                limit = (self.limit)(tmax);
+                limit = K::limit(tmax);
             } else {
                 let Some(pair) = self.pairs.pair(node.number() as usize) else {
                     return;
@@ -216,10 +214,10 @@ where
                 count.boxes(2);
                 let number = node.number();
                 if C::TELLS {
-                    count.tell(pair.tested(number, 0, left));
+                    count.tell(pair.tested(number, 0, span::<N, K>(left)));
                 }
                 if C::TELLS {
-                    count.tell(pair.tested(number, 1, right));
+                    count.tell(pair.tested(number, 1, span::<N, K>(right)));
                 }
                 let meets_left = left.near <= left.far;
                 let meets_right = right.near <= right.far;
@@ -262,7 +260,7 @@ where
                 if C::TELLS {
                     count.tell(Event::GivenUp {
                         place: Node(entry.node).place(),
-                        enters: f64::from(entry.near) / 2.0,
+                        enters: K::units(entry.near),
                     });
                 }
             }

@@ -49,4 +49,10 @@ impl Single {
         let t = t.to_f32();
         if t < 0.0 { -1 } else { t.to_bits() as i32 + 1 }
     }
+
+    /// What bits stand for; those of the limit below 0 are no number's.
+    pub(super) fn units(bits: i32) -> f64 {
+        let t = f32::from_bits(bits as u32);
+        if t.is_nan() { -1.0 } else { t.into() }
+    }
 }

@@ -12,7 +12,7 @@
 //! with the parent's are neither stored nor tested, exactly as with boxes: two a direction. See
 //! `flagged_slabs.rs`.
 
-use super::cull::{Cull, Interval, PairCulling};
+use super::cull::{Cull, Interval};
 use super::link::{Link, Node};
 use super::pairs::{PairArray, PairRecord, Walk, check_tree};
 use super::reach::Reach;
@@ -262,9 +262,8 @@ impl Accel for Slabs {
             root: |limit| root_interval(&forms, pairs.root, start, limit),
             root_planes: 2 * pairs.root.len() as u32,
             narrow: |pair, _, limit| plain(pair, &forms, start, limit),
-            limit: <Cull as PairCulling<N>>::limit,
         };
-        walk.run(ray.tmax, stack, count, leaf);
+        walk.run::<N, Cull, C>(ray.tmax, stack, count, leaf);
     }
 }
 

@@ -51,9 +51,8 @@ impl Accel for Spheres {
             root: |limit| PairCulling::<N>::root(cull, scene.bounds(), limit),
             root_planes: 6,
             narrow: |pair: &BallPair, _, limit| pair.balls.map(|ball| meet(ball, limit)),
-            limit: <Cull as PairCulling<N>>::limit,
         };
-        walk.run(ray.tmax, stack, count, leaf);
+        walk.run::<N, Cull, C>(ray.tmax, stack, count, leaf);
     }
 }
 

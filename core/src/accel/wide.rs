@@ -13,7 +13,7 @@
 mod check;
 pub mod cull;
 
-use super::cull::{Cull, Culling};
+use super::cull::Culling;
 use super::{Accel, Entry, Leaf, Records, StackView, Structure};
 use crate::blob::cluster::LANES;
 use crate::blob::record::WideNode;
@@ -135,7 +135,7 @@ impl Accel for Wide {
                 count.planes(6 * children);
                 count.boxes(children);
                 if C::TELLS {
-                    tell_tested(node, ray, count);
+                    tell_tested::<N, C>(node, cull, limit, count);
                 }
                 if met != 0 {
                     let mut nearest = take_lowest(&mut met, &near);
@@ -175,7 +175,7 @@ impl Accel for Wide {
                     let place = Child(entry.node).place();
                     count.tell(Event::GivenUp {
                         place,
-                        enters: <N::WideCull as WideCulling<N>>::units(entry.near),
+                        enters: N::WideCull::units(entry.near),
                     });
                 }
             }
@@ -188,16 +188,19 @@ fn children(node: &WideNode) -> impl Iterator<Item = usize> + '_ {
     (0..LANES).filter(|&lane| node.child(lane) != Child::NONE)
 }
 
-/// Tells of the tests of a node's children, with the intervals that hits are clamped to: those of
-/// the lanes are a little wider.
-fn tell_tested<N: Number, C: Count>(node: &WideNode, ray: &Ray<N>, count: &mut C) {
-    let exact: Cull = Culling::new(ray);
+/// Tells of the tests of a node's children.
+fn tell_tested<N: Number, C: Count>(
+    node: &WideNode,
+    cull: &N::WideCull,
+    limit: i32,
+    count: &mut C,
+) {
     for lane in children(node) {
         let bounds = node.child_box(lane);
         count.tell(Event::Tested {
             place: node.child(lane).place(),
             sides: bounds.0.map(|axis| axis.map(Some)),
-            span: exact.interval(&bounds).units(),
+            span: cull.span(&bounds, limit),
         });
     }
 }

@@ -10,7 +10,7 @@ mod walk;
 
 pub use story::{Fall, Hit, Lighting, Ray, Sample, Story, Weighted};
 pub use text::{Names, Shown};
-pub use walk::{Candidate, Culled, Step, Tested, Verdict, Walk};
+pub use walk::{Candidate, Culled, Plane, Side, Step, Tested, Verdict, Walk};
 
 use crate::render::{ALL, OPAQUE, chosen};
 use crate::trace::{Frame, SceneRay};
@@ -63,6 +63,10 @@ pub fn explain(
         Format::F64 => with_format::<f64>(scene, settings, subject),
     }?;
     let mut story = Story::of(scene, &recorder.events);
+    if let Subject::Pixel(pixel) = subject {
+        story.pixel = Some(pixel);
+        story.picture = Some([settings.width, settings.height]);
+    }
     story.format = format.name();
     story.accel = structure.name();
     story.linear = linear;
@@ -119,6 +123,7 @@ impl Count for Recorder {
         match event {
             Event::Query { .. } => self.steps = 0,
             Event::Tested { .. }
+            | Event::Empty(_)
             | Event::Opened(_)
             | Event::GivenUp { .. }
             | Event::Candidate { crossing: None, .. } => {

@@ -9,6 +9,10 @@ use serde::Serialize;
 /// A pixel, or a ray of one's own, explained. Colours are linear, 1 being display white.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Story {
+    /// From the picture's upper left corner; `None` for a ray of one's own.
+    pub pixel: Option<[u16; 2]>,
+    /// The picture's columns and rows; `None` for a ray of one's own.
+    pub picture: Option<[u16; 2]>,
     /// Number format.
     pub format: &'static str,
     /// Structure.
@@ -115,6 +119,8 @@ pub enum Fall {
     Faded,
     /// The material reflects none of it.
     Unreflected,
+    /// It lies where the ray to it would start, so there is no direction to it.
+    Here,
 }
 
 /// What a kind of ray is called.
@@ -236,14 +242,7 @@ impl Ray {
             }
             Event::Light { number, cosine } => {
                 *light = true;
-                self.lights.push(Lighting {
-                    light: number,
-                    cosine,
-                    shadow: Vec::new(),
-                    filtered: Vec::new(),
-                    radiance: [0.0; 3],
-                    fall: Fall::Lit,
-                });
+                self.lights.push(Lighting::new(number, cosine, Fall::Lit));
             }
             Event::Filtered { left } => {
                 if let Some(lighting) = self.lights.last_mut() {
@@ -252,9 +251,13 @@ impl Ray {
             }
             Event::Lit { number, radiance } => {
                 *light = false;
-                if let Some(lighting) = self.lights.last_mut().filter(|l| l.light == number) {
-                    lighting.radiance = radiance;
-                    lighting.fall = lighting.fall(scene);
+                match self.lights.last_mut().filter(|l| l.light == number) {
+                    Some(lighting) => {
+                        lighting.radiance = radiance;
+                        lighting.fall = lighting.fall(scene);
+                    }
+                    // Nothing was told of it before.
+                    None => self.lights.push(Lighting::new(number, 0.0, Fall::Here)),
                 }
             }
             Event::Absorbed { weight } => self.absorbed = Some(weight),
@@ -294,6 +297,17 @@ impl Hit {
 }
 
 impl Lighting {
+    fn new(light: u32, cosine: f64, fall: Fall) -> Self {
+        Self {
+            light,
+            cosine,
+            shadow: Vec::new(),
+            filtered: Vec::new(),
+            radiance: [0.0; 3],
+            fall,
+        }
+    }
+
     fn fall(&self, scene: &Scene<'_>) -> Fall {
         if self.radiance != [0.0; 3] {
             return Fall::Lit;

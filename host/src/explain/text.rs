@@ -1,7 +1,7 @@
 //! A story for people.
 
 use super::story::{Fall, Hit, Lighting, Ray, Sample, Story};
-use super::walk::{Culled, Plane, Step, Tested, Verdict, Walk};
+use super::walk::{Culled, Plane, Side, Step, Tested, Verdict, Walk};
 use crate::report::{counted, significant};
 use std::fmt::{self, Display, Formatter};
 
@@ -42,6 +42,8 @@ pub struct Shown<'s> {
 impl Display for Shown<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Story {
+            pixel,
+            picture,
             format,
             accel,
             samples,
@@ -49,11 +51,16 @@ impl Display for Shown<'_> {
             srgb,
         } = self.story;
         let [r, g, b] = srgb;
-        let shares = linear.map(|channel| f64::from(channel) / 65535.0);
+        match pixel.zip(*picture) {
+            Some(([x, y], [width, height])) => write!(f, "Pixel {x},{y} of {width} x {height}")?,
+            None => write!(f, "It")?,
+        }
+        // Sixteen bits tell no more places.
+        let [red, green, blue] = linear.map(|channel| f64::from(channel) / 65535.0);
         writeln!(
             f,
-            "It is #{r:02x}{g:02x}{b:02x}: linear {}, in {format} through {accel}.",
-            color(shares)
+            " is #{r:02x}{g:02x}{b:02x}: linear {red:.4} {green:.4} {blue:.4}, in {format} through \
+             {accel}."
         )?;
         for sentence in self.sentences() {
             writeln!(f, "{sentence}")?;
@@ -258,6 +265,7 @@ impl Shown<'_> {
                 self.names.material(object)
             ),
             Fall::Faded => format!("light {light} fades away{glass}"),
+            Fall::Here => format!("light {light} lies at this very point, and has no direction"),
             Fall::Unreflected => {
                 format!("light {light} shines on it, and the material reflects none of it")
             }
@@ -316,8 +324,12 @@ impl Shown<'_> {
     }
 
     fn tested(&self, tested: &Tested) -> String {
-        let place = &tested.place;
+        let place = format!("{}{}", tested.place, between(&tested.planes));
         match tested.culled {
+            Some(Culled::Empty) => format!("{place} holds nothing"),
+            Some(Culled::NotInVolume) => {
+                format!("{place} is left out: the ray is not in it where it counts")
+            }
             None => format!(
                 "{place}: the ray is in it from {} to {}",
                 significant(tested.span[0]),
@@ -355,6 +367,23 @@ impl Shown<'_> {
             }
         }
     }
+}
+
+/// The planes of a test, if all are on one axis: what was tested is not all of a box.
+fn between(planes: &[Plane]) -> String {
+    let Some(axis) = planes.first().map(|plane| plane.axis) else {
+        return String::new();
+    };
+    if planes.iter().any(|plane| plane.axis != axis) {
+        return String::new();
+    }
+    let side = |side| planes.iter().find(|plane| plane.side == side);
+    let bounds = [(Side::Lower, "from"), (Side::Upper, "to")].map(|(wanted, word)| {
+        side(wanted).map_or(String::new(), |plane| {
+            format!(" {word} {}", significant(plane.at))
+        })
+    });
+    format!(" ({axis}{})", bounds.concat())
 }
 
 fn plane(plane: &Plane) -> String {

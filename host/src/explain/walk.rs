@@ -77,12 +77,22 @@ pub struct Tested {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Plane {
     pub axis: char,
+    /// Which of the box's sides on the axis it is.
+    pub side: Side,
     pub at: f64,
     /// Infinite where the ray runs along the plane.
     #[serde(serialize_with = "finite")]
     pub distance: f64,
     /// Whether the ray goes into the slab here, and not out of it.
     pub entry: bool,
+}
+
+/// A side of a box on an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    Lower,
+    Upper,
 }
 
 fn finite<S: serde::Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
@@ -105,6 +115,10 @@ pub enum Culled {
     NotInParent { plane: Plane, around: [f64; 2] },
     /// No plane tells: the span is empty by less than culling allows for rounding.
     Margin,
+    /// What was tested has no planes on the axes: the ray is not in it where it counts.
+    NotInVolume,
+    /// It holds nothing.
+    Empty,
 }
 
 /// A primitive that was tested.
@@ -192,6 +206,16 @@ impl Walk {
                 self.culled += usize::from(tested.culled.is_some());
                 Step::Tested(tested)
             }
+            Event::Empty(place) => {
+                if let Some(Step::Tested(last)) = self.steps.last_mut()
+                    && last.place == name(place)
+                    && last.culled.is_none()
+                {
+                    last.culled = Some(Culled::Empty);
+                    self.culled += 1;
+                }
+                return;
+            }
             Event::GivenUp { place, enters } => Step::GivenUp {
                 place: name(place),
                 enters: enters * ray.scale,
@@ -278,6 +302,7 @@ impl InUnits {
         corner[axis] = f64::from(plane);
         Plane {
             axis: ['x', 'y', 'z'][axis],
+            side: [Side::Lower, Side::Upper][side],
             at: self.frame.place(corner).to_array()[axis],
             distance,
             entry,
@@ -286,6 +311,9 @@ impl InUnits {
 
     /// Why a span is empty, by the planes that were tested.
     fn reason(&self, planes: &[Plane], span: [f64; 2], interval: [f64; 2]) -> Culled {
+        if planes.is_empty() {
+            return Culled::NotInVolume;
+        }
         let by_distance = |a: &&Plane, b: &&Plane| a.distance.total_cmp(&b.distance);
         let enters = planes.iter().filter(|p| p.entry).max_by(by_distance);
         let leaves = planes.iter().filter(|p| !p.entry).min_by(by_distance);

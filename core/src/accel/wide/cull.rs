@@ -3,7 +3,7 @@
 //!
 //! In lanes, rule and margins are those of [`Single`].
 
-use crate::accel::cull::{self, Cull, Culling};
+use crate::accel::cull::{self, Cull, Culling, PairCulling};
 use crate::accel::single::Single;
 use crate::blob::cluster::LANES;
 use crate::blob::record::{UnitBox, WideNode};
@@ -16,8 +16,10 @@ use glam::Vec4;
 pub trait WideCulling<N: Number>: Culling<N> {
     /// The limit for hits at or before a length.
     fn limit(t: N) -> i32;
-    /// Where a child is entered, in units.
-    fn units(near: i32) -> f64;
+    /// From where to where the ray is in a box up to a limit, in units: what [`children`] goes by.
+    ///
+    /// [`children`]: Self::children
+    fn span(&self, bounds: &UnitBox, limit: i32) -> [f64; 2];
     /// The children that the ray can meet up to a limit, a bit each, and where it enters them; what
     /// compares with a limit.
     fn children(&self, node: &WideNode, limit: i32) -> (u32, [i32; LANES]);
@@ -55,6 +57,10 @@ impl<N: Number> Culling<N> for WideLanes {
         Cull::new(ray)
     }
 
+    fn units(place: i32) -> f64 {
+        Single::units(place)
+    }
+
     #[inline(always)]
     fn holds(ray: &Ray<N>, t: N, bounds: &UnitBox) -> bool {
         cull::holds(ray, t, bounds)
@@ -67,8 +73,15 @@ impl<N: Number> WideCulling<N> for WideLanes {
         Single::limit(t)
     }
 
-    fn units(near: i32) -> f64 {
-        f32::from_bits(near as u32).into()
+    fn span(&self, bounds: &UnitBox, limit: i32) -> [f64; 2] {
+        let (mut enters, mut leaves) = (f64::from(self.near.w), Single::units(limit));
+        for (axis, sides) in bounds.0.iter().enumerate() {
+            let row = self.near_rows[axis] as usize & 1;
+            let t = |plane: i16, rest: f32| f64::from(f32::from(plane) * self.inverse[axis] + rest);
+            enters = enters.max(t(sides[row], self.near[axis]));
+            leaves = leaves.min(t(sides[row ^ 1], self.far[axis]));
+        }
+        [enters, leaves]
     }
 
     #[inline(always)]
@@ -105,8 +118,8 @@ impl<N: Number> WideCulling<N> for Cull {
         t.to_cull().saturating_add(1)
     }
 
-    fn units(near: i32) -> f64 {
-        f64::from(near) / 2.0
+    fn span(&self, bounds: &UnitBox, limit: i32) -> [f64; 2] {
+        Cull::span(<Self as PairCulling<N>>::root(self, bounds, limit))
     }
 
     #[inline(always)]
@@ -114,9 +127,9 @@ impl<N: Number> WideCulling<N> for Cull {
         let mut met = 0;
         let mut near = [0; LANES];
         for (lane, near) in near.iter_mut().enumerate() {
-            let interval = self.interval(&node.child_box(lane));
-            *near = interval.near.max(self.start());
-            met |= u32::from(*near <= interval.far.min(limit)) << lane;
+            let interval = <Self as PairCulling<N>>::root(self, &node.child_box(lane), limit);
+            *near = interval.near;
+            met |= u32::from(interval.near <= interval.far) << lane;
         }
         (met, near)
     }
