@@ -10,6 +10,7 @@ use gridel_host::verify::random::Random;
 use gridel_host::verify::{
     ClosedMesh, Heard, Promise, RAYS, Targets, UnitRay, ask, ask_all, check, leave, sealed, verify,
 };
+use gridel_tests::effort::part_of;
 use gridel_tests::scenes;
 use gridel_tests::solid::Solid;
 
@@ -53,6 +54,26 @@ fn fixtures_keep_their_promises() {
                 format.format
             );
         }
+    }
+}
+
+/// With the program's own number of rays in the full run.
+#[test]
+fn real_scenes_keep_their_promises() {
+    let names = [
+        "spd/balls_s2.nff",
+        "spd/jacks.nff",
+        "meshes/suzanne.obj",
+        "meshes/cornell_box.obj",
+        "molecules/hem.pdb",
+    ];
+    let scenes = names.iter().filter_map(|name| scenes::real(name));
+    for path in scenes {
+        let blob = scenes::blob(&scenes::read(&path), 24);
+        let rays = part_of(300, RAYS as usize) as u64;
+        let report = verify(&blob.scene().expect("a scene"), rays, &|| ());
+        let promises = &report.promises;
+        assert_eq!(report.broken(), 0, "{}: {promises:#?}", path.display());
     }
 }
 
