@@ -93,7 +93,13 @@ impl Manifest {
         let document = source.parse()?;
         let (span, table) = (document.span(), document.get_ref());
         let root = Fields::new(&source, span, table, "manifest", &[&["check"]])?;
-        let list = root.require("check")?;
+        let list = root.get("check").ok_or_else(|| {
+            let (cause, remedy) = (
+                "this manifest has no `[[check]]`",
+                "add a line `[[check]]`, and below it `scene = \"...\"` and what is expected of it",
+            );
+            source.error(&root.span, cause, remedy)
+        })?;
         let tables = list.items("`[[check]]` above the keys of each")?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut names = BTreeSet::new();
@@ -155,7 +161,7 @@ impl Check {
                 None => None,
             },
         };
-        Ok(Self {
+        let check = Self {
             name: match fields.get("name") {
                 Some(name) => name.filled()?.to_owned(),
                 None => stem(),
@@ -178,7 +184,32 @@ impl Check {
             })?,
             formats,
             scene,
-        })
+        };
+        if check.expects_nothing() {
+            return Err(table.error(
+                "this check expects nothing, so nothing could break it",
+                "add `hash = {}` and let `gridel check --bless` record it, or a `budget`, a \
+                 `reference` or a `board` with what it is held to",
+            ));
+        }
+        Ok(check)
+    }
+
+    /// Whether there is nothing that could be held or broken.
+    fn expects_nothing(&self) -> bool {
+        let Budget {
+            blob_bytes,
+            working_bytes,
+            stack_entries,
+            tests_per_ray,
+        } = self.budget;
+        let bytes = [blob_bytes, working_bytes, stack_entries];
+        let idle = |board: &Board| board.budget.is_empty() && board.picture.is_none();
+        self.hash.is_none()
+            && self.reference.is_none()
+            && bytes.iter().all(Option::is_none)
+            && tests_per_ray.is_none()
+            && self.boards.iter().all(idle)
     }
 }
 
@@ -343,6 +374,18 @@ fn hashes(value: Value<'_>, formats: &[Format]) -> Result<BTreeMap<String, Strin
     let held = names
         .iter()
         .filter_map(|name| Some((name, fields.get(name)?)));
-    held.map(|(name, hash)| Ok((String::from(*name), hash.text()?.to_owned())))
-        .collect()
+    held.map(|(name, value)| {
+        let hash = value.text()?;
+        let digits = hash
+            .bytes()
+            .all(|it| matches!(it, b'0'..=b'9' | b'a'..=b'f'));
+        if hash.len() != 16 || !digits {
+            return Err(value.error(
+                format!("`{hash}` is no hash of a picture: those have 16 hexadecimal digits"),
+                "remove it, and let `gridel check --bless` record the picture's",
+            ));
+        }
+        Ok((String::from(*name), hash.to_owned()))
+    })
+    .collect()
 }

@@ -17,11 +17,11 @@ use miette::Diagnostic;
 pub fn run(manifest: &Manifest, progress: &dyn Fn()) -> Report {
     let mut report = Report::default();
     for (index, check) in manifest.checks.iter().enumerate() {
-        let findings = &mut report.findings;
         let mut run = Run {
             index,
             check,
-            findings,
+            findings: &mut report.findings,
+            warnings: &mut report.warnings,
         };
         if let Err(why) = run.all(progress) {
             run.push(None, "scene", None, None, Outcome::Broken(why));
@@ -35,6 +35,7 @@ struct Run<'r> {
     index: usize,
     check: &'r Check,
     findings: &'r mut Vec<Finding>,
+    warnings: &'r mut Vec<String>,
 }
 
 impl Run<'_> {
@@ -73,7 +74,7 @@ impl Run<'_> {
     }
 
     /// Reads the blob, or compiles the scene for it.
-    fn blob(&self) -> Result<Blob, String> {
+    fn blob(&mut self) -> Result<Blob, String> {
         let check = self.check;
         let path = &check.scene;
         let unreadable = |error| format!("{} cannot be read: {error}", path.display());
@@ -88,6 +89,11 @@ impl Run<'_> {
         }
         let imported =
             scene::load(path, &MoleculeOptions::default()).map_err(|error| explained(&error))?;
+        for warning in imported.warnings {
+            if !self.warnings.contains(&warning) {
+                self.warnings.push(warning);
+            }
+        }
         let mut scene = imported.scene;
         // As part of the blob, so that a board renders the same picture.
         if let Some([width, height]) = check.size {

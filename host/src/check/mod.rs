@@ -4,7 +4,7 @@
 //! A manifest is TOML. A key that is not listed here is an error. Paths are relative to the
 //! manifest. Budgets are the most that is allowed; what has no budget is not measured.
 //!
-//! `[[check]]`, once for each scene
+//! `[[check]]`, once for each scene, with at least one of `hash`, `reference`, `budget` and `board`
 //!
 //! | key | type | default |
 //! |---|---|---|

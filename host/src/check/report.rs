@@ -11,6 +11,8 @@ use std::io::{self, Write};
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
     pub findings: Vec<Finding>,
+    /// What importers passed over, each once.
+    pub warnings: Vec<String>,
 }
 
 /// One thing that was compared with what the manifest says.
@@ -43,6 +45,8 @@ pub enum Outcome {
     Held,
     /// It is not, and why.
     Broken(String),
+    /// It was not, and the manifest has it now.
+    Recorded,
     /// It could not be measured here, and why.
     NotRun(String),
 }
@@ -102,6 +106,20 @@ impl Report {
         self.count(|outcome| matches!(outcome, Outcome::Broken(_)))
     }
 
+    /// How many were recorded.
+    pub fn recorded(&self) -> usize {
+        self.count(|outcome| *outcome == Outcome::Recorded)
+    }
+
+    /// Takes note that what [`bless`](super::bless) can record was recorded.
+    pub fn take_as_recorded(&mut self) {
+        for finding in &mut self.findings {
+            if finding.record.is_some() {
+                finding.outcome = Outcome::Recorded;
+            }
+        }
+    }
+
     /// How many could not be measured.
     pub fn not_run(&self) -> usize {
         self.count(|outcome| matches!(outcome, Outcome::NotRun(_)))
@@ -129,6 +147,7 @@ impl Report {
                 match &finding.outcome {
                     Outcome::Held => String::from("held"),
                     Outcome::Broken(_) => String::from("BROKEN"),
+                    Outcome::Recorded => String::from("recorded"),
                     Outcome::NotRun(_) => String::from("NOT RUN"),
                 },
             ]);
@@ -157,7 +176,7 @@ impl Report {
 impl Finding {
     fn case(&self) -> TestCase {
         let status = match &self.outcome {
-            Outcome::Held => TestCaseStatus::success(),
+            Outcome::Held | Outcome::Recorded => TestCaseStatus::success(),
             Outcome::Broken(why) => {
                 let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
                 status.set_message(why.as_str());

@@ -47,7 +47,7 @@ impl Folder {
 
 fn why(finding: &Finding) -> &str {
     match &finding.outcome {
-        Outcome::Held => "",
+        Outcome::Held | Outcome::Recorded => "",
         Outcome::Broken(why) | Outcome::NotRun(why) => why,
     }
 }
@@ -56,7 +56,30 @@ fn why(finding: &Finding) -> &str {
 fn mistakes_name_line_cause_and_remedy() {
     let folder = Folder::new();
     for (text, line, cause, remedy) in [
-        ("", 1, "this manifest has no `check`", "add a line"),
+        (
+            "",
+            1,
+            "this manifest has no `[[check]]`",
+            "add a line `[[check]]`",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\nbudget = {}\nformats = [\"f64\"]",
+            1,
+            "expects nothing",
+            "add `hash = {}`",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\n[[check.board]]\nmachine = \"m\"\nelf = \"e\"",
+            1,
+            "expects nothing",
+            "`board`",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\nhash = { f32 = \"zz\" }",
+            3,
+            "`zz` is no hash",
+            "--bless",
+        ),
         (
             "[[check]]\nname = \"a\"",
             1,
@@ -130,8 +153,8 @@ fn mistakes_name_line_cause_and_remedy() {
             "",
         ),
         (
-            "[[check]]\nscene = \"x/a.toml\"\n[[check]]\nscene = \"a.obj\"",
-            3,
+            "[[check]]\nscene = \"x/a.toml\"\nhash = {}\n[[check]]\nscene = \"a.obj\"\nhash = {}",
+            4,
             "two checks have the name \"a\"",
             "another `name`",
         ),
@@ -281,7 +304,7 @@ fn what_cannot_be_read_is_broken_and_the_rest_goes_on() {
         [[check]]\nscene = \"missing.toml\"\nhash = {}
         [[check]]\nscene = \"broken.gridel\"\nhash = {}
         [[check]]\nscene = \"bad.toml\"\nhash = {}
-        [[check]]\nname = \"blob\"\nscene = \"broken.gridel\"\nlattice_bits = 16
+        [[check]]\nname = \"blob\"\nscene = \"broken.gridel\"\nlattice_bits = 16\nhash = {}
         [[check]]\nscene = \"ball.toml\"\nbudget = { blob_bytes = 5000 }";
     let (manifest, report) = folder.run(text);
     assert_eq!((report.held(), report.broken()), (1, 4));

@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::output::{print, print_json, refuse_same, warn, write_file};
 use super::progress::Progress;
 use clap::Args;
-use gridel_host::check::{self, Manifest, Outcome, Report};
+use gridel_host::check::{self, Blessed, Manifest, Outcome, Report};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -52,9 +52,9 @@ struct Checked<'r> {
     manifest: String,
     held: usize,
     broken: usize,
+    /// What was broken and is recorded now.
+    recorded: usize,
     not_run: usize,
-    /// Whether what was broken was recorded.
-    blessed: bool,
     #[serde(flatten)]
     report: &'r Report,
 }
@@ -76,33 +76,49 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             }
         }
     }
+    for warning in &report.warnings {
+        warn(warning);
+    }
     if let Some(folder) = &arguments.diff {
         write_evidence(folder, &report)?;
+    }
+    let blessed = arguments.bless.then(|| check::bless(&manifest, &report));
+    if let Some(blessed) = &blessed {
+        let written = blessed.write();
+        written.map_err(|(path, error)| Failure::writing(&path, &error))?;
+        report.take_as_recorded();
     }
     if let Some(path) = &arguments.junit {
         write_file(path, |out| report.write_junit(out))?;
     }
-    let (held, broken, not_run) = (report.held(), report.broken(), report.not_run());
+    let (held, broken, recorded) = (report.held(), report.broken(), report.recorded());
+    let not_run = report.not_run();
     if arguments.json {
         print_json(&Checked {
             manifest: arguments.manifest.display().to_string(),
             held,
             broken,
+            recorded,
             not_run,
-            blessed: arguments.bless,
             report: &report,
         })?;
     } else {
-        let summary = format!("{held} held, {broken} broken, {not_run} not run\n");
-        print(format!("{}{}{summary}", report.table(), reasons(&report)))?;
+        let recorded = match &blessed {
+            Some(_) => format!("{recorded} recorded, "),
+            None => String::new(),
+        };
+        let summary = format!("{held} held, {recorded}{broken} broken, {not_run} not run\n");
+        let diff = blessed.as_ref().map(Blessed::diff).unwrap_or_default();
+        let reasons = reasons(&report);
+        print(format!("{}{reasons}{summary}{diff}", report.table()))?;
     }
     if not_run > 0 {
         warn(format!(
             "NOT RUN: {not_run} of the figures on boards; --require-boards makes that a failure"
         ));
     }
-    if arguments.bless {
-        return bless(&manifest, &report, arguments.json);
+    for what in blessed.iter().flat_map(|blessed| &blessed.left) {
+        warn(format!("{what} cannot be recorded"));
     }
     if broken > 0 {
         return Err(Failure::Broken);
@@ -110,39 +126,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Why things are as they are, where they are not held.
+/// Why things are as they are, where they are not held, each reason once.
 fn reasons(report: &Report) -> String {
-    let mut text = String::from("\n");
+    let mut lines = Vec::new();
     for finding in &report.findings {
         let (Outcome::Broken(why) | Outcome::NotRun(why)) = &finding.outcome else {
             continue;
         };
-        let on = finding
-            .on
-            .as_ref()
-            .map(|on| format!(" on {on}"))
-            .unwrap_or_default();
-        text += &format!("{}, {}{on}: {why}\n", finding.check, finding.what);
+        let on = finding.on.as_ref().map(|on| format!(" on {on}"));
+        let line = format!("{}{}: {why}\n", finding.check, on.unwrap_or_default());
+        if !lines.contains(&line) {
+            lines.push(line);
+        }
     }
-    text
-}
-
-fn bless(manifest: &Manifest, report: &Report, json: bool) -> Result<(), Failure> {
-    let blessed = check::bless(manifest, report);
-    blessed
-        .write()
-        .map_err(|(path, error)| Failure::writing(&path, &error))?;
-    // Standard output is one JSON document then.
-    if !json {
-        print(blessed.diff())?;
-    }
-    if blessed.left.is_empty() {
-        return Ok(());
-    }
-    for what in &blessed.left {
-        warn(format!("{what} cannot be recorded"));
-    }
-    Err(Failure::Broken)
+    format!("\n{}", lines.concat())
 }
 
 fn write_evidence(folder: &Path, report: &Report) -> Result<(), Failure> {

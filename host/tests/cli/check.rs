@@ -33,6 +33,8 @@ fn blessing_makes_checks_hold() {
         "{}",
         first.stdout
     );
+    let reason = "quick: blob_bytes is ";
+    assert!(first.stdout.contains(reason), "{}", first.stdout);
     let junit = String::from_utf8(folder.read("junit.xml")).unwrap();
     assert!(junit.contains("failures=\"3\""), "{junit}");
     // Nothing was expected yet, so only what was rendered is shown.
@@ -47,6 +49,10 @@ fn blessing_makes_checks_hold() {
     assert_eq!(folder.read("check.toml"), MANIFEST.as_bytes());
 
     let blessed = folder.done(&["check", "check.toml", "--bless"]);
+    assert!(
+        blessed.contains("2 held, 3 recorded, 0 broken, 0 not run") && !blessed.contains("BROKEN"),
+        "{blessed}"
+    );
     for line in [
         "\n-hash = {}   # a line to keep\n",
         "\n+hash = { fixed = \"",
@@ -100,8 +106,30 @@ fn mistakes_are_explained() {
         &["would be lost"],
     );
     folder.write("typo.toml", b"[[check]]\nsceen = 'a'");
+    folder.write("empty.toml", b"");
+    folder.fails(1, &["check", "empty.toml"], &["`[[check]]`"]);
+    folder.write("idle.toml", b"[[check]]\nscene = 'quick.toml'");
+    folder.fails(1, &["check", "idle.toml"], &["expects nothing"]);
     let words = ["typo.toml:2", "no key `sceen`", "did you mean `scene`?"];
     folder.fails(1, &["check", "typo.toml", "--bless"], &words);
+}
+
+/// What an importer passes over is told here too.
+#[test]
+fn warnings_of_importers_are_passed_on() {
+    let folder = Folder::new();
+    folder.write(
+        "one.obj",
+        b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nmtllib lost.mtl\n",
+    );
+    let check = "[[check]]\nscene = \"one.obj\"\nbudget = { blob_bytes = 1_000_000 }\n";
+    folder.write(
+        "check.toml",
+        format!("{check}{check}name = 'again'").as_bytes(),
+    );
+    let run = folder.run(&["check", "check.toml"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    assert_eq!(run.stderr.matches("lost.mtl").count(), 1, "{}", run.stderr);
 }
 
 /// A board that cannot be run is said not to have been run, and fails where boards are required.
