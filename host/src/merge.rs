@@ -1,7 +1,8 @@
 //! Puts a picture together from parts that were rendered on their own.
 //!
-//! A part says in its file which rows of which picture it is ([`Rows`]), so parts may come in any
-//! order, and may overlap where they agree: what two machines rendered twice is the same.
+//! A part says in its file which rows of which picture it is ([`Rows`]) and how that was made, so
+//! parts may come in any order, parts of different pictures are told apart, and parts may overlap
+//! where they agree: what two machines rendered twice is the same.
 
 use crate::picture::{PictureFormat, Rows, write_png};
 use std::fmt;
@@ -25,10 +26,12 @@ pub enum PartError {
     Png(String),
     #[error("it is no PPM picture (P6) of three bytes a pixel")]
     Ppm,
-    #[error("it does not say which rows it has, so it is no part of a picture")]
+    #[error(
+        "it does not say which rows it has and how they were made, so it is no part of a picture"
+    )]
     Whole,
-    #[error("it says that it has the rows {rows}, but it has {found}")]
-    Rows { rows: Rows, found: u32 },
+    #[error("it says that it has the rows {}..{}, but it has {found}", .rows.start, .rows.end)]
+    Rows { rows: Range<u16>, found: u32 },
 }
 
 /// Why parts make no picture; parts are told by their number among those that were added.
@@ -36,6 +39,8 @@ pub enum PartError {
 pub enum MergeError {
     /// Two parts are of pictures of different sizes: width and height of each.
     Sizes([usize; 2], [[u32; 2]; 2]),
+    /// Two parts were made differently: what differs, and how it is in each.
+    Made([usize; 2], [String; 2]),
     /// Two parts have a row that is not the same in both.
     Differ([usize; 2], u32),
     /// No part has these rows.
@@ -57,8 +62,10 @@ impl Part {
             .and_then(|note| note.parse().ok())
             .ok_or(PartError::Whole)?;
         if rows.part.len() != height as usize {
-            let found = height;
-            return Err(PartError::Rows { rows, found });
+            return Err(PartError::Rows {
+                rows: rows.part,
+                found: height,
+            });
         }
         Ok(Self {
             width,
@@ -138,6 +145,8 @@ fn read_ppm(mut input: impl BufRead) -> Result<Read4, PartError> {
 pub struct Merge {
     /// Width and height, once there is a part.
     size: Option<[u32; 2]>,
+    /// How the first part was made.
+    made: Vec<(String, String)>,
     /// For each row, the part that it came with, and its pixels.
     rows: Vec<Option<(usize, Vec<u8>)>>,
     parts: usize,
@@ -147,7 +156,8 @@ impl Merge {
     /// Adds a part.
     ///
     /// # Errors
-    /// If it is of a picture of another size, or a row is not what another part says it is.
+    /// If it is of a picture of another size, or one that was made in another way, or a row is not
+    /// what another part says it is.
     pub fn add(&mut self, part: &Part) -> Result<(), MergeError> {
         let number = self.parts;
         self.parts += 1;
@@ -155,6 +165,11 @@ impl Merge {
         let known = *self.size.get_or_insert(size);
         if known != size {
             return Err(MergeError::Sizes([0, number], [known, size]));
+        }
+        if number == 0 {
+            self.made.clone_from(&part.rows.made);
+        } else if let Some(differs) = difference(&self.made, &part.rows.made) {
+            return Err(MergeError::Made([0, number], differs));
         }
         self.rows.resize(size[1] as usize, None);
         let pixels = part.pixels.chunks_exact(3 * part.width as usize);
@@ -198,6 +213,18 @@ impl Merge {
     }
 }
 
+/// The first thing in which two pictures were made differently, as it is in each.
+fn difference(one: &[(String, String)], other: &[(String, String)]) -> Option<[String; 2]> {
+    let shown = |pair: Option<&(String, String)>| {
+        pair.map_or(String::from("nothing more"), |(name, value)| {
+            format!("{name} {value}")
+        })
+    };
+    let longer = one.len().max(other.len());
+    let at = (0..longer).find(|&at| one.get(at) != other.get(at))?;
+    Some([shown(one.get(at)), shown(other.get(at))])
+}
+
 /// A picture that is whole again.
 #[derive(Debug)]
 pub struct Whole {
@@ -230,6 +257,9 @@ impl fmt::Display for MergeError {
                 "one is of a picture of {}x{} pixels, the other of {}x{}",
                 known[0], known[1], other[0], other[1]
             ),
+            MergeError::Made(_, [known, other]) => {
+                write!(f, "one was made with {known}, the other with {other}")
+            }
             MergeError::Differ(_, row) => write!(f, "they have different pixels in row {row}"),
             MergeError::Missing(rows) => {
                 write!(f, "no part has the rows {}..{}", rows.start, rows.end)

@@ -16,37 +16,86 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
 
 /// Writes a file whole or not at all: what was there stays until the new content is complete.
 ///
-/// The content goes to a new file in the same folder, which then takes the name. A symbolic link
-/// stays one, and what it leads to is replaced; a file that may not be written is not replaced
-/// either. Devices and pipes cannot be replaced: they are written to.
-///
 /// # Errors
-/// If the file cannot be created, written or replaced, or `write` fails. Then nothing is left
-/// behind.
+/// As [`Files::add`] and [`Files::keep`]. Then nothing is left behind.
 pub fn write_whole(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
-    let target = match fs::metadata(path) {
-        Ok(old) if old.is_file() => {
-            OpenOptions::new().write(true).open(path)?;
-            path.canonicalize()?
+    let mut files = Files::default();
+    files.add(path, write)?;
+    files.keep().map_err(|(_, error)| error)
+}
+
+/// Files that belong together: none of them takes its name before all are complete.
+///
+/// The content of each goes to a new file in its folder. A symbolic link stays one, and what it
+/// leads to is replaced; a file that may not be written is not replaced either. Devices and pipes
+/// cannot be replaced: they are written to at once.
+#[derive(Debug, Default)]
+pub struct Files {
+    /// Complete files, and the names that they take.
+    complete: Vec<(NamedTempFile, PathBuf)>,
+}
+
+impl Files {
+    /// Writes one more.
+    ///
+    /// # Errors
+    /// If the file cannot be created or written, could not be replaced, or `write` fails.
+    pub fn add(
+        &mut self,
+        path: &Path,
+        write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let target = match fs::metadata(path) {
+            Ok(old) if old.is_file() => {
+                OpenOptions::new().write(true).open(path)?;
+                path.canonicalize()?
+            }
+            Ok(_) => return fill(&OpenOptions::new().write(true).open(path)?, write),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => path.to_owned(),
+            Err(error) => return Err(error),
+        };
+        let file = create_beside(&target)?;
+        let written = fill(file.as_file(), write)
+            .and_then(|()| inherit_permissions(&target, file.as_file()))
+            .and_then(|()| file.as_file().sync_all());
+        // One that is not complete is dropped with the others.
+        self.complete.push((file, target));
+        written
+    }
+
+    /// Gives all of them their names.
+    ///
+    /// # Errors
+    /// If one cannot be replaced, which [`add`](Self::add) has seen to be possible; with its path.
+    /// Then those before it are there, and those behind it are not.
+    pub fn keep(mut self) -> Result<(), (PathBuf, io::Error)> {
+        let mut unfinished = unfinished();
+        let mut files = std::mem::take(&mut self.complete).into_iter();
+        let kept = files.try_for_each(|(file, target)| {
+            unfinished.retain(|path| path != file.path());
+            match file.persist(&target) {
+                Ok(_) => Ok(()),
+                Err(error) => Err((target, error.error)),
+            }
+        });
+        self.complete = files.collect();
+        drop(unfinished);
+        kept
+    }
+}
+
+impl Drop for Files {
+    fn drop(&mut self) {
+        let mut unfinished = unfinished();
+        for (file, _) in self.complete.drain(..) {
+            unfinished.retain(|path| path != file.path());
+            // It removes itself here, before anybody else can see the list.
+            drop(file);
         }
-        Ok(_) => return fill(&OpenOptions::new().write(true).open(path)?, write),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => path.to_owned(),
-        Err(error) => return Err(error),
-    };
-    let file = create_beside(&target)?;
-    let written = fill(file.as_file(), write)
-        .and_then(|()| inherit_permissions(&target, file.as_file()))
-        .and_then(|()| file.as_file().sync_all());
-    let mut unfinished = unfinished();
-    unfinished.retain(|path| path != file.path());
-    // A file that is not kept removes itself here, before anybody else can see the list.
-    written.and_then(|()| match file.persist(&target) {
-        Ok(_) => Ok(()),
-        Err(error) => Err(error.error),
-    })
+    }
 }
 
 /// Removes what writing has left so far, and ends the program: for whoever handles an interrupt.
@@ -116,6 +165,30 @@ mod tests {
                 .iter()
                 .all(|path| !path.starts_with(folder.path()))
         );
+    }
+
+    #[test]
+    fn files_that_belong_together_appear_together() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::write(path("a"), "old").unwrap();
+        fs::create_dir(path("folder")).unwrap();
+        let mut files = Files::default();
+        files.add(&path("a"), |out| out.write_all(b"new")).unwrap();
+        files.add(&path("b"), |out| out.write_all(b"new")).unwrap();
+        assert!(files.add(&path("folder"), |_| Ok(())).is_err());
+        drop(files);
+        assert_eq!(fs::read(path("a")).unwrap(), b"old");
+        assert_eq!(names(folder.path()), ["a", "folder"]);
+
+        let mut files = Files::default();
+        for name in ["a", "b"] {
+            files.add(&path(name), |out| out.write_all(b"new")).unwrap();
+        }
+        assert_eq!(fs::read(path("a")).unwrap(), b"old");
+        files.keep().unwrap();
+        assert_eq!(fs::read(path("a")).unwrap(), b"new");
+        assert_eq!(names(folder.path()), ["a", "b", "folder"]);
     }
 
     #[cfg(unix)]

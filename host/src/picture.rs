@@ -1,13 +1,57 @@
 //! Picture files: from linear pixels to PNG, PPM or the raw 16-bit pixels of small displays.
 
-use crate::render::Picture;
+use crate::render::{Job, Picture};
 use gridel_core::render::Pixel;
-use gridel_core::{Rgb565, Rgb888};
+use gridel_core::{Format, Rgb565, Rgb888, Scene};
 use std::fmt;
 use std::io::{self, Write};
 use std::ops::Range;
 use std::path::Path;
 use std::str::FromStr;
+
+/// All that decides the colours of a picture's pixels, beside their place and the picture's size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Making {
+    /// Checksum of the blob.
+    pub blob: u32,
+    pub format: Format,
+    pub samples: u16,
+    pub depth: u8,
+    pub dither: bool,
+}
+
+impl Making {
+    /// How a job's picture of a scene is made.
+    pub fn of(scene: &Scene<'_>, job: &Job) -> Self {
+        Self {
+            blob: scene.header().checksum,
+            format: job.format,
+            samples: job.settings.samples,
+            depth: job.settings.depth,
+            dither: job.settings.dither,
+        }
+    }
+}
+
+/// Names and values, and the version of this program, whose arithmetic it is.
+impl fmt::Display for Making {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            blob,
+            format,
+            samples,
+            depth,
+            dither,
+        } = self;
+        write!(
+            f,
+            "blob {blob:08x}, format {}, samples {samples}, depth {depth}, dither {}, gridel {}",
+            format.name(),
+            if *dither { "on" } else { "off" },
+            env!("CARGO_PKG_VERSION")
+        )
+    }
+}
 
 /// Which rows of which picture a file has; PNG and PPM files of a part say so.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,6 +60,8 @@ pub struct Rows {
     pub part: Range<u16>,
     /// Height of the whole picture.
     pub height: u16,
+    /// How the picture was made: names and values, as [`Making`] shows them.
+    pub made: Vec<(String, String)>,
 }
 
 impl Rows {
@@ -23,16 +69,34 @@ impl Rows {
     pub const KEYWORD: &str = "Rows";
 
     /// The rows of a part; `None` for a whole picture.
-    fn of(picture: &Picture) -> Option<Self> {
+    fn of(picture: &Picture, making: &Making) -> Option<Self> {
         let (part, height) = (picture.rows.clone(), picture.height);
-        (part != (0..height)).then_some(Self { part, height })
+        (part != (0..height)).then(|| Self {
+            part,
+            height,
+            made: pairs(&making.to_string()).unwrap_or_default(),
+        })
     }
+}
+
+/// Names and values of a list such as `samples 4, depth 5`.
+fn pairs(text: &str) -> Option<Vec<(String, String)>> {
+    let pair = |pair: &str| {
+        let (name, value) = pair.split_once(' ')?;
+        Some((name.to_owned(), value.to_owned()))
+    };
+    text.split(", ").map(pair).collect()
 }
 
 impl fmt::Display for Rows {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { part, height } = self;
-        write!(f, "{}..{} of {height}", part.start, part.end)
+        let Self { part, height, made } = self;
+        write!(f, "{}..{} of {height}", part.start, part.end)?;
+        for (number, (name, value)) in made.iter().enumerate() {
+            let before = if number == 0 { "; " } else { ", " };
+            write!(f, "{before}{name} {value}")?;
+        }
+        Ok(())
     }
 }
 
@@ -40,12 +104,14 @@ impl FromStr for Rows {
     type Err = ();
 
     fn from_str(text: &str) -> Result<Self, ()> {
-        let (part, height) = text.split_once(" of ").ok_or(())?;
+        let (rows, made) = text.split_once("; ").ok_or(())?;
+        let (part, height) = rows.split_once(" of ").ok_or(())?;
         let (start, end) = part.split_once("..").ok_or(())?;
         let number = |text: &str| text.parse::<u16>().map_err(|_| ());
         let (part, height) = (number(start)?..number(end)?, number(height)?);
         let inside = part.start < part.end && part.end <= height;
-        inside.then_some(Self { part, height }).ok_or(())
+        let made = pairs(made).filter(|_| inside).ok_or(())?;
+        Ok(Self { part, height, made })
     }
 }
 
@@ -89,18 +155,19 @@ impl PictureFormat {
     ///
     /// # Errors
     /// If `out` has one.
-    pub fn write(self, out: &mut dyn Write, picture: &Picture, dither: bool) -> io::Result<()> {
+    pub fn write(self, out: &mut dyn Write, picture: &Picture, making: &Making) -> io::Result<()> {
+        let dither = making.dither;
         let size = [picture.width.into(), picture.rows.len() as u32];
         match self {
             Self::Png => {
                 let pixels: Vec<Rgb888> = encoded(picture, dither);
-                let rows = Rows::of(picture).map(|rows| (Rows::KEYWORD, rows.to_string()));
+                let rows = Rows::of(picture, making).map(|rows| (Rows::KEYWORD, rows.to_string()));
                 write_png(out, size, bytemuck::cast_slice(&pixels), rows)
             }
             Self::Ppm => {
                 let pixels: Vec<Rgb888> = encoded(picture, dither);
                 writeln!(out, "P6")?;
-                if let Some(rows) = Rows::of(picture) {
+                if let Some(rows) = Rows::of(picture, making) {
                     writeln!(out, "# rows {rows}")?;
                 }
                 write!(out, "{} {}\n255\n", size[0], size[1])?;
@@ -176,7 +243,14 @@ mod tests {
 
     fn written(format: PictureFormat, picture: &Picture, dither: bool) -> Vec<u8> {
         let mut bytes = Vec::new();
-        format.write(&mut bytes, picture, dither).unwrap();
+        let making = Making {
+            blob: 0xab,
+            format: Format::F32,
+            samples: 4,
+            depth: 5,
+            dither,
+        };
+        format.write(&mut bytes, picture, &making).unwrap();
         bytes
     }
 
@@ -184,9 +258,10 @@ mod tests {
     fn png_and_ppm_hold_the_same_pixels() {
         let picture = ramp(0..5);
         let ppm = written(PictureFormat::Ppm, &picture, false);
-        let pixels = ppm
-            .strip_prefix(b"P6\n# rows 0..5 of 9\n16 5\n255\n")
-            .unwrap();
+        let made = "blob 000000ab, format f32, samples 4, depth 5, dither off";
+        let version = env!("CARGO_PKG_VERSION");
+        let header = format!("P6\n# rows 0..5 of 9; {made}, gridel {version}\n16 5\n255\n");
+        let pixels = ppm.strip_prefix(header.as_bytes()).unwrap();
         let png = written(PictureFormat::Png, &picture, false);
         let mut reader = png::Decoder::new(io::Cursor::new(png)).read_info().unwrap();
         assert!(reader.info().srgb.is_some());

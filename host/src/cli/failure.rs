@@ -59,7 +59,7 @@ impl Failure {
         )
     }
 
-    /// A file that cannot be written.
+    /// A file that cannot be written; what was there before still is.
     pub fn writing(path: &Path, error: &io::Error) -> Self {
         let remedy = match error.kind() {
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
@@ -70,7 +70,7 @@ impl Failure {
         };
         Self::failed(
             format!("{} cannot be written: {error}", path.display()),
-            format!("{remedy}; nothing was written"),
+            remedy,
         )
     }
 
@@ -84,9 +84,12 @@ impl Failure {
 
     /// A scene that cannot be compiled.
     pub fn compiling(path: &Path, error: CompileError) -> Self {
-        let too_large = matches!(error, CompileError::TooLarge { .. });
+        let over_budget = matches!(
+            error,
+            CompileError::TooLarge { .. } | CompileError::OverBudget { .. }
+        );
         let report = Report::new(error).wrap_err(format!("{} cannot be compiled", path.display()));
-        if too_large {
+        if over_budget {
             Self::Refused(report)
         } else {
             Self::Failed(report)

@@ -13,9 +13,10 @@ use std::path::{Path, PathBuf};
 
 /// Put a picture together from parts that `render --rows` wrote
 ///
-/// A part says in its file which rows of which picture it has, so several machines can share a
-/// picture and the parts may come in any order. Parts may overlap if they agree. The picture has
-/// the bytes that one machine would have written.
+/// A part says in its file which rows of which picture it has, of which blob and with which
+/// settings, so several machines can share a picture and the parts may come in any order. Parts may
+/// overlap if they agree; parts that were made differently are refused. The picture has the bytes
+/// that one machine would have written.
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
@@ -113,6 +114,10 @@ fn failure(arguments: &Arguments, error: &MergeError) -> Failure {
         MergeError::Sizes([one, other], _) => Failure::failed(
             format!("{} and {} do not fit: {error}", name(*one), name(*other)),
             "merge parts of one picture",
+        ),
+        MergeError::Made([one, other], _) => Failure::failed(
+            format!("{} and {} do not fit: {error}", name(*one), name(*other)),
+            "render all parts with one gridel from one blob, with the same options but for `--rows`",
         ),
         MergeError::Differ([one, other], _) => Failure::failed(
             format!("{} and {} do not fit: {error}", name(*one), name(*other)),

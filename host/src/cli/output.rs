@@ -1,7 +1,7 @@
 //! Where results go: files, and standard output.
 
 use super::failure::Failure;
-use gridel_host::output::write_whole;
+use gridel_host::output::{Files, write_whole};
 use serde::Serialize;
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -13,6 +13,38 @@ pub fn write_file(
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Failure> {
     write_whole(path, write).map_err(|error| Failure::writing(path, &error))
+}
+
+/// What a file of [`write_files`] is to hold.
+pub type Content<'c> = &'c dyn Fn(&mut dyn Write) -> io::Result<()>;
+
+/// Writes files that belong together, all of them or none.
+pub fn write_files(files: &[(&Path, Content<'_>)]) -> Result<(), Failure> {
+    let mut together = Files::default();
+    for &(path, write) in files {
+        together
+            .add(path, write)
+            .map_err(|error| Failure::writing(path, &error))?;
+    }
+    keep(together)
+}
+
+/// Writes texts into a folder, by the names of their files, all of them or none.
+pub fn write_texts(folder: &Path, texts: &[(&str, String)]) -> Result<(), Failure> {
+    let mut files = Files::default();
+    for (name, text) in texts {
+        let path = folder.join(name);
+        files
+            .add(&path, |out| out.write_all(text.as_bytes()))
+            .map_err(|error| Failure::writing(&path, &error))?;
+    }
+    keep(files)
+}
+
+fn keep(files: Files) -> Result<(), Failure> {
+    files
+        .keep()
+        .map_err(|(path, error)| Failure::writing(&path, &error))
 }
 
 /// Refuses to write over a file that is read.
@@ -32,6 +64,20 @@ pub fn refuse_same(input: &Path, output: &Path) -> Result<(), Failure> {
         ));
     }
     Ok(())
+}
+
+/// Refuses a name that ends as that of a file of another sort; one without extension says nothing.
+pub fn check_extension(path: &Path, wanted: &[&str], what: &str) -> Result<(), Failure> {
+    let Some(extension) = path.extension() else {
+        return Ok(());
+    };
+    if wanted.iter().any(|it| extension.eq_ignore_ascii_case(it)) {
+        return Ok(());
+    }
+    Err(Failure::usage(
+        format!("{} does not end as the name of {what} does", path.display()),
+        format!("use .{}", wanted.join(" or .")),
+    ))
 }
 
 /// Prints on standard output.

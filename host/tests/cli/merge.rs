@@ -28,6 +28,67 @@ fn parts_become_the_bytes_of_the_whole() {
     assert_eq!([&report["width"], &report["height"]], [48, 36]);
 }
 
+/// Rows are of one picture only if nothing that decides pixels differs, and all that does is named.
+#[test]
+fn parts_of_pictures_that_differ_are_refused() {
+    let folder = Folder::with_quick();
+    folder.done(&[
+        "build",
+        "quick.toml",
+        "-o",
+        "coarse.gridel",
+        "--lattice-bits",
+        "10",
+    ]);
+    let part = |blob: &str, output: &str, options: &[&str]| {
+        let render = ["render", blob, "-o", output, "--size", "48x36"];
+        folder.done(&[&render[..], options].concat());
+    };
+    for kind in ["png", "ppm"] {
+        let (upper, lower) = (format!("upper.{kind}"), format!("lower.{kind}"));
+        part("quick.gridel", &upper, &["--rows", "0..20"]);
+        for (blob, options, words) in [
+            (
+                "quick.gridel",
+                &["--format", "fixed"][..],
+                ["format f32", "format fixed"],
+            ),
+            (
+                "quick.gridel",
+                &["--samples", "2"],
+                ["samples 1", "samples 2"],
+            ),
+            ("quick.gridel", &["--depth", "3"], ["depth 6", "depth 3"]),
+            ("quick.gridel", &["--dither"], ["dither off", "dither on"]),
+            ("coarse.gridel", &[], ["with blob", "the other with blob"]),
+        ] {
+            part(blob, &lower, &[&["--rows", "20..36"], options].concat());
+            let out = format!("x.{kind}");
+            let words = [&["upper", "lower"][..], &words[..]].concat();
+            folder.fails(1, &["merge", &upper, &lower, "-o", &out], &words);
+        }
+        // What decides nothing may differ.
+        let options = [
+            "--rows",
+            "20..36",
+            "--accel",
+            "list",
+            "--threads",
+            "2",
+            "--stats",
+        ];
+        part("quick.gridel", &lower, &options);
+        folder.done(&["merge", &upper, &lower, "-o", &format!("merged.{kind}")]);
+    }
+    // What does not say how it was made could be of any picture.
+    folder.write("upper.ppm", b"P6\n# rows 0..1 of 2\n1 1\n255\nabc");
+    folder.fails(
+        1,
+        &["merge", "upper.ppm", "-o", "x.ppm"],
+        &["how they were made"],
+    );
+}
+
 #[test]
 fn parts_that_do_not_fit_are_refused() {
     let folder = Folder::with_quick();
@@ -38,10 +99,15 @@ fn parts_that_do_not_fit_are_refused() {
     let other = ["render", "quick.gridel", "-o"];
     let size = ["--size", "48x40", "--rows", "20..36"];
     folder.done(&[&other[..], &["size.png"], &size].concat());
-    let dark = ["--size", "48x36", "--rows", "10..36", "--depth", "0"];
-    folder.done(&[&other[..], &["dark.png"], &dark].concat());
+    // One pixel of rows 10 to 19 is another.
+    let rows = ["--size", "48x36", "--rows", "10..36"];
+    folder.done(&[&other[..], &["dark.ppm"], &rows].concat());
+    let mut dark = folder.read("dark.ppm");
+    let pixels = dark.len() - 26 * 48 * 3;
+    dark[pixels + 5 * 48 * 3] ^= 1;
+    folder.write("dark.ppm", &dark);
     folder.write("broken.png", &folder.read("a.png")[..200]);
-    folder.write("lies.ppm", b"P6\n# rows 0..2 of 3\n1 1\n255\nabc");
+    folder.write("lies.ppm", b"P6\n# rows 0..2 of 3; depth 1\n1 1\n255\nabc");
     let fails = |code: i32, arguments: &[&str], words: &[&str]| {
         folder.fails(code, &[&["merge"], arguments].concat(), words);
     };
@@ -57,8 +123,8 @@ fn parts_that_do_not_fit_are_refused() {
     );
     fails(
         1,
-        &["a.png", "dark.png", "-o", "x.png"],
-        &["dark.png", "different pixels in row"],
+        &["a.ppm", "dark.ppm", "-o", "x.ppm"],
+        &["dark.ppm", "different pixels in row 15"],
     );
     fails(
         1,
@@ -66,7 +132,11 @@ fn parts_that_do_not_fit_are_refused() {
         &["whole.png", "which rows"],
     );
     fails(1, &["broken.png", "-o", "x.png"], &["broken.png"]);
-    fails(1, &["lies.ppm", "-o", "x.ppm"], &["rows 0..2 of 3"]);
+    fails(
+        1,
+        &["lies.ppm", "-o", "x.ppm"],
+        &["the rows 0..2, but it has 1"],
+    );
     fails(1, &["nowhere.png", "-o", "x.png"], &["nowhere.png"]);
     fails(
         2,
