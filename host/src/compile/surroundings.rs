@@ -2,10 +2,13 @@
 
 use super::CompileError;
 use super::lattice::Lattice;
-use crate::scene::{Camera, Color, Diffuse, Light, Material, Scene};
+use crate::scene::{Camera, Color, Diffuse, Light, Material, Scene, Shape};
 use glam::DVec3;
 use gridel_core::Effects;
 use gridel_core::blob::record;
+
+/// What is supplied with a light, so that shadows are not black.
+const AMBIENT: f64 = 0.15;
 
 /// Everything of a blob that is not geometry.
 #[derive(Debug)]
@@ -34,18 +37,19 @@ impl Surroundings {
             supplied.push(String::from("a camera that shows the whole scene"));
             framing(lowest, highest)
         });
-        let mut lights = scene.lights.clone();
-        if lights.is_empty() && scene.ambient == [0.0; 3] {
-            supplied.push(String::from(
-                "a directional light from above the camera's left shoulder",
+        let (mut lights, mut ambient) = (scene.lights.clone(), scene.ambient);
+        if lights.is_empty() && ambient == [0.0; 3] {
+            let (direction, shoulder) = over_a_shoulder(scene, &camera);
+            supplied.push(format!(
+                "a directional light from above the camera's {shoulder} shoulder, and some light from \
+                 everywhere"
             ));
-            let view = unit(camera.target - camera.eye);
-            let up = unit(camera.up);
-            let direction = view + 0.5 * unit(view.cross(up)) - 0.7 * up;
             lights.push(Light::Directional {
                 direction,
-                color: [1.0; 3],
+                // With what comes from everywhere, white stays white and is not cut off.
+                color: [1.0 - AMBIENT; 3],
             });
+            ambient = [AMBIENT; 3];
         }
         let size = (highest - lowest).max_element();
         let far = |what: String, point: DVec3| -> Result<[i64; 3], CompileError> {
@@ -102,7 +106,12 @@ impl Surroundings {
             .enumerate()
             .map(|(number, light)| light_record(light, number, &far))
             .collect::<Result<_, _>>()?;
-        let view = view_record(scene, &camera, far(String::from("camera"), camera.eye)?);
+        let view = view_record(
+            scene,
+            ambient,
+            &camera,
+            far(String::from("camera"), camera.eye)?,
+        );
         Ok(Self {
             view,
             lights,
@@ -137,13 +146,62 @@ fn framing(lowest: DVec3, highest: DVec3) -> Camera {
     }
 }
 
+/// The way of a light from above the camera's left shoulder, or from above its right one where what is
+/// flat and faces the camera would be dark: the shoulder's name, too.
+fn over_a_shoulder(scene: &Scene, camera: &Camera) -> (DVec3, &'static str) {
+    /// By how many times more the right one must light.
+    const CLEARLY: f64 = 2.0;
+    let view = unit(camera.target - camera.eye);
+    let up = unit(camera.up);
+    let aside = 0.5 * unit(view.cross(up));
+    let [left, right] = [aside, -aside].map(|aside| view + aside - 0.7 * up);
+    let lit = |direction: DVec3| -> f64 {
+        let faces = scene.objects.iter().flat_map(|object| faces(&object.shape));
+        let towards = |normal: DVec3| normal * -normal.dot(view).signum();
+        faces
+            .map(|normal| -towards(normal).dot(direction))
+            .map(|light| light.max(0.0))
+            .sum()
+    };
+    if lit(right) > CLEARLY * lit(left) {
+        (right, "right")
+    } else {
+        (left, "left")
+    }
+}
+
+/// The normals of what is flat, as long as twice its area.
+fn faces(shape: &Shape) -> Vec<DVec3> {
+    match shape {
+        Shape::Mesh {
+            vertices,
+            triangles,
+        } => {
+            let normal = |corners: &[u32; 3]| {
+                let [a, b, c] = corners.map(|corner| vertices[corner as usize]);
+                (b - a).cross(c - a)
+            };
+            triangles.iter().map(normal).collect()
+        }
+        Shape::Box { min, max } => {
+            let size = *max - *min;
+            let face = |k: usize| 2.0 * size[(k + 1) % 3] * size[(k + 2) % 3] * DVec3::AXES[k];
+            (0..3).flat_map(|k| [face(k), -face(k)]).collect()
+        }
+        Shape::Disc { normal, radius, .. } => {
+            vec![unit(*normal) * (2.0 * std::f64::consts::PI * radius * radius)]
+        }
+        Shape::Sphere { .. } | Shape::Cone { .. } => Vec::new(),
+    }
+}
+
 /// A vector with length 1, however small or large its components are.
 fn unit(v: DVec3) -> DVec3 {
     (v / v.abs().max_element()).normalize()
 }
 
 /// Vectors of the picture's frame, scaled so that their largest component has 28 bits.
-fn view_record(scene: &Scene, camera: &Camera, eye: [i64; 3]) -> record::View {
+fn view_record(scene: &Scene, ambient: Color, camera: &Camera, eye: [i64; 3]) -> record::View {
     let forward = unit(camera.target - camera.eye);
     let right = unit(forward.cross(unit(camera.up)));
     let half = (camera.fov_degrees.to_radians() * 0.5).tan();
@@ -161,7 +219,7 @@ fn view_record(scene: &Scene, camera: &Camera, eye: [i64; 3]) -> record::View {
         right,
         up,
         background: radiance(scene.background),
-        ambient: radiance(scene.ambient),
+        ambient: radiance(ambient),
         cutoff: radiance([render.cutoff; 3])[0],
         width: render.width.clamp(1, u16::MAX.into()) as u16,
         height: render.height.clamp(1, u16::MAX.into()) as u16,
