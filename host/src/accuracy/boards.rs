@@ -15,9 +15,9 @@ use serde::Serialize;
 /// A board in one number format.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Board {
-    /// What `--board` calls it.
+    /// The name of its core.
     pub name: &'static str,
-    /// What the recorded figures call it.
+    /// What it is called elsewhere: see [`BOARDS`](crate::board::BOARDS).
     pub machine: &'static str,
     #[serde(skip)]
     pub format: Format,
@@ -47,19 +47,29 @@ pub const BOARDS: [Board; 3] = [
     },
 ];
 
-/// Instructions a pixel of a point on a board, the least and the most; `None` where the board was not
-/// measured in the point's format.
+/// Instructions a pixel of a point on a board, by its own name or its core's, the least and the most;
+/// `None` where the board was not measured in the point's format.
 pub fn instructions(board: &str, point: &Point) -> Option<[f64; 2]> {
-    let is_it =
-        |candidate: &&Board| candidate.name == board && candidate.format == point.setting.format;
+    let is_it = |candidate: &&Board| {
+        [candidate.name, candidate.machine].contains(&board)
+            && candidate.format == point.setting.format
+    };
     let board = BOARDS.iter().find(is_it)?;
     let rays = point.cost.rays as f64 / point.cost.pixels.max(1) as f64;
     Some(board.a_ray.map(|a_ray| a_ray * rays))
 }
 
-/// The boards there are.
+/// The boards there are, by the names of their cores.
 pub fn names() -> Vec<&'static str> {
     let mut names: Vec<_> = BOARDS.iter().map(|board| board.name).collect();
     names.dedup();
+    names
+}
+
+/// All names of the boards there are, their own ones first.
+pub fn all_names() -> Vec<&'static str> {
+    let mut names: Vec<_> = BOARDS.iter().map(|board| board.machine).collect();
+    names.dedup();
+    names.extend(self::names());
     names
 }

@@ -3,7 +3,7 @@
 use super::flip::{self, flip};
 use super::setting::Setting;
 use crate::blob::Blob;
-use crate::compile::{self, CompileError};
+use crate::compile::{self, CompileError, Quality};
 use crate::render::{Job, Picture, chosen, render};
 use crate::report::working_memory_at;
 use crate::scene::Scene;
@@ -75,11 +75,21 @@ impl Cost {
         }
     }
 
-    /// The largest less the smallest, as a part of the median.
-    pub fn spread(&self) -> f64 {
+    /// The largest less the smallest, as a part of the median; `None` of a single repeat, which
+    /// tells nothing of it.
+    pub fn spread(&self) -> Option<f64> {
         let largest = self.seconds.iter().copied().fold(0.0, f64::max);
         let least = self.seconds.iter().copied().fold(f64::INFINITY, f64::min);
-        (largest - least).max(0.0) / self.time().max(f64::MIN_POSITIVE)
+        let spread = (largest - least).max(0.0) / self.time().max(f64::MIN_POSITIVE);
+        (self.seconds.len() > 1).then_some(spread)
+    }
+
+    /// The spread as tables show it.
+    pub fn spread_text(&self) -> String {
+        let spread = self.spread();
+        spread.map_or(String::from("-"), |spread| {
+            format!("{:.0} %", 100.0 * spread)
+        })
     }
 }
 
@@ -89,6 +99,8 @@ type FirstHit = Option<(u32, f64)>;
 /// The picture that others are measured against.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Reference {
+    /// Samples a pixel.
+    pub samples: u16,
     /// Linear, 65535 being white.
     pub pixels: Vec<[u16; 3]>,
     /// Of each pixel.
@@ -113,6 +125,8 @@ pub enum MeasureError {
 pub struct Bench<'s> {
     scene: &'s Scene,
     structure: Structure,
+    /// Of the structure wide.
+    pub quality: Quality,
     pub size: [u16; 2],
     blobs: HashMap<(u8, u64), Blob>,
     hits: HashMap<(u8, u64, &'static str), Vec<FirstHit>>,
@@ -135,6 +149,7 @@ impl<'s> Bench<'s> {
         Self {
             scene,
             structure,
+            quality: Quality::default(),
             size,
             blobs: HashMap::new(),
             hits: HashMap::new(),
@@ -174,6 +189,7 @@ impl<'s> Bench<'s> {
             let options = compile::Options {
                 structures: vec![self.structure],
                 lattice_bits: setting.lattice_bits,
+                quality: self.quality,
                 ..compile::Options::default()
             };
             let blob = compile::compile(&scene, &options)?.blob;
@@ -201,6 +217,7 @@ impl<'s> Bench<'s> {
     pub fn reference(&mut self, samples: u16) -> Result<Reference, MeasureError> {
         let setting = reference_setting(samples);
         Ok(Reference {
+            samples,
             pixels: self.picture(&setting, false)?.0.pixels,
             hits: self.first_hits(&setting)?,
         })

@@ -14,7 +14,7 @@ pub use measure::{
     Bench, Cost, Errors, MeasureError, Point, Reference, difference_picture, reference_setting,
 };
 pub use page::{Exhibit, page};
-pub use setting::{Lever, Setting, sweep};
+pub use setting::{Lever, Setting, least_reference_samples, sweep};
 
 use crate::report::significant;
 use serde::{Deserialize, Serialize};

@@ -3,7 +3,7 @@
 use super::boards;
 use super::{Point, Results, frontier, sentences};
 use crate::picture::write_png;
-use crate::report::{grouped, significant};
+use crate::report::{counted, grouped, significant};
 use base64::Engine;
 use plotters::prelude::*;
 use std::fmt::Write;
@@ -42,11 +42,14 @@ pub fn page(
     let best = frontier(&results.points);
     let mut body = format!(
         "<title>Accuracy and time of {name}</title>\n<h1>What accuracy costs in time: {name}</h1>\n\
-         <p>{} x {} pixels, one thread. The reference: {}.</p>\n<ul>\n",
-        size[0], size[1], "f64, 24 lattice bits, ray depth 16, many samples"
+         <p>{} x {} pixels, one thread. The reference: f64, 24 lattice bits, ray depth 16, {} a \
+         pixel.</p>\n<ul>\n",
+        size[0],
+        size[1],
+        counted(results.reference.samples.into(), "sample")
     );
     for sentence in sentences(&results.base, &results.points) {
-        let _ = writeln!(body, "<li>{}</li>", escape(&sentence));
+        let _ = writeln!(body, "<li>{}</li>", code(&escape(&sentence)));
     }
     body.push_str(
         "</ul>\n<h2>Error against time</h2>\n<p>Nothing beats the settings on the red \
@@ -94,6 +97,16 @@ const HEAD: &str = "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\"
 fn escape(text: &str) -> String {
     let text = text.replace('&', "&amp;").replace('<', "&lt;");
     text.replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// Marks what stands between backticks as code.
+fn code(text: &str) -> String {
+    let parts = text.split('`').enumerate();
+    let marked = parts.map(|(number, part)| match number % 2 {
+        0 => part.to_owned(),
+        _ => format!("<code>{part}</code>"),
+    });
+    marked.collect()
 }
 
 fn image([width, height]: [u16; 2], pixels: &[u8]) -> io::Result<String> {
@@ -214,13 +227,13 @@ fn table(results: &Results, best: &[bool]) -> String {
         let class = if best[number] { " class=\"best\"" } else { "" };
         let _ = write!(
             table,
-            "<tr{class}><td>{}</td><td>{}</td><td>{:.2}</td><td>{:.0} %</td><td>{:.5}</td><td>{:.4}</td>\
+            "<tr{class}><td>{}</td><td>{}</td><td>{:.2}</td><td>{}</td><td>{:.5}</td><td>{:.4}</td>\
              <td>{}</td><td>{:.5}</td><td>{:.5}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.2}</td>\
              <td>{:.1}</td><td>{}</td><td>{}</td>",
             number + 1,
             point.name,
             1e3 * cost.time(),
-            100.0 * cost.spread(),
+            cost.spread_text(),
             errors.rmse,
             errors.largest,
             grouped(errors.pixels_off),

@@ -1,6 +1,7 @@
 //! What a sweep turns: five levers, each alone and together.
 
 use gridel_core::Format;
+use gridel_core::render::MAX_SAMPLES;
 use serde::{Deserialize, Serialize};
 
 /// A way to build and render a scene.
@@ -181,6 +182,13 @@ pub fn sweep(base: Setting, secondary: bool) -> Vec<Setting> {
         }
     }
     settings
+}
+
+/// The fewest samples a pixel of a reference that is better than every setting of a sweep: twice the
+/// most of theirs, as far as pictures can have so many.
+pub fn least_reference_samples(settings: &[Setting]) -> u16 {
+    let most = settings.iter().map(|setting| setting.samples).max();
+    (2 * most.unwrap_or(1)).min(MAX_SAMPLES)
 }
 
 #[cfg(test)]

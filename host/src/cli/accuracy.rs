@@ -1,19 +1,20 @@
 //! `gridel accuracy`: what accuracy costs in time.
 
-use super::arguments::{self, SceneOptions};
+use super::arguments::{self, GeometryOptions, MoleculeOptions, SceneOptions, check_quality};
 use super::failure::Failure;
-use super::output::{print, print_json, warn, write_file};
+use super::output::{print, print_json, write_file, write_texts};
 use super::progress::Progress;
+use super::source::import;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use gridel_core::{Rgb888, Structure, render::Pixel};
 use gridel_host::accuracy::{
     Bench, Exhibit, MeasureError, Point, Results, Setting, boards, cheapest, difference_picture,
-    frontier, page, sentences, sweep,
+    frontier, least_reference_samples, page, sentences, sweep,
 };
+use gridel_host::compile::Quality;
 use gridel_host::picture::write_png;
 use gridel_host::report::{Align, Table, counted, grouped, significant};
-use gridel_host::scene;
 use serde::Serialize;
 use std::fmt::Write;
 use std::io;
@@ -24,7 +25,7 @@ use std::path::{Path, PathBuf};
 /// Turns five levers, each alone and in combinations: number format, lattice bits (10, 12, 16, 20,
 /// 24), samples a pixel (1 to 64), ray depth, and the contribution below which a secondary ray is not
 /// cast. Every setting is built and rendered and compared with a reference (f64, 24 bits, ray depth
-/// 16, many samples).
+/// 16, samples as --reference-samples says).
 ///
 /// Errors, of display values (sRGB) from 0 to 1:
 ///   RMSE           root of the mean square difference, over all pixels and channels
@@ -72,22 +73,32 @@ pub struct Arguments {
         value_parser = clap::value_parser!(u16).range(1..=1000))]
     repeat: u16,
 
-    /// Samples a pixel of the reference
+    /// Samples a pixel of the reference, at least twice the most that are measured
     #[arg(long, value_name = "N", default_value_t = 256,
         value_parser = clap::value_parser!(u16).range(1..=256))]
     reference_samples: u16,
 
-    /// Acceleration structure; boards' figures are for flagged pairs
+    /// Acceleration structure; boards' figures are for dual-split nodes
     #[arg(long, value_name = "NAME", value_parser = arguments::structure(),
-        default_value = Structure::Flagged.name())]
+        default_value = Structure::DualSplit.name())]
     accel: Structure,
+
+    /// Time taken to build the structure wide [default: good]
+    #[arg(long, value_name = "NAME")]
+    quality: Option<Quality>,
 
     /// Print the results as JSON
     #[arg(long)]
     json: bool,
 
+    /// Do not cast secondary rays that can change no channel by more than this, 1 being display
+    /// white [default: what the scene file states]
+    #[arg(long, value_name = "X", value_parser = arguments::cutoff, allow_hyphen_values = true,
+        help_heading = "Options for scene files")]
+    cutoff: Option<f64>,
+
     #[command(flatten)]
-    scene_options: SceneOptions,
+    molecule: MoleculeOptions,
 }
 
 /// Reads an error bound.
@@ -98,7 +109,7 @@ fn share(text: &str) -> Result<f64, String> {
 }
 
 fn board() -> impl TypedValueParser<Value = String> {
-    PossibleValuesParser::new(boards::names())
+    PossibleValuesParser::new(boards::all_names())
 }
 
 /// What is printed as JSON.
@@ -111,7 +122,7 @@ struct Told<'t> {
     frontier: Vec<bool>,
     sentences: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    cheapest: Option<Choice>,
+    cheapest: Option<&'t Choice>,
 }
 
 /// The setting that was asked for.
@@ -126,32 +137,40 @@ struct Choice {
 /// Sweeps, measures and reports.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scene;
-    if arguments.scene_options.lattice_bits.is_some() {
-        return Err(Failure::usage(
-            "--lattice-bits is one of the levers that are turned",
-            "leave it out",
-        ));
-    }
-    let mut imported = scene::load(path, &arguments.scene_options.molecule())
-        .map_err(|error| Failure::Failed(miette::Report::new(error)))?;
-    arguments.scene_options.change(&mut imported.scene);
-    for warning in &imported.warnings {
-        warn(warning);
-    }
+    check_quality(arguments.quality, &[arguments.accel])?;
+    let options = SceneOptions {
+        cutoff: arguments.cutoff,
+        geometry: GeometryOptions {
+            lattice_bits: None,
+            molecule: arguments.molecule.clone(),
+        },
+    };
+    let imported = import(path, &options)?;
     let stem = path.file_stem().unwrap_or_default().display().to_string();
     let folder = match &arguments.output {
         Some(folder) => folder.clone(),
         None => PathBuf::from(format!("accuracy-{stem}")),
     };
-    std::fs::create_dir_all(folder.join("pictures"))
-        .map_err(|error| Failure::writing(&folder, &error))?;
     let stated = imported.scene.render;
     let size = arguments
         .size
         .unwrap_or_else(|| smaller([stated.width, stated.height]));
     let failed = |error: MeasureError| Failure::in_file(path, error);
     let mut bench = Bench::new(&imported.scene, arguments.accel, size);
+    bench.quality = arguments.quality.unwrap_or_default();
     let settings = sweep(bench.base(), bench.is_secondary().map_err(failed)?);
+    let least = least_reference_samples(&settings);
+    if arguments.reference_samples < least {
+        return Err(Failure::usage(
+            format!(
+                "a reference of {} a pixel is no better than what is measured",
+                counted(arguments.reference_samples.into(), "sample")
+            ),
+            format!("ask for at least {least} with `--reference-samples`, or leave it out"),
+        ));
+    }
+    std::fs::create_dir_all(folder.join("pictures"))
+        .map_err(|error| Failure::writing(&folder, &error))?;
     let key = format!(
         "gridel {} scene {:08x} size {size:?} structure {} reference {}",
         env!("CARGO_PKG_VERSION"),
@@ -163,26 +182,44 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let exhibits = exhibits(&folder, size, &results)?;
     let page = page(&stem, size, &results, &exhibits)
         .map_err(|error| Failure::failed(error.to_string(), "report this as a fault of gridel"))?;
-    write_file(&folder.join("page.html"), |out| {
-        out.write_all(page.as_bytes())
-    })?;
     let csv = csv(&results.points);
-    write_file(&folder.join("results.csv"), |out| {
-        out.write_all(csv.as_bytes())
-    })?;
+    write_texts(&folder, &[("page.html", page), ("results.csv", csv)])?;
 
-    let choice = choice(arguments, &stem, &results)?;
+    let choice = choice(arguments, &stem, &results);
     if arguments.json {
-        return print_json(&Told {
+        print_json(&Told {
             folder: folder.display().to_string(),
             size,
             points: &results.points,
             frontier: frontier(&results.points),
             sentences: sentences(&results.base, &results.points),
-            cheapest: choice,
-        });
+            cheapest: choice.as_ref(),
+        })?;
+    } else {
+        print(text(&folder, size, &results, choice.as_ref()))?;
     }
-    print(text(&folder, size, &results, choice.as_ref()))
+    match arguments.max_error {
+        Some(most) if choice.is_none() => Err(nothing_within(arguments, most, &results.points)),
+        _ => Ok(()),
+    }
+}
+
+/// No setting keeps within the bound.
+fn nothing_within(arguments: &Arguments, most: f64, points: &[Point]) -> Failure {
+    let on = arguments.board.as_deref();
+    let measured = points
+        .iter()
+        .filter(|point| on.is_none_or(|board| boards::instructions(board, point).is_some()));
+    let least = measured
+        .map(|point| point.errors.rmse)
+        .fold(f64::INFINITY, f64::min);
+    Failure::failed(
+        format!(
+            "no setting keeps within an RMSE of {most}; the least is {}",
+            significant(least)
+        ),
+        "allow a larger error, or give the scene file more samples and depth",
+    )
 }
 
 /// A picture's size, made smaller.
@@ -320,28 +357,17 @@ fn exhibits(folder: &Path, size: [u16; 2], results: &Results) -> Result<Vec<Exhi
     Ok(exhibits)
 }
 
-/// The cheapest setting within the bound, as options.
-fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Result<Option<Choice>, Failure> {
-    let Some(most) = arguments.max_error else {
-        return Ok(None);
-    };
-    let Some(point) = cheapest(&results.points, most, arguments.board.as_deref()) else {
-        let best = results.points.iter().map(|point| point.errors.rmse);
-        return Err(Failure::failed(
-            format!(
-                "no setting keeps within an RMSE of {most}; the least is {}",
-                significant(best.fold(f64::INFINITY, f64::min))
-            ),
-            "ask for less, or give the scene file more samples and depth",
-        ));
-    };
+/// The cheapest setting within the bound that was asked for, as options.
+fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Option<Choice> {
+    let most = arguments.max_error?;
+    let point = cheapest(&results.points, most, arguments.board.as_deref())?;
     let setting = &point.setting;
     let cutoff = if setting.cutoff == results.base.cutoff {
         String::new()
     } else {
         format!(" --cutoff {}", setting.cutoff)
     };
-    Ok(Some(Choice {
+    Some(Choice {
         name: point.name.clone(),
         rmse: point.errors.rmse,
         build: format!(
@@ -356,7 +382,7 @@ fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Result<Option
             setting.samples,
             setting.depth
         ),
-    }))
+    })
 }
 
 fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Choice>) -> String {
@@ -384,7 +410,7 @@ fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Choice
             String::from(if best { "*" } else { "" }),
             point.name.clone(),
             format!("{:.2}", 1e3 * cost.time()),
-            format!("{:.0} %", 100.0 * cost.spread()),
+            cost.spread_text(),
             format!("{:.5}", errors.rmse),
             format!("{:.4}", errors.largest),
             grouped(errors.pixels_off),
@@ -460,7 +486,8 @@ fn csv(points: &[Point]) -> String {
             errors.t_ulps[0],
             errors.t_ulps[1],
             cost.time(),
-            cost.spread(),
+            cost.spread()
+                .map_or(String::new(), |spread| spread.to_string()),
             cost.rays,
             cost.tests,
             cost.pixels,

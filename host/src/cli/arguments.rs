@@ -1,14 +1,15 @@
 //! Options that several verbs have, and how their values are written.
 
+use super::failure::Failure;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use gridel_core::accel::slabs::DIRECTION_COUNTS;
 use gridel_core::render::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use gridel_core::{Format, Scene as CoreScene, Settings, Structure};
 use gridel_host::board::{BOARDS, Board};
-use gridel_host::compile::{self, Builder, Quality};
+use gridel_host::compile::{self, Builder, Quality, takes_hierarchy};
 use gridel_host::report::Target;
-use gridel_host::scene::{MoleculeOptions, MoleculeStyle, Scene};
+use gridel_host::scene::{self, MoleculeStyle};
 use std::num::NonZeroUsize;
 use std::ops::Range;
 
@@ -61,6 +62,10 @@ pub struct TraceOptions {
     /// trace build wide]
     #[arg(long, value_name = "NAME", value_parser = structure())]
     pub accel: Option<Structure>,
+
+    /// Time taken to build the structure wide of a scene file [default: good]
+    #[arg(long, value_name = "NAME")]
+    pub quality: Option<Quality>,
 }
 
 /// What of a picture's settings is not as the scene states it.
@@ -102,24 +107,36 @@ impl PictureOptions {
     }
 }
 
-/// How a scene file is read and compiled.
+/// How a scene file is read and compiled, for verbs that make pictures of it.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Options for scene files")]
 pub struct SceneOptions {
+    /// Do not cast secondary rays that can change no channel by more than this, 1 being display
+    /// white [default: what the scene file states]
+    #[arg(long, value_name = "X", value_parser = cutoff, allow_hyphen_values = true)]
+    pub cutoff: Option<f64>,
+
+    #[command(flatten)]
+    pub geometry: GeometryOptions,
+}
+
+/// How the geometry of a scene file is read and compiled.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Options for scene files")]
+pub struct GeometryOptions {
     /// Bits of the lattice that coordinates are snapped to, 10 to 24; 16 or fewer make the blob
     /// smaller [default: 24]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(10..=24))]
     pub lattice_bits: Option<u8>,
 
-    /// Do not cast secondary rays that can change no channel by more than this, 1 being display
-    /// white [default: what the scene file states]
-    #[arg(long, value_name = "X", value_parser = cutoff)]
-    cutoff: Option<f64>,
+    #[command(flatten)]
+    pub molecule: MoleculeOptions,
+}
 
-    /// Time taken to build the structure wide [default: good]
-    #[arg(long, value_name = "NAME")]
-    pub quality: Option<Quality>,
-
+/// How molecules are read.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Options for scene files")]
+pub struct MoleculeOptions {
     /// How molecules look [default: space-filling]
     #[arg(long, value_parser = style())]
     style: Option<MoleculeStyle>,
@@ -136,34 +153,49 @@ pub struct SceneOptions {
 impl SceneOptions {
     /// The name of an option that was given, if one was.
     pub fn given(&self) -> Option<&'static str> {
-        [
-            (self.lattice_bits.is_some(), "--lattice-bits"),
-            (self.cutoff.is_some(), "--cutoff"),
-            (self.quality.is_some(), "--quality"),
+        let Self { cutoff, geometry } = self;
+        first_given([
+            (geometry.lattice_bits.is_some(), "--lattice-bits"),
+            (cutoff.is_some(), "--cutoff"),
+        ])
+        .or(geometry.molecule.given())
+    }
+}
+
+impl From<GeometryOptions> for SceneOptions {
+    fn from(geometry: GeometryOptions) -> Self {
+        Self {
+            cutoff: None,
+            geometry,
+        }
+    }
+}
+
+impl MoleculeOptions {
+    /// The name of an option that was given, if one was.
+    pub fn given(&self) -> Option<&'static str> {
+        first_given([
             (self.style.is_some(), "--style"),
             (self.model.is_some(), "--model"),
             (self.altloc.is_some(), "--altloc"),
-        ]
-        .into_iter()
-        .find_map(|(given, name)| given.then_some(name))
-    }
-
-    /// Changes in a scene what was asked for.
-    pub fn change(&self, scene: &mut Scene) {
-        if let Some(cutoff) = self.cutoff {
-            scene.render.cutoff = cutoff;
-        }
+        ])
     }
 
     /// The options for importers of molecules.
-    pub fn molecule(&self) -> MoleculeOptions {
-        let default = MoleculeOptions::default();
-        MoleculeOptions {
+    pub fn for_import(&self) -> scene::MoleculeOptions {
+        let default = scene::MoleculeOptions::default();
+        scene::MoleculeOptions {
             style: self.style.unwrap_or(default.style),
             model: self.model.map_or(default.model, NonZeroUsize::get),
             altloc: self.altloc,
         }
     }
+}
+
+/// The name of the first option that was given.
+fn first_given<const N: usize>(options: [(bool, &'static str); N]) -> Option<&'static str> {
+    let mut given = options.into_iter().filter(|(given, _)| *given);
+    given.next().map(|(_, name)| name)
 }
 
 fn style() -> impl TypedValueParser<Value = MoleculeStyle> {
@@ -174,7 +206,7 @@ fn style() -> impl TypedValueParser<Value = MoleculeStyle> {
 }
 
 /// Reads a cutoff.
-fn cutoff(text: &str) -> Result<f64, String> {
+pub fn cutoff(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok();
     let value = value.filter(|value| (0.0..=1.0).contains(value));
     value.ok_or_else(|| String::from("write a number from 0 to 1, such as 0.002"))
@@ -184,9 +216,9 @@ fn cutoff(text: &str) -> Result<f64, String> {
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Options for structures")]
 pub struct StructureOptions {
-    /// Directions of slabs: 3, 7 or 13
-    #[arg(long, value_name = "N", value_parser = directions(), default_value = "7")]
-    slabs: usize,
+    /// Directions of slabs: 3, 7 or 13 [default: 7]
+    #[arg(long, value_name = "N", value_parser = directions())]
+    slabs: Option<usize>,
 
     /// Divisions of the grid, 1 to 1024: one number for all axes, or three, such as 8x8x2 [default:
     /// four cells a primitive, fewer where these would take more than 256M to build]
@@ -203,19 +235,98 @@ pub struct StructureOptions {
     /// `ray-classes`, 2M for `cylinder-cube-entry`, 1M for `apex`]
     #[arg(long, value_name = "N", value_parser = bytes)]
     budget: Option<u64>,
+
+    /// Time taken to build the structure wide [default: good]
+    #[arg(long, value_name = "NAME")]
+    quality: Option<Quality>,
 }
 
 impl StructureOptions {
     /// The options for the compiler.
-    pub fn apply(&self, options: compile::Options) -> compile::Options {
-        compile::Options {
-            slab_directions: self.slabs,
+    ///
+    /// # Errors
+    /// If an option was given that none of the options' structures takes.
+    pub fn apply(&self, options: compile::Options) -> Result<compile::Options, Failure> {
+        let structures = &options.structures;
+        let cubes = |it| {
+            use Structure::{CylinderCube, CylinderCubeEntry, CylinderCubeTight};
+            matches!(it, CylinderCube | CylinderCubeTight | CylinderCubeEntry)
+        };
+        check_takers("--slabs", self.slabs.is_some(), structures, |it| {
+            matches!(it, Structure::Slabs | Structure::FlaggedSlabs)
+        })?;
+        check_takers("--grid", self.grid.is_some(), structures, |it| {
+            it == Structure::Grid
+        })?;
+        check_takers("--gridels", self.gridels.is_some(), structures, cubes)?;
+        check_takers("--budget", self.budget.is_some(), structures, |it| {
+            cubes(it) || matches!(it, Structure::RayClasses | Structure::Apex)
+        })?;
+        check_quality(self.quality, structures)?;
+        Ok(compile::Options {
+            slab_directions: self.slabs.unwrap_or(options.slab_directions),
             grid: self.grid,
             gridels: self.gridels,
             budget: self.budget,
+            quality: self.quality.unwrap_or_default(),
             ..options
+        })
+    }
+}
+
+/// Refuses an option that only structures take of which none is built.
+///
+/// # Errors
+/// If it was given.
+pub fn check_takers(
+    option: &str,
+    given: bool,
+    built: &[Structure],
+    takes: impl Fn(Structure) -> bool,
+) -> Result<(), Failure> {
+    if !given || built.iter().any(|&structure| takes(structure)) {
+        return Ok(());
+    }
+    let takers = Structure::ALL.into_iter().filter(|&it| takes(it));
+    let takers: Vec<_> = takers.map(Structure::name).collect();
+    let built: Vec<_> = built.iter().map(|it| it.name()).collect();
+    Err(Failure::usage(
+        format!(
+            "{option} is for {}, and what is built is {}",
+            takers.join(", "),
+            built.join(", ")
+        ),
+        "leave the option out, or choose with `--accel` a structure that it is for",
+    ))
+}
+
+/// Refuses `--quality` where the structure wide is not built.
+///
+/// # Errors
+/// If it was given.
+pub fn check_quality(quality: Option<Quality>, built: &[Structure]) -> Result<(), Failure> {
+    check_takers("--quality", quality.is_some(), built, |it| {
+        it == Structure::Wide
+    })
+}
+
+/// Refuses an option of hierarchies where none is built.
+///
+/// # Errors
+/// If it was given.
+pub fn check_hierarchy(option: &str, given: bool, built: &[Structure]) -> Result<(), Failure> {
+    check_takers(option, given, built, takes_hierarchy)
+}
+
+/// Names without repetition, in the order in which they come first.
+pub fn distinct<T: Copy + PartialEq>(names: &[T]) -> Vec<T> {
+    let mut distinct = Vec::new();
+    for &name in names {
+        if !distinct.contains(&name) {
+            distinct.push(name);
         }
     }
+    distinct
 }
 
 fn directions() -> impl TypedValueParser<Value = usize> {

@@ -1,16 +1,16 @@
 //! `gridel build`: a scene file becomes a blob.
 
-use super::arguments::{self, SceneOptions, StructureOptions, TargetOptions};
+use super::arguments::{self, SceneOptions, StructureOptions, TargetOptions, check_hierarchy};
 use super::effects::CalledFor;
 use super::failure::Failure;
-use super::output::{print, print_json, refuse_same, warn, write_file};
+use super::output::{Content, check_extension, print, print_json, refuse_same, warn, write_files};
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Format, Scene, Structure};
 use gridel_host::board::Board;
-use gridel_host::compile::{self, Builder, Figures, Report, Tabled};
+use gridel_host::compile::{self, Builder, Figures, LeftOut, Report, Tabled};
 use gridel_host::emit::{self, Emitted};
-use gridel_host::report::{Align, Ledger, Table, grouped, power_of_two};
+use gridel_host::report::{Account, Align, Ledger, Table, counted, grouped, power_of_two};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -47,10 +47,9 @@ pub struct Arguments {
     )]
     leaf_size: Option<u8>,
 
-    /// How the hierarchy is built that the structures share
-    #[arg(long, value_name = "NAME", value_parser = arguments::builder(),
-        default_value = Builder::Sah.name())]
-    builder: Builder,
+    /// How the hierarchy is built that the structures share [default: sah]
+    #[arg(long, value_name = "NAME", value_parser = arguments::builder())]
+    builder: Option<Builder>,
 
     /// Refuse to write a blob of more bytes, and say what to change; 64K and 1M are understood
     #[arg(long, value_name = "N", value_parser = arguments::bytes)]
@@ -60,16 +59,17 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     emit_rust: Option<PathBuf>,
 
-    /// Number format of the Rust module [default: the board's best, or fixed]
-    #[arg(long, value_parser = arguments::format(), requires = "emit_rust")]
-    format: Option<Format>,
+    /// Print the report as JSON
+    #[arg(long)]
+    json: bool,
 
     #[command(flatten)]
     target: TargetOptions,
 
-    /// Print the report as JSON
-    #[arg(long)]
-    json: bool,
+    /// Number format of the Rust module [default: the board's best, or fixed]
+    #[arg(long, value_parser = arguments::format(), requires = "emit_rust",
+        help_heading = "Options for boards")]
+    format: Option<Format>,
 
     #[command(flatten)]
     structure_options: StructureOptions,
@@ -95,25 +95,35 @@ struct Built<'r> {
     step: f64,
     /// Scene units.
     largest_displacement: f64,
-    collapsed: &'r [String],
-    sah_cost: f64,
+    collapsed: &'r LeftOut,
+    without_area: &'r LeftOut,
+    sah_cost: Option<f64>,
     effects: Vec<CalledFor>,
     supplied: &'r [String],
     tables: &'r [Tabled],
     warnings: &'r [String],
+    /// Where a board is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ledger: Option<&'r Ledger>,
 }
+
+/// Left-out primitives that are named in the text; JSON names more.
+const NAMED: usize = 5;
 
 /// Builds a blob and reports on it.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     refuse_same(&arguments.scene, &arguments.output)?;
-    let compiling = compile::Options {
-        structures: arguments.accel.clone(),
+    check_extension(&arguments.output, &["gridel", "bin"], "a blob")?;
+    let accel = &arguments.accel;
+    check_hierarchy("--leaf-size", arguments.leaf_size.is_some(), accel)?;
+    check_hierarchy("--builder", arguments.builder.is_some(), accel)?;
+    let compiling = arguments.structure_options.apply(compile::Options {
+        structures: accel.clone(),
         leaf_size: arguments.leaf_size.map_or(0, usize::from),
-        builder: arguments.builder,
+        builder: arguments.builder.unwrap_or_default(),
         max_bytes: arguments.max_bytes,
         ..compile::Options::default()
-    };
-    let compiling = arguments.structure_options.apply(compiling);
+    })?;
     let source = Source::compile(&arguments.scene, &arguments.scene_options, compiling)?;
     let scene = source.scene()?;
     let target = arguments.target.target();
@@ -144,10 +154,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             ledger.structure
         ));
     }
-    write_file(&arguments.output, |out| out.write_all(source.blob.bytes()))?;
+    let blob = source.blob.bytes();
+    let write_blob: Content<'_> = &|out| out.write_all(blob);
     if let Some(folder) = &arguments.emit_rust {
         let room = ledger.as_ref().zip(target).map(|(ledger, target)| {
-            let code = ledger.flash.used - source.blob.bytes().len() as u64;
+            let code = ledger.flash.used - blob.len() as u64;
             (target.flash - code, target.board)
         });
         let emitted = Emitted {
@@ -157,19 +168,26 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             budget: room,
         };
         std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
-        let blob = source.blob.bytes();
-        write_file(&folder.join(emit::BLOB), |out| out.write_all(blob))?;
         let text = emitted.module();
-        write_file(&folder.join(emit::MODULE), |out| {
-            out.write_all(text.as_bytes())
-        })?;
+        write_files(&[
+            (&arguments.output, write_blob),
+            (&folder.join(emit::BLOB), write_blob),
+            (&folder.join(emit::MODULE), &|out| {
+                out.write_all(text.as_bytes())
+            }),
+        ])?;
+    } else {
+        write_files(&[(&arguments.output, write_blob)])?;
     }
 
     let Some(report) = &source.report else {
         return Ok(());
     };
     let name = arguments.output.display().to_string();
-    let built = Built::new(&name, &scene, report, &source.warnings);
+    let built = Built {
+        ledger: ledger.as_ref(),
+        ..Built::new(&name, &scene, report, &source.warnings)
+    };
     if arguments.json {
         print_json(&built)
     } else {
@@ -198,11 +216,13 @@ impl<'r> Built<'r> {
             step: report.step,
             largest_displacement: report.largest_displacement,
             collapsed: &report.collapsed,
+            without_area: &report.without_area,
             sah_cost: report.sah_cost,
             effects: CalledFor::in_report(report),
             supplied: &report.supplied,
             tables: &report.tables,
             warnings,
+            ledger: None,
         }
     }
 
@@ -221,9 +241,9 @@ impl<'r> Built<'r> {
         line(
             "holds",
             format!(
-                "{} primitives of {} objects",
-                grouped(self.primitives),
-                grouped(self.objects)
+                "{} of {}",
+                counted(self.primitives as usize, "primitive"),
+                counted(self.objects as usize, "object")
             ),
         );
         line("structures", self.structures.join(", "));
@@ -234,19 +254,25 @@ impl<'r> Built<'r> {
                 self.stack_depth, self.longest_leaf
             ),
         );
-        line("SAH cost", format!("{:.2}", self.sah_cost));
+        if let Some(cost) = self.sah_cost {
+            line("SAH cost", format!("{cost:.2}"));
+        }
         line(
             "lattice",
             format!(
-                "{} bits, step {}, largest displacement {:.3e} scene units",
+                "{} bits, step {}, largest displacement {}",
                 self.lattice_bits,
                 power_of_two(self.step),
-                self.largest_displacement
+                match self.largest_displacement {
+                    0.0 => String::from("0"),
+                    moved => format!("{moved:.3e} scene units"),
+                }
             ),
         );
         for lists in self.tables {
             let Figures {
                 cells,
+                lists: different,
                 entries,
                 longest,
                 bytes,
@@ -255,26 +281,45 @@ impl<'r> Built<'r> {
             line(
                 "table",
                 format!(
-                    "{}: {} cells, {} lists, {} entries, {} in the longest, {} bytes",
+                    "{}: {}, {}, {}, {} in the longest, {}",
                     lists.structure,
-                    grouped(cells),
-                    grouped(lists.figures.lists),
-                    grouped(entries),
+                    counted(cells as usize, "cell"),
+                    counted(different as usize, "list"),
+                    counted(entries as usize, "entry"),
                     grouped(longest),
-                    grouped(bytes)
+                    counted(bytes as usize, "byte")
                 ),
             );
         }
-        for (what, names) in [("supplied", self.supplied), ("collapsed", self.collapsed)] {
-            for name in names {
-                line(what, name.clone());
-            }
+        for what in self.supplied {
+            line("supplied", what.clone());
+        }
+        for name in self.collapsed.names(NAMED) {
+            line("collapsed", name);
+        }
+        for name in self.without_area.names(NAMED) {
+            line("no area", name);
         }
         if self.effects.is_empty() {
             line("effects", String::from("none"));
         }
         for effect in &self.effects {
             line("effect", effect.to_string());
+        }
+        if let Some(ledger) = self.ledger {
+            let remains = |account: &Account| {
+                let rest = account.remains();
+                format!("{} of {}", grouped(rest), grouped(account.available))
+            };
+            line(
+                ledger.board,
+                format!(
+                    "{} bytes of flash remain, and {} of RAM; `gridel inspect` shows what takes the \
+                     others",
+                    remains(&ledger.flash),
+                    remains(&ledger.ram)
+                ),
+            );
         }
         table.to_string()
     }

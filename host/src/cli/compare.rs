@@ -1,17 +1,17 @@
 //! `gridel compare`: structures side by side on a scene's own rays.
 
-use super::arguments::{self, SceneOptions, StructureOptions};
+use super::arguments::{self, SceneOptions, StructureOptions, check_hierarchy, distinct};
 use super::failure::Failure;
-use super::output::{print, print_json, warn, write_file};
+use super::output::{print, print_json, write_texts};
 use super::progress::Progress;
+use super::source::import;
 use clap::Args;
 use gridel_core::{Format, Structure};
 use gridel_host::compare::{
-    Comparison, Growth, Options, Work, Works, charts, compare, findings, growth,
+    Comparison, Growth, Options, Work, Works, charts, compare, findings, growth, growth_steps,
 };
 use gridel_host::compile::{self, Builder};
 use gridel_host::report::{Align, Table, counted, grouped};
-use gridel_host::scene;
 use peak_alloc::PeakAlloc;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -36,9 +36,8 @@ pub struct Arguments {
     accel: Vec<Structure>,
 
     /// How the hierarchy is built that structures share; given several times, each structure is
-    /// built in each way
-    #[arg(long, value_name = "NAME", value_parser = arguments::builder(),
-        default_value = Builder::Sah.name())]
+    /// built in each way [default: sah]
+    #[arg(long, value_name = "NAME", value_parser = arguments::builder())]
     builder: Vec<Builder>,
 
     /// Arithmetic to trace in
@@ -83,39 +82,45 @@ struct Report<'r> {
 
 /// Compares structures on a scene.
 pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
+    let path = &arguments.scene;
+    let default = Options::default();
+    let structures = match &arguments.accel[..] {
+        [] => default.structures.clone(),
+        asked => distinct(asked),
+    };
+    check_hierarchy("--builder", !arguments.builder.is_empty(), &structures)?;
+    let lattice_bits = arguments.scene_options.geometry.lattice_bits;
+    let compiling = arguments.structure_options.apply(compile::Options {
+        structures: structures.clone(),
+        lattice_bits: lattice_bits.unwrap_or(default.compiling.lattice_bits),
+        ..default.compiling
+    })?;
+    let imported = import(path, &arguments.scene_options)?;
     if let Some(folder) = &arguments.plot {
         std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
     }
-    let path = &arguments.scene;
-    let mut imported = scene::load(path, &arguments.scene_options.molecule())
-        .map_err(|error| Failure::Failed(miette::Report::new(error)))?;
-    arguments.scene_options.change(&mut imported.scene);
-    for warning in &imported.warnings {
-        warn(warning);
-    }
-    let default = Options::default();
     let options = Options {
-        structures: if arguments.accel.is_empty() {
-            default.structures.clone()
-        } else {
-            arguments.accel.clone()
-        },
+        structures,
         format: arguments.format,
         size: arguments.size,
-        builders: arguments.builder.clone(),
-        compiling: arguments.structure_options.apply(compile::Options {
-            lattice_bits: arguments
-                .scene_options
-                .lattice_bits
-                .unwrap_or(default.compiling.lattice_bits),
-            ..default.compiling
-        }),
+        builders: match &arguments.builder[..] {
+            [] => default.builders.clone(),
+            asked => distinct(asked),
+        },
+        compiling,
         repeats: arguments.repeat.into(),
         memory: Some(memory),
         ..default
     };
-    let progress = Progress::unknown("comparing");
-    let tell = |what: &str| progress.tell(what);
+    let mut steps = options.steps();
+    if arguments.plot.is_some() {
+        steps += growth_steps(&imported.scene, &options);
+    }
+    let progress = Progress::steps("comparing", steps);
+    let tell = |what: &str| {
+        progress.tell(what);
+        progress.step();
+    };
     let comparison =
         compare(&imported.scene, &options, &tell).map_err(|error| Failure::in_file(path, error))?;
     let grown = match &arguments.plot {
@@ -131,9 +136,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         let charts = charts(&name, &comparison, growth).map_err(|error| {
             Failure::failed(error.to_string(), "report this as a fault of gridel")
         })?;
-        for (file, svg) in charts {
-            write_file(&folder.join(file), |out| out.write_all(svg.as_bytes()))?;
-        }
+        write_texts(folder, &charts)?;
     }
     let report = Report {
         scene: path.display().to_string(),

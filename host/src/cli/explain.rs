@@ -6,7 +6,7 @@ use super::output::{print, print_json};
 use super::source::Source;
 use clap::{ArgGroup, Args};
 use glam::DVec3;
-use gridel_core::Settings;
+use gridel_core::{Settings, Structure};
 use gridel_host::explain::{ExplainError, Shown, Subject, explain};
 use gridel_host::trace::SceneRay;
 use std::path::PathBuf;
@@ -28,7 +28,8 @@ pub struct Arguments {
     input: PathBuf,
 
     /// The pixel to explain, counted from the upper left corner
-    #[arg(long, value_name = "X,Y", value_parser = pixel, group = "subject")]
+    #[arg(long, value_name = "X,Y", value_parser = pixel, group = "subject",
+        allow_hyphen_values = true)]
     pixel: Option<[u16; 2]>,
 
     /// The ray to explain: origin, direction of any length, and the interval in multiples of the
@@ -62,13 +63,14 @@ pub struct Arguments {
 
 /// Tells a story.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::open(
+    let source = Source::to_trace(
         &arguments.input,
         &arguments.scene_options,
-        arguments.with.accel,
+        &arguments.with,
+        Structure::DualSplit,
     )?;
     let scene = source.scene()?;
-    source.warn_of_collapsed(&scene);
+    source.warn_of_collapsed();
     let structure = source.structure(&scene, arguments.with.accel)?;
     let settings = arguments.picture.settings(&scene);
     let Settings { width, height, .. } = settings;

@@ -8,6 +8,7 @@ use super::source::Source;
 use clap::Args;
 use glam::DVec3;
 use gridel_core::{Kind, Scene, Structure};
+use gridel_host::compile;
 use gridel_host::report::{
     Account, Align, Ledger, MemoryMap, Table, WorkingMemory, grouped, power_of_two, working_memory,
 };
@@ -27,12 +28,12 @@ pub struct Arguments {
     #[arg(value_name = "BLOB|SCENE")]
     input: PathBuf,
 
-    #[command(flatten)]
-    target: TargetOptions,
-
     /// Print everything as JSON
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    target: TargetOptions,
 
     #[command(flatten)]
     scene_options: SceneOptions,
@@ -79,7 +80,8 @@ struct Contents {
 
 /// Shows what is in a blob.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::open(&arguments.input, &arguments.scene_options, None)?;
+    let compiling = compile::Options::default();
+    let source = Source::open(&arguments.input, &arguments.scene_options, None, compiling)?;
     let scene = source.scene()?;
     let inspection = Inspection {
         memory_map: MemoryMap::of(&scene, source.blob.bytes()),

@@ -2,12 +2,12 @@
 
 use super::arguments::{self, PictureOptions, SceneOptions, TraceOptions};
 use super::failure::Failure;
-use super::output::{print, print_json, refuse_same, write_file};
+use super::output::{Content, print, print_json, refuse_same, write_files};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Counters, Scene, Settings, Structure};
-use gridel_host::picture::PictureFormat;
+use gridel_host::picture::{Making, PictureFormat};
 use gridel_host::render::{Job, Picture, render};
 use gridel_host::report::{Align, HeatMap, Table, counted, grouped};
 use serde::Serialize;
@@ -42,7 +42,7 @@ pub struct Arguments {
     threads: Option<usize>,
 
     /// Render these rows only: from row A to the one before B, counted from 0 at the top
-    #[arg(long, value_name = "A..B", value_parser = arguments::rows)]
+    #[arg(long, value_name = "A..B", value_parser = arguments::rows, allow_hyphen_values = true)]
     rows: Option<Range<u16>>,
 
     /// Dither, which hides the steps between the colours of a display
@@ -113,10 +113,14 @@ struct HeatMapFile {
 /// Renders a picture and writes it.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let format = check_outputs(arguments)?;
-    let structure = arguments.with.accel.unwrap_or(Structure::Wide);
-    let source = Source::open(&arguments.input, &arguments.scene_options, Some(structure))?;
+    let source = Source::to_trace(
+        &arguments.input,
+        &arguments.scene_options,
+        &arguments.with,
+        Structure::Wide,
+    )?;
     let scene = source.scene()?;
-    source.warn_of_collapsed(&scene);
+    source.warn_of_collapsed();
     let job = job(arguments, &source, &scene)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads.unwrap_or(0))
@@ -140,19 +144,22 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         )
     })?;
 
-    write_file(&arguments.output, |out| {
-        format.write(out, &picture, arguments.dither)
-    })?;
+    let making = Making::of(&scene, &job);
+    let write_picture: Content<'_> = &|out| format.write(out, &picture, &making);
     let heat_map = match &arguments.heat_map {
         Some(path) => {
             let map = HeatMap::of(&picture);
-            write_file(path, |out| map.write(out))?;
+            let write_map: Content<'_> = &|out| map.write(out);
+            write_files(&[(&arguments.output, write_picture), (path, write_map)])?;
             Some(HeatMapFile {
                 file: path.display().to_string(),
                 maximum: map.maximum,
             })
         }
-        None => None,
+        None => {
+            write_files(&[(&arguments.output, write_picture)])?;
+            None
+        }
     };
     let rendered = Rendered {
         picture: arguments.output.display().to_string(),

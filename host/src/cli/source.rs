@@ -1,15 +1,16 @@
 //! What a verb works on: a scene blob, or a scene file that is compiled on the spot. Which of them
 //! it is, the first bytes tell.
 
-use super::arguments::SceneOptions;
+use super::arguments::{SceneOptions, TraceOptions, check_quality};
 use super::failure::Failure;
 use super::output::warn;
 use super::progress::Progress;
-use gridel_core::{BlobError, Kind, Scene, Structure};
+use gridel_core::{BlobError, Scene, Structure};
 use gridel_host::blob::{self, Blob};
 use gridel_host::compile::{self, Compiled};
 use gridel_host::explain::Names;
-use gridel_host::scene;
+use gridel_host::report::{counted, grouped};
+use gridel_host::scene::{self, Imported};
 use std::path::{Path, PathBuf};
 
 /// A blob, from wherever it came.
@@ -25,29 +26,38 @@ pub struct Source {
 }
 
 impl Source {
-    /// Reads a blob, or compiles a scene file for `structure`, or else for the default.
+    /// Reads a blob, or compiles a scene file for the structure that is asked for, or else for
+    /// `usual`.
+    pub fn to_trace(
+        path: &Path,
+        options: &SceneOptions,
+        with: &TraceOptions,
+        usual: Structure,
+    ) -> Result<Self, Failure> {
+        let compiling = compile::Options {
+            structures: vec![with.accel.unwrap_or(usual)],
+            quality: with.quality.unwrap_or_default(),
+            ..compile::Options::default()
+        };
+        let quality = with.quality.map(|_| "--quality");
+        if quality.is_some() && !is_blob(path)? {
+            check_quality(with.quality, &compiling.structures)?;
+        }
+        Self::open(path, options, quality, compiling)
+    }
+
+    /// Reads a blob, or compiles a scene file; the lattice's bits are those of `options`. A blob is
+    /// refused with options for scene files, of which `other` is one more that was given.
     pub fn open(
         path: &Path,
         options: &SceneOptions,
-        structure: Option<Structure>,
-    ) -> Result<Self, Failure> {
-        let mut compiling = compile::Options::default();
-        if let Some(structure) = structure {
-            compiling.structures = vec![structure];
-        }
-        Self::open_or_compile(path, options, compiling)
-    }
-
-    /// Reads a blob, or compiles a scene file; the lattice's bits are those of `options`.
-    pub fn open_or_compile(
-        path: &Path,
-        options: &SceneOptions,
+        other: Option<&'static str>,
         compiling: compile::Options,
     ) -> Result<Self, Failure> {
         if !is_blob(path)? {
             return Self::compile(path, options, compiling);
         }
-        if let Some(option) = options.given() {
+        if let Some(option) = options.given().or(other) {
             return Err(Failure::usage(
                 format!(
                     "{option} is for scene files, and {} is a blob",
@@ -71,26 +81,19 @@ impl Source {
         options: &SceneOptions,
         mut compiling: compile::Options,
     ) -> Result<Self, Failure> {
-        if is_blob(path)? {
-            return Err(Failure::failed(
-                format!("{} is a blob already, not a scene file", path.display()),
-                "give the scene file that it was built from; `gridel inspect` and `gridel render` \
-                 take blobs",
-            ));
-        }
-        if let Some(bits) = options.lattice_bits {
+        let imported = import(path, options)?;
+        if let Some(bits) = options.geometry.lattice_bits {
             compiling.lattice_bits = bits;
         }
-        compiling.quality = options.quality.unwrap_or_default();
         let progress = Progress::unknown("compiling");
-        let mut imported = scene::load(path, &options.molecule())
-            .map_err(|error| Failure::Failed(miette::Report::new(error)))?;
-        options.change(&mut imported.scene);
-        let compiled = compile::compile(&imported.scene, &compiling);
+        let tell = |structure: Structure, done: u64, of: u64| {
+            let share = 100 * done / of.max(1);
+            let cells = grouped(of);
+            let name = structure.name();
+            progress.tell(&format!("compiling {name}: {share} % of {cells} cells"));
+        };
+        let compiled = compile::compile_telling(&imported.scene, &compiling, &tell);
         drop(progress);
-        for warning in &imported.warnings {
-            warn(warning);
-        }
         let Compiled { blob, report } =
             compiled.map_err(|error| Failure::compiling(path, error))?;
         Ok(Self {
@@ -144,18 +147,53 @@ impl Source {
         }
     }
 
-    /// Warns of primitives that the lattice left nothing of, for verbs that do not name them.
-    pub fn warn_of_collapsed(&self, scene: &Scene<'_>) {
-        let kept: usize = Kind::ALL.iter().map(|&kind| scene.count(kind)).sum();
-        let collapsed = scene.header().primitives as usize - kept;
-        if collapsed > 0 && self.report.is_some() {
-            warn(format!(
-                "{}: the lattice is too coarse for {collapsed} primitives, which are left out; \
-                 `gridel build` names them",
-                self.path.display()
-            ));
+    /// Warns of primitives that were left out, for verbs that do not name them.
+    pub fn warn_of_collapsed(&self) {
+        let Some(report) = &self.report else {
+            return;
+        };
+        for (left_out, why) in [
+            (&report.without_area, "without area"),
+            (&report.collapsed, "too small for the lattice"),
+        ] {
+            if left_out.count() > 0 {
+                warn(format!(
+                    "{}: {} {why}, left out; `gridel build` names the first",
+                    self.path.display(),
+                    counted(left_out.count(), "primitive")
+                ));
+            }
         }
     }
+}
+
+/// Reads a scene file, warns of what its importer passed over, and changes what was asked for.
+pub fn import(path: &Path, options: &SceneOptions) -> Result<Imported, Failure> {
+    if is_blob(path)? {
+        return Err(Failure::failed(
+            format!("{} is a blob already, not a scene file", path.display()),
+            "give the scene file that it was built from; `gridel inspect` and `gridel render` take \
+             blobs",
+        ));
+    }
+    let molecule = &options.geometry.molecule;
+    let progress = Progress::unknown("reading");
+    let imported = scene::load(path, &molecule.for_import());
+    drop(progress);
+    let mut imported = imported.map_err(|error| Failure::Failed(miette::Report::new(error)))?;
+    if let Some(option) = molecule.given().filter(|_| !imported.molecules) {
+        return Err(Failure::usage(
+            format!("{option} is for molecules, and {} has none", path.display()),
+            "leave the option out",
+        ));
+    }
+    for warning in &imported.warnings {
+        warn(warning);
+    }
+    if let Some(cutoff) = options.cutoff {
+        imported.scene.render.cutoff = cutoff;
+    }
+    Ok(imported)
 }
 
 fn names(scene: &scene::Scene) -> Names {

@@ -1,8 +1,8 @@
 //! `gridel trace`: rays of the user's own, as NumPy arrays.
 
-use super::arguments::{self, SceneOptions, TraceOptions};
+use super::arguments::{self, GeometryOptions, TraceOptions};
 use super::failure::Failure;
-use super::output::{print, print_json, refuse_same, write_file};
+use super::output::{check_extension, print, print_json, refuse_same, write_file};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
@@ -65,10 +65,10 @@ pub struct Arguments {
     json: bool,
 
     #[command(flatten)]
-    scene_options: SceneOptions,
+    geometry: GeometryOptions,
 }
 
-/// Rays that a thread takes at once.
+/// Rays that a thread takes at once, and that are told of as a step.
 const CHUNK: usize = 4096;
 
 /// What was traced.
@@ -103,10 +103,11 @@ struct Tests {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     refuse_same(&arguments.input, &arguments.output)?;
     refuse_same(&arguments.rays, &arguments.output)?;
-    let structure = arguments.with.accel.unwrap_or(Structure::Wide);
-    let source = Source::open(&arguments.input, &arguments.scene_options, Some(structure))?;
+    check_extension(&arguments.output, &["npy"], "a NumPy file")?;
+    let options = arguments.geometry.clone().into();
+    let source = Source::to_trace(&arguments.input, &options, &arguments.with, Structure::Wide)?;
     let scene = source.scene()?;
-    source.warn_of_collapsed(&scene);
+    source.warn_of_collapsed();
     let query = Query {
         format: arguments.with.format,
         structure: source.structure(&scene, arguments.with.accel)?,
@@ -123,13 +124,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             )
         })?;
 
-    let progress = Progress::unknown("tracing");
+    let passes = u64::from(arguments.repeat) + u64::from(arguments.json);
+    let chunks = rays.len().div_ceil(CHUNK) as u64;
+    let progress = Progress::steps("tracing", passes * chunks);
     let mut hits = vec![SceneHit::MISS; rays.len()];
     let pass = Pass {
         scene: &scene,
         rays: &rays,
         query,
         pool: &pool,
+        progress: &progress,
     };
     let counters = arguments.json.then(|| {
         let counted: Vec<Counters> = pass.run(&mut hits);
@@ -191,6 +195,8 @@ struct Pass<'p> {
     rays: &'p [SceneRay],
     query: Query,
     pool: &'p ThreadPool,
+    /// Told of every chunk.
+    progress: &'p Progress,
 }
 
 impl Pass<'_> {
@@ -199,10 +205,12 @@ impl Pass<'_> {
         let one = |(rays, hits): (&[SceneRay], &mut [SceneHit])| {
             let mut count = C::default();
             trace(self.scene, rays, self.query, hits, &mut count);
+            self.progress.step();
             count
         };
         if self.pool.current_num_threads() == 1 {
-            return vec![one((self.rays, hits))];
+            let rays = self.rays.chunks(CHUNK);
+            return rays.zip(hits.chunks_mut(CHUNK)).map(one).collect();
         }
         self.pool.install(|| {
             let rays = self.rays.par_chunks(CHUNK);

@@ -1,13 +1,13 @@
 //! `gridel verify`: whether a scene keeps every promise.
 
-use super::arguments::{self, SceneOptions};
+use super::arguments::{self, GeometryOptions, check_quality, distinct};
 use super::failure::Failure;
 use super::output::{print, print_json};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
 use gridel_core::Structure;
-use gridel_host::compile;
+use gridel_host::compile::{self, Quality};
 use gridel_host::report::{Align, Table, counted, grouped, significant};
 use gridel_host::verify::{RAYS, Report, judge, steps, verify};
 use std::fmt::Write;
@@ -45,12 +45,16 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", value_parser = arguments::structure())]
     accel: Vec<Structure>,
 
+    /// Time taken to build the structure wide of a scene file [default: good]
+    #[arg(long, value_name = "NAME")]
+    quality: Option<Quality>,
+
     /// Print the report as JSON
     #[arg(long)]
     json: bool,
 
     #[command(flatten)]
-    scene_options: SceneOptions,
+    geometry: GeometryOptions,
 }
 
 /// Verifies a scene.
@@ -59,13 +63,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let compiling = compile::Options {
         structures: match &arguments.accel[..] {
             [] => Structure::ALL.to_vec(),
-            asked => asked.to_vec(),
+            asked => distinct(asked),
         },
+        quality: arguments.quality.unwrap_or_default(),
         ..compile::Options::default()
     };
-    let source = Source::open_or_compile(input, &arguments.scene_options, compiling)?;
+    check_quality(arguments.quality, &compiling.structures)?;
+    let accel = (!arguments.accel.is_empty()).then_some("--accel");
+    let other = accel.or(arguments.quality.map(|_| "--quality"));
+    let source = Source::open(input, &arguments.geometry.clone().into(), other, compiling)?;
     let scene = source.scene()?;
-    source.warn_of_collapsed(&scene);
+    source.warn_of_collapsed();
     let progress = Progress::steps("verifying", steps(arguments.rays));
     let report = verify(&scene, arguments.rays, &|| progress.step());
     drop(progress);
@@ -92,7 +100,7 @@ fn text(input: &Path, report: &Report) -> String {
         "{}: {} and as many from inside of {}, through {}\n\n",
         input.display(),
         counted(report.rays as usize, "ray"),
-        counted(report.closed_meshes, "closed mesh").replace("meshs", "meshes"),
+        counted(report.closed_meshes, "closed mesh"),
         report.structures.join(", ")
     );
     let mut table = Table::new([

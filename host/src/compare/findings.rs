@@ -1,19 +1,49 @@
 //! Where each structure is beaten, in plain words.
 
 use super::{Comparison, Row};
+use crate::report::grouped;
 use gridel_core::Structure;
 
-/// What is compared between rows: a name, what comes of it, and whether more is better.
-type Measure = (&'static str, fn(&Row) -> Option<f64>, bool);
+/// What is compared between rows.
+struct Measure {
+    name: &'static str,
+    of: fn(&Row) -> Option<f64>,
+    more_is_better: bool,
+    /// Whether it comes from clocks, of which a single repeat tells nothing.
+    timed: bool,
+}
+
+impl Measure {
+    const fn timed(name: &'static str, of: fn(&Row) -> Option<f64>, more_is_better: bool) -> Self {
+        Self {
+            name,
+            of,
+            more_is_better,
+            timed: true,
+        }
+    }
+
+    const fn counted(name: &'static str, of: fn(&Row) -> Option<f64>) -> Self {
+        Self {
+            name,
+            of,
+            more_is_better: false,
+            timed: false,
+        }
+    }
+}
 
 const MEASURES: [Measure; 6] = [
-    ("primary rays a second", primary_rate, true),
-    ("secondary rays a second", secondary_rate, true),
-    ("tests a ray", tests, false),
-    ("bytes", |row| Some(row.own_bytes as f64), false),
-    ("set-up", |row| Some(row.setup_seconds), false),
-    ("working RAM", |row| Some(row.stack_bytes as f64), false),
+    Measure::timed("primary rays a second", primary_rate, true),
+    Measure::timed("secondary rays a second", secondary_rate, true),
+    Measure::counted("tests a ray", tests),
+    Measure::counted("bytes", |row| Some(row.own_bytes as f64)),
+    Measure::timed("set-up", |row| Some(row.setup_seconds), false),
+    Measure::counted("working RAM", |row| Some(row.stack_bytes as f64)),
 ];
+
+/// Fewest repeats whose times are compared.
+const REPEATS: usize = 3;
 
 pub(super) fn primary_rate(row: &Row) -> Option<f64> {
     row.work?.primary.rays_per_second
@@ -32,7 +62,18 @@ fn tests(row: &Row) -> Option<f64> {
 /// What counts as equal: the noise of a shared machine.
 const NOISE: f64 = 1.03;
 
-/// For each structure, by what it is beaten; the list, which takes nothing to make and to hold, is
+/// A factor with the digits that mean something.
+fn times(factor: f64) -> String {
+    match factor {
+        _ if !factor.is_finite() => String::from("takes none"),
+        1e6.. => String::from("more than a million times"),
+        100.0.. => format!("{} times", grouped(factor.round())),
+        10.0.. => format!("{factor:.1} times"),
+        _ => format!("{factor:.2} times"),
+    }
+}
+
+/// For each structure, by what it is beaten, in times only where these were repeated; the list, which takes nothing to make and to hold, is
 /// passed over where it comes to that.
 pub fn findings(comparison: &Comparison) -> Vec<String> {
     let list = Structure::List.name();
@@ -44,7 +85,14 @@ pub fn findings(comparison: &Comparison) -> Vec<String> {
             continue;
         }
         let mut beaten = Vec::new();
-        for (what, of, more_is_better) in MEASURES {
+        let measures = MEASURES.into_iter();
+        for measure in measures.filter(|it| !it.timed || comparison.repeats >= REPEATS) {
+            let Measure {
+                name,
+                of,
+                more_is_better,
+                ..
+            } = measure;
             let better_by = |other: &Row| {
                 let (own, others) = (of(row)?, of(other)?);
                 let factor = if more_is_better {
@@ -60,12 +108,7 @@ pub fn findings(comparison: &Comparison) -> Vec<String> {
                 .filter(|other| other.structure != list || row.structure == list)
                 .filter_map(|other| Some((better_by(other)?, &other.name)));
             if let Some((factor, rival)) = rivals.max_by(|a, b| a.0.total_cmp(&b.0)) {
-                let factor = if factor.is_finite() {
-                    format!("{factor:.2} times")
-                } else {
-                    String::from("takes none")
-                };
-                beaten.push(format!("{what} by {rival} ({factor})"));
+                beaten.push(format!("{name} by {rival} ({})", times(factor)));
             }
         }
         findings.push(if beaten.is_empty() {
@@ -75,4 +118,24 @@ pub fn findings(comparison: &Comparison) -> Vec<String> {
         });
     }
     findings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_have_digits_that_mean_something() {
+        let factors = [1.034, 12.34, 1234.5, 13_359_738.99, f64::INFINITY];
+        assert_eq!(
+            factors.map(times),
+            [
+                "1.03 times",
+                "12.3 times",
+                "1,235 times",
+                "more than a million times",
+                "takes none"
+            ]
+        );
+    }
 }

@@ -45,6 +45,11 @@ pub fn growth(
     Ok(Growth { steps })
 }
 
+/// How often [`growth`] tells what happens next.
+pub fn growth_steps(scene: &Scene, options: &Options<'_>) -> u64 {
+    sizes(by_distance(scene).len()).len() as u64 * options.steps()
+}
+
 /// About three sizes in every two powers of ten, and the whole.
 fn sizes(whole: usize) -> Vec<usize> {
     let tens = std::iter::successors(Some(SMALLEST), |size| size.checked_mul(10));

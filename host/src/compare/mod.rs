@@ -14,7 +14,7 @@ mod picture;
 
 pub use charts::charts;
 pub use findings::findings;
-pub use growth::{Growth, Step, growth};
+pub use growth::{Growth, Step, growth, growth_steps};
 pub use judge::Wrong;
 pub use measure::Work;
 pub use picture::{MOST_RAYS, PictureRays};
@@ -64,6 +64,14 @@ impl Default for Options<'_> {
     }
 }
 
+impl Options<'_> {
+    /// How often [`compare`] tells what happens next, if all contenders can be built and are right.
+    pub fn steps(&self) -> u64 {
+        let contenders = contenders(self).len();
+        (2 + contenders * (2 + self.repeats)) as u64
+    }
+}
+
 /// Why nothing can be compared.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum CompareError {
@@ -87,6 +95,8 @@ pub struct Comparison {
     pub format: &'static str,
     /// Width and height of the picture.
     pub size: [u16; 2],
+    /// How often everything was timed.
+    pub repeats: usize,
     pub primitives: usize,
     pub rays: RayCounts,
     /// Rays about which the plain list was asked; on the others the contenders were compared with
@@ -238,6 +248,7 @@ fn compare_in<N: Number>(
     Ok(Comparison {
         format: options.format.name(),
         size: options.size,
+        repeats: options.repeats,
         primitives,
         rays: RayCounts {
             primary: rays.primary.len(),
@@ -336,7 +347,7 @@ impl Built {
             },
             structure: self.structure.name(),
             builder,
-            sah_cost: builder.map(|_| self.compiled.report.sah_cost),
+            sah_cost: self.compiled.report.sah_cost,
             setup_seconds: self.setup.as_secs_f64(),
             peak_bytes: self.peak_bytes,
             own_bytes: blob_bytes.saturating_sub(list.compiled.blob.bytes().len()),

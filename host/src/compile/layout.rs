@@ -5,7 +5,7 @@ use super::candidates::entry::EntryNodes;
 use super::candidates::lists::Figures;
 use super::candidates::own_rays::own_rays;
 use super::candidates::target::Targets;
-use super::candidates::{Budget, apex, ray_classes};
+use super::candidates::{self, Budget, apex, ray_classes};
 use super::cells::{self, Cells, slot_boxes};
 use super::hierarchy::{Node, Primitive};
 use super::lattice::Lattice;
@@ -15,7 +15,7 @@ use super::surroundings::Surroundings;
 use super::volumes::Tree;
 use super::wide::Wide;
 use super::writer::{self, Section, section};
-use super::{CompileError, Options};
+use super::{CompileError, Options, Tell};
 use crate::scene::Scene;
 use gridel_core::Structure;
 use gridel_core::accel::ray_classes::ClassPoint;
@@ -55,6 +55,7 @@ pub struct Ground<'g> {
     pub bounds: UnitBox,
     pub surroundings: &'g Surroundings,
     pub options: &'g Options,
+    pub tell: Tell<'g>,
 }
 
 impl<'g> Ground<'g> {
@@ -77,11 +78,13 @@ impl<'g> Ground<'g> {
             .map_or_else(|_| Vec::new(), |scene| own_rays(&scene)))
     }
 
-    /// The budget of a table, unless another is asked for.
-    fn budget(&self, usual: u64) -> Budget {
+    /// The budget of a structure's table.
+    fn budget<'t>(&self, structure: Structure, tell: candidates::Tell<'t>) -> Budget<'t> {
+        let options = self.options;
         Budget {
-            gridels: self.options.gridels,
-            bytes: self.options.budget.unwrap_or(usual),
+            gridels: options.gridels,
+            bytes: options.budget.unwrap_or(usual_budget(structure)),
+            tell,
         }
     }
 }
@@ -101,7 +104,8 @@ impl Layout {
     /// If it would exceed its budget.
     pub fn of(structure: Structure, ground: &Ground<'_>) -> Result<Self, CompileError> {
         let flat = ground.flat;
-        let budget = ground.budget(usual_budget(structure));
+        let tell = |done, of| (ground.tell)(structure, done, of);
+        let budget = ground.budget(structure, &tell);
         Ok(match structure {
             Structure::List => Self::apart(
                 structure,
@@ -204,14 +208,6 @@ impl Layout {
             longest_list: cells.longest_list,
             table: None,
         }
-    }
-
-    /// Bytes of its own sections.
-    pub fn bytes(&self) -> usize {
-        self.sections
-            .iter()
-            .map(|section| section.bytes.len())
-            .sum()
     }
 }
 

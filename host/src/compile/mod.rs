@@ -19,12 +19,15 @@ pub use candidates::census::{Census, CubeCensus};
 pub use candidates::lists::Figures;
 pub use lattice::BITS as LATTICE_BITS;
 pub use layout::{takes_hierarchy, usual_budget};
+pub use primitives::LeftOut;
 pub use wide::Quality;
 
+use crate::report::grouped;
 use crate::scene::{Object, Scene};
 use candidates::target::Targets;
 use glam::DVec3;
 use gridel_core::Structure;
+use gridel_core::accel::Leaf;
 use gridel_core::blob::record::{Gridels, UnitBox};
 use hierarchy::{Primitive, Splits};
 use lattice::Lattice;
@@ -34,7 +37,7 @@ use std::time::{Duration, Instant};
 use wide::Wide;
 
 /// Most primitives of a leaf.
-pub const LARGEST_LEAF: usize = gridel_core::accel::Leaf::MAX_COUNT as usize;
+pub const LARGEST_LEAF: usize = Leaf::MAX_COUNT as usize;
 
 /// What to put into a blob.
 #[derive(Clone, Debug)]
@@ -94,10 +97,13 @@ pub struct Report {
     pub step: f64,
     /// The farthest that snapping moved a point, in scene units.
     pub largest_displacement: f64,
-    /// Primitives that the lattice leaves nothing of, by name; they keep their numbers.
-    pub collapsed: Vec<String>,
-    /// Cost of the hierarchy by the surface area heuristic, the root's area being 1.
-    pub sah_cost: f64,
+    /// Primitives that the lattice leaves nothing of; they keep their numbers.
+    pub collapsed: LeftOut,
+    /// Triangles that have no area in the scene file already; they keep their numbers, too.
+    pub without_area: LeftOut,
+    /// Cost of the hierarchy that structures share by the surface area heuristic, the root's area
+    /// being 1; `None` where none is built.
+    pub sah_cost: Option<f64>,
     /// Length of the blob.
     pub bytes: usize,
     /// Primitives of the longest list that a ray can be led to.
@@ -126,11 +132,13 @@ pub struct Tabled {
 pub enum CompileError {
     #[error("{object} has a coordinate or a length that is infinite or not a number")]
     NotFinite { object: String },
-    #[error("the scene's size is {size}, which no lattice can hold")]
+    #[error("the scene's size is {size:e}, which no lattice can hold")]
     #[diagnostic(help("scale the scene to a size between 1e-250 and 1e250"))]
     Extent { size: f64 },
     #[error(
-        "the scene lies at {middle} and is only {size} large, so its coordinates hold no detail"
+        "the scene lies at ({:e}, {:e}, {:e}) and is only {size:e} large, so its coordinates hold no \
+         detail",
+        .middle.x, .middle.y, .middle.z
     )]
     #[diagnostic(help("move the scene nearer to the origin"))]
     TooFar { middle: DVec3, size: f64 },
@@ -185,6 +193,22 @@ pub enum CompileError {
 /// If the scene does not fit a lattice, a count does not fit the format, or the blob is larger than
 /// the options allow.
 pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileError> {
+    compile_telling(scene, options, &|_, _, _| ())
+}
+
+/// Told now and then, from any thread, how many cells of a structure's table are done, and how many
+/// there are; a table is tried in several sizes where none is asked for.
+pub type Tell<'t> = &'t (dyn Fn(Structure, u64, u64) + Sync);
+
+/// Compiles a scene and tells about what takes long.
+///
+/// # Errors
+/// As [`compile`].
+pub fn compile_telling(
+    scene: &Scene,
+    options: &Options,
+    tell: Tell<'_>,
+) -> Result<Compiled, CompileError> {
     if !LATTICE_BITS.contains(&options.lattice_bits) {
         return Err(CompileError::LatticeBits {
             bits: options.lattice_bits,
@@ -247,7 +271,7 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
     if wide_alone {
         flat.slots.clone_from(&wide.slots);
     }
-    let sah_cost = root.as_ref().map_or(wide.cost, hierarchy::sah_cost);
+    let sah_cost = root.as_ref().map(hierarchy::sah_cost);
     let ground = Ground {
         scene,
         lattice: &lattice,
@@ -259,6 +283,7 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
         bounds: bounds.unwrap_or(UnitBox([[0; 2]; 3])),
         surroundings: &surroundings,
         options,
+        tell,
     };
     let layouts = structures
         .iter()
@@ -276,14 +301,12 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
         .collect();
     let longest_lists = layouts.iter().map(|layout| layout.longest_list);
     let longest_list = longest_lists.max().unwrap_or(0);
-    let sizes: Vec<_> = layouts
-        .iter()
-        .map(|layout| (layout.structure, layout.bytes()))
-        .collect();
+    let sizes: Vec<Size> = layouts.iter().map(Size::of).collect();
     let blob = writer::write(&ground, layouts)?;
     let bytes = blob.bytes().len();
     if let Some(most) = options.max_bytes.filter(|&most| bytes as u64 > most) {
-        let advice = advice(options, &snapped, &sizes);
+        let leaves = writer::taken(flat.leaves.len() * size_of::<Leaf>());
+        let advice = advice(scene, options, &snapped, (bytes, leaves), &sizes);
         return Err(CompileError::TooLarge {
             bytes: bytes as u64,
             over: bytes as u64 - most,
@@ -294,6 +317,7 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
         step: lattice.step(),
         largest_displacement: snapped.largest_displacement,
         collapsed: snapped.collapsed.clone(),
+        without_area: snapped.without_area.clone(),
         sah_cost,
         bytes,
         longest_list,
@@ -323,31 +347,88 @@ pub fn cube_census(scene: &Scene, gridels: u32) -> Result<CubeCensus, CompileErr
     Ok(CubeCensus::of(&targets, gridels.clamp(1, Gridels::MOST)))
 }
 
-/// What makes a blob smaller, by its own figures.
-fn advice(options: &Options, snapped: &Primitives, sizes: &[(Structure, usize)]) -> String {
+/// What a structure takes of a blob.
+struct Size {
+    structure: Structure,
+    /// Of its own sections.
+    bytes: usize,
+    uses_leaves: bool,
+}
+
+impl Size {
+    fn of(layout: &Layout) -> Self {
+        let sections = layout.sections.iter();
+        Self {
+            structure: layout.structure,
+            bytes: sections
+                .map(|section| writer::taken(section.bytes.len()))
+                .sum(),
+            uses_leaves: layout.uses_leaves,
+        }
+    }
+}
+
+/// What makes a blob smaller, by its own figures: its bytes, and those of the leaves that hierarchies
+/// share.
+fn advice(
+    scene: &Scene,
+    options: &Options,
+    snapped: &Primitives,
+    (bytes, leaves): (usize, usize),
+    sizes: &[Size],
+) -> String {
     let mut steps = Vec::new();
     if options.lattice_bits > 16 {
         let saved = 3 * snapped.vertices.len() + 4 * snapped.spheres.len();
         if saved > 0 {
-            steps.push(format!("`--lattice-bits 16` saves {saved} bytes"));
+            steps.push(format!(
+                "`--lattice-bits 16` saves {} bytes",
+                grouped(saved)
+            ));
         }
     }
-    if options.leaf_size == 0
-        && sizes
-            .iter()
-            .any(|&(structure, _)| structure != Structure::List)
-    {
+    let mut asked = options.structures.clone();
+    asked.sort();
+    asked.dedup();
+    asked.retain(|&structure| structure != Structure::List);
+    if options.leaf_size == 0 && asked.iter().copied().any(takes_hierarchy) {
         steps.push(String::from(
             "`--leaf-size 8` makes fewer nodes and costs time",
         ));
     }
-    for &(structure, saved) in sizes.iter().filter(|(_, bytes)| *bytes > 0) {
-        let name = structure.name();
-        steps.push(if sizes.len() > 1 {
-            format!("leaving out `--accel {name}` saves {saved} bytes")
-        } else {
-            format!("`--accel list` instead of {name} saves {saved} bytes and costs time")
-        });
+    if let [structure] = asked[..] {
+        // Without a hierarchy primitives keep the file's order as well, so all of it is built.
+        let list = Options {
+            structures: vec![Structure::List],
+            max_bytes: None,
+            ..options.clone()
+        };
+        if let Ok(list) = compile(scene, &list) {
+            steps.push(format!(
+                "`--accel list` instead of {} saves {} bytes and costs time",
+                structure.name(),
+                grouped(bytes - list.report.bytes)
+            ));
+        }
+    }
+    for &structure in asked.iter().filter(|_| asked.len() > 1) {
+        let others = asked.iter().copied().filter(|&it| it != structure);
+        let kept: Vec<_> = others
+            .flat_map(|it| [Some(it), layout::leads_to(it)])
+            .flatten()
+            .collect();
+        let (stay, go): (Vec<&Size>, Vec<&Size>) = sizes
+            .iter()
+            .partition(|size| kept.contains(&size.structure));
+        let mut saved: usize = go.iter().map(|size| size.bytes).sum();
+        if !stay.iter().any(|size| size.uses_leaves) {
+            saved += leaves;
+        }
+        steps.push(format!(
+            "leaving out `--accel {}` saves {} bytes",
+            structure.name(),
+            grouped(saved)
+        ));
     }
     steps.push(String::from("a scene with fewer primitives"));
     steps.join("; ")

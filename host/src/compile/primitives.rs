@@ -3,15 +3,17 @@
 use super::CompileError;
 use super::hierarchy::Primitive;
 use super::lattice::Lattice;
+use crate::report::grouped;
 use crate::scene::{Object, Scene, Shape};
 use glam::{DVec3, IVec3};
 use gridel_core::Kind;
 use gridel_core::blob::record::{Cone, Cuboid, Disc, UnitBox};
+use serde::{Serialize, Serializer};
 use std::collections::HashMap;
 
 /// Most primitives in a blob.
 const MOST: usize = 1 << 24;
-/// Collapsed primitives that are named; the rest are counted.
+/// Primitives that are left out and named; the rest are counted.
 const NAMED: usize = 20;
 
 /// A sphere in 1/256 unit.
@@ -37,10 +39,48 @@ pub struct Primitives {
     pub total: u32,
     /// For each object, its first primitive.
     pub object_first: Vec<u32>,
-    /// Names of what the lattice leaves nothing of.
-    pub collapsed: Vec<String>,
+    /// What the lattice leaves nothing of.
+    pub collapsed: LeftOut,
+    /// Triangles without area.
+    pub without_area: LeftOut,
     /// The farthest that a point was moved, in scene units.
     pub largest_displacement: f64,
+}
+
+/// Primitives that a blob leaves out: the first of them by name, and how many there are.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LeftOut {
+    names: Vec<String>,
+    count: usize,
+}
+
+impl LeftOut {
+    fn add(&mut self, name: String) {
+        if self.names.len() < NAMED {
+            self.names.push(name);
+        }
+        self.count += 1;
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// At most so many names, and how many there are beside them.
+    pub fn names(&self, most: usize) -> Vec<String> {
+        let mut names: Vec<_> = self.names.iter().take(most).cloned().collect();
+        if self.count > names.len() {
+            names.push(format!("and {} more", grouped(self.count - names.len())));
+        }
+        names
+    }
+}
+
+impl Serialize for LeftOut {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.names(NAMED).serialize(serializer)
+    }
 }
 
 /// The box of everything in a scene; a point for an empty one.
@@ -185,7 +225,14 @@ impl Primitives {
                 for (number, triangle) in triangles.iter().enumerate() {
                     let corners = triangle.map(|vertex| snapped[vertex as usize]);
                     if is_degenerate(corners) {
-                        self.collapse(object, Some(number));
+                        self.total += 1;
+                        let [a, b, c] = triangle.map(|vertex| vertices[vertex as usize]);
+                        let name = format!("{} ({}, triangle {number})", object.name, object.place);
+                        if (b - a).cross(c - a) == DVec3::ZERO {
+                            self.without_area.add(name);
+                        } else {
+                            self.collapsed.add(name);
+                        }
                     } else {
                         let triangle = corners.map(|corner| {
                             *vertex_numbers.entry(corner).or_insert_with(|| {
@@ -202,7 +249,7 @@ impl Primitives {
                 let center = self.point(*center, lattice);
                 let radius = self.length(*radius, lattice);
                 if radius == 0 {
-                    self.collapse(object, None);
+                    self.collapse(object);
                 } else {
                     self.spheres.push(SnappedSphere { center, radius });
                     self.keep(Kind::Sphere);
@@ -227,7 +274,7 @@ impl Primitives {
                     .to_array()
                     .map(|x| x as i32);
                 if radius == 0 {
-                    self.collapse(object, None);
+                    self.collapse(object);
                 } else {
                     let reach = disc_reach(DVec3::from_array(normal.map(f64::from)));
                     let bounds = around(&[(center, reach * f64::from(radius))]);
@@ -250,7 +297,7 @@ impl Primitives {
                 let base_radius = self.length(*base_radius, lattice);
                 let apex_radius = self.length(*apex_radius, lattice);
                 if base == apex || base_radius + apex_radius == 0 {
-                    self.collapse(object, None);
+                    self.collapse(object);
                 } else {
                     let axis = DVec3::from_array(apex.map(f64::from))
                         - DVec3::from_array(base.map(f64::from));
@@ -287,27 +334,11 @@ impl Primitives {
         self.total += 1;
     }
 
-    /// Passes over a primitive that the lattice leaves nothing of.
-    fn collapse(&mut self, object: &Object, triangle: Option<usize>) {
+    /// Passes over an object that the lattice leaves nothing of.
+    fn collapse(&mut self, object: &Object) {
         self.total += 1;
-        let part = triangle.map_or(String::new(), |number| format!(", triangle {number}"));
-        match self.collapsed.len() {
-            known if known < NAMED => {
-                self.collapsed
-                    .push(format!("{} ({}{part})", object.name, object.place));
-            }
-            NAMED => self.collapsed.push(String::from("and 1 more")),
-            _ => {
-                let more = self.total as usize - self.kept() - NAMED;
-                if let Some(rest) = self.collapsed.last_mut() {
-                    *rest = format!("and {more} more");
-                }
-            }
-        }
-    }
-
-    fn kept(&self) -> usize {
-        self.numbers.iter().map(Vec::len).sum()
+        self.collapsed
+            .add(format!("{} ({})", object.name, object.place));
     }
 
     fn point(&mut self, point: DVec3, lattice: &Lattice) -> [i32; 3] {

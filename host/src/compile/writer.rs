@@ -233,6 +233,15 @@ fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Sect
     ]
 }
 
+/// Bytes of a blob that a section takes: its place in the table, and its records up to the next place
+/// where a section can begin.
+pub fn taken(bytes: usize) -> usize {
+    match bytes {
+        0 => 0,
+        _ => size_of::<SectionEntry>() + bytes.next_multiple_of(ALIGNMENT),
+    }
+}
+
 /// Puts header, table and sections together.
 fn assemble(mut header: Header, sections: Vec<Section>) -> Result<Blob, CompileError> {
     let mut offset = size_of::<Header>() + sections.len() * size_of::<SectionEntry>();

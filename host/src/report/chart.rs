@@ -1,6 +1,9 @@
 //! Charts as SVG: bars beside each other, and curves on logarithmic axes.
 
+use super::significant;
 use plotters::coord::Shift;
+use plotters::drawing::DrawingAreaErrorKind;
+use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use std::fmt::Display;
 
@@ -19,7 +22,8 @@ const CHART: u32 = 900;
 /// Grid lines.
 const GRID: RGBColor = RGBColor(222, 222, 222);
 /// Colours that people who see fewer of them can tell apart (Okabe and Ito, "Color universal
-/// design", 2008), in the order in which series take them; then they return in lighter forms.
+/// design", 2008), in the order in which series take them; then they return, and curves have other
+/// dashes and marks.
 const COLORS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -30,9 +34,34 @@ const COLORS: [RGBColor; 7] = [
     RGBColor(0, 0, 0),
 ];
 
-fn color(index: usize) -> RGBAColor {
-    let share = 1.0 - 0.45 * (index / COLORS.len()) as f64;
-    COLORS[index % COLORS.len()].mix(share.max(0.2))
+fn color(index: usize) -> RGBColor {
+    COLORS[index % COLORS.len()]
+}
+
+/// Dashes of a curve and the gaps between them, in pixels; none the first time that colours are used.
+fn dashes(index: usize) -> Option<(u32, u32)> {
+    match index / COLORS.len() {
+        0 => None,
+        1 => Some((9, 5)),
+        _ => Some((2, 4)),
+    }
+}
+
+/// Whether the points of a curve are triangles. Others are discs, and rings when colours are used for
+/// the third time.
+fn is_triangular(index: usize) -> bool {
+    index / COLORS.len() == 1
+}
+
+fn disc(index: usize) -> ShapeStyle {
+    match index / COLORS.len() {
+        0 => color(index).filled(),
+        _ => color(index).stroke_width(2),
+    }
+}
+
+fn triangle<C>(at: C, index: usize) -> TriangleMarker<C, u32> {
+    TriangleMarker::new(at, 6, color(index).filled())
 }
 
 /// Numbers under a name.
@@ -103,7 +132,14 @@ pub fn bars(
             (name.clone(), place)
         });
         let names: Vec<_> = names.collect();
-        legend(&beside, series.iter().map(|series| &series.name))?;
+        legend(
+            &beside,
+            series.iter().map(|series| &series.name),
+            &|area, index, y| {
+                let corners = [(8, y), (24, y + 12)];
+                area.draw(&Rectangle::new(corners, color(index).filled()))
+            },
+        )?;
         // Long names share two lines.
         let style = ("sans-serif", 13).into_text_style(&root).pos(centered());
         for (index, (name, (x, y))) in names.into_iter().enumerate() {
@@ -167,30 +203,60 @@ pub fn curves(title: &str, across: &str, up: &str, curves: &[Curve]) -> Result<S
         for (index, curve) in curves.iter().enumerate() {
             let visible = curve.points.iter().copied().filter(|point| point.1 > 0.0);
             let visible: Vec<_> = visible.collect();
-            let line = LineSeries::new(visible.clone(), color(index).stroke_width(2));
-            chart.draw_series(line).map_err(failed)?;
-            let dots = visible
-                .into_iter()
-                .map(|point| Circle::new(point, 3, color(index).filled()));
-            chart.draw_series(dots).map_err(failed)?;
+            let style = color(index).stroke_width(2);
+            match dashes(index) {
+                None => chart.draw_series(LineSeries::new(visible.clone(), style)),
+                Some((dash, gap)) => {
+                    let line = DashedLineSeries::new(visible.clone(), dash, gap, style);
+                    chart.draw_series(line)
+                }
+            }
+            .map_err(failed)?;
+            let points = visible.into_iter();
+            if is_triangular(index) {
+                chart.draw_series(points.map(|at| triangle(at, index)))
+            } else {
+                chart.draw_series(points.map(|at| Circle::new(at, 4, disc(index))))
+            }
+            .map_err(failed)?;
         }
-        legend(&beside, curves.iter().map(|curve| &curve.name))?;
+        legend(
+            &beside,
+            curves.iter().map(|curve| &curve.name),
+            &|area, index, y| {
+                let ends = [(0, y + 6), (28, y + 6)];
+                let style = color(index).stroke_width(2);
+                match dashes(index) {
+                    None => area.draw(&PathElement::new(ends, style)),
+                    Some((dash, gap)) => area.draw(&DashedPathElement::new(ends, dash, gap, style)),
+                }?;
+                let middle = (14, y + 6);
+                if is_triangular(index) {
+                    area.draw(&triangle(middle, index))
+                } else {
+                    area.draw(&Circle::new(middle, 4, disc(index)))
+                }
+            },
+        )?;
         root.present().map_err(failed)?;
     }
     Ok(svg)
 }
 
-/// Names the series beside the chart.
+type Area<'s> = DrawingArea<SVGBackend<'s>, Shift>;
+type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
+/// Names the series beside the chart, each behind a sample that is drawn at its height.
 fn legend<'n>(
-    area: &DrawingArea<SVGBackend<'_>, Shift>,
+    area: &Area<'_>,
     names: impl Iterator<Item = &'n String>,
+    sample: &dyn Fn(&Area<'_>, usize, i32) -> Drawn,
 ) -> Result<(), ChartError> {
     let style = ("sans-serif", 14).into_text_style(area);
     for (index, name) in names.enumerate() {
         let y = 60 + 22 * index as i32;
-        let swatch = Rectangle::new([(0, y), (16, y + 12)], color(index).filled());
-        area.draw(&swatch).map_err(failed)?;
-        area.draw_text(name, &style, (24, y)).map_err(failed)?;
+        sample(area, index, y).map_err(failed)?;
+        area.draw_text(name, &style, (34, y)).map_err(failed)?;
     }
     Ok(())
 }
@@ -208,9 +274,12 @@ fn short(value: f64) -> String {
         v if v >= 1e3 => (v / 1e3, " k"),
         v => (v, ""),
     };
-    let text = format!("{scaled:.3}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    format!("{text}{unit}")
+    // Three digits: enough for an axis, and what division left behind goes.
+    let rounded = format!("{scaled:.2e}").parse().unwrap_or(scaled);
+    if (f64::MIN_POSITIVE..1e-4).contains(&rounded) {
+        return format!("{rounded:e}");
+    }
+    format!("{}{unit}", significant(rounded))
 }
 
 #[cfg(test)]
@@ -219,10 +288,12 @@ mod tests {
 
     #[test]
     fn axes_have_short_numbers() {
-        let numbers = [0.5, 1.0, 300.0, 2e4, 1.5e6, 3e9];
+        let numbers = [0.5, 1.0, 300.0, 2e4, 1.5e6, 3e9, 1e-4, 0.03, 2.5e-7, 0.0];
         assert_eq!(
             numbers.map(short),
-            ["0.5", "1", "300", "20 k", "1.5 M", "3 G"]
+            [
+                "0.5", "1", "300", "20 k", "1.5 M", "3 G", "0.0001", "0.03", "2.5e-7", "0"
+            ]
         );
     }
 

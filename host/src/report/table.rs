@@ -73,10 +73,18 @@ pub fn grouped(number: impl ToString) -> String {
     text
 }
 
-/// A number of things: `1 thread`, `2 threads`.
+/// A number of things: `1 thread`, `2 threads`, `3 meshes`, `4 entries`.
 pub fn counted(number: usize, thing: &str) -> String {
-    let plural = if number == 1 { "" } else { "s" };
-    format!("{} {thing}{plural}", grouped(number))
+    let things = if number == 1 {
+        thing.to_owned()
+    } else if let Some(stem) = thing.strip_suffix("ry") {
+        format!("{stem}ries")
+    } else if thing.ends_with("sh") || thing.ends_with('x') {
+        format!("{thing}es")
+    } else {
+        format!("{thing}s")
+    };
+    format!("{} {things}", grouped(number))
 }
 
 /// A power of two, so that it can be recognised, and its size: `2^-20 = 9.537e-7`.
@@ -132,7 +140,10 @@ mod tests {
     fn one_thing_is_no_plural() {
         assert_eq!(counted(1, "ray"), "1 ray");
         assert_eq!(counted(0, "ray"), "0 rays");
-        assert_eq!(counted(4096, "ray"), "4,096 rays");
+        assert_eq!(counted(4096, "gridel"), "4,096 gridels");
+        assert_eq!(counted(2, "closed mesh"), "2 closed meshes");
+        assert_eq!(counted(1, "entry"), "1 entry");
+        assert_eq!(counted(0, "entry"), "0 entries");
     }
 
     #[test]

@@ -240,6 +240,8 @@ pub struct Imported {
     pub scene: Scene,
     /// Sentences for the user, each with file and line.
     pub warnings: Vec<String>,
+    /// Whether a molecule was read, which [`MoleculeOptions`] are for.
+    pub molecules: bool,
 }
 
 /// Reads a scene file; its extension says which format it is in.

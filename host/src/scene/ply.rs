@@ -71,7 +71,11 @@ pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
         }],
         ..Scene::default()
     };
-    Ok(Imported { scene, warnings })
+    Ok(Imported {
+        scene,
+        warnings,
+        molecules: false,
+    })
 }
 
 /// Refuses a number of elements that the file cannot hold: each takes a byte at least.

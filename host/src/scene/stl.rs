@@ -175,7 +175,11 @@ fn scene(path: &Path, objects: Vec<Object>, warnings: Vec<String>) -> Result<Imp
         objects,
         ..Scene::default()
     };
-    Ok(Imported { scene, warnings })
+    Ok(Imported {
+        scene,
+        warnings,
+        molecules: false,
+    })
 }
 
 /// Triangles whose vertices find each other by their coordinates.

@@ -3,6 +3,7 @@
 use crate::program::{Folder, fixture};
 use gridel_core::Structure;
 use gridel_host::blob::Blob;
+use gridel_host::report::grouped;
 use serde_json::json;
 
 #[test]
@@ -223,6 +224,153 @@ fn unwritable_places_are_errors_that_leave_nothing() {
         std::os::unix::fs::symlink("/dev/full", folder.path("full")).unwrap();
         fails("full", &["full cannot be written"]);
     }
+}
+
+/// What the text says reads well: numbers of one thing, what is left out, what remains on a board.
+#[test]
+fn the_text_counts_and_explains() {
+    let folder = Folder::new();
+    let face = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    folder.write("one.obj", face.as_bytes());
+    let build = |scene: &str, options: &[&str]| {
+        folder.done(&[&["build", scene, "-o", "new.gridel"], options].concat())
+    };
+    let text = build("one.obj", &["--target", "mps2-an385"]);
+    for word in [
+        "1 primitive of 1 object",
+        "largest displacement 0\n",
+        "bytes of flash remain",
+    ] {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+    // Nothing to tell of where there is no hierarchy.
+    for accel in ["list", "wide"] {
+        let text = build("one.obj", &["--accel", accel]);
+        assert!(!text.contains("SAH cost"), "{text}");
+    }
+    let report = folder.json(&["build", "one.obj", "-o", "new.gridel", "--accel", "wide"]);
+    assert_eq!(report["sah_cost"], json!(null));
+
+    // Triangles without area are no fault of the lattice.
+    let flat = format!("{face}{}", "f 1 2 1\n".repeat(29));
+    folder.write("flat.obj", flat.as_bytes());
+    let text = build("flat.obj", &[]);
+    assert_eq!(text.matches("no area").count(), 6, "{text}");
+    assert!(
+        text.contains("and 24 more") && !text.contains("collapsed"),
+        "{text}"
+    );
+    let run = folder.run(&["render", "flat.obj", "-o", "a.png", "--size", "8x8"]);
+    assert!(
+        run.stderr.contains("29 primitives without area"),
+        "{}",
+        run.stderr
+    );
+}
+
+/// What would be saved is what is saved.
+#[test]
+fn the_advice_for_a_budget_is_exact() {
+    let folder = Folder::with_quick();
+    let bytes = |accels: &[&str]| {
+        let options: Vec<_> = accels.iter().flat_map(|accel| ["--accel", accel]).collect();
+        folder.done(&[&["build", "quick.toml", "-o", "new.gridel"], &options[..]].concat());
+        folder.read("new.gridel").len()
+    };
+    let advice = |accels: &[&str]| {
+        let options: Vec<_> = accels.iter().flat_map(|accel| ["--accel", accel]).collect();
+        let build = [
+            "build",
+            "quick.toml",
+            "-o",
+            "new.gridel",
+            "--max-bytes",
+            "1K",
+        ];
+        let said = folder.run(&[&build[..], &options].concat()).stderr;
+        let said = said.replace("│ ", "");
+        said.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let list = bytes(&["list"]);
+    for accel in ["dual-split", "flagged", "wide", "apex"] {
+        let saved = bytes(&[accel]) - list;
+        let said = advice(&[accel]);
+        let expected = format!("instead of {accel} saves {} bytes", grouped(saved));
+        assert!(said.contains(&expected), "{expected}: {said}");
+    }
+    let saved = bytes(&["bvh", "flagged"]) - bytes(&["flagged"]);
+    let said = advice(&["bvh", "flagged"]);
+    let expected = format!("leaving out `--accel bvh` saves {} bytes", grouped(saved));
+    assert!(said.contains(&expected), "{expected}: {said}");
+}
+
+#[test]
+fn a_table_beyond_its_budget_is_refused_as_a_blob_is() {
+    let folder = Folder::with_quick();
+    let build = [
+        "build",
+        "quick.toml",
+        "-o",
+        "new.gridel",
+        "--accel",
+        "cylinder-cube",
+    ];
+    let tight = ["--gridels", "1", "--budget", "10"];
+    folder.fails(
+        3,
+        &[&build[..], &tight].concat(),
+        &["1 gridel a side", "--budget"],
+    );
+}
+
+#[test]
+fn numbers_without_end_are_short() {
+    let folder = Folder::new();
+    folder.write("big.obj", b"v -1e300 0 0\nv 1e300 0 0\nv 0 1 0\nf 1 2 3\n");
+    let build = ["build", "big.obj", "-o", "new.gridel"];
+    folder.fails(1, &build, &["size is 2e300,"]);
+    folder.write("wide.toml", b"render = { width = 6400, height = 10 }\n");
+    let build = ["build", "wide.toml", "-o", "new.gridel"];
+    folder.fails(1, &build, &["wide.toml:1", "64 times as wide"]);
+}
+
+#[test]
+fn names_that_mean_something_else_are_refused() {
+    let folder = Folder::with_quick();
+    for name in ["x.png", "x.toml", "x.obj", "x.npy", "x.txt"] {
+        folder.fails(2, &["build", "quick.toml", "-o", name], &[name, ".gridel"]);
+    }
+    folder.write("rays.npy", b"");
+    let trace = ["trace", "quick.gridel", "--rays", "rays.npy", "-o", "h.txt"];
+    folder.fails(2, &trace, &["h.txt", ".npy"]);
+}
+
+/// The blob and the module's two files come together or not at all.
+#[test]
+fn what_belongs_together_is_written_together() {
+    let folder = Folder::with_quick();
+    folder.write("n.gridel", b"old");
+    for name in ["scene.rs", "scene.gridel"] {
+        let module = folder.path("em");
+        std::fs::create_dir_all(module.join(name)).unwrap();
+        let build = ["build", "quick.toml", "-o", "n.gridel", "--emit-rust", "em"];
+        folder.fails(1, &build, &[name, "cannot be written"]);
+        let left = std::fs::read_dir(&module).unwrap();
+        let left: Vec<_> = left.map(|entry| entry.unwrap().file_name()).collect();
+        assert_eq!(left, [name]);
+        std::fs::remove_dir_all(&module).unwrap();
+    }
+    // Neither does a picture come without its heat map.
+    std::fs::create_dir(folder.path("heat.png")).unwrap();
+    let render = [
+        "render",
+        "quick.gridel",
+        "-o",
+        "a.png",
+        "--heat-map",
+        "heat.png",
+    ];
+    folder.fails(1, &render, &["heat.png cannot be written"]);
 }
 
 /// Code and stack of the boards were measured, so they can change: what is asked for here lies far

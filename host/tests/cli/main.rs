@@ -2,12 +2,14 @@
 
 mod program;
 
+mod accuracy;
 mod build;
 mod check;
 mod compare;
 mod ending;
 mod inspect;
 mod merge;
+mod options;
 mod render;
 mod sample;
 mod trace;

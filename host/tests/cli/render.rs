@@ -67,8 +67,12 @@ fn rows_are_those_of_the_whole_picture() {
         let mut joined = whole[..header(36)].to_vec();
         for (rows, count) in [("0..7", 7), ("7..8", 1), ("8..36", 28)] {
             let part = render(&folder, "part.ppm", &[options, &["--rows", rows]].concat());
-            let note = format!("P6\n# rows {rows} of 36\n48 {count}\n255\n");
-            joined.extend(part.strip_prefix(note.as_bytes()).unwrap());
+            let note = format!("P6\n# rows {rows} of 36; blob ");
+            assert!(part.starts_with(note.as_bytes()), "{rows}");
+            let end = format!("\n48 {count}\n255\n");
+            let mut places = part.windows(end.len());
+            let at = places.position(|bytes| bytes == end.as_bytes()).unwrap();
+            joined.extend(&part[at + end.len()..]);
         }
         assert!(joined == whole, "{options:?}");
     }
@@ -136,9 +140,14 @@ fn wrong_numbers_are_usage_errors() {
     fails(&["--size", "70000x70000"], &["65535"]);
     fails(&["--size", "65535x65535"], &["--rows 0..1024"]);
     fails(&["--size", "6500x100"], &["64 times"]);
-    for rows in ["5..3", "5..5", "x", "-1..4"] {
+    for rows in ["5..3", "5..5", "x"] {
         fails(&["--rows", rows], &[]);
     }
+    // No option of its own, and nothing to put behind `--`.
+    fails(&["--rows", "-5..10"], &["rows count from 0"]);
+    fails(&["--cutoff", "-1"], &["a number from 0 to 1"]);
+    let explain = ["explain", "quick.gridel", "--pixel", "-1,5"];
+    folder.fails(2, &explain, &["column and row"]);
     fails(&["--rows", "200..300"], &["which has 240", "0..240"]);
     for samples in ["0", "257", "many"] {
         fails(&["--samples", samples], &["--samples"]);
@@ -176,6 +185,53 @@ fn a_structure_that_the_blob_lacks_is_told() {
             "holds no structure bvh, only: dual-split, list",
             "--accel bvh",
         ],
+    );
+}
+
+/// Whatever way a lone face lies, with the camera and the light that it gets it is seen: a picture is
+/// never all black, and shadows are not the background's colour.
+#[test]
+fn what_faces_the_supplied_camera_is_seen() {
+    let folder = Folder::new();
+    let render = ["render", "face.obj", "-o", "a.ppm", "--size", "16x16"];
+    for (u, v) in [
+        ([0, 1, 0], [0, 0, 1]),
+        ([0, 0, 1], [1, 0, 0]),
+        ([1, 0, 0], [0, 1, 0]),
+        ([1, 0, -3], [0, 1, 0]),
+        ([1, 2, 0], [0, 1, 3]),
+        ([3, 1, -1], [-1, 1, 1]),
+    ] {
+        let corners = [(-1, -1), (1, -1), (1, 1), (-1, 1)];
+        let vertices = corners.map(|(a, b)| {
+            let [x, y, z] = [0, 1, 2].map(|k| a * u[k] + b * v[k]);
+            format!("v {x} {y} {z}\n")
+        });
+        // Seen from its front and from its back.
+        for face in ["f 1 2 3 4\n", "f 4 3 2 1\n"] {
+            folder.write("face.obj", (vertices.concat() + face).as_bytes());
+            folder.done(&render);
+            let picture = folder.read("a.ppm");
+            let pixels = &picture[picture.len() - 16 * 16 * 3..];
+            let middle = pixels[3 * (16 * 8 + 8)];
+            assert!(middle >= 90, "{u:?} {v:?} {face}: {middle}");
+            assert_eq!(pixels[0], 0);
+        }
+    }
+    // A face across the view from the left shoulder is lit from the right one.
+    folder.write(
+        "face.obj",
+        b"v 0 0 0\nv 0 1 0\nv 0 1 1\nv 0 0 1\nf 1 2 3 4\n",
+    );
+    let report = folder.json(&["build", "face.obj", "-o", "face.gridel"]);
+    let supplied = report["supplied"][1].as_str().unwrap();
+    assert!(supplied.contains("right shoulder"), "{supplied}");
+    folder.done(&render);
+    let picture = folder.read("a.ppm");
+    assert!(
+        picture[picture.len() - 16 * 16 * 3..]
+            .iter()
+            .any(|&it| it > 150)
     );
 }
 

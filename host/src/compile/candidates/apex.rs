@@ -37,7 +37,7 @@ struct Face {
 }
 
 /// Builds the lists of all apexes, each with its share of the budget.
-pub fn build(targets: &Targets<'_>, view: &View, lights: &[Light], budget: Budget) -> Apexes {
+pub fn build(targets: &Targets<'_>, view: &View, lights: &[Light], budget: Budget<'_>) -> Apexes {
     let mut apexes = Apexes {
         points: Vec::new(),
         windows: Vec::new(),
@@ -82,7 +82,7 @@ pub fn build(targets: &Targets<'_>, view: &View, lights: &[Light], budget: Budge
             windows[window].list(cell as u32, list);
         },
     };
-    apexes.lists = plan.build(plan.count());
+    apexes.lists = plan.build(plan.count(budget.tell));
     apexes.windows = windows.iter().map(|window| window.record).collect();
     apexes
 }

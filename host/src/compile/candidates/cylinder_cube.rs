@@ -4,7 +4,7 @@
 use super::lists::{Counted, List, Lists, Plan};
 use super::shaft::Shaft;
 use super::target::Targets;
-use super::{Budget, OverBudget};
+use super::{Budget, OverBudget, Tell};
 use glam::DVec3;
 use gridel_core::Structure;
 use gridel_core::blob::record::Gridels;
@@ -86,7 +86,11 @@ fn rectangle(gridels: &Gridels, face: u32, number: u32) -> [[f64; 2]; 3] {
 }
 
 /// Builds a cube with the gridels that are asked for, or as many as fit the budget.
-pub fn build<F: Form>(form: &F, targets: &Targets<'_>, budget: Budget) -> Result<Cube, OverBudget> {
+pub fn build<F: Form>(
+    form: &F,
+    targets: &Targets<'_>,
+    budget: Budget<'_>,
+) -> Result<Cube, OverBudget> {
     let plan = |count: u32| OfSize::new(form, Gridels::new(&targets.bounds, count));
     if let Some(count) = budget.gridels {
         let sized = plan(count);
@@ -95,7 +99,7 @@ pub fn build<F: Form>(form: &F, targets: &Targets<'_>, budget: Budget) -> Result
         if least > budget.bytes {
             return Err(budget.exceeded(F::STRUCTURE, Some(count), least, true));
         }
-        let counted = sized.count();
+        let counted = sized.count(budget.tell);
         let needed = counted.figures().bytes;
         if needed > budget.bytes {
             return Err(budget.exceeded(F::STRUCTURE, Some(count), needed, false));
@@ -113,7 +117,7 @@ pub fn build<F: Form>(form: &F, targets: &Targets<'_>, budget: Budget) -> Result
             break;
         }
         let sized = plan(count);
-        let counted = sized.count();
+        let counted = sized.count(budget.tell);
         let needed = counted.figures().bytes;
         if needed > budget.bytes {
             if best.is_none() {
@@ -149,8 +153,8 @@ impl<'f, F: Form> OfSize<'f, F> {
         })
     }
 
-    fn count(&self) -> Counted {
-        self.with_plan(|plan| plan.count())
+    fn count(&self, tell: Tell<'_>) -> Counted {
+        self.with_plan(|plan| plan.count(tell))
     }
 
     fn build(self, counted: Counted) -> Cube {

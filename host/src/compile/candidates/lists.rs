@@ -5,8 +5,10 @@
 //! exact size, and the lists that differ are computed again, straight into their places. Beside the
 //! table itself a build takes at most 72 bytes a cell, and nothing that grows with the lists' length.
 
+use super::Tell;
 use rayon::prelude::*;
 use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Lists for the cells of a table, each array as narrow as its values allow.
 #[derive(Clone, Debug, Default)]
@@ -105,7 +107,8 @@ const CHUNK: usize = 256;
 
 impl Plan<'_> {
     /// Computes every list and counts: what the table would take.
-    pub fn count(&self) -> Counted {
+    pub fn count(&self, tell: Tell<'_>) -> Counted {
+        let done = AtomicU64::new(0);
         let mut order = vec![
             Print {
                 hash: [0; 2],
@@ -133,6 +136,8 @@ impl Plan<'_> {
                         length: list.len() as u32,
                     };
                 }
+                let cells = prints.len() as u64;
+                tell(done.fetch_add(cells, Ordering::Relaxed) + cells, self.cells);
             });
         let sum = |prints: &[Print]| {
             prints

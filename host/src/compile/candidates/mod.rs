@@ -25,6 +25,7 @@ pub mod target;
 use super::CompileError;
 use super::layout::Layout;
 use super::writer::{Section, section};
+use crate::report::counted;
 use apex::Apexes;
 use cylinder_cube::Cube;
 use gridel_core::Structure;
@@ -32,14 +33,18 @@ use gridel_core::blob::SectionKind;
 use lists::{Array, Lists};
 use ray_classes::Classes;
 
-/// What a table may take.
-#[derive(Clone, Copy, Debug)]
-pub struct Budget {
+/// What a table may take, and who is told how far it is.
+#[derive(Clone, Copy)]
+pub struct Budget<'t> {
     /// Gridels a side, if that is asked for.
     pub gridels: Option<u32>,
     /// Most bytes of a table.
     pub bytes: u64,
+    pub tell: Tell<'t>,
 }
+
+/// Told now and then, from any thread, how many cells are done, and how many there are.
+pub type Tell<'t> = &'t (dyn Fn(u64, u64) + Sync);
 
 /// A table that does not fit its budget.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +57,7 @@ pub struct OverBudget {
     bytes: u64,
 }
 
-impl Budget {
+impl Budget<'_> {
     fn exceeded(
         &self,
         structure: Structure,
@@ -74,9 +79,9 @@ impl From<OverBudget> for CompileError {
     fn from(over: OverBudget) -> Self {
         CompileError::OverBudget {
             structure: over.structure.name(),
-            size: over
-                .gridels
-                .map_or_else(String::new, |count| format!(" with {count} gridels a side")),
+            size: over.gridels.map_or_else(String::new, |count| {
+                format!(" with {} a side", counted(count as usize, "gridel"))
+            }),
             needed: over.needed,
             at_least: if over.at_least { "at least " } else { "" },
             budget: over.bytes,

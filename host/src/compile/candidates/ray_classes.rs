@@ -3,7 +3,7 @@
 use super::lists::{List, Lists, Plan};
 use super::shaft::Shaft;
 use super::target::Targets;
-use super::{Budget, OverBudget};
+use super::{Budget, OverBudget, Tell};
 use gridel_core::Structure;
 use gridel_core::accel::ray_classes::{ClassNode, ClassPoint, ClassRange};
 use gridel_core::blob::record::Gridels;
@@ -88,7 +88,7 @@ impl Ord for Class {
 pub fn build(
     targets: &Targets<'_>,
     rays: &[ClassPoint],
-    budget: Budget,
+    budget: Budget<'_>,
 ) -> Result<Classes, OverBudget> {
     let entry = if targets.all().len() <= 256 { 2 } else { 3 };
     let mut nodes = vec![ClassNode::leaf(ClassNode::NONE).0; 6];
@@ -137,12 +137,12 @@ pub fn build(
         }
     }
     done.extend(waiting);
-    Ok(Classes::new(targets, nodes, done))
+    Ok(Classes::new(targets, nodes, done, budget.tell))
 }
 
 impl Classes {
     /// Numbers nodes in the order of their parents, and gives lists to the classes that get one.
-    fn new(targets: &Targets<'_>, nodes: Vec<u32>, classes: Vec<Class>) -> Self {
+    fn new(targets: &Targets<'_>, nodes: Vec<u32>, classes: Vec<Class>, tell: Tell<'_>) -> Self {
         let mut class_of: Vec<Option<&Class>> = vec![None; nodes.len()];
         for class in classes.iter().filter(|class| class.is_listed()) {
             class_of[class.node] = Some(class);
@@ -187,7 +187,7 @@ impl Classes {
             list: &list,
         };
         Self {
-            lists: plan.build(plan.count()),
+            lists: plan.build(plan.count(tell)),
             nodes: ordered,
         }
     }

@@ -58,11 +58,6 @@ impl Forests {
         forests
     }
 
-    /// The cost of the whole tree, the root's area being 1.
-    pub fn cost(&self, tree: &Tree) -> f64 {
-        self.costs[tree.root as usize][0] / tree.area(tree.root).max(1.0)
-    }
-
     /// The children of the wide node at a node of the tree; an item is its own and only one.
     pub fn children(&self, tree: &Tree, node: u32) -> Vec<u32> {
         let mut children = Vec::with_capacity(LANES);

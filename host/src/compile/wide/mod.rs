@@ -65,8 +65,6 @@ pub struct Wide {
     homes: Vec<u32>,
     /// Where other structures share the primitives: for each kind, the slot of each primitive.
     shared: Option<[Vec<u32>; 5]>,
-    /// Cost by the surface area heuristic, the root's area being 1.
-    pub cost: f64,
     pub stack_depth: usize,
 }
 
@@ -137,7 +135,6 @@ impl Wide {
         let forests = Forests::of(tree);
         let mut wide = Self {
             shared: shared.map(|flat| flat.slots.each_ref().map(|slots| inverse(slots))),
-            cost: forests.cost(tree),
             ..Self::default()
         };
         // Nodes of the tree that become wide ones, and how many children wait before them.

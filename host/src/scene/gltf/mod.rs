@@ -65,7 +65,11 @@ pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
         .into_iter()
         .map(|sentence| format!("{place}: {sentence}"))
         .collect();
-    Ok(Imported { scene, warnings })
+    Ok(Imported {
+        scene,
+        warnings,
+        molecules: false,
+    })
 }
 
 fn parse(path: &Path, bytes: &[u8]) -> Result<Gltf, SceneError> {

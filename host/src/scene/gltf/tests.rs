@@ -262,7 +262,9 @@ fn a_camera_and_lights() {
         {"extensions": light(2)},
     ]);
     document["scenes"][0]["nodes"] = json!([0, 1, 2, 3, 4, 5]);
-    let Imported { scene, warnings } = read(document.to_string().as_bytes()).unwrap();
+    let Imported {
+        scene, warnings, ..
+    } = read(document.to_string().as_bytes()).unwrap();
     let camera = scene.camera.unwrap();
     assert_eq!(
         (camera.eye, camera.target, camera.up),

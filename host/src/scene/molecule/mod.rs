@@ -135,6 +135,7 @@ fn import(source: &Source, options: &MoleculeOptions) -> Result<Imported, SceneE
     Ok(Imported {
         scene,
         warnings: warnings.into_sentences(),
+        molecules: true,
     })
 }
 

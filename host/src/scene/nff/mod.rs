@@ -226,6 +226,7 @@ impl<'a> Importer<'a> {
         Ok(Imported {
             scene: self.scene,
             warnings: self.warnings.into_sentences(),
+            molecules: false,
         })
     }
 }

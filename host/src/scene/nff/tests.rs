@@ -19,7 +19,9 @@ fn everything_the_format_has() {
          c\n0 0 0 2\n0 0 5 1\np 3\n0 0 0\n1 0 0\n0 1 0\npp 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n\
          f 1 1 1 1 0 0 0 0\ns 0 0 0 1\nf 1 .5 0 .8 .25 20 .5 1.5\ns 0 0 0 1\n"
     );
-    let Imported { scene, warnings } = read(&text).unwrap();
+    let Imported {
+        scene, warnings, ..
+    } = read(&text).unwrap();
     assert_eq!(warnings, [] as [&str; 0]);
     assert_eq!(scene.background, [0.1, 0.2, 0.3]);
     let camera = scene.camera.unwrap();
@@ -162,7 +164,9 @@ fn faults_name_line_and_cause() {
 #[test]
 fn dialects_are_read_with_warnings() {
     let text = "s 5 5 5 3\nf 0 0 1 0 1 1\ns 1 2 3 4 8 8\nf 1 1 1 .5 .5 45 0 1 earth.jpg\ns 1 2 3 4\ntess 0\n";
-    let Imported { scene, warnings } = read(text).unwrap();
+    let Imported {
+        scene, warnings, ..
+    } = read(text).unwrap();
     assert_eq!(scene.objects.len(), 3);
     assert_eq!(
         warnings,
@@ -222,7 +226,9 @@ fn standard_procedural_databases() {
         let Some(path) = test_scenes::find(&format!("spd/{name}")) else {
             continue;
         };
-        let Imported { scene, warnings } = load(&path).unwrap();
+        let Imported {
+            scene, warnings, ..
+        } = load(&path).unwrap();
         assert_eq!(warnings, [] as [&str; 0], "{name}");
         assert_eq!(counts(&scene), expected.iter().copied().collect(), "{name}");
         assert!(scene.camera.is_some());

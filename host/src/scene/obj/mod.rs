@@ -69,6 +69,7 @@ fn import(source: &Source) -> Result<Imported, SceneError> {
     Ok(Imported {
         scene,
         warnings: warnings.into_sentences(),
+        molecules: false,
     })
 }
 

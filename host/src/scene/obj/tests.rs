@@ -27,7 +27,9 @@ fn parts_follow_the_file() {
         "{CORNERS}f 1 2 3\no first # 1\nf 1 2 3 # a comment\nusemtl a\nf 1 3 4\nusemtl a\nf 2 3 4\nusemtl b\n\
          f -4/1/1 -3//2 -1/7\ng second one\nf 1 2 \\\n3 4\n"
     );
-    let Imported { scene, warnings } = read(&text).unwrap();
+    let Imported {
+        scene, warnings, ..
+    } = read(&text).unwrap();
     let parts: Vec<_> = scene
         .objects
         .iter()
@@ -64,7 +66,9 @@ fn faces_may_come_before_their_vertices() {
 #[test]
 fn weights_colours_and_lines_are_no_geometry() {
     let text = "v 1 2 3 .5\nv 0 1 0 1 0 0\nv 0 0 1\nl 1 2 3\np 1\nf 1 2 3\n";
-    let Imported { scene, warnings } = read(text).unwrap();
+    let Imported {
+        scene, warnings, ..
+    } = read(text).unwrap();
     assert_eq!(mesh(&scene.objects[0]).0[0], DVec3::new(1.0, 2.0, 3.0));
     assert_eq!(mesh(&scene.objects[0]).1.len(), 1);
     assert_eq!(
@@ -118,7 +122,9 @@ fn faults_name_line_and_cause() {
 
 #[test]
 fn faces_without_surface_are_skipped_with_a_warning() {
-    let Imported { scene, warnings } = read(&format!("{CORNERS}f\nf 1\nf 1 2\nf 1 2 2\n")).unwrap();
+    let Imported {
+        scene, warnings, ..
+    } = read(&format!("{CORNERS}f\nf 1\nf 1 2\nf 1 2 2\n")).unwrap();
     assert_eq!(mesh(&scene.objects[0]).1, [[0, 1, 1]]);
     assert_eq!(warnings.len(), 3);
     assert_eq!(
@@ -273,7 +279,9 @@ fn known_meshes() {
         let Some(path) = test_scenes::find(&format!("meshes/{name}")) else {
             continue;
         };
-        let Imported { scene, warnings } = load(&path).unwrap();
+        let Imported {
+            scene, warnings, ..
+        } = load(&path).unwrap();
         assert_eq!(measure(&scene).0, triangles, "{name}");
         assert_eq!(
             (scene.objects.len(), warnings.as_slice()),

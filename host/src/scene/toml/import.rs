@@ -20,6 +20,8 @@ pub(super) struct Imports {
     /// A scene may import a file many times, but with few different options.
     done: HashMap<PathBuf, Vec<(MoleculeOptions, Rc<Scene>)>>,
     pub(super) warnings: Vec<String>,
+    /// Whether a molecule is among the files.
+    pub(super) molecules: bool,
 }
 
 impl Imports {
@@ -88,6 +90,7 @@ impl Imports {
         } else {
             scene::load(&path, options).map(|imported| {
                 self.warnings.extend(imported.warnings);
+                self.molecules |= imported.molecules;
                 imported.scene
             })
         };

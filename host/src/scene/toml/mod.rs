@@ -28,10 +28,11 @@
 //!
 //! | key | type | range | default |
 //! |---|---|---|---|
-//! | `width`, `height` | pixels | 1 to 65535 | 320, 240 |
+//! | `width`, `height` | pixels | 1 to 65535, `width` at most 64 times `height` | 320, 240 |
 //! | `samples` | samples a pixel | 1 to 256 | 1 |
 //! | `depth` | how often a ray may be reflected or refracted | 0 to 16 | 5 |
 //! | `cutoff` | rays that can change no channel by more than this are not traced | 0 to 1 | 1/512 |
+//! | `shadows` | whether objects stand in each other's light | `true` or `false` | `true` |
 //!
 //! `[[light]]`
 //!
@@ -254,5 +255,6 @@ pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneEr
     Ok(Imported {
         scene,
         warnings: imports.warnings,
+        molecules: imports.molecules,
     })
 }

@@ -7,6 +7,8 @@ use glam::DVec3;
 
 /// The largest width and height of a picture.
 const MAX_SIDE: u32 = 65_535;
+/// How many times as wide as high a picture can be.
+const MAX_ASPECT: u32 = 64;
 
 pub(super) fn camera(table: Value<'_>) -> Result<Camera, SceneError> {
     let fields = table.fields("camera", &[&["eye", "target", "up", "fov"]])?;
@@ -55,9 +57,19 @@ pub(super) fn render(table: Value<'_>) -> Result<RenderSettings, SceneError> {
     let fields = table.fields("render table", &[&keys])?;
     let default = RenderSettings::default();
     let side = |value: Value<'_>| value.integer_in(1..=MAX_SIDE);
+    let width = fields.or("width", default.width, side)?;
+    let height = fields.or("height", default.height, side)?;
+    if width > MAX_ASPECT * height {
+        return Err(table.error(
+            format!(
+                "a picture of {width} by {height} is more than {MAX_ASPECT} times as wide as high"
+            ),
+            "write a smaller `width` or a larger `height`",
+        ));
+    }
     Ok(RenderSettings {
-        width: fields.or("width", default.width, side)?,
-        height: fields.or("height", default.height, side)?,
+        width,
+        height,
         samples: fields.or("samples", default.samples, |value| {
             Ok(value.integer_in(1..=256)? as u16)
         })?,

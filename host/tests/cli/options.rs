@@ -1,0 +1,139 @@
+//! Options that would change nothing are refused, and never ignored.
+
+use crate::program::Folder;
+
+/// What each structure alone takes, where it is not built.
+#[test]
+fn options_of_structures_that_are_not_built_are_refused() {
+    let folder = Folder::with_quick();
+    let fails = |arguments: &[&str], words: &[&str]| folder.fails(2, arguments, words);
+    let build = ["build", "quick.toml", "-o", "new.gridel"];
+    for (options, words) in [
+        (
+            &["--accel", "list", "--slabs", "7"][..],
+            &[
+                "--slabs is for slabs, flagged-slabs",
+                "what is built is list",
+            ][..],
+        ),
+        (
+            &["--accel", "list", "--leaf-size", "4"],
+            &["--leaf-size is for bvh"],
+        ),
+        (
+            &["--accel", "wide", "--builder", "sah"],
+            &["--builder is for bvh"],
+        ),
+        (&["--accel", "bvh", "--grid", "8"], &["--grid is for grid"]),
+        (
+            &["--accel", "bvh", "--budget", "1M"],
+            &["--budget is for", "cylinder-cube", "apex"],
+        ),
+        (
+            &["--accel", "ray-classes", "--gridels", "2"],
+            &["--gridels is for cylinder-cube"],
+        ),
+        (
+            &["--quality", "fast"],
+            &["--quality is for wide", "dual-split"],
+        ),
+        (
+            &["--model", "2"],
+            &["--model is for molecules", "quick.toml has none"],
+        ),
+        (
+            &["--style", "ball-and-stick"],
+            &["--style is for molecules"],
+        ),
+        (&["--altloc", "A"], &["--altloc is for molecules"]),
+    ] {
+        fails(&[&build[..], options].concat(), words);
+    }
+    let render = ["render", "quick.toml", "-o", "new.png", "--accel", "bvh"];
+    fails(
+        &[&render[..], &["--quality", "fast"]].concat(),
+        &["--quality is for wide"],
+    );
+    let verify = [
+        "verify",
+        "quick.toml",
+        "--accel",
+        "bvh",
+        "--quality",
+        "fast",
+    ];
+    fails(&verify, &["--quality is for wide"]);
+    let compare = ["compare", "quick.toml", "--accel", "bvh"];
+    fails(
+        &[&compare[..], &["--quality", "fast"]].concat(),
+        &["--quality is for wide"],
+    );
+    fails(
+        &[&compare[..], &["--slabs", "3"]].concat(),
+        &["--slabs is for slabs"],
+    );
+    let accuracy = ["accuracy", "quick.toml", "--quality", "fast"];
+    fails(&accuracy, &["--quality is for wide"]);
+}
+
+/// What scene files take, given with a blob; what a verb has no use for is no option of it.
+#[test]
+fn options_that_a_verb_cannot_use_are_refused() {
+    let folder = Folder::with_quick();
+    let fails = |arguments: &[&str], words: &[&str]| folder.fails(2, arguments, words);
+    fails(
+        &["verify", "quick.gridel", "--accel", "bvh"],
+        &["--accel is for scene files"],
+    );
+    let render = ["render", "quick.gridel", "-o", "a.png", "--quality", "fast"];
+    fails(&render, &["--quality is for scene files"]);
+    fails(
+        &[
+            "trace",
+            "quick.toml",
+            "--rays",
+            "r.npy",
+            "-o",
+            "h.npy",
+            "--cutoff",
+            "0",
+        ],
+        &["--cutoff"],
+    );
+    fails(
+        &["inspect", "quick.toml", "--quality", "fast"],
+        &["--quality"],
+    );
+    fails(
+        &["accuracy", "quick.toml", "--lattice-bits", "16"],
+        &["--lattice-bits"],
+    );
+    let help = folder.done(&["accuracy", "--help"]);
+    assert!(!help.contains("--lattice-bits"), "{help}");
+    // Verbs that want a scene file say so of a blob.
+    for verb in ["compare", "accuracy"] {
+        folder.fails(
+            1,
+            &[verb, "quick.gridel"],
+            &["is a blob already, not a scene file"],
+        );
+    }
+}
+
+/// What is asked for twice is done once, and `--quality` reaches the builder.
+#[test]
+fn compare_takes_its_options() {
+    let folder = Folder::with_quick();
+    let compare = ["compare", "quick.toml", "--size", "16x12", "--repeat", "0"];
+    let wide = ["--accel", "wide", "--accel", "wide"];
+    let rows = folder.json(&[&compare[..], &wide].concat())["rows"].clone();
+    assert_eq!(rows.as_array().unwrap().len(), 1);
+
+    folder.done(&["sample", "icosphere"]);
+    let nodes = |quality: &str| {
+        let options = ["--size", "16x12", "--repeat", "0", "--quality", quality];
+        let compare = ["compare", "icosphere.obj", "--accel", "wide"];
+        folder.json(&[&compare[..], &options].concat())["rows"][0]["work"].clone()
+    };
+    assert_ne!(nodes("fast"), nodes("good"));
+}
