@@ -111,7 +111,7 @@ impl Report {
         self.count(|outcome| *outcome == Outcome::Recorded)
     }
 
-    /// Takes note that what [`bless`](super::bless) can record was recorded.
+    /// Takes note that all was recorded that [`bless`](super::bless()) can record.
     pub fn take_as_recorded(&mut self) {
         for finding in &mut self.findings {
             if finding.record.is_some() {
