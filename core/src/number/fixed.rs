@@ -1,6 +1,9 @@
 //! Fixed point in 32 bits, products in 64: for cores without a floating-point unit.
 
-use super::{CullAxis, Format, Number};
+mod halves;
+
+use self::halves::{product, product_unsigned, quotient};
+use super::{CullAxis, Format, NARROW_PRODUCTS, Number};
 use crate::accel::cull::Cull;
 use core::ops::{Add, Mul, Neg, Sub};
 
@@ -100,10 +103,10 @@ fn excess_bits(v: [i64; 3], bits: i32) -> i32 {
 /// have or emulate cheaply, and one step of Newton's iteration.
 #[inline(always)]
 fn reciprocal(d: u32) -> u32 {
-    let coarse = (u32::MAX / (d.wrapping_add(1 << 14) >> 15).max(1)) << 14;
+    let coarse = quotient(d.wrapping_add(1 << 14) >> 15) << 14;
     // d * coarse is 2^61 but for a part in 2^15.
-    let excess = ((d as u64 * coarse as u64) >> 29) as u32 as i32;
-    coarse.wrapping_sub(((coarse as i64 * excess as i64) >> 32) as u32)
+    let excess = (product_unsigned(d, coarse) >> 29) as u32 as i32;
+    coarse.wrapping_sub((product(coarse as i32, excess) >> 32) as u32)
 }
 
 /// [`Number::slopes`] of a vector beyond 31 bits.
@@ -130,7 +133,7 @@ fn slopes_of_narrow(v: [i32; 3]) -> Option<([Fixed; 3], usize)> {
     let inverse = reciprocal(largest << up);
     let minor = |component: i32| {
         let scaled = component.unsigned_abs() << up;
-        let magnitude = ((scaled as u64 * inverse as u64) >> 31) as u32;
+        let magnitude = (product_unsigned(scaled, inverse) >> 31) as u32;
         let magnitude = magnitude.min(1 << RATIO_BITS) as i32;
         Fixed(if component < 0 { -magnitude } else { magnitude })
     };
@@ -180,7 +183,7 @@ impl Mul for Fixed {
     type Output = Self;
     #[inline(always)]
     fn mul(self, ratio: Self) -> Self {
-        let product = round_off(self.0 as i64 * ratio.0 as i64, RATIO_BITS);
+        let product = round_off(product(self.0, ratio.0), RATIO_BITS);
         keep(|| i32::try_from(product).is_ok());
         Self(product as i32)
     }
@@ -393,7 +396,7 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn wide(self, other: Self) -> Product {
-        Product(self.0 as i64 * other.0 as i64)
+        Product(product(self.0, other.0))
     }
 
     #[inline(always)]
@@ -413,12 +416,26 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn wide_times(wide: Product, factor: i32) -> Product {
-        Product(wide.0.wrapping_mul(factor as i64))
+        if !NARROW_PRODUCTS {
+            return Product(wide.0.wrapping_mul(factor as i64));
+        }
+        let low = product_unsigned(wide.0 as u32, factor as u32);
+        // As a number with a sign, a negative factor is 2^32 less.
+        let correction = wide.0 as i32 & factor >> 31;
+        let high = ((wide.0 >> 32) as i32)
+            .wrapping_mul(factor)
+            .wrapping_sub(correction);
+        Product((low as i64).wrapping_add((high as i64) << 32))
     }
 
     #[inline(always)]
     fn wide_over(wide: Product, divisor: i32) -> Product {
         Product(wide.0.checked_div(divisor as i64).unwrap_or(0))
+    }
+
+    #[inline(always)]
+    fn upper(wide: Product) -> Self {
+        Fixed((wide.0 >> 32) as i32)
     }
 
     #[inline(always)]
@@ -436,7 +453,10 @@ impl Number for Fixed {
         keep(|| i64::try_from((wide.0 as i128 * ratio.0 as i128) >> RATIO_BITS).is_ok());
         let high = (wide.0 >> 32).wrapping_mul(ratio.0 as i64);
         let low = (wide.0 & 0xffff_ffff).wrapping_mul(ratio.0 as i64);
-        Product((high << (32 - RATIO_BITS)).wrapping_add(low >> RATIO_BITS))
+        // Rounded as a product of two numbers is.
+        let half = (1 << (RATIO_BITS - 1)) + ((wide.0 ^ ratio.0 as i64) >> 63);
+        let low = low.wrapping_add(half) >> RATIO_BITS;
+        Product((high << (32 - RATIO_BITS)).wrapping_add(low))
     }
 
     fn divide(numerator: Product, denominator: Product) -> Self {
@@ -496,6 +516,9 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn surround(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool {
+        if NARROW_PRODUCTS && let Some(surround) = halves::surround(a, b, c) {
+            return surround;
+        }
         let cross = |a: [Self; 2], b: [Self; 2]| (a[0].wide(b[1]) - a[1].wide(b[0])).0;
         let (u, v) = (cross(b, c), cross(c, a));
         // Few triangles come further.
@@ -524,6 +547,11 @@ impl Number for Fixed {
         } else {
             slopes_of_wide(v)
         }
+    }
+
+    #[inline(always)]
+    fn slopes_of(v: [Self; 3]) -> Option<([Self; 3], usize)> {
+        slopes_of_narrow(v.map(|component| component.0))
     }
 
     #[inline(always)]
@@ -596,7 +624,7 @@ impl Number for Fixed {
             (1 << 29, 1 << 17)
         };
         let inverse = if slope.0 < 0 { -steepness } else { steepness };
-        let offset = ((origin.0 as i64 * inverse as i64) >> (16 + LENGTH_BITS)) as i32;
+        let offset = (product(origin.0, inverse) >> (16 + LENGTH_BITS)) as i32;
         let margin = (steepness >> 18) + 3;
         CullAxis::new(inverse, -offset - margin, -offset + margin + parallel)
     }

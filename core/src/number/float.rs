@@ -57,17 +57,19 @@ fn surround_exactly<F: Copy>(
 const SMALLEST_F32: f32 = 1.0 / (1u64 << 60) as f32;
 const SMALLEST_F64: f64 = 1.0 / (1u64 << 50) as f64 / (1u64 << 50) as f64;
 
-/// [`Number::slopes`] of a direction whose length is far from 1, by way of one that is not:
-/// magnitudes of \[2^-149, 2^128\] or \[2^-1074, 2^1024\] are halved or doubled until they fit.
+/// One of the [`Number::slopes`] of a direction whose length is far from 1, by way of one that is
+/// not: magnitudes of \[2^-149, 2^128\] or \[2^-1074, 2^1024\] are halved or doubled until they
+/// fit. `None` where there are none.
+///
+/// One at a time, because one comes back in a register: through memory they would burden all rays.
 #[cold]
-fn slopes_of_extremes<N: Number<Wide = N>>(v: [N; 3]) -> Option<([N; 3], usize)> {
-    let [x, y, z] = v.map(N::abs);
-    let largest = x.max(y).max(z);
-    let ordinary = v.iter().all(|&component| N::is_finite(component));
-    if !ordinary || largest == N::ZERO {
+#[inline(never)]
+fn slope_of_extremes<N: Number<Wide = N>>(x: N, y: N, z: N, axis: usize) -> Option<N> {
+    let mut scaled = [x, y, z];
+    let ordinary = scaled.iter().all(|&component| N::is_finite(component));
+    if !ordinary || extent(scaled) == N::ZERO {
         return None;
     }
-    let mut scaled = v;
     let double = N::ONE + N::ONE;
     for _ in 0..1100 {
         let largest = extent(scaled);
@@ -79,7 +81,7 @@ fn slopes_of_extremes<N: Number<Wide = N>>(v: [N; 3]) -> Option<([N; 3], usize)>
             break;
         }
     }
-    N::slopes(scaled)
+    N::slopes(scaled).map(|(slopes, _)| pick(slopes, axis))
 }
 
 /// The largest inverse slope in culling.
@@ -269,6 +271,11 @@ macro_rules! float_number {
             }
 
             #[inline(always)]
+            fn upper(wide: Self) -> Self {
+                wide
+            }
+
+            #[inline(always)]
             fn far(q13: i64) -> Self {
                 q13 as $float * (1.0 / 8192.0)
             }
@@ -329,28 +336,38 @@ macro_rules! float_number {
                 // Magnitudes order like integers, NaN above all.
                 let magnitude = |x: $float| x.to_bits() << 1;
                 let [x, y, z] = v.map(magnitude);
-                let axis = if x >= y && x >= z {
-                    0
-                } else if y >= z {
-                    1
-                } else {
-                    2
-                };
-                let largest = pick(v, axis);
                 let (low, high) = (magnitude($smallest), magnitude(1.0 / $smallest));
-                if magnitude(largest).wrapping_sub(low) > high - low {
-                    return slopes_of_extremes(v);
-                }
-                let inverse = 1.0 / largest.abs();
+                let is_ordinary = |x: $float| magnitude(x).wrapping_sub(low) <= high - low;
                 let one = |x: $float| (1.0 as $float).copysign(x);
                 // Adding zero turns -0.0 into 0.0.
-                let minor = |x: $float| $settle(x * inverse + 0.0);
-                let slopes = match axis {
-                    0 => [one(v[0]), minor(v[1]), minor(v[2])],
-                    1 => [minor(v[0]), one(v[1]), minor(v[2])],
-                    _ => [minor(v[0]), minor(v[1]), one(v[2])],
+                let over = |x: $float, largest: $float| $settle(x * (1.0 / largest.abs()) + 0.0);
+                let [a, b, c] = v;
+                let extremes = |axis: usize| {
+                    let slope = |k: usize| slope_of_extremes(a, b, c, k);
+                    Some(([slope(0)?, slope(1)?, slope(2)?], axis))
                 };
-                Some((slopes, axis))
+                // Written out by axis, so that nothing is looked up.
+                if x >= y && x >= z {
+                    if !is_ordinary(a) {
+                        return extremes(0);
+                    }
+                    Some(([one(a), over(b, a), over(c, a)], 0))
+                } else if y >= z {
+                    if !is_ordinary(b) {
+                        return extremes(1);
+                    }
+                    Some(([over(a, b), one(b), over(c, b)], 1))
+                } else {
+                    if !is_ordinary(c) {
+                        return extremes(2);
+                    }
+                    Some(([over(a, c), over(b, c), one(c)], 2))
+                }
+            }
+
+            #[inline(always)]
+            fn slopes_of(v: [Self; 3]) -> Option<([Self; 3], usize)> {
+                Self::slopes(v)
             }
 
             #[inline(always)]
@@ -419,12 +436,11 @@ float_number!(
     // No product of two coordinates in single precision underflows in double precision.
     |x: f32| x,
     |v: [i64; 3]| {
-        // Through 31 bits: cores with a single-precision unit convert those in one instruction.
-        let all = v[0].unsigned_abs() | v[1].unsigned_abs() | v[2].unsigned_abs();
-        let excess = 33_u32.saturating_sub(all.leading_zeros());
+        // By halves, which cores with a single-precision unit convert in one instruction each.
         v.map(|component| {
-            let magnitude = (component.unsigned_abs() >> excess) as i32;
-            (if component < 0 { -magnitude } else { magnitude }) as f32
+            let high = (component.wrapping_add(1 << 25) >> 26) as i32;
+            let low = (component as i32).wrapping_sub(high << 26);
+            high as f32 * 67_108_864.0 + low as f32
         })
     }
 );

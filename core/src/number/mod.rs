@@ -217,6 +217,9 @@ pub trait Number:
     fn wide_times(wide: Self::Wide, factor: i32) -> Self::Wide;
     /// A wide number over a positive integer, towards zero.
     fn wide_over(wide: Self::Wide, divisor: i32) -> Self::Wide;
+    /// The upper half of a wide number that fills its bits, in a unit of its own: enough for a
+    /// direction. Floats have no halves.
+    fn upper(wide: Self::Wide) -> Self;
     /// A far coordinate from an integer with 13 fraction bits.
     fn far(q13: i64) -> Self::Wide;
     /// Three products added: `a . b`.
@@ -243,12 +246,14 @@ pub trait Number:
     /// Whether the triangle of three points of the plane holds the origin, edges included; not if
     /// all edges lead through it. Whichever way the points run, and always exact.
     fn surround(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool;
-    /// A vector of integers (below 2^62) as ratios: exact up to one common factor and one rounding
+    /// A vector of integers (below 2^52) as ratios: exact up to one common factor and two roundings
     /// each; the largest magnitude in \[1/4, 1\] in [`Fixed`], unscaled in floats.
     fn direction(v: [i64; 3]) -> [Self; 3];
     /// A direction of any length as slopes: divided by the magnitude of its largest component, with
     /// that component's axis. `None` for zero, NaN and infinite vectors.
     fn slopes(v: [Self::Wide; 3]) -> Option<([Self; 3], usize)>;
+    /// [`slopes`](Self::slopes) of a direction whose components are single numbers of any one unit.
+    fn slopes_of(v: [Self; 3]) -> Option<([Self; 3], usize)>;
     /// 1 / (d . d) for slopes, whose d . d lies in \[1, 3\].
     fn recip_norm2(d: [Self; 3]) -> Self;
     /// A vector of one quantity scaled to length 1 (ratios), and its length. A zero vector stays zero.

@@ -10,6 +10,7 @@ use crate::count::Count;
 use crate::event::Event;
 use crate::number::Number;
 use crate::shade::Color;
+use core::hint::black_box;
 
 /// A rectangle of a picture that is rendered a few rays at a time, for firmware with deadlines.
 ///
@@ -133,7 +134,8 @@ impl<N: Number> Samples<N> {
         let samples = renderer.settings().samples;
         let camera = || {
             let [x, y] = place([x, y], self.index, samples);
-            renderer.ray_through(x, y)
+            // Moved out of the loops around this, its fields would go to the stack and come back.
+            black_box(renderer).ray_through(x, y)
         };
         let radiance = &mut self.radiance;
         let tracing = renderer.tracing();

@@ -267,6 +267,18 @@ fn emitted_modules_run_or_do_not_compile() {
     outgrown(&features, "the blob calls for effects beyond EFFECTS");
 }
 
+/// One of each core that tracers for boards are compared on, and the one with floats without them.
+fn boards_for_primary_rays() -> [(&'static Board, Format); 5] {
+    [
+        ("mps2-an386", Format::F32),
+        ("mps2-an386", Format::Fixed),
+        ("mps2-an385", Format::Fixed),
+        ("microbit", Format::Fixed),
+        ("sifive_e", Format::Fixed),
+    ]
+    .map(|(name, format)| (board(name), format))
+}
+
 #[test]
 fn primary_rays_of_suzanne() {
     if !firmware::available() {
@@ -275,10 +287,8 @@ fn primary_rays_of_suzanne() {
     let Some(suzanne) = scenes::suzanne() else {
         return;
     };
-    let boards = ["mps2-an386", "mps2-an385", "microbit", "sifive_e"].map(board);
-    let formats = boards.map(|board| (board, board.format()));
     let mut figures = Figures::new();
-    for (board, format) in formats.into_iter().chain([(boards[0], Format::Fixed)]) {
+    for (board, format) in boards_for_primary_rays() {
         for structure in [Structure::DualSplit, Structure::Flagged, Structure::Bvh] {
             let build = Build::new(board, format, structure, &suzanne);
             let report = build.program("primary").run();
@@ -289,6 +299,26 @@ fn primary_rays_of_suzanne() {
             assert!(ram <= PRIMARY_RAM, "{build}: {ram} bytes of RAM");
             figures.add(&build.to_string(), &report);
         }
+    }
+    figures.check();
+}
+
+/// What meshes for boards are compiled to: narrow vertices, dual-split nodes alone.
+#[test]
+fn primary_rays_of_suzanne_in_16_bits() {
+    if !firmware::available() {
+        return;
+    }
+    let Some(suzanne) = scenes::suzanne_in_16_bits() else {
+        return;
+    };
+    assert!(suzanne.blob.bytes().len() <= 32 * 1024);
+    let mut figures = Figures::new();
+    for (board, format) in boards_for_primary_rays() {
+        let build = Build::new(board, format, Structure::DualSplit, &suzanne);
+        let report = build.program("primary").run();
+        assert_eq!(report["hits"], 1400, "{build}");
+        figures.add(&build.to_string(), &report);
     }
     figures.check();
 }

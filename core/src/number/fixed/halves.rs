@@ -1,0 +1,161 @@
+//! Products and quotients by halves, with the same bits: for the Cortex-M0, which multiplies 32 bits to
+//! 32 and does not divide.
+
+use super::Fixed;
+use crate::number::NARROW_PRODUCTS;
+
+/// A product in 64 bits.
+#[inline(always)]
+pub(super) const fn product(a: i32, b: i32) -> i64 {
+    if NARROW_PRODUCTS {
+        product_of_halves(a, b)
+    } else {
+        a as i64 * b as i64
+    }
+}
+
+/// The same without signs.
+#[inline(always)]
+pub(super) const fn product_unsigned(a: u32, b: u32) -> u64 {
+    if NARROW_PRODUCTS {
+        product_of_halves_unsigned(a, b)
+    } else {
+        a as u64 * b as u64
+    }
+}
+
+/// Four products of halves, each of which fits 32 bits with what is carried into it.
+#[inline(always)]
+const fn product_of_halves(a: i32, b: i32) -> i64 {
+    let (a_high, a_low) = (a >> 16, a & 0xffff);
+    let (b_high, b_low) = (b >> 16, b & 0xffff);
+    let low = a_low.wrapping_mul(b_low) as u32;
+    let middle = a_high.wrapping_mul(b_low).wrapping_add((low >> 16) as i32);
+    let other = a_low.wrapping_mul(b_high).wrapping_add(middle & 0xffff);
+    let high = a_high
+        .wrapping_mul(b_high)
+        .wrapping_add(middle >> 16)
+        .wrapping_add(other >> 16);
+    (high as i64) << 32 | ((other as u32) << 16 | low & 0xffff) as i64
+}
+
+/// The same without signs.
+#[inline(always)]
+const fn product_of_halves_unsigned(a: u32, b: u32) -> u64 {
+    let (a_high, a_low) = (a >> 16, a & 0xffff);
+    let (b_high, b_low) = (b >> 16, b & 0xffff);
+    let low = a_low.wrapping_mul(b_low);
+    let middle = a_high.wrapping_mul(b_low).wrapping_add(low >> 16);
+    let other = a_low.wrapping_mul(b_high).wrapping_add(middle & 0xffff);
+    let high = a_high
+        .wrapping_mul(b_high)
+        .wrapping_add(middle >> 16)
+        .wrapping_add(other >> 16);
+    (high as u64) << 32 | (other << 16 | low & 0xffff) as u64
+}
+
+/// (2^32 - 1) / `d`, rounded down, for `d` in \[2^15, 2^16\].
+#[inline(always)]
+pub(super) fn quotient(d: u32) -> u32 {
+    if NARROW_PRODUCTS {
+        quotient_by_products(d)
+    } else {
+        u32::MAX / d.max(1)
+    }
+}
+
+/// By Newton's iteration.
+#[inline(always)]
+fn quotient_by_products(d: u32) -> u32 {
+    // 2^16 (48 / 17 - 32 / 17 x) is 1 / x, for x from 1/2 to 1, to a part in 17.
+    let mut guess = 185_043_u32.wrapping_sub(d.wrapping_mul(30_840) >> 14);
+    for _ in 0..2 {
+        let rest = d.wrapping_mul(guess).wrapping_neg() as i32;
+        let step = (rest >> 14).wrapping_mul(guess as i32) >> 18;
+        guess = guess.wrapping_add(step as u32);
+    }
+    // All steps were rounded down: what is left is too low by at most 2.
+    let mut rest = u32::MAX.wrapping_sub(d.wrapping_mul(guess));
+    for _ in 0..2 {
+        if rest >= d {
+            (guess, rest) = (guess.wrapping_add(1), rest.wrapping_sub(d));
+        }
+    }
+    guess
+}
+
+/// [`Number::surround`](crate::number::Number::surround) by the upper 16 bits of all coordinates;
+/// `None` where those leave it open.
+pub(super) fn surround(a: [Fixed; 2], b: [Fixed; 2], c: [Fixed; 2]) -> Option<bool> {
+    let magnitude = |x: Fixed| x.0 ^ x.0 >> 31;
+    let all = [a, b, c]
+        .as_flattened()
+        .iter()
+        .fold(0, |all, &x| all | magnitude(x));
+    // Down to 15 bits and a sign; this core has no instruction that counts bits.
+    let mut shift = 0;
+    for step in [8, 4, 2, 2] {
+        if all >> (shift & 31) >= 1 << (13 + step) {
+            shift += step;
+        }
+    }
+    let [a, b, c] = [a, b, c].map(|point| point.map(|x| x.0 >> (shift & 31)));
+    // Each factor lacks less than 1, so each of the two products lacks less than its factors'
+    // magnitudes and 1.
+    const OPEN: i32 = (4 << 15) + 2;
+    let cross = |p: [i32; 2], q: [i32; 2]| {
+        let cross = p[0]
+            .wrapping_mul(q[1])
+            .wrapping_sub(p[1].wrapping_mul(q[0]));
+        (!(-OPEN..=OPEN).contains(&cross)).then_some(cross < 0)
+    };
+    let (u, v) = (cross(b, c)?, cross(c, a)?);
+    if u != v {
+        return Some(false);
+    }
+    Some(u == cross(a, b)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::Number;
+    use proptest::prelude::*;
+
+    #[test]
+    fn quotients_by_products_are_exact() {
+        for d in 1 << 15..=1 << 16 {
+            assert_eq!(quotient_by_products(d), u32::MAX / d, "{d}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn products_of_halves_are_products(a: i32, b: i32) {
+            prop_assert_eq!(product_of_halves(a, b), i64::from(a) * i64::from(b));
+            let (a, b) = (a as u32, b as u32);
+            prop_assert_eq!(product_of_halves_unsigned(a, b), u64::from(a) * u64::from(b));
+        }
+
+        /// Where 16 bits decide, they decide as all bits do.
+        #[test]
+        fn coarse_triangles_are_the_triangles(corners: [[i32; 2]; 3], shift in 1_u32..32) {
+            let [a, b, c] = corners.map(|corner| corner.map(|x| Fixed(x >> shift)));
+            if let Some(decided) = surround(a, b, c) {
+                prop_assert_eq!(decided, Fixed::surround(a, b, c));
+            }
+        }
+    }
+
+    /// Where corners lie apart, 16 bits decide.
+    #[test]
+    fn coarse_triangles_are_mostly_decided() {
+        let mut decided = 0;
+        for step in 0..10_000_u32 {
+            let coordinate = |k: u32| Fixed((step * 6 + k).wrapping_mul(2_654_435_761) as i32 >> 5);
+            let corner = |k: u32| [coordinate(k), coordinate(k + 1)];
+            decided += u32::from(surround(corner(0), corner(2), corner(4)).is_some());
+        }
+        assert!(decided > 9_900, "{decided}");
+    }
+}
