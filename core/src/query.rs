@@ -198,48 +198,48 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     /// Tests the primitives of a range of slots.
     #[inline(always)]
     fn slots<C: Count>(&mut self, leaf: Leaf, count: &mut C) {
-        let (first, end) = (leaf.first as usize, (leaf.first + leaf.count) as usize);
+        let slots = leaf.slots();
         let shapes = &self.scene.shapes;
         match leaf.kind {
             // Code that was left out, and that no blob here leads to.
             kind if !kind.is_available() => (),
             Kind::Triangle => match (shapes.vertices, shapes.triangles) {
                 (Vertices::V16(v), Triangles::U16(t)) => {
-                    self.triangles(v, t.get(first..end), leaf, count)
+                    self.triangles(v, t.get(slots), leaf, count)
                 }
                 (_, Triangles::U32(_)) if !WIDE_INDICES => (),
                 (Vertices::V24(_), _) if !WIDE_LATTICE => (),
                 (Vertices::V16(v), Triangles::U32(t)) => {
-                    self.triangles(v, t.get(first..end), leaf, count)
+                    self.triangles(v, t.get(slots), leaf, count)
                 }
                 (Vertices::V24(v), Triangles::U16(t)) => {
-                    self.triangles(v, t.get(first..end), leaf, count)
+                    self.triangles(v, t.get(slots), leaf, count)
                 }
                 (Vertices::V24(v), Triangles::U32(t)) => {
-                    self.triangles(v, t.get(first..end), leaf, count)
+                    self.triangles(v, t.get(slots), leaf, count)
                 }
             },
             Kind::Sphere => match shapes.spheres {
-                Spheres::S16(spheres) => self.spheres(spheres.get(first..end), leaf, count),
+                Spheres::S16(spheres) => self.spheres(spheres.get(slots), leaf, count),
                 Spheres::S24(_) if !WIDE_LATTICE => (),
-                Spheres::S24(spheres) => self.spheres(spheres.get(first..end), leaf, count),
+                Spheres::S24(spheres) => self.spheres(spheres.get(slots), leaf, count),
             },
             Kind::Box => self.solids(
-                shapes.boxes.get(first..end),
+                shapes.boxes.get(slots),
                 leaf,
                 count,
                 |search, cuboid| cuboid.cross(search.ray),
                 Cuboid::bounds,
             ),
             Kind::Disc => self.solids(
-                shapes.discs.get(first..end),
+                shapes.discs.get(slots),
                 leaf,
                 count,
                 |search, disc| disc.cross(search.ray),
                 |disc| disc.bounds,
             ),
             Kind::Cone => self.solids(
-                shapes.cones.get(first..end),
+                shapes.cones.get(slots),
                 leaf,
                 count,
                 |search, cone| cone.cross(search.ray, search.recip_norm2),
@@ -258,7 +258,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         cross: impl Fn(&Self, &T) -> Option<Crossing<N>>,
         bounds: impl Fn(&T) -> UnitBox,
     ) {
-        for (index, record) in (leaf.first..).zip(records.unwrap_or_default()) {
+        for (index, record) in numbered(leaf, records) {
             let crossing = cross(self, record);
             let place = Place::Slot(leaf.kind, index);
             if let Some(crossing) = crossing {
@@ -305,7 +305,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         count: &mut C,
     ) {
         let projection = Projection::of::<MAJOR, V>(self.ray);
-        for (index, record) in (leaf.first..).zip(triangles.unwrap_or_default()) {
+        for (index, record) in numbered(leaf, triangles) {
             let [a, b, c] = record.corners();
             let corners = (vertices.get(a), vertices.get(b), vertices.get(c));
             let (Some(a), Some(b), Some(c)) = corners else {
@@ -358,6 +358,17 @@ pub struct Found<N: Number> {
     /// The primitive, counted in scene-file order over all objects.
     pub primitive: u32,
     best: Best<N>,
+}
+
+/// The records of a leaf's slots, with the slots.
+#[inline(always)]
+fn numbered<T>(leaf: Leaf, records: Option<&[T]>) -> impl Iterator<Item = (u32, &T)> {
+    let mut next = leaf.first;
+    records.unwrap_or_default().iter().map(move |record| {
+        let slot = next;
+        next = slot.wrapping_add(1);
+        (slot, record)
+    })
 }
 
 /// The primitive that a ray meets first in its interval, found through the structure `A`.

@@ -104,21 +104,21 @@ fn interval<N: Number>(tmin: N::Wide, tmax: N::Wide, moved: N::Wide) -> [N; 2] {
 /// ranges up to here.
 const REACH: i64 = (3 * i16::MAX as i64) << 13;
 
-/// Whether every ray that is moved so far along its major axis starts within [`REACH`], and its
-/// origin is a single number: slopes are at most 1, and along its major axis it moves to the box.
+/// Whether every ray that is moved so far along its major axis starts within [`REACH`]: slopes are at
+/// most 1, and along its major axis a ray moves to the box. Never for numbers that are saturated.
 #[inline(always)]
-fn is_near<N: Number>(origin: [N::Wide; 3], major: usize, moved: N::Wide) -> bool {
-    let moved = if moved < N::Wide::default() {
-        -moved
-    } else {
-        moved
-    };
-    let (least, most) = (N::far(REACH) - moved, N::far(REACH) + moved);
+fn is_near<N: Number>(origin: [N; 3], major: usize, moved: N) -> bool {
+    let (reach, moved) = (N::narrow(N::far(REACH)), moved.abs());
     let within = |axis: usize| {
-        let reach = if axis == major { most } else { least };
+        let reach = if axis == major {
+            reach + moved
+        } else {
+            reach - moved
+        };
         origin[axis] < reach && -origin[axis] < reach
     };
-    within(0) && within(1) && within(2)
+    // Twice the reach is a number; more need not be.
+    moved < reach && within(0) && within(1) && within(2)
 }
 
 /// Where a ray starts that is moved from an origin [near](is_near) the scene.
@@ -200,15 +200,14 @@ impl<N: Number> Pencil<N> {
         let moved = [0, 1, 2].map(|axis| {
             [false, true].map(|forward| way_to_box::<N>(bounds, origin, (axis, forward), zero))
         });
+        let single = (origin.map(N::narrow), moved.map(|ways| ways.map(N::narrow)));
         let near = |axis: usize| {
-            let [down, up] = pick(moved, axis);
-            is_near::<N>(origin, axis, down) && is_near::<N>(origin, axis, up)
+            let [down, up] = pick(single.1, axis);
+            is_near(single.0, axis, down) && is_near(single.0, axis, up)
         };
         Self(if near(0) && near(1) && near(2) {
-            Origin::Near {
-                origin: origin.map(N::narrow),
-                moved: moved.map(|ways| ways.map(N::narrow)),
-            }
+            let (origin, moved) = single;
+            Origin::Near { origin, moved }
         } else {
             Origin::Far {
                 origin,
@@ -287,9 +286,9 @@ impl<N: Number> Ray<N> {
         check(is_finite::<N>(origin), tmin, tmax)?;
         let forward = pick(slope, major) > N::ZERO;
         let moved = way_to_box::<N>(bounds, origin, (major, forward), tmin);
-        let (start, within) = if is_near::<N>(origin, major, moved) {
-            let (origin, moved) = (origin.map(N::narrow), N::narrow(moved));
-            (near_start(origin, moved, slope), true)
+        let single = (origin.map(N::narrow), N::narrow(moved));
+        let (start, within) = if is_near(single.0, major, single.1) {
+            (near_start(single.0, single.1, slope), true)
         } else {
             far_start(origin, moved, slope)
         };
@@ -415,8 +414,9 @@ mod tests {
         let forward = pick(slope, major) > N::ZERO;
         let tmin = N::far_from_f64(tmin);
         let moved = way_to_box::<N>(&bounds, origin, (major, forward), tmin);
-        if is_near::<N>(origin, major, moved) {
-            let near = near_start(origin.map(N::narrow), N::narrow(moved), slope);
+        let single = (origin.map(N::narrow), N::narrow(moved));
+        if is_near(single.0, major, single.1) {
+            let near = near_start(single.0, single.1, slope);
             assert_eq!((near, true), far_start(origin, moved, slope));
         }
     }

@@ -160,9 +160,10 @@ impl<'a> Held<'a> {
         let rises = line.ascends(major);
         let (tmin, tmax) = (ray.tmin.to_cull(), ray.tmax.to_cull());
         for point in self.points {
-            // With 8 fraction bits, so that products fit with a point far away.
-            let far = pick(point.at, major) - (pick(line.origin, major) >> 5);
-            let t = if rises { far } else { -far };
+            // With 8 fraction bits, so that products fit with a point far away: both have less than
+            // 30 bits, and slopes at most 31.
+            let far = pick(point.at, major).wrapping_sub(pick(line.origin, major) >> 5);
+            let t = if rises { far } else { far.wrapping_neg() };
             let passes = |axis: usize| {
                 let rise = (i64::from(pick(line.slope, axis)) * i64::from(t)) >> 30;
                 let place = i64::from(pick(line.origin, axis) >> 5) + rise;
@@ -176,21 +177,25 @@ impl<'a> Held<'a> {
             if !outward && tmax > apex + 1 {
                 continue;
             }
-            let face = 2 * major + usize::from(rises == outward);
+            let face = major << 1 | usize::from(rises == outward);
             let number = point.windows.get(face).copied().unwrap_or(Apex::NO_WINDOW);
             let Some(window) = self.windows.get(usize::from(number)) else {
                 continue;
             };
             let slope = |axis: usize| {
                 let slope = pick(line.slope, axis);
-                if outward { slope } else { -slope }
+                if outward { slope } else { slope.wrapping_neg() }
             };
             let column = window.place(0, slope(across[0]));
             let row = window.place(1, slope(across[1]));
             if let (Some(column), Some(row)) = (column, row) {
+                // One of the table's cells.
+                let place = column
+                    .wrapping_mul(window.cells[1].into())
+                    .wrapping_add(row);
                 return Some(Way {
                     window,
-                    cell: window.first_cell + column * u32::from(window.cells[1]) + row,
+                    cell: window.first_cell.wrapping_add(place),
                     outward,
                     apex,
                 });

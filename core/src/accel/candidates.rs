@@ -118,13 +118,14 @@ impl<'a> Candidates<'a> {
                 _ => false,
             });
             if let Some(place) = wrong {
-                let index = range.start + place + 1;
+                let before = range.start.wrapping_add(place);
+                let index = before.wrapping_add(1);
                 return Err(BlobError::Record {
                     section,
                     index,
                     what: "key, which must ascend in a list,",
                     found: self.keys.get(index).copied().unwrap_or(0).into(),
-                    expected: self.keys.get(index - 1).copied().unwrap_or(0).into(),
+                    expected: self.keys.get(before).copied().unwrap_or(0).into(),
                 });
             }
         }
@@ -135,7 +136,8 @@ impl<'a> Candidates<'a> {
     #[inline(always)]
     fn range(&self, list: u32) -> Range<usize> {
         let start = |list: usize| self.starts.get(list).unwrap_or(0) as usize;
-        start(list as usize)..start(list as usize + 1)
+        let list = list as usize;
+        start(list)..start(list.wrapping_add(1))
     }
 
     /// The entries of a cell's list, by number; none for a cell that does not exist.

@@ -57,8 +57,8 @@ impl Divisions {
     #[inline(always)]
     pub(super) fn last(&self, holds: impl Fn(i16) -> bool) -> u32 {
         let (mut low, mut high) = (0, self.count);
-        while high - low > 1 {
-            let middle = low + (high - low) / 2;
+        while high.wrapping_sub(low) > 1 {
+            let middle = low.wrapping_add(high.wrapping_sub(low) / 2);
             if holds(self.plane(middle)) {
                 low = middle;
             } else {
@@ -89,7 +89,7 @@ fn volume(range: &Range) -> u64 {
     range
         .iter()
         .map(|&[first, last]| u64::from(last.wrapping_sub(first)).wrapping_add(1))
-        .product()
+        .fold(1, u64::wrapping_mul)
 }
 
 /// Lists of slots, one after the other in one array.
@@ -119,7 +119,7 @@ impl<'a> Lists<'a> {
 
     fn range(&self, list: usize) -> core::ops::Range<usize> {
         let start = self.starts.get(list).unwrap_or(0) as usize;
-        let end = self.starts.get(list + 1).unwrap_or(0) as usize;
+        let end = self.starts.get(list.wrapping_add(1)).unwrap_or(0) as usize;
         start..end
     }
 
@@ -247,7 +247,7 @@ pub(super) fn reach(
 pub fn cells_of(divisions: &[Divisions; 3], bounds: &UnitBox, margin: i32) -> Range {
     [0, 1, 2].map(|k: usize| {
         let [low, high] = bounds.0[k].map(i32::from);
-        divisions[k].met_by(low - margin, high + margin)
+        divisions[k].met_by(low.saturating_sub(margin), high.saturating_add(margin))
     })
 }
 
@@ -271,7 +271,7 @@ fn locate(ends: &[u32; Kind::ALL.len()], slot: u32) -> Option<Leaf> {
         if slot < end {
             return Some(Leaf {
                 kind,
-                first: slot - first,
+                first: slot.wrapping_sub(first),
                 count: 1,
             });
         }

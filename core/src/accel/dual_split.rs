@@ -349,7 +349,7 @@ impl<'a> Records<'a> for Held<'a> {
             let Some(step) = path.last_mut() else { break };
             *step |= 1;
             let above = self.0.get((*step >> 1) as usize);
-            current = above.map_or(u32::MAX, |above| Way(above.way).number() + 1);
+            current = above.map_or(u32::MAX, |above| Way(above.way).number().wrapping_add(1));
         }
         Ok(depth)
     }
@@ -389,7 +389,7 @@ fn carve(region: &mut UnitBox, record: &DualNode) {
 /// Proves breadth-first order, and that all nodes and leaves are reached. Returns the number of
 /// levels that have a split.
 fn check_order(nodes: &[DualNode], leaves: usize) -> Result<usize, BlobError> {
-    let expected = (2 * leaves).saturating_sub(1);
+    let expected = leaves.saturating_mul(2).saturating_sub(1);
     if nodes.len() != expected {
         return Err(BlobError::Count {
             section: SECTION,
@@ -401,7 +401,7 @@ fn check_order(nodes: &[DualNode], leaves: usize) -> Result<usize, BlobError> {
     let (mut level_end, mut levels, mut splits) = (1, 0, false);
     for (index, record) in nodes.iter().enumerate() {
         if index == level_end {
-            levels += usize::from(splits);
+            levels = usize::wrapping_add(levels, splits.into());
             (level_end, splits) = (next_node, false);
         }
         let way = Way(record.way);
@@ -425,7 +425,8 @@ fn check_order(nodes: &[DualNode], leaves: usize) -> Result<usize, BlobError> {
             let what = "number of a child or leaf, which must follow breadth first,";
             return Err(error(index, what, way.number().into(), *next as i64));
         }
-        *next += if is_leaf { 1 } else { 2 };
+        // At most two beyond the number of nodes, which is held to below.
+        *next = next.wrapping_add(if is_leaf { 1 } else { 2 });
         splits |= !is_leaf;
         // A node that nothing leads to, or a child beyond the last one.
         if next_node <= index + 1 && index + 1 < nodes.len() || next_node > nodes.len() {
@@ -433,7 +434,7 @@ fn check_order(nodes: &[DualNode], leaves: usize) -> Result<usize, BlobError> {
             return Err(error(index, what, next_node as i64, nodes.len() as i64));
         }
     }
-    levels += usize::from(splits);
+    levels = levels.wrapping_add(splits.into());
     if levels > MAX_LEVELS {
         return Err(BlobError::Header {
             field: "stack depth",

@@ -146,10 +146,12 @@ impl<'c> Steps<'c> {
                 return i32::MAX;
             }
             self.cull.enters(axis, divisions.plane(place))
-        } else if place + 1 < divisions.count() {
-            self.cull.enters(axis, divisions.plane(place + 1))
         } else {
-            i32::MAX
+            let next = place.wrapping_add(1);
+            if next >= divisions.count() {
+                return i32::MAX;
+            }
+            self.cull.enters(axis, divisions.plane(next))
         }
     }
 
@@ -229,7 +231,8 @@ impl<'a> Records<'a> for Held<'a> {
             return Err(record(SectionKind::GridShape, 0, "spare word", found, 0));
         }
         let [x, y, z] = shape.counts();
-        let expected = x as usize * y as usize * z as usize;
+        // At most 2^30.
+        let expected = x.wrapping_mul(y).wrapping_mul(z) as usize;
         if self.lists.len() != expected {
             return Err(BlobError::Count {
                 section: SectionKind::GridStarts,
@@ -244,8 +247,9 @@ impl<'a> Records<'a> for Held<'a> {
         for (z, y) in (0..z).flat_map(|z| (0..y).map(move |y| (z, y))) {
             for x in 0..x {
                 let cell: Range = [[x, x], [y, y], [z, z]];
-                pairs += self.lists.check_list(list, &cell, &reach, section)?;
-                list += 1;
+                let listed = self.lists.check_list(list, &cell, &reach, section)?;
+                pairs = u64::saturating_add(pairs, listed);
+                list = usize::wrapping_add(list, 1);
             }
         }
         check_complete(pairs, slots, &reach, section)?;

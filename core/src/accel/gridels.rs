@@ -76,7 +76,7 @@ impl Gridels {
 
     /// The two axes of a face across an axis, in the order in which its gridels are numbered.
     pub const fn across(axis: usize) -> [usize; 2] {
-        [(axis + 1) % 3, (axis + 2) % 3]
+        [axis.wrapping_add(1) % 3, axis.wrapping_add(2) % 3]
     }
 
     /// The column of a place along an axis.

@@ -45,10 +45,11 @@ impl Link {
     pub(super) const fn child(self, pair: u32, side: u32) -> Node {
         // Pairs or leaves among the children before this one.
         let left_leaf = self.0 >> 24 & side;
-        if self.0 & 1 << (24 + side) != 0 {
-            Node::leaf((2 * pair + 1 + left_leaf).wrapping_sub(self.first_pair()))
+        if self.0 >> 24 >> (side & 1) & 1 != 0 {
+            let before = pair.wrapping_mul(2).wrapping_add(1).wrapping_add(left_leaf);
+            Node::leaf(before.wrapping_sub(self.first_pair()))
         } else {
-            Node::pair(self.first_pair() + side - left_leaf)
+            Node::pair(self.first_pair().wrapping_add(side).wrapping_sub(left_leaf))
         }
     }
 }

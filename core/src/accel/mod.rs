@@ -121,6 +121,7 @@ use crate::count::Count;
 use crate::number::Number;
 use crate::ray::Ray;
 use crate::shape::Kind;
+use core::ops::Range;
 use cull::Culling;
 use heapless::{Vec, VecView};
 
@@ -209,6 +210,13 @@ impl Leaf {
     pub const MAX_COUNT: u32 = 31;
     /// Number of slots of one kind that leaves can tell apart.
     pub const SLOTS: u32 = 1 << 24;
+
+    /// Its slots among those of the kind.
+    #[inline(always)]
+    pub(crate) const fn slots(self) -> Range<usize> {
+        // Below 2^24 and 31.
+        self.first as usize..self.first.wrapping_add(self.count) as usize
+    }
 
     /// The leaf as a word.
     pub const fn to_word(self) -> u32 {

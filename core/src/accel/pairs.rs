@@ -436,7 +436,7 @@ fn check_order<A: PairArray>(pairs: A, leaves: usize) -> Result<usize, BlobError
             break;
         };
         if index == level_end {
-            levels += 1;
+            levels = usize::wrapping_add(levels, 1);
             level_end = next_pair;
         }
         for side in 0..2 {
@@ -455,10 +455,12 @@ fn check_order<A: PairArray>(pairs: A, leaves: usize) -> Result<usize, BlobError
                     expected: *next as i64,
                 });
             }
-            *next += 1;
+            // At most one beyond the number of pairs, which is held to below, and of leaves.
+            *next = usize::wrapping_add(*next, 1);
         }
         // A pair that nothing leads to, or a child beyond the last pair.
-        if next_pair <= index + 1 && index + 1 < pairs.len() || next_pair > pairs.len() {
+        let more = index.wrapping_add(1) < pairs.len();
+        if next_pair <= index.wrapping_add(1) && more || next_pair > pairs.len() {
             return Err(BlobError::Record {
                 section,
                 index,

@@ -35,7 +35,7 @@ pub(super) fn check(blob: &[u8]) -> Result<Scene<'_>, BlobError> {
         shapes,
         leaves: sections.records(SectionKind::Leaves)?,
         held: Held::read(&sections)?,
-        needs_norm: shapes.count(Kind::Sphere) + shapes.count(Kind::Cone) > 0,
+        needs_norm: shapes.count(Kind::Sphere) > 0 || shapes.count(Kind::Cone) > 0,
         #[cfg(feature = "all-structures")]
         chosen: Structure::List,
     };
@@ -437,8 +437,16 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
         };
         let (center, length) = shapes.spheres.get(index).unwrap_or_default();
         at.within("radius", length.into(), 1, radius)?;
-        point(at, "lowest coordinate", center.map(|x| x - length))?;
-        point(at, "highest coordinate", center.map(|x| x + length))?;
+        point(
+            at,
+            "lowest coordinate",
+            center.map(|x| x.wrapping_sub(length)),
+        )?;
+        point(
+            at,
+            "highest coordinate",
+            center.map(|x| x.wrapping_add(length)),
+        )?;
     }
     for (index, cuboid) in (0..shapes.records(Kind::Box)).zip(shapes.boxes) {
         let at = At {

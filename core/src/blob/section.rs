@@ -205,7 +205,7 @@ impl<'a> Sections<'a> {
                 return Err(malformed("spare word", entry.spare.into(), 0));
             }
             let start = entry.offset as usize;
-            let expected = end.next_multiple_of(ALIGNMENT);
+            let expected = end.checked_next_multiple_of(ALIGNMENT).unwrap_or(end);
             if start != expected {
                 return Err(malformed("offset", entry.offset.into(), expected as u64));
             }
@@ -214,7 +214,7 @@ impl<'a> Sections<'a> {
                 u64::from(entry.offset) + u64::from(entry.count) * u64::from(entry.stride),
                 blob.len() as u64,
             ))?;
-            end = start + bytes.len();
+            end = start.saturating_add(bytes.len());
         }
         if end != blob.len() {
             return Err(BlobError::Truncated {

@@ -36,10 +36,8 @@ const RADIANCE_BITS: u32 = 20;
 /// scene gives mirrored numbers.
 #[inline(always)]
 const fn round_off(product: i64, bits: u32) -> i64 {
-    (product
-        .wrapping_add(1 << (bits - 1))
-        .wrapping_add(product >> 63))
-        >> bits
+    let half = (1_i64 << (bits & 63)) >> 1;
+    product.wrapping_add(half).wrapping_add(product >> 63) >> (bits & 63)
 }
 
 #[inline(always)]
@@ -66,8 +64,10 @@ const fn with_sign(magnitude: u64, sign: i64) -> Fixed {
 
 /// Square root to nearest.
 fn nearest_root(square: u64) -> u64 {
+    // Below 2^32, and its square is at most the number.
     let root = square.isqrt();
-    root + u64::from(square - root * root > root)
+    let rest = square.wrapping_sub(root.wrapping_mul(root));
+    root.wrapping_add(u64::from(rest > root))
 }
 
 /// Square root as a mantissa of 32 bits and the power of two it is to be divided by.
@@ -83,13 +83,34 @@ const fn shift_magnitude(v: i64, bits: i32) -> i32 {
     let shifted = if bits >= 0 {
         magnitude >> (bits & 63)
     } else {
-        magnitude << (-bits & 63)
+        magnitude << (bits.wrapping_neg() & 63)
     } as i32;
     if v < 0 {
         shifted.wrapping_neg()
     } else {
         shifted
     }
+}
+
+/// Undoes the shift of [`shift_magnitude`], rounded down.
+#[inline(always)]
+const fn shift_back(magnitude: u64, bits: i32) -> u64 {
+    if bits >= 0 {
+        magnitude << (bits & 63)
+    } else {
+        magnitude >> (bits.wrapping_neg() & 63)
+    }
+}
+
+/// Length of a vector of at most 31 bits and a sign, to nearest.
+#[inline(always)]
+fn norm(v: [i32; 3]) -> u64 {
+    // Three squares of at most 2^62.
+    let square = v.iter().fold(0_u64, |sum, &component| {
+        let square = (component as i64).wrapping_mul(component as i64);
+        sum.wrapping_add(square as u64)
+    });
+    nearest_root(square)
 }
 
 /// How far to shift down so that the largest magnitude keeps `bits` bits.
@@ -483,9 +504,12 @@ impl Number for Fixed {
         }
         // By the reciprocal, to a part in 2^29, and then by that of the rest: within one sub-step.
         let inverse = reciprocal((divisor >> 1) as u32) as u64;
-        let coarse = ((dividend >> 31) * inverse) >> 31;
+        // Both factors have at most 32 bits.
+        let coarse = (dividend >> 31).wrapping_mul(inverse) >> 31;
         let rest = dividend.wrapping_sub(coarse.wrapping_mul(divisor)) as i64;
-        let fine = ((rest >> 8).wrapping_mul(inverse as i64) + (1 << 53)) >> 54;
+        keep(|| rest.unsigned_abs() < 1 << 37);
+        let fine = (rest >> 8).wrapping_mul(inverse as i64);
+        let fine = fine.wrapping_add(1 << 53) >> 54;
         with_sign(coarse.wrapping_add(fine as u64), sign)
     }
 
@@ -496,22 +520,16 @@ impl Number for Fixed {
     fn wide_norm(v: [Product; 3]) -> Product {
         let v = v.map(|product| product.0);
         let bits = excess_bits(v, 31);
-        let square: u64 = v
-            .iter()
-            .map(|&component| shift_magnitude(component, bits) as i64)
-            .fold(0, |sum, part| sum + (part * part) as u64);
-        let norm = nearest_root(square);
-        Product(if bits >= 0 {
-            norm << (bits & 63)
-        } else {
-            norm >> (-bits & 63)
-        } as i64)
+        let norm = norm(v.map(|component| shift_magnitude(component, bits)));
+        Product(shift_back(norm, bits) as i64)
     }
 
     fn geometric_mean(a: Product, b: Product) -> Product {
         let (root_a, shift_a) = scaled_root(a.0.max(0) as u64);
         let (root_b, shift_b) = scaled_root(b.0.max(0) as u64);
-        Product(((root_a * root_b) >> ((shift_a + shift_b) & 63)) as i64)
+        // Roots have 32 bits.
+        let product = root_a.wrapping_mul(root_b);
+        Product((product >> (shift_a.wrapping_add(shift_b) & 63)) as i64)
     }
 
     #[inline(always)]
@@ -566,11 +584,8 @@ impl Number for Fixed {
     fn normalize(v: [Self; 3]) -> ([Self; 3], Self) {
         let wide = v.map(|component| component.0 as i64);
         let bits = excess_bits(wide, 31);
-        let scaled = wide.map(|component| shift_magnitude(component, bits) as i64);
-        let square: u64 = scaled
-            .iter()
-            .fold(0, |sum, part| sum + (part * part) as u64);
-        let norm = nearest_root(square);
+        let scaled = wide.map(|component| shift_magnitude(component, bits));
+        let norm = norm(scaled);
         if norm == 0 {
             return ([Fixed(0); 3], Fixed(0));
         }
@@ -578,16 +593,12 @@ impl Number for Fixed {
         let down = (norm >> 31) as u32 & 1;
         let inverse = reciprocal((norm >> down) as u32) as u64;
         let unit = scaled.map(|component| {
-            let magnitude = (component.unsigned_abs() * inverse) >> (31 + down);
+            let component = component as i64;
+            let magnitude = component.unsigned_abs().wrapping_mul(inverse) >> (31 + down);
             with_sign(magnitude, component)
         });
         // The vector has at most 32 bits, so it was shifted up, or down by one.
-        let length = if bits >= 0 {
-            norm << (bits & 63)
-        } else {
-            norm >> (-bits & 63)
-        };
-        (unit, with_sign(length, 0))
+        (unit, with_sign(shift_back(norm, bits), 0))
     }
 
     #[inline(always)]
@@ -623,10 +634,19 @@ impl Number for Fixed {
         } else {
             (1 << 29, 1 << 17)
         };
-        let inverse = if slope.0 < 0 { -steepness } else { steepness };
+        let inverse = if slope.0 < 0 {
+            steepness.wrapping_neg()
+        } else {
+            steepness
+        };
         let offset = (product(origin.0, inverse) >> (16 + LENGTH_BITS)) as i32;
-        let margin = (steepness >> 18) + 3;
-        CullAxis::new(inverse, -offset - margin, -offset + margin + parallel)
+        keep(|| offset.unsigned_abs() <= 1 << 30);
+        let (back, margin) = (offset.wrapping_neg(), (steepness >> 18).wrapping_add(3));
+        CullAxis::new(
+            inverse,
+            back.wrapping_sub(margin),
+            back.wrapping_add(margin).wrapping_add(parallel),
+        )
     }
 }
 

@@ -96,13 +96,17 @@ fn parallel_axis(offset: i32, descending: bool) -> CullAxis {
     let (inverse, offset) = if descending {
         (-INVERSE, offset)
     } else {
-        (INVERSE, -offset)
+        (INVERSE, offset.wrapping_neg())
     };
-    CullAxis::new(inverse, offset - MARGIN, offset + MARGIN + (1 << 17))
+    CullAxis::new(
+        inverse,
+        offset.wrapping_sub(MARGIN),
+        offset.wrapping_add(MARGIN + (1 << 17)),
+    )
 }
 
 macro_rules! float_number {
-    ($float:ident, $format:expr, $precision:expr, $smallest:expr, $sqrt:path, $exp:path, $floor:path,
+    ($float:ident, $format:expr, $precision:expr, $smallest:expr, $sqrt:path, $exp:path,
      $compare_products:path, $settle:expr, $direction:expr) => {
         impl Number for $float {
             type Wide = $float;
@@ -237,7 +241,9 @@ macro_rules! float_number {
             }
 
             fn cell(self, size: Self) -> i32 {
-                $floor(self / size) as i32
+                let quotient = self / size;
+                let whole = quotient as i32;
+                whole.saturating_sub((whole as $float > quotient).into())
             }
 
             #[inline(always)]
@@ -431,7 +437,6 @@ float_number!(
     SMALLEST_F32,
     libm::sqrtf,
     libm::expf,
-    libm::floorf,
     compare_products_f32,
     // No product of two coordinates in single precision underflows in double precision.
     |x: f32| x,
@@ -452,7 +457,6 @@ float_number!(
     SMALLEST_F64,
     libm::sqrt,
     libm::exp,
-    libm::floor,
     compare_products_f64,
     |x: f64| if x.abs() < SMALLEST_F64 { 0.0 } else { x },
     |v: [i64; 3]| v.map(|component| component as f64)

@@ -18,6 +18,7 @@ pub(crate) struct Camera<N: Number> {
     right: [N::Wide; 3],
     /// What half a subpixel upwards adds.
     up: [N::Wide; 3],
+    /// Of the picture, in subpixels.
     width: i32,
     height: i32,
 }
@@ -32,27 +33,30 @@ impl<N: Number> Camera<N> {
         // upper half.
         let aspect = width.div_ceil(height.max(1));
         let reach = |k: usize| {
-            let size = |v: [i32; 3]| i64::from(v[k].unsigned_abs());
-            size(view.forward) + size(view.up) + size(view.right) * i64::from(aspect)
+            let size = |v: [i32; 3]| u64::from(v[k].unsigned_abs());
+            let right = size(view.right) * u64::from(aspect);
+            right
+                .wrapping_add(size(view.forward))
+                .wrapping_add(size(view.up))
         };
         let largest = reach(0) | reach(1) | reach(2);
-        let up = largest.leading_zeros().saturating_sub(2) & 63;
-        let fine = |q: i32| N::far(i64::from(q) << up);
+        let up = largest.leading_zeros().saturating_sub(2);
+        let fine = |q: i32| N::far(i64::from(q).wrapping_shl(up));
         let step = |q: i32| N::wide_over(fine(q), SUBPIXELS * i32::from(height));
         Self {
             eye: Pencil::of(bounds, view.eye.map(N::far)),
             forward: view.forward.map(fine),
             right: view.right.map(step),
             up: view.up.map(step),
-            width: width.into(),
-            height: height.into(),
+            width: SUBPIXELS * i32::from(width),
+            height: SUBPIXELS * i32::from(height),
         }
     }
 
     /// The row that lies `y` subpixels below the upper edge.
     #[inline(always)]
     pub(crate) fn row(&self, y: i32) -> Row<N> {
-        let rise = SUBPIXELS * self.height - 2 * y;
+        let rise = self.height.wrapping_sub(y.wrapping_mul(2));
         let axis = |k: usize| self.forward[k] + N::wide_times(self.up[k], rise);
         Row([axis(0), axis(1), axis(2)])
     }
@@ -60,7 +64,7 @@ impl<N: Number> Camera<N> {
     /// The ray to the point of a row that lies `x` subpixels from the left edge.
     #[inline(always)]
     pub(crate) fn ray(&self, row: &Row<N>, x: i32) -> Result<Ray<N>, RayError> {
-        let shift = 2 * x - SUBPIXELS * self.width;
+        let shift = x.wrapping_mul(2).wrapping_sub(self.width);
         let axis = |k: usize| N::upper(row.0[k] + N::wide_times(self.right[k], shift));
         let slopes = N::slopes_of([axis(0), axis(1), axis(2)]);
         let (slope, major) = slopes.ok_or(RayError::Direction)?;

@@ -8,8 +8,9 @@ pub(crate) const SUBPIXELS: i32 = 256;
 #[inline(always)]
 pub(crate) fn place(pixel: [u16; 2], index: u16, count: u16) -> [i32; 2] {
     let [dx, dy] = within(index, count);
+    // At most 2^24 and 2^8.
     let [x, y] = pixel.map(|corner| i32::from(corner) * SUBPIXELS);
-    [x + dx, y + dy]
+    [x.wrapping_add(dx), y.wrapping_add(dy)]
 }
 
 /// The place of sample `index` of `count` in its pixel, in subpixels from its upper left corner.
@@ -30,7 +31,7 @@ fn within(index: u16, count: u16) -> [i32; 2] {
         column ^= column >> 1;
     }
     // Half a cell of the finest power of two that holds the samples.
-    let half_cell = (SUBPIXELS / 2) >> count.next_power_of_two().trailing_zeros();
+    let half_cell = (SUBPIXELS / 2) >> count.min(256).next_power_of_two().trailing_zeros();
     [
         i32::from(mirrored) + half_cell,
         i32::from(second) + half_cell,

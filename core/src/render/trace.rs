@@ -279,7 +279,7 @@ impl Loop<'_, '_> {
                 origin,
                 direction,
                 weight,
-                depth: depth + 1,
+                depth: depth.saturating_add(1),
                 kind,
             });
             if C::TELLS {

@@ -383,8 +383,7 @@ impl Shapes<'_> {
 
     /// Whether all primitives of a leaf exist and lie in a box.
     pub(crate) fn leaf_inside(&self, leaf: Leaf, outer: &UnitBox) -> bool {
-        let first = leaf.first as usize;
-        (first..first + leaf.count as usize).all(|index| {
+        leaf.slots().all(|index| {
             self.bounds(leaf.kind, index)
                 .is_some_and(|bounds| outer.contains(&bounds))
         })

@@ -5,7 +5,7 @@
 //! their rays they give the least and the most that a ray, with its shading, is known to take. A
 //! picture's estimate is its rays times either; where a scene lies in between, its primitives
 //! decide: on boards a test of a cone takes ten times as long as one of a box. Meshes are nearer to
-//! the least: a ray at suzanne takes 1,329 instructions in `f32` and 1,893 to 2,021 in `fixed`, not
+//! the least: a ray at suzanne takes 1,251 instructions in `f32` and 1,718 to 1,855 in `fixed`, not
 //! shaded. `tests/tests/accuracy.rs` holds these numbers to the recorded ones.
 
 use super::measure::Point;

@@ -75,13 +75,15 @@ pub struct Build<'b> {
     format: Format,
     structure: Structure,
     scene: &'b Compiled,
+    overflow_checks: bool,
 }
 
 impl fmt::Display for Build<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (board, scene) = (self.board.name, self.scene.name);
         let (format, structure) = (self.format.name(), self.structure.name());
-        write!(f, "{scene} {board} {format} {structure}")
+        let checked = if self.overflow_checks { " checked" } else { "" };
+        write!(f, "{scene} {board} {format} {structure}{checked}")
     }
 }
 
@@ -115,6 +117,15 @@ impl<'b> Build<'b> {
             format,
             structure,
             scene,
+            overflow_checks: false,
+        }
+    }
+
+    /// The same with all arithmetic checked for overflow, as debug builds check it.
+    pub fn with_overflow_checks(self) -> Self {
+        Self {
+            overflow_checks: true,
+            ..self
         }
     }
 
@@ -160,6 +171,9 @@ impl<'b> Build<'b> {
         if self.board.target != WASM.target {
             // For the bound of the stack; neither changes an instruction.
             flags += " -Z emit-stack-sizes -C link-arg=--emit-relocs";
+        }
+        if self.overflow_checks {
+            flags += " -C overflow-checks=on";
         }
         if self.board.core == "Cortex-M7" {
             // The target's own baseline is a Cortex-M4F, without double precision.

@@ -143,6 +143,37 @@ fn look_into(
     report.insert("flash-bytes".into(), elf.flash_bytes());
 }
 
+/// No sum, product or shift of the core leaves its type, and the compiler can tell: with all of them
+/// checked, nothing is linked that panics.
+#[test]
+fn nothing_panics_with_overflow_checks() {
+    if !firmware::available() {
+        return;
+    }
+    let scene = scenes::quick();
+    let everywhere = [
+        ("microbit", Format::Fixed),
+        ("mps2-an385", Format::Fixed),
+        ("sifive_e", Format::Fixed),
+        ("mps2-an386", Format::F32),
+        ("mps2-an500", Format::F64),
+    ]
+    .map(|(name, format)| (name, format, Structure::DualSplit));
+    let others = [
+        Structure::Flagged,
+        Structure::Bvh,
+        Structure::Grid,
+        Structure::Apex,
+    ]
+    .map(|structure| ("mps2-an385", Format::Fixed, structure));
+    for (name, format, structure) in everywhere.into_iter().chain(others) {
+        let build = Build::new(board(name), format, structure, &scene).with_overflow_checks();
+        let elf = build.program_with("picture", &["everything"]).elf();
+        let panicking = elf.functions(elf::panics);
+        assert!(panicking.is_empty(), "{build} can panic: {panicking:#?}");
+    }
+}
+
 /// What every shape and effect takes on the smallest board: the README's table.
 #[test]
 fn shapes_and_effects_are_paid_for_one_by_one() {

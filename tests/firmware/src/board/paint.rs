@@ -26,13 +26,9 @@ impl Paint {
     pub fn spread() -> Self {
         let here = 0_u32;
         // This frame is no larger than what is left out; a phase's own frames begin above.
-        let top = (black_box(&raw const here) as usize - 64) & !3;
+        let top = (black_box(&raw const here) as usize).wrapping_sub(64) & !3;
         let free = &raw const __sheap as usize;
-        let bottom = if top - free > REACH {
-            top - REACH
-        } else {
-            free
-        };
+        let bottom = free.max(top.saturating_sub(REACH));
         for word in (bottom..top).step_by(4) {
             // SAFETY: memory between the statics and the stack, which nothing uses.
             unsafe { ptr::write_volatile(word as *mut u32, PAINT) };
@@ -46,8 +42,8 @@ impl Paint {
         let mut deepest = self.bottom;
         // SAFETY: as above.
         while deepest < self.top && unsafe { ptr::read_volatile(deepest as *const u32) } == PAINT {
-            deepest += 4;
+            deepest = deepest.wrapping_add(4);
         }
-        Some(&raw const _stack_start as usize - deepest)
+        Some((&raw const _stack_start as usize).wrapping_sub(deepest))
     }
 }
