@@ -2,7 +2,8 @@
 //! `unsafe`, and the same bits on every machine.
 //!
 //! A host compiles a scene file into one binary blob (`gridel build`). [`Scene::from_bytes`] checks
-//! the blob once; after that nothing can fail. Two things can be asked of a scene:
+//! the blob once; after that nothing can fail. Firmware can have most of that done by the compiler:
+//! see [`Vouched`]. Two things can be asked of a scene:
 //!
 //! - **rays**: [`closest_hit`], [`closest_primitive`] and [`any_hit`], with a [`Ray`] of your own;
 //! - **pictures**: a [`Renderer`] gives pixels row by row or for any rectangle, and a
@@ -75,7 +76,7 @@ pub use accel::Spheres;
 #[cfg(feature = "wide")]
 pub use accel::Wide;
 pub use accel::{Accel, List, Stack, StackView, Structure, StructureVisitor};
-pub use blob::{Aligned, BlobError, Scene};
+pub use blob::{Aligned, BlobError, Scene, Vouched};
 pub use count::{Count, Counters, NoCount, RayKind};
 pub use event::Event;
 pub use number::{Fixed, Format, Number};

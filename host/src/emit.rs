@@ -3,7 +3,7 @@
 
 use crate::board::Board;
 use gridel_core::render::work_depth;
-use gridel_core::{Effects, Format, Kind, Scene, Structure};
+use gridel_core::{Effects, Format, Kind, Scene, Structure, Vouched};
 use std::fmt::Write;
 
 /// The names of the module's two files.
@@ -57,6 +57,11 @@ impl Emitted<'_> {
                 board.name
             );
         }
+        let others = Structure::ALL.into_iter().filter(|&it| scene.holds(it));
+        let vouched = others
+            .into_iter()
+            .all(|it| Vouched::STRUCTURES.contains(&it));
+        let load = if vouched { LOAD_VOUCHED } else { LOAD_CHECKED };
         let features: Vec<_> = self.features().iter().map(|it| format!("{it:?}")).collect();
         format!(
             "// Written by `gridel build --emit-rust`; the scene is in `{BLOB}` beside this file.\n\
@@ -91,6 +96,8 @@ impl Emitted<'_> {
              /// The renderer, with the code of the scene's effects.\n\
              pub type Picture<'s> = gridel_core::Renderer<'s, 'static, Number, Accel, EFFECTS>;\n\
              \n\
+             {load}\
+             \n\
              const BYTES: &[u8] = include_bytes!(\"{BLOB}\");\n\
              \n\
              // A blob that is not the one that this was written for does not compile.\n\
@@ -118,6 +125,27 @@ impl Emitted<'_> {
         )
     }
 }
+
+/// Loading that was prepared while the module was compiled.
+const LOAD_VOUCHED: &str = "\
+/// The scene, in constant time: what makes every walk end was proved while this was compiled.
+pub fn load() -> Result<gridel_core::Scene<'static>, gridel_core::BlobError> {
+    #[allow(long_running_const_eval)]
+    static VOUCHED: gridel_core::Vouched<'static> = match gridel_core::Vouched::of(BLOB) {
+        Ok(vouched) => vouched,
+        Err(_) => panic!(\"the blob was damaged: write it and this module again\"),
+    };
+    gridel_core::Scene::vouched(VOUCHED)
+}
+";
+
+/// Loading that proves everything.
+const LOAD_CHECKED: &str = "\
+/// The scene, checked: of a blob with this structure everything is proved when it is loaded.
+pub fn load() -> Result<gridel_core::Scene<'static>, gridel_core::BlobError> {
+    gridel_core::Scene::from_bytes(BLOB)
+}
+";
 
 fn number(format: Format) -> &'static str {
     match format {

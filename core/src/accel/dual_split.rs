@@ -23,6 +23,7 @@
 //! hits, and a region may even be empty, where there is nothing in it.
 
 use super::cull::{Cull, Culling, Interval, PairCulling};
+use super::order::Order;
 use super::{Accel, Entry, Leaf, MAX_LEVELS, Records, StackView, Structure};
 use crate::blob::record::{DualNode, UnitBox};
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
@@ -397,13 +398,8 @@ fn check_order(nodes: &[DualNode], leaves: usize) -> Result<usize, BlobError> {
             expected,
         });
     }
-    let (mut next_node, mut next_leaf) = (1, 0);
-    let (mut level_end, mut levels, mut splits) = (1, 0, false);
+    let mut order = Order::new(SECTION, nodes.len());
     for (index, record) in nodes.iter().enumerate() {
-        if index == level_end {
-            levels = usize::wrapping_add(levels, splits.into());
-            (level_end, splits) = (next_node, false);
-        }
         let way = Way(record.way);
         let [first, second] = way.carves();
         let unused = record.way >> 30 != 0 || first == 3 && second != 3;
@@ -415,32 +411,7 @@ fn check_order(nodes: &[DualNode], leaves: usize) -> Result<usize, BlobError> {
                 0,
             ));
         }
-        let is_leaf = way.split() == Way::NONE as usize;
-        let next = if is_leaf {
-            &mut next_leaf
-        } else {
-            &mut next_node
-        };
-        if way.number() as usize != *next {
-            let what = "number of a child or leaf, which must follow breadth first,";
-            return Err(error(index, what, way.number().into(), *next as i64));
-        }
-        // At most two beyond the number of nodes, which is held to below.
-        *next = next.wrapping_add(if is_leaf { 1 } else { 2 });
-        splits |= !is_leaf;
-        // A node that nothing leads to, or a child beyond the last one.
-        if next_node <= index + 1 && index + 1 < nodes.len() || next_node > nodes.len() {
-            let what = "number of nodes that are reached up to here";
-            return Err(error(index, what, next_node as i64, nodes.len() as i64));
-        }
+        order.dual(way)?;
     }
-    levels = levels.wrapping_add(splits.into());
-    if levels > MAX_LEVELS {
-        return Err(BlobError::Header {
-            field: "stack depth",
-            found: levels as u64,
-            expected: MAX_LEVELS as u64,
-        });
-    }
-    Ok(levels)
+    order.levels()
 }

@@ -49,6 +49,7 @@ mod link;
 pub mod list;
 #[cfg(feature = "octree")]
 pub mod octree;
+pub(crate) mod order;
 #[cfg(any(
     feature = "bvh",
     feature = "flagged",

@@ -2,6 +2,7 @@
 
 use super::cull::{Culling, Interval, PairCulling};
 use super::link::Node;
+use super::order::Order;
 use super::{Entry, Leaf, MAX_LEVELS, Records, StackView};
 use crate::blob::record::UnitBox;
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
@@ -429,53 +430,12 @@ fn check_order<A: PairArray>(pairs: A, leaves: usize) -> Result<usize, BlobError
             expected,
         });
     }
-    let (mut levels, mut level_end) = (0, 0);
-    let (mut next_pair, mut next_leaf) = (1, 0);
+    let mut order = Order::new(section, pairs.len());
     for index in 0..pairs.len() {
         let Some(pair) = pairs.pair(index) else {
             break;
         };
-        if index == level_end {
-            levels = usize::wrapping_add(levels, 1);
-            level_end = next_pair;
-        }
-        for side in 0..2 {
-            let child = pair.child(index as u32, side);
-            let next = if child.is_leaf() {
-                &mut next_leaf
-            } else {
-                &mut next_pair
-            };
-            if child.number() as usize != *next {
-                return Err(BlobError::Record {
-                    section,
-                    index,
-                    what: "number of a child, which must follow breadth first,",
-                    found: child.number().into(),
-                    expected: *next as i64,
-                });
-            }
-            // At most one beyond the number of pairs, which is held to below, and of leaves.
-            *next = usize::wrapping_add(*next, 1);
-        }
-        // A pair that nothing leads to, or a child beyond the last pair.
-        let more = index.wrapping_add(1) < pairs.len();
-        if next_pair <= index.wrapping_add(1) && more || next_pair > pairs.len() {
-            return Err(BlobError::Record {
-                section,
-                index,
-                what: "number of pairs that are reached up to here",
-                found: next_pair as i64,
-                expected: pairs.len() as i64,
-            });
-        }
+        order.pair([0, 1].map(|side| pair.child(index as u32, side)))?;
     }
-    if levels > MAX_LEVELS {
-        return Err(BlobError::Header {
-            field: "stack depth",
-            found: levels as u64,
-            expected: MAX_LEVELS as u64,
-        });
-    }
-    Ok(levels)
+    order.levels()
 }

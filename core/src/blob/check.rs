@@ -1,141 +1,17 @@
 //! The proofs that [`Scene::from_bytes`] makes, in the order in which each relies on those before.
 
-use super::record::{
-    ALIGNMENT, Cone, Cuboid, Disc, ENDIANNESS, Header, Light, MAGIC, Material, UnitBox, VERSION,
-    View,
-};
+use super::range::{At, at_most, exactly};
+use super::read::{FAR, RADIANCE};
+use super::record::{Header, UnitBox};
 use super::section::Sections;
-use super::{BlobError, Indices, Scene, SectionKind, checksum};
-use crate::accel::{Entry, Held, Leaf, MAX_STACK_DEPTH, Structure};
+use super::{BlobError, Scene, SectionKind, checksum};
+use crate::accel::{Held, Leaf};
 use crate::number::{Fixed, Number};
-use crate::render::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use crate::shade::Effects;
-#[cfg(feature = "wide")]
-use crate::shape::{Clusters, Packs, Strips};
-use crate::shape::{Kind, Shapes, Spheres, Triangles, Vertices, WIDE_INDICES, WIDE_LATTICE};
-use core::mem::size_of;
+use crate::shape::{Kind, Shapes};
 
-/// Checks a blob; see [`Scene::from_bytes`].
-pub(super) fn check(blob: &[u8]) -> Result<Scene<'_>, BlobError> {
-    let header = check_header(blob)?;
-    let sections = Sections::read(blob, header.section_count)?;
-    let view = check_view(&sections)?;
-    let lights = check_lights(&sections)?;
-    let materials = check_materials(&sections, header)?;
-    let shapes = read_shapes(&sections, header)?;
-    check_shapes(&shapes, header)?;
-    let scene = Scene {
-        header,
-        view,
-        lights,
-        materials,
-        object_first: Indices::read(&sections, SectionKind::ObjectFirst)?,
-        object_material: Indices::read(&sections, SectionKind::ObjectMaterial)?,
-        order: Indices::read(&sections, SectionKind::Order)?,
-        shapes,
-        leaves: sections.records(SectionKind::Leaves)?,
-        held: Held::read(&sections)?,
-        needs_norm: shapes.count(Kind::Sphere) > 0 || shapes.count(Kind::Cone) > 0,
-        #[cfg(feature = "all-structures")]
-        chosen: Structure::List,
-    };
-    check_objects(&scene)?;
-    check_structures(&scene, &sections)?;
-    Ok(scene)
-}
-
-/// An error unless `found` lies in `0..=most`.
-fn at_most(field: &'static str, found: u64, most: u64) -> Result<(), BlobError> {
-    if found > most {
-        return Err(BlobError::Header {
-            field,
-            found,
-            expected: most,
-        });
-    }
-    Ok(())
-}
-
-/// An error unless `found` is `expected`.
-fn exactly(field: &'static str, found: u64, expected: u64) -> Result<(), BlobError> {
-    if found != expected {
-        return Err(BlobError::Header {
-            field,
-            found,
-            expected,
-        });
-    }
-    Ok(())
-}
-
-/// Errors for the records of one section.
-#[derive(Clone, Copy)]
-struct At {
-    section: SectionKind,
-    index: usize,
-}
-
-impl At {
-    /// An error unless `found` lies in `low..=high`.
-    fn within(self, what: &'static str, found: i64, low: i64, high: i64) -> Result<(), BlobError> {
-        let expected = if found < low { low } else { high };
-        if found < low || found > high {
-            let Self { section, index } = self;
-            return Err(BlobError::Record {
-                section,
-                index,
-                what,
-                found,
-                expected,
-            });
-        }
-        Ok(())
-    }
-
-    /// An error unless every one of `found` lies in `low..=high`.
-    fn all_within<T: Into<i64> + Copy>(
-        self,
-        what: &'static str,
-        found: &[T],
-        low: i64,
-        high: i64,
-    ) -> Result<(), BlobError> {
-        found
-            .iter()
-            .try_for_each(|&value| self.within(what, value.into(), low, high))
-    }
-}
-
-fn check_header(blob: &[u8]) -> Result<&Header, BlobError> {
-    // What it is comes before how long it is, so that a foreign file is called one.
-    if !blob.starts_with(&MAGIC[..MAGIC.len().min(blob.len())]) || blob.is_empty() {
-        return Err(BlobError::Magic);
-    }
-    let needed = size_of::<Header>();
-    let bytes = blob.get(..needed).ok_or(BlobError::Truncated {
-        needed,
-        found: blob.len(),
-    })?;
-    if !(blob.as_ptr() as usize).is_multiple_of(ALIGNMENT) {
-        return Err(BlobError::Misaligned);
-    }
-    let header: &Header = bytemuck::try_from_bytes(bytes).map_err(|_| BlobError::Misaligned)?;
-    if header.endianness != ENDIANNESS {
-        return Err(BlobError::Endianness {
-            found: header.endianness,
-        });
-    }
-    if header.version != VERSION {
-        return Err(BlobError::Version {
-            found: header.version,
-        });
-    }
-    if header.blob_bytes as usize != blob.len() {
-        return Err(BlobError::Truncated {
-            needed: header.blob_bytes as usize,
-            found: blob.len(),
-        });
-    }
+/// Proves that no byte of a blob was changed since it was written.
+pub(super) fn check_sum(blob: &[u8], header: &Header) -> Result<(), BlobError> {
     let found = checksum(blob);
     if found != header.checksum {
         return Err(BlobError::Checksum {
@@ -143,115 +19,24 @@ fn check_header(blob: &[u8]) -> Result<&Header, BlobError> {
             expected: header.checksum,
         });
     }
-    at_most(
-        "set of effects",
-        header.effects.into(),
-        Effects::ALL.0.into(),
-    )?;
-    let missing = Effects(header.effects).without(Effects::AVAILABLE);
-    if missing != Effects::NONE {
-        return Err(BlobError::MissingEffects { missing });
-    }
-    let known = Structure::ALL
-        .iter()
-        .fold(0, |bits, structure| bits | structure.bit());
-    exactly(
-        "set of structures beyond those known",
-        (header.structures & !known).into(),
-        0,
-    )?;
-    at_most(
-        "stack depth",
-        header.stack_depth.into(),
-        MAX_STACK_DEPTH as u64,
-    )?;
-    let stack_bytes = u64::from(header.stack_depth) * size_of::<Entry>() as u64;
-    exactly(
-        "number of stack bytes",
-        header.stack_bytes.into(),
-        stack_bytes,
-    )?;
-    at_most("number of lattice bits", header.lattice_bits.into(), 24)?;
-    let storage_bits = if header.lattice_bits <= 16 { 16 } else { 24 };
-    exactly(
-        "number of storage bits",
-        header.storage_bits.into(),
-        storage_bits,
-    )?;
-    at_most(
-        "magnitude of the unit's exponent",
-        header.unit_exponent.unsigned_abs().into(),
-        1000,
-    )?;
-    let finite = header
-        .origin
-        .iter()
-        .filter(|origin| origin.is_finite())
-        .count();
-    exactly(
-        "number of finite coordinates of the origin",
-        finite as u64,
-        3,
-    )?;
-    for axis in header.bounds.0 {
-        exactly(
-            "number of inverted sides of the scene's box",
-            u64::from(axis[0] > axis[1]),
-            0,
-        )?;
-        exactly(
-            "number of sides at -32768",
-            u64::from(axis[0] == i16::MIN),
-            0,
-        )?;
-    }
-    exactly("first spare word", header.spare[0].into(), 0)?;
-    exactly("second spare word", header.spare[1].into(), 0)?;
-    Ok(header)
+    Ok(())
 }
 
-/// Largest magnitude of a far coordinate, so that sums and products with ratios stay in 64 bits.
-const FAR: i64 = 1 << 50;
+/// Proves all that is in the records of a scene; see [`Scene::from_bytes`].
+pub(super) fn check<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<(), BlobError> {
+    check_lights(scene)?;
+    check_materials(scene)?;
+    check_shapes(&scene.shapes, scene.header)?;
+    check_objects(scene)?;
+    check_structures(scene, sections)
+}
+
 /// The ratio 1.
 const ONE: i64 = 1 << 30;
-/// The largest radiance.
-const RADIANCE: i64 = i32::MAX as i64;
 
-fn check_view<'a>(sections: &Sections<'a>) -> Result<&'a View, BlobError> {
-    let section = SectionKind::View;
-    let views: &[View] = sections.records(section)?;
-    let [view] = views else {
-        return Err(BlobError::Count {
-            section,
-            found: views.len(),
-            expected: 1,
-        });
-    };
-    let at = At { section, index: 0 };
-    at.all_within("eye", &view.eye, -FAR, FAR)?;
-    for vector in [view.forward, view.right, view.up] {
-        at.all_within("camera vector", &vector, -(1 << 28), 1 << 28)?;
-    }
-    at.all_within("background", &view.background, 0, RADIANCE)?;
-    at.all_within("ambient light", &view.ambient, 0, RADIANCE)?;
-    at.within("cutoff", view.cutoff.into(), 0, RADIANCE)?;
-    at.within("width", view.width.into(), 1, u16::MAX.into())?;
-    at.within("height", view.height.into(), 1, u16::MAX.into())?;
-    at.within(
-        "number of samples",
-        view.samples.into(),
-        1,
-        MAX_SAMPLES.into(),
-    )?;
-    at.within("depth", view.depth.into(), 0, MAX_RAY_DEPTH as i64)?;
-    at.within("spare byte", view.spare.into(), 0, 0)?;
-    Ok(view)
-}
-
-fn check_lights<'a>(sections: &Sections<'a>) -> Result<&'a [Light], BlobError> {
+fn check_lights(scene: &Scene<'_>) -> Result<(), BlobError> {
     let section = SectionKind::Lights;
-    let lights: &[Light] = sections.records(section)?;
-    for (index, light) in lights.iter().enumerate() {
+    for (index, light) in scene.lights.iter().enumerate() {
         let at = At { section, index };
         at.within("kind", light.directional.into(), 0, 1)?;
         at.all_within("colour", &light.color, 0, RADIANCE)?;
@@ -260,15 +45,12 @@ fn check_lights<'a>(sections: &Sections<'a>) -> Result<&'a [Light], BlobError> {
         let zero = light.directional == 1 && light.vector == [0; 3];
         at.within("number of directions of length 0", zero.into(), 0, 0)?;
     }
-    Ok(lights)
+    Ok(())
 }
 
-fn check_materials<'a>(
-    sections: &Sections<'a>,
-    header: &Header,
-) -> Result<&'a [Material], BlobError> {
+fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
     let section = SectionKind::Materials;
-    let materials: &[Material] = sections.records(section)?;
+    let (header, materials) = (scene.header, scene.materials);
     if materials.is_empty() && header.primitives > 0 {
         return Err(BlobError::Count {
             section,
@@ -311,72 +93,7 @@ fn check_materials<'a>(
             0,
         )?;
     }
-    Ok(materials)
-}
-
-fn read_shapes<'a>(sections: &Sections<'a>, header: &Header) -> Result<Shapes<'a>, BlobError> {
-    let narrow = sections.get(SectionKind::Triangles).stride == size_of::<[u16; 3]>();
-    let short = header.storage_bits == 16;
-    let triangles = sections.len(SectionKind::Triangles);
-    let kinds = [
-        (Kind::Triangle, triangles),
-        (Kind::Sphere, sections.len(SectionKind::Spheres)),
-        (Kind::Box, sections.len(SectionKind::Boxes)),
-        (Kind::Disc, sections.len(SectionKind::Discs)),
-        (Kind::Cone, sections.len(SectionKind::Cones)),
-    ];
-    let kinds = kinds.map(|(kind, count)| (count > 0 && !kind.is_available(), kind.name()));
-    let stored = [
-        (!short && !WIDE_LATTICE, "wide-lattice"),
-        (triangles > 0 && !narrow && !WIDE_INDICES, "wide-indices"),
-    ];
-    // Triangles and spheres that lie in clusters alone.
-    let holds = |kind| sections.len(kind) > 0;
-    let sole = holds(SectionKind::Strips) && triangles == 0
-        || holds(SectionKind::Packs) && !holds(SectionKind::Spheres);
-    if sole && cfg!(not(feature = "wide")) {
-        return Err(BlobError::MissingShape { missing: "wide" });
-    }
-    for (is_missing, missing) in kinds.into_iter().chain(stored) {
-        if is_missing {
-            return Err(BlobError::MissingShape { missing });
-        }
-    }
-    Ok(Shapes {
-        vertices: if short {
-            Vertices::V16(sections.records(SectionKind::Vertices)?)
-        } else {
-            Vertices::V24(sections.records(SectionKind::Vertices)?)
-        },
-        triangles: if narrow || triangles == 0 {
-            Triangles::U16(sections.records(SectionKind::Triangles)?)
-        } else {
-            Triangles::U32(sections.records(SectionKind::Triangles)?)
-        },
-        spheres: if short {
-            Spheres::S16(sections.records(SectionKind::Spheres)?)
-        } else {
-            Spheres::S24(sections.records(SectionKind::Spheres)?)
-        },
-        boxes: sections.records::<Cuboid>(SectionKind::Boxes)?,
-        discs: sections.records::<Disc>(SectionKind::Discs)?,
-        cones: sections.records::<Cone>(SectionKind::Cones)?,
-        #[cfg(feature = "wide")]
-        clusters: Clusters {
-            strips: if short {
-                Strips::S16(sections.records(SectionKind::Strips)?)
-            } else {
-                Strips::S24(sections.records(SectionKind::Strips)?)
-            },
-            packs: if short {
-                Packs::P16(sections.records(SectionKind::Packs)?)
-            } else {
-                Packs::P24(sections.records(SectionKind::Packs)?)
-            },
-            members: Indices::read(sections, SectionKind::Members)?,
-            homes: sections.records(SectionKind::Homes)?,
-        },
-    })
+    Ok(())
 }
 
 fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {

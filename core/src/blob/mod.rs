@@ -7,13 +7,17 @@ mod check;
 pub mod cluster;
 mod error;
 mod index;
+mod range;
+mod read;
 pub mod record;
 mod section;
+mod vouch;
 
 pub use error::BlobError;
 pub use index::Indices;
 pub use section::SectionKind;
 pub(crate) use section::Sections;
+pub use vouch::Vouched;
 
 use crate::accel::{Held, Leaf, Structure};
 use crate::shade::Effects;
@@ -22,8 +26,8 @@ use record::{Cone, Cuboid, Disc, Header, Light, Material, UnitBox, View};
 
 /// A checked view of a blob: a few hundred bytes that borrow from it.
 ///
-/// Once it exists, no blob can make a query panic, run forever or leave its arrays: everything
-/// that the kernels rely on was proved by [`Scene::from_bytes`].
+/// Once it exists, no blob can make a query panic, run forever or leave its arrays: that was proved
+/// by [`Scene::from_bytes`], which proves that the answers are right as well, or by [`Vouched`].
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
     pub(crate) header: &'a Header,
@@ -59,7 +63,23 @@ impl<'a> Scene<'a> {
     /// If anything of this fails to hold, or the scene calls for an effect, or holds a kind of
     /// primitive, that this build was compiled without. Shortcomings of the scene itself (no lights, no objects) are no errors.
     pub fn from_bytes(blob: &'a [u8]) -> Result<Self, BlobError> {
-        check::check(blob)
+        let header = read::header(blob)?;
+        check::check_sum(blob, header)?;
+        let sections = Sections::read(blob, header.section_count)?;
+        let scene = read::scene(header, &sections)?;
+        check::check(&scene, &sections)?;
+        Ok(scene)
+    }
+
+    /// The view of a blob that was [vouched for](Vouched), in constant time.
+    ///
+    /// # Errors
+    /// If the slice is not aligned, or the header, the section table or the view is not as it must
+    /// be, or this build lacks what the scene calls for.
+    pub fn vouched(vouched: Vouched<'a>) -> Result<Self, BlobError> {
+        let header = read::header(vouched.blob)?;
+        let sections = Sections::read(vouched.blob, header.section_count)?;
+        read::scene(header, &sections)
     }
 
     /// The header.
@@ -261,22 +281,28 @@ pub enum Geometry {
 /// The checksum of a blob: FNV-1a over its 32-bit words, the checksum's own taken as 0.
 ///
 /// Every step is a bijection of the state, so a change of any single word always shows.
-pub fn checksum(blob: &[u8]) -> u32 {
+pub const fn checksum(blob: &[u8]) -> u32 {
     const OWN_WORD: usize = core::mem::offset_of!(Header, checksum) / 4;
+    const fn mix(state: u32, word: u32) -> u32 {
+        (state ^ word).wrapping_mul(0x0100_0193)
+    }
     let mut state: u32 = 0x811c_9dc5;
-    let mix = |state: u32, word: u32| (state ^ word).wrapping_mul(0x0100_0193);
-    let (words, rest) = blob.as_chunks();
-    for (index, &word) in words.iter().enumerate() {
-        let own = index == OWN_WORD;
-        state = mix(state, if own { 0 } else { u32::from_le_bytes(word) });
+    let (mut words, mut rest) = blob.as_chunks();
+    let mut before = 0;
+    while let [word, after @ ..] = words {
+        let own = before == OWN_WORD;
+        state = mix(state, if own { 0 } else { u32::from_le_bytes(*word) });
+        before = before.wrapping_add(1);
+        words = after;
     }
     if !rest.is_empty() {
         // The last bytes as a word that ends in zeros.
-        let last = rest
-            .iter()
-            .rev()
-            .fold(0, |word, &byte| word << 8 | u32::from(byte));
-        state = mix(state, last);
+        let mut word = 0;
+        while let [before @ .., byte] = rest {
+            word = word << 8 | *byte as u32;
+            rest = before;
+        }
+        state = mix(state, word);
     }
     state
 }

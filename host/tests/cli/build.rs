@@ -426,8 +426,29 @@ fn a_module_is_emitted_for_the_board() {
         "pub type Accel = gridel_core::DualSplit;",
         "\"dual-split\", \"triangle\", \"sphere\", \"box\", \"disc\", \"cone\", \"wide-lattice\"",
         "pub const WORK_DEPTH: usize = 7;",
+        "gridel_core::Scene::vouched(VOUCHED)",
         "the blob outgrew the flash of mps2-an386",
     ] {
         assert!(module.contains(line), "{line}: {module}");
     }
+    // Nobody vouches for a structure that is made for hosts.
+    folder.done(
+        &[
+            &[
+                "build",
+                "quick.toml",
+                "-o",
+                "quick.gridel",
+                "--accel",
+                "wide",
+            ],
+            &emit[..2],
+        ]
+        .concat(),
+    );
+    let module = String::from_utf8(folder.read("module/scene.rs")).unwrap();
+    assert!(
+        module.contains("gridel_core::Scene::from_bytes(BLOB)"),
+        "{module}"
+    );
 }

@@ -87,7 +87,7 @@ fn odd_but_finite_origins_are_harmless() {
 }
 
 /// Where a section lies, and its entry's place in the table.
-fn section(bytes: &[u8], kind: SectionKind) -> (usize, SectionEntry) {
+pub fn section(bytes: &[u8], kind: SectionKind) -> (usize, SectionEntry) {
     let header: Header = bytemuck::pod_read_unaligned(&bytes[..size_of::<Header>()]);
     let places = (0..usize::from(header.section_count)).map(|index| 96 + 16 * index);
     let mut entries = places.map(|place| {

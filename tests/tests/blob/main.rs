@@ -1,6 +1,7 @@
 //! Broken blobs: refused with words that name the place, or else a scene that works.
 
 mod forged;
+mod vouched;
 
 use glam::DVec3;
 use gridel_core::blob::record::Header;

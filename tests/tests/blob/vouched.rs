@@ -1,0 +1,259 @@
+//! Blobs that a program vouches for: what is proved then, and that nothing depends on the rest.
+
+use super::forged::section;
+use super::{sealed, small_scene, speaks};
+use gridel_core::accel::{Chosen, Leaf, MAX_STACK_DEPTH};
+use gridel_core::blob::SectionKind;
+use gridel_core::blob::record::{DualNode, FlaggedPair, Header, Pair};
+use gridel_core::{
+    BlobError, Counters, Format, Number, Scene, Settings, Stack, Structure, Vouched, any_hit,
+    closest_hit,
+};
+use gridel_host::blob::Blob;
+use gridel_host::compile::{Options, compile};
+use gridel_host::render::{Job, render};
+use gridel_tests::query::{held, through};
+use gridel_tests::random::Random;
+use gridel_tests::{every_format, rays};
+use std::mem::offset_of;
+
+/// Sections that are proved, with the size of a record and of the words in it that lead to others.
+const LINKS: [(SectionKind, usize, usize); 3] = [
+    (SectionKind::Pairs, size_of::<Pair>(), 8),
+    (SectionKind::FlaggedPairs, size_of::<FlaggedPair>(), 4),
+    (SectionKind::DualNodes, size_of::<DualNode>(), 4),
+];
+
+fn blob_for_boards(lattice_bits: u8) -> Vec<u8> {
+    let options = Options {
+        structures: Vouched::STRUCTURES.to_vec(),
+        lattice_bits,
+        ..Options::default()
+    };
+    let compiled = compile(&small_scene(), &options).expect("compiles");
+    compiled.blob.bytes().to_vec()
+}
+
+fn vouched(blob: &Blob) -> Result<Scene<'_>, BlobError> {
+    Scene::vouched(Vouched::of(blob.bytes())?)
+}
+
+#[test]
+fn answers_are_those_of_a_blob_that_was_checked() {
+    fn same<N: Number>(vouched: &Scene<'_>, checked: &Scene<'_>) {
+        for ray in rays::rays(checked, 3).take(2000) {
+            let Some(ready) = ray.ready::<N>(checked) else {
+                continue;
+            };
+            for structure in held(checked) {
+                let answer = through::<N>(structure, vouched, &ready);
+                assert_eq!(answer, through(structure, checked, &ready), "{ray:?}");
+            }
+        }
+    }
+    for lattice_bits in [16, 24] {
+        let blob = Blob::new(&blob_for_boards(lattice_bits));
+        let checked = blob.scene().expect("a scene");
+        let vouched = vouched(&blob).expect("a scene");
+        assert_eq!(held(&vouched).count(), 3);
+        every_format!(same(&vouched, &checked));
+    }
+}
+
+/// A const evaluation, as firmware has the compiler do it.
+#[test]
+fn blobs_are_vouched_for_while_a_program_is_compiled() {
+    const EMPTY: Result<Vouched<'static>, BlobError> = Vouched::of(&[]);
+    const SHORT: Result<Vouched<'static>, BlobError> = Vouched::of(&[0x47; 24]);
+    assert!(matches!(EMPTY, Err(BlobError::Truncated { found: 0, .. })));
+    assert!(matches!(SHORT, Err(BlobError::Checksum { .. })));
+}
+
+#[test]
+fn damage_is_found() {
+    let mut bytes = blob_for_boards(16);
+    for bit in 0..8 * bytes.len() {
+        bytes[bit / 8] ^= 1 << (bit % 8);
+        speaks(&vouched(&Blob::new(&bytes)).expect_err("a flipped bit was vouched for"));
+        bytes[bit / 8] ^= 1 << (bit % 8);
+    }
+    for length in 0..bytes.len() {
+        speaks(&vouched(&Blob::new(&bytes[..length])).expect_err("a part was vouched for"));
+        // With a checksum that fits, loading finds out.
+        speaks(&vouched(&sealed(&bytes[..length])).expect_err("a part was loaded"));
+    }
+}
+
+/// Whatever leads elsewhere is refused.
+#[test]
+fn disorder_is_found() {
+    let bytes = blob_for_boards(24);
+    let leaves = section(&bytes, SectionKind::Leaves).1.count;
+    for (kind, size, links) in LINKS {
+        let (_, entry) = section(&bytes, kind);
+        assert_eq!(usize::from(entry.stride), size);
+        for record in 0..entry.count as usize {
+            let end = entry.offset as usize + (record + 1) * size;
+            for bit in 0..8 * links {
+                let mut changed = bytes.clone();
+                changed[end - links + bit / 8] ^= 1 << (bit % 8);
+                // Owners of planes, and the axes of splits and carves, lead nowhere.
+                let leads = match kind {
+                    SectionKind::FlaggedPairs => bit < 26,
+                    SectionKind::DualNodes => bit < 24,
+                    _ => true,
+                };
+                match vouched(&sealed(&changed)) {
+                    Err(error) => speaks(&error),
+                    Ok(scene) => {
+                        assert!(!leads, "{kind:?} {record}: bit {bit}");
+                        ends(&scene, leaves, 20);
+                    }
+                }
+            }
+        }
+    }
+
+    // A hierarchy that is deeper than the stack.
+    let mut changed = bytes.clone();
+    let place = offset_of!(Header, stack_depth);
+    changed[place] -= 1;
+    let error = Vouched::of(sealed(&changed).bytes()).expect_err("too deep a hierarchy");
+    assert!(matches!(error, BlobError::Header { .. }), "{error}");
+}
+
+#[test]
+fn tables_cannot_be_vouched_for() {
+    for structure in Structure::ALL {
+        let options = Options {
+            structures: vec![Structure::Bvh, structure],
+            gridels: Some(1),
+            budget: Some(4096),
+            ..Options::default()
+        };
+        let blob = compile(&small_scene(), &options).expect("compiles").blob;
+        let result = Vouched::of(blob.bytes());
+        if Vouched::STRUCTURES.contains(&structure) {
+            assert!(result.is_ok(), "{}", structure.name());
+        } else {
+            speaks(&result.expect_err(structure.name()));
+        }
+    }
+}
+
+/// Every record but the words that lead from one to another, filled with anything: walks end, within
+/// the work that the order allows, and so do pictures.
+#[test]
+fn nothing_depends_on_what_is_not_proved() {
+    let mut random = Random(7);
+    let valid = [16, 24].map(blob_for_boards);
+    let (mut refused, mut loaded) = (0, 0);
+    for round in 0..6000 {
+        let mut bytes = valid[round % 2].clone();
+        let leaves = section(&bytes, SectionKind::Leaves).1.count;
+        for kind in SectionKind::ALL {
+            if kind > SectionKind::DualNodes || random.below(3) == 0 {
+                continue;
+            }
+            // The view is proved: what is no camera is refused.
+            let changes = if kind == SectionKind::View {
+                1
+            } else {
+                1 << random.below(14)
+            };
+            let (_, entry) = section(&valid[round % 2], kind);
+            let stride = usize::from(entry.stride);
+            let links = LINKS.iter().find(|link| link.0 == kind);
+            let links = links.map_or(0, |&(_, _, links)| links);
+            let start = entry.offset as usize;
+            for _ in 0..changes {
+                let record = start + random.below(entry.count as usize) * stride;
+                let free = &mut bytes[record..record + stride - links];
+                spoil(free, &mut random);
+            }
+        }
+        match vouched(&sealed(&bytes)) {
+            Err(error) => {
+                refused += 1;
+                speaks(&error);
+            }
+            Ok(scene) => {
+                loaded += 1;
+                ends(&scene, leaves, 40);
+            }
+        }
+    }
+    eprintln!("{loaded} blobs of any content loaded, {refused} refused");
+    assert!(loaded > 2000);
+}
+
+/// Overwrites part of a record.
+fn spoil(record: &mut [u8], random: &mut Random) {
+    let extremes = [
+        i64::MIN,
+        i64::MAX,
+        0,
+        -1,
+        1,
+        0x7fff_ffff_7fff_ffff,
+        -0x7fff_ffff_8000_0000,
+        random.bits() as i64,
+    ];
+    let value = extremes[random.below(extremes.len())].to_le_bytes();
+    let length = [1, 2, 4, 8][random.below(4)].min(record.len());
+    if let Some(places) = record.len().checked_div(length) {
+        let place = random.below(places.max(1)) * length;
+        record[place..place + length].copy_from_slice(&value[..length]);
+    }
+}
+
+/// Traces and renders: in the tests' build every overflow would panic.
+fn ends(scene: &Scene<'_>, leaves: u32, rays_each: usize) {
+    every_format!(walks_end(scene, leaves, rays_each));
+    let settings = Settings {
+        width: 4,
+        height: 3,
+        samples: 2,
+        depth: 4,
+        ..Settings::of(scene)
+    };
+    for (format, structure) in Format::ALL.into_iter().zip(held(scene)) {
+        let job = Job {
+            format,
+            structure,
+            settings,
+            rows: 0..settings.height,
+            count: false,
+        };
+        let picture = render(scene, &job, &|| ()).expect("a picture");
+        assert_eq!(picture.pixels.len(), 12);
+    }
+}
+
+fn walks_end<N: Number>(scene: &Scene<'_>, leaves: u32, rays_each: usize) {
+    let mut stack = Stack::<MAX_STACK_DEPTH>::new();
+    for ray in rays::rays(scene, 3).take(rays_each) {
+        let Some(ready) = ray.ready::<N>(scene) else {
+            continue;
+        };
+        for structure in Vouched::STRUCTURES {
+            let Some(scene) = scene.choose(structure) else {
+                continue;
+            };
+            let (mut first, mut any) = (Counters::default(), Counters::default());
+            let stack = stack.as_view();
+            closest_hit::<N, Chosen, _>(&scene, &ready, stack, &mut first);
+            any_hit::<N, Chosen, _>(&scene, &ready, stack, &mut any);
+            for count in [first, any] {
+                // Of a tree of leaves: fewer nodes than twice as many, each visited once, with two
+                // carves and a split; a pair has two boxes.
+                let leaves = u64::from(leaves);
+                assert!(count.boxes <= 1 + 8 * leaves, "{count:?}");
+                assert!(
+                    count.objects <= u64::from(Leaf::MAX_COUNT) * leaves,
+                    "{count:?}"
+                );
+            }
+        }
+    }
+}
