@@ -39,6 +39,9 @@ fn main() {
 
     let target = env::var("TARGET").expect("cargo sets TARGET");
     println!("cargo::rerun-if-env-changed=GRIDEL_BOARD");
+    if target.contains("linux") {
+        return;
+    }
     if target.starts_with("wasm32") {
         println!("cargo::rustc-link-arg-bins=--export=start");
         return;

@@ -101,7 +101,7 @@ fn what_a_ray_leaves_is_judged_as_fairly_as_what_it_enters() {
         let mut random = Random(31);
         let (mut shared, mut caught) = (0, 0);
         // The middle of the first box, in units.
-        let bounds = judge.solid(0).map(|solid| solid.clone());
+        let bounds = judge.solid(0).cloned();
         let Some(Solid::Box { lowest, highest }) = bounds else {
             panic!("a box");
         };

@@ -4,12 +4,13 @@
 //! |---|---|
 //! | `picture` | renders the scene's picture into a file of the host, and counts what it and single rays cost |
 //! | `primary` | traces one ray a pixel and counts the hits |
+//! | `everywhere` | renders in every number format through every structure |
 //! | `emitted` | renders from what `gridel build --emit-rust` wrote |
 //! | `selftest` | runs the core's own tests |
 //! | `bare` | renders and talks to nobody: what it links is what a product would flash |
 //! | `example` | the README's example |
 //!
-//! The first three run in QEMU, or in Node, and print what they measured, a line each: a name and
+//! The first four run in QEMU, or in Node, and print what they measured, a line each: a name and
 //! a number. Blob, board, number format and structure are chosen when they are built:
 //!
 //! ```text
@@ -36,12 +37,20 @@ macro_rules! program {
     ($run:path, $memory:ty) => {
         static mut MEMORY: $memory = <$memory>::new();
 
-        #[cfg(not(target_arch = "wasm32"))]
+        #[cfg(target_os = "none")]
         #[$crate::rt::entry]
         fn main() -> ! {
             // SAFETY: nothing runs before `main`, and it runs once.
             $run(unsafe { &mut *&raw mut MEMORY });
             $crate::board::exit(0)
+        }
+
+        #[cfg(target_os = "linux")]
+        #[unsafe(no_mangle)]
+        extern "C" fn main() -> i32 {
+            // SAFETY: the C library calls this, once.
+            $run(unsafe { &mut *&raw mut MEMORY });
+            0
         }
 
         #[cfg(target_arch = "wasm32")]
@@ -52,6 +61,7 @@ macro_rules! program {
         }
 
         // Nothing panics: the tests look for what a panic would need.
+        #[cfg(not(target_os = "linux"))]
         #[panic_handler]
         fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
             $crate::board::exit(101)

@@ -2,6 +2,7 @@
 
 use crate::board::{exit, print};
 use crate::measure::Cost;
+use core::fmt;
 
 /// Prints a figure.
 pub fn line(name: &str, value: u64) {
@@ -36,6 +37,19 @@ fn digits(value: u64) {
     let first = text.len().saturating_sub(used);
     let text = text.get(first..).unwrap_or_default();
     print(core::str::from_utf8(text).unwrap_or_default());
+}
+
+/// Prints text that has to be put together, which takes more stack.
+pub fn words(text: fmt::Arguments<'_>) {
+    struct Host;
+    impl fmt::Write for Host {
+        fn write_str(&mut self, text: &str) -> fmt::Result {
+            print(text);
+            Ok(())
+        }
+    }
+    // The host takes everything.
+    let _ = fmt::Write::write_fmt(&mut Host, text);
 }
 
 /// Ends the program with a reason.

@@ -76,3 +76,17 @@ impl Figures {
 fn path() -> PathBuf {
     repository().join("fixtures/recorded/board.json")
 }
+
+/// What is recorded is what the boards are held to.
+#[test]
+fn loading_takes_less_than_40_instructions_a_byte() {
+    let recorded = fs::read(path()).expect("fixtures/recorded/board.json");
+    let recorded: Table = serde_json::from_slice(&recorded).expect("a table of integers");
+    let loads = recorded.iter().filter_map(|(build, report)| {
+        let (load, bytes) = (report.get("load-instructions")?, report.get("blob-bytes")?);
+        Some((*load as f64 / *bytes as f64, build))
+    });
+    let (most, build) = loads.max_by(|a, b| a.0.total_cmp(&b.0)).expect("boards");
+    println!("{build}: {most:.1} instructions a byte");
+    assert!(most < 40.0, "{build}: {most:.1} instructions a byte");
+}

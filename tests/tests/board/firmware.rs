@@ -22,6 +22,24 @@ pub const WASM: Board = Board {
     formats: &[Format::F32, Format::Fixed, Format::F64],
 };
 
+/// A processor of phones and servers, as a program of Linux.
+pub const AARCH64: Board = Board {
+    name: "linux-aarch64",
+    core: "Armv8-A",
+    target: "aarch64-unknown-linux-gnu",
+    flash: u32::MAX as u64,
+    ram: u32::MAX as u64,
+    formats: &[Format::F32, Format::Fixed, Format::F64],
+};
+
+/// A big-endian machine, as a program of Linux.
+pub const S390X: Board = Board {
+    name: "linux-s390x",
+    core: "z/Architecture",
+    target: "s390x-unknown-linux-gnu",
+    ..AARCH64
+};
+
 /// A board by its name.
 pub fn board(name: &str) -> &'static Board {
     Board::named(name).unwrap_or(&WASM)
@@ -32,17 +50,31 @@ fn emulator(board: &Board) -> &'static str {
     match board.target.split_once('-') {
         Some(("wasm32", _)) => "node",
         Some(("riscv32imac", _)) => "qemu-system-riscv32",
+        Some(("aarch64", _)) => "qemu-aarch64",
+        Some(("s390x", _)) => "qemu-s390x",
         _ => "qemu-system-arm",
     }
 }
 
+/// The program that links a board's programs, where Rust does not bring it.
+fn linker(board: &Board) -> Option<String> {
+    let processor = board.target.strip_suffix("-unknown-linux-gnu")?;
+    Some(format!("{processor}-linux-gnu-gcc"))
+}
+
 /// Whether boards can be emulated here. Says what is missing, and fails where boards are required.
 pub fn available() -> bool {
+    all_available(BOARDS.iter().chain([&WASM]))
+}
+
+/// The same for some boards.
+pub fn all_available<'b>(boards: impl IntoIterator<Item = &'b Board>) -> bool {
     let mut missing = BTreeSet::new();
-    for board in BOARDS.iter().chain([&WASM]) {
-        let emulator = emulator(board);
-        if Command::new(emulator).arg("--version").output().is_err() {
-            missing.insert(String::from(emulator));
+    for board in boards {
+        for tool in linker(board).into_iter().chain([emulator(board).into()]) {
+            if Command::new(&tool).arg("--version").output().is_err() {
+                missing.insert(tool);
+            }
         }
         let library = Command::new("rustc")
             .args(["--print", "target-libdir", "--target", board.target])
@@ -168,7 +200,10 @@ impl<'b> Build<'b> {
             }
         }
         let mut flags = String::new();
-        if self.board.target != WASM.target {
+        if let Some(linker) = linker(self.board) {
+            // Whole, so that the emulator needs no libraries.
+            flags += &format!("-C linker={linker} -C target-feature=+crt-static");
+        } else if self.board.target != WASM.target {
             // For the bound of the stack; neither changes an instruction.
             flags += " -Z emit-stack-sizes -C link-arg=--emit-relocs";
         }
@@ -244,27 +279,7 @@ impl Program<'_> {
 
     /// Runs the program and returns what it measured.
     pub fn run(&self) -> BTreeMap<String, u64> {
-        let mut emulator = Command::new(emulator(self.board));
-        if self.board.target == WASM.target {
-            emulator.arg(repository().join("tests/firmware/src/board/run.mjs"));
-        } else {
-            // The clock counts instructions; see the boards' counters.
-            let shift = if self.board.core.starts_with("RV") {
-                "shift=0"
-            } else {
-                "shift=4"
-            };
-            emulator
-                .args(["-M", self.board.name, "-icount", shift, "-nographic"])
-                .args(["-monitor", "none", "-serial", "none"])
-                .args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
-        }
-        let output = emulator
-            .arg(self.path())
-            .current_dir(&self.folder)
-            .stdin(Stdio::null())
-            .output()
-            .expect("the emulator runs");
+        let output = self.output();
         assert!(
             output.status.success(),
             "{}: {}",
@@ -278,6 +293,37 @@ impl Program<'_> {
         pairs
             .filter_map(|(name, value)| Some((name.into(), value.parse().ok()?)))
             .collect()
+    }
+
+    /// Runs the program, which has to fail, and returns what it says.
+    pub fn failure(&self) -> String {
+        let output = self.output();
+        assert!(!output.status.success(), "{}", self.folder.display());
+        text(&output)
+    }
+
+    fn output(&self) -> Output {
+        let mut emulator = Command::new(emulator(self.board));
+        if self.board.target == WASM.target {
+            emulator.arg(repository().join("tests/firmware/src/board/run.mjs"));
+        } else if linker(self.board).is_none() {
+            // The clock counts instructions; see the boards' counters.
+            let shift = if self.board.core.starts_with("RV") {
+                "shift=0"
+            } else {
+                "shift=4"
+            };
+            emulator
+                .args(["-M", self.board.name, "-icount", shift, "-nographic"])
+                .args(["-monitor", "none", "-serial", "none"])
+                .args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
+        }
+        emulator
+            .arg(self.path())
+            .current_dir(&self.folder)
+            .stdin(Stdio::null())
+            .output()
+            .expect("the emulator runs")
     }
 }
 

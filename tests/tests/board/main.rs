@@ -13,13 +13,14 @@ mod scenes;
 mod stack;
 
 use figures::Figures;
-use firmware::{Build, WASM, board};
+use firmware::{AARCH64, Build, S390X, WASM, board};
 use gridel_core::{Effects, Format, Structure};
 use gridel_host::board::{BOARDS, Board};
-use gridel_host::emit::Emitted;
+use gridel_host::emit::{self, Emitted};
 use scenes::Compiled;
 use std::collections::BTreeMap;
 use std::fs;
+use std::path::Path;
 
 /// Stack and workspace of the suzanne workload at most: loading, and tracing primary rays.
 const PRIMARY_RAM: u64 = 2 * 1024 + 256;
@@ -34,6 +35,41 @@ fn boards() -> impl Iterator<Item = (&'static Board, Format)> {
 fn every_effect_on_every_board() {
     let scene = scenes::quick();
     pictures_are_the_hosts(boards().map(|(board, format)| (board, format, &scene)));
+}
+
+/// Every number format and every structure, where lanes are those of NEON or of none, is the host's to
+/// the bit. Where bytes lie the other way round, the blob is refused.
+#[test]
+fn every_structure_on_other_processors() {
+    if !firmware::all_available([&WASM, &AARCH64, &S390X]) {
+        return;
+    }
+    let scene = scenes::quick_through_everything();
+    let program = |board| {
+        Build::new(board, Format::Fixed, Structure::DualSplit, &scene)
+            .program_with("everywhere", &["everywhere"])
+    };
+    let mut pictures = Vec::new();
+    for format in Format::ALL {
+        for structure in Structure::ALL {
+            pictures.extend(scene.picture_through(structure, format));
+        }
+    }
+    for board in [&WASM, &AARCH64] {
+        let program = program(board);
+        let report = program.run();
+        assert_eq!(report["structures"], Structure::ALL.len() as u64);
+        assert!(
+            program.file("pictures.rgb") == pictures,
+            "{}: pictures differ from the host's",
+            board.name
+        );
+    }
+    let refusal = program(&S390X).failure();
+    assert!(
+        refusal.contains("little-endian and this machine must be too"),
+        "{refusal}"
+    );
 }
 
 #[test]
@@ -263,11 +299,6 @@ fn emitted_modules_run_or_do_not_compile() {
     };
     let build = Build::new(discovery, Format::Fixed, Structure::DualSplit, &scene);
     let folder = build.folder("emitted");
-    let write = |module: String, blob: &Compiled| {
-        fs::write(folder.join("scene.rs"), module).expect("the target folder can be written to");
-        fs::write(folder.join("scene.gridel"), blob.blob.bytes())
-            .expect("the target folder can be written to");
-    };
     let features = [&["emitted"], &scene.features()[..]].concat();
     let outgrown = |features: &[&str], why: &str| {
         let errors = build.try_program("emitted", features).map(|_| ());
@@ -275,7 +306,8 @@ fn emitted_modules_run_or_do_not_compile() {
         assert!(errors.contains(why), "{errors}");
     };
 
-    write(emitted.module(), &scene);
+    let write = |module: &str, blob: &Compiled| write_module(&folder, module, blob.blob.bytes());
+    write(&emitted.module(), &scene);
     let program = build.program_with("emitted", &features);
     program.run();
     assert!(program.file("picture.rgb") == scene.picture(Format::Fixed));
@@ -285,16 +317,20 @@ fn emitted_modules_run_or_do_not_compile() {
         "whose features of gridel-core are not enabled",
     );
     emitted.budget = Some((scene.blob.bytes().len() as u64 - 1, discovery));
-    write(emitted.module(), &scene);
+    write(&emitted.module(), &scene);
     outgrown(&features, "the blob outgrew the flash of stm32vldiscovery");
     emitted.budget = None;
     let module = emitted.module();
-    write(module.clone(), &scenes::torus());
+    let mut damaged = scene.blob.bytes().to_vec();
+    damaged[200] ^= 1;
+    write_module(&folder, &module, &damaged);
+    outgrown(&features, "the blob was damaged");
+    write(&module, &scenes::torus());
     outgrown(&features, "the blob outgrew STACK_DEPTH");
     let glass = parts::scenes()
         .into_iter()
         .find(|scene| scene.name == "glass");
-    write(module, &glass.expect("a scene of glass"));
+    write(&module, &glass.expect("a scene of glass"));
     outgrown(&features, "the blob calls for effects beyond EFFECTS");
 }
 
@@ -308,6 +344,54 @@ fn boards_for_primary_rays() -> [(&'static Board, Format); 5] {
         ("sifive_e", Format::Fixed),
     ]
     .map(|(name, format)| (board(name), format))
+}
+
+/// Firmware that vouches for its blob loads it in the same time, however long it is, and without the
+/// code that proves the rest.
+#[test]
+fn vouched_blobs_load_in_constant_time() {
+    if !firmware::available() {
+        return;
+    }
+    let (quick, molecule) = (scenes::quick(), scenes::molecule());
+    let mut figures = Figures::new();
+    for (name, scene) in [
+        ("mps2-an385", &quick),
+        ("mps2-an385", &molecule),
+        ("microbit", &quick),
+        ("sifive_e", &quick),
+    ] {
+        let build = Build::new(board(name), Format::Fixed, Structure::DualSplit, scene);
+        let emitted = Emitted {
+            scene: &scene.blob.scene().expect("the compiler's own blob"),
+            structure: Structure::DualSplit,
+            format: Format::Fixed,
+            budget: None,
+        };
+        let folder = build.folder("emitted");
+        write_module(&folder, &emitted.module(), scene.blob.bytes());
+        let features = [&["emitted"], &scene.features()[..]].concat();
+        let program = build.program_with("emitted", &features);
+        let mut report = program.run();
+        assert!(program.file("picture.rgb") == scene.picture(Format::Fixed));
+        look_into(
+            &build,
+            &program.elf(),
+            board(name),
+            Format::Fixed,
+            &mut report,
+        );
+        let load = report["load-instructions"];
+        assert!(load <= 6000, "{build}: {load} instructions to load");
+        figures.add(&format!("{build} vouched"), &report);
+    }
+    figures.check();
+}
+
+/// Writes what `gridel build --emit-rust` does.
+fn write_module(folder: &Path, module: &str, blob: &[u8]) {
+    fs::write(folder.join(emit::MODULE), module).expect("the target folder can be written to");
+    fs::write(folder.join(emit::BLOB), blob).expect("the target folder can be written to");
 }
 
 #[test]

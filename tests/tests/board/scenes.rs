@@ -24,6 +24,17 @@ pub fn quick() -> Compiled {
     fixture("quick", [48, 36])
 }
 
+/// The same with every structure, small tables among them.
+pub fn quick_through_everything() -> Compiled {
+    let options = Options {
+        structures: Structure::ALL.to_vec(),
+        gridels: Some(1),
+        budget: Some(4096),
+        ..Options::default()
+    };
+    compile_with("quick", load(&fixture_path("quick")), [48, 36], options)
+}
+
 /// Glass on glass, to depth 6.
 pub fn glass_chess() -> Compiled {
     let compiled = fixture("glass-chess", [48, 36]);
@@ -174,11 +185,16 @@ impl Compiled {
 
     /// The picture as the host renders it: three bytes a pixel.
     pub fn picture(&self, format: Format) -> Vec<u8> {
+        self.picture_through(Structure::DualSplit, format)
+    }
+
+    /// The same through a structure of choice.
+    pub fn picture_through(&self, structure: Structure, format: Format) -> Vec<u8> {
         let scene = self.blob.scene().expect("the compiler's own blob");
         let settings = Settings::of(&scene);
         let job = Job {
             format,
-            structure: Structure::DualSplit,
+            structure,
             settings,
             rows: 0..settings.height,
             count: false,

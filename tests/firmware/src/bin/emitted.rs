@@ -1,5 +1,5 @@
 //! Renders from the module that `gridel build --emit-rust` wrote into the folder `GRIDEL_MODULE`,
-//! into the file `picture.rgb`.
+//! into the file `picture.rgb`, and measures what loading takes.
 #![no_std]
 #![no_main]
 
@@ -7,10 +7,11 @@ mod scene {
     include!(concat!(env!("GRIDEL_MODULE"), "/scene.rs"));
 }
 
-use gridel_core::{NoCount, Rgb888, Scene, Settings};
+use gridel_core::{NoCount, Rgb888, Settings};
 use gridel_firmware::board::File;
+use gridel_firmware::measure::Meter;
 use gridel_firmware::program;
-use gridel_firmware::report::fail;
+use gridel_firmware::report::{cost, fail, line};
 
 struct Memory {
     space: scene::Space,
@@ -29,10 +30,13 @@ impl Memory {
 program!(run, Memory);
 
 fn run(memory: &'static mut Memory) {
-    let Ok(scene) = Scene::from_bytes(scene::BLOB) else {
+    let meter = Meter::new();
+    let mut loaded = None;
+    let load = meter.run(|| loaded = scene::load().ok());
+    let Some(scene) = &loaded else {
         fail("the blob is refused")
     };
-    let Ok(picture) = scene::Picture::new(&scene, Settings::of(&scene)) else {
+    let Ok(picture) = scene::Picture::new(scene, Settings::of(scene)) else {
         fail("the scene is not for this renderer")
     };
     let mut space = memory.space.as_view();
@@ -48,4 +52,6 @@ fn run(memory: &'static mut Memory) {
             fail("picture.rgb cannot be written to")
         }
     }
+    line("blob-bytes", scene::BLOB_BYTES as u64);
+    cost("load-instructions", "load-stack-bytes", load);
 }

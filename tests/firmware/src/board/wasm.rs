@@ -40,34 +40,3 @@ pub fn exit(code: u8) -> ! {
     // SAFETY: the host throws, and so does not return.
     unsafe { end(code.into()) }
 }
-
-/// Counts nothing: WebAssembly says neither how many instructions it ran,
-pub struct Counter;
-
-impl Counter {
-    /// A counter.
-    pub fn calibrated() -> Self {
-        Self
-    }
-
-    /// Runs a phase.
-    pub fn instructions(&self, phase: impl FnOnce()) -> Option<u64> {
-        phase();
-        None
-    }
-}
-
-/// nor how much of its own stack it took.
-pub struct Paint;
-
-impl Paint {
-    /// No paint.
-    pub fn spread() -> Self {
-        Self
-    }
-
-    /// Nothing is known.
-    pub fn deepest(&self) -> Option<usize> {
-        None
-    }
-}
