@@ -430,7 +430,7 @@ mod tests {
             let made = |origin: [N; 3]| {
                 let direction = [N::ONE; 3];
                 let alone = Ray::<N>::new(&bounds, origin, direction, zero, end);
-                let pencil = Pencil::<N>::new(&bounds, origin, zero, end);
+                let pencil = Pencil::<N>::new(&bounds, origin);
                 assert_eq!(alone.err(), pencil.err());
                 alone.err()
             };
