@@ -1,6 +1,6 @@
 //! Culling on machines with SIMD registers: the planes of one axis of both children at once.
 //!
-//! Rule and margins are those of [`Single`].
+//! Rule and margins are those of `single.rs`.
 
 use super::cull::{self, Cull, Culling, Interval, PairCulling};
 use super::single::Single;

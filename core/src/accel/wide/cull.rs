@@ -1,7 +1,7 @@
 //! Which of a node's eight children a ray can meet, in the ray's own arithmetic: lanes of single
 //! precision for floats, integers for [`Fixed`](crate::Fixed).
 //!
-//! In lanes, rule and margins are those of [`Single`].
+//! In lanes, rule and margins are those of `single.rs`.
 
 use crate::accel::cull::{self, Cull, Culling, PairCulling};
 use crate::accel::single::Single;
