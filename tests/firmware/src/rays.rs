@@ -1,6 +1,7 @@
 //! Rays without shading: one a pixel, and one to the first light from each hit.
 
 use crate::scene::{Accel, Number as N, SceneRenderer};
+use core::hint::black_box;
 use gridel_core::blob::record::Light;
 use gridel_core::{Hit, NoCount, Number, Ray, Scene, StackView, any_hit, closest_primitive};
 
@@ -11,14 +12,30 @@ pub struct Rays {
     pub rays: u32,
     /// Those that met something.
     pub hits: u32,
-    /// Those of the hits that the first light does not reach.
+    /// Those of the hits that face the first light.
+    pub facing: u32,
+    /// Those of them that it does not reach.
     pub shadows: u32,
 }
 
+/// How far pixels are followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Until {
+    /// The primary ray, which is not traced.
+    Camera,
+    /// What the primary ray meets first.
+    Primitive,
+    /// How the surface lies there, and the ray from it to the first light, which is not traced.
+    Surface,
+    /// Whether anything is in that light's way.
+    Light,
+}
+
 impl Rays {
-    /// Traces a ray a pixel of a row.
+    /// Traces a ray a pixel of a row, and what follows from it.
     pub fn row(
         &mut self,
+        until: Until,
         renderer: &SceneRenderer<'_>,
         scene: &Scene<'static>,
         y: u16,
@@ -29,51 +46,54 @@ impl Rays {
                 continue;
             };
             self.rays = self.rays.wrapping_add(1);
+            if until == Until::Camera {
+                black_box(&ray);
+                continue;
+            }
             let found = closest_primitive::<N, Accel, _>(scene, &ray, stack, &mut NoCount);
-            self.hits = self.hits.wrapping_add(found.is_some().into());
-        }
-    }
-
-    /// Traces the same rays and, from what they hit, one to the first light.
-    pub fn shadowed_row(
-        &mut self,
-        renderer: &SceneRenderer<'_>,
-        scene: &Scene<'static>,
-        y: u16,
-        stack: &mut StackView,
-    ) {
-        for x in 0..renderer.settings().width {
-            let Ok(ray) = renderer.primary_ray(x, y) else {
-                continue;
-            };
-            self.rays = self.rays.wrapping_add(1);
-            let Some(found) = closest_primitive::<N, Accel, _>(scene, &ray, stack, &mut NoCount)
-            else {
+            let Some(found) = found else {
                 continue;
             };
             self.hits = self.hits.wrapping_add(1);
+            if until == Until::Primitive {
+                continue;
+            }
             let hit = found.hit(scene, &ray);
-            let ray = hit
-                .zip(scene.lights().first())
-                .and_then(|(hit, light)| to(light, hit, scene));
-            let dark =
-                ray.is_some_and(|ray| any_hit::<N, Accel, _>(scene, &ray, stack, &mut NoCount));
+            let light = hit.zip(scene.lights().first());
+            let Some(ray) = light.and_then(|(hit, light)| to(light, hit, scene)) else {
+                continue;
+            };
+            self.facing = self.facing.wrapping_add(1);
+            if until == Until::Surface {
+                black_box(&ray);
+                continue;
+            }
+            let dark = any_hit::<N, Accel, _>(scene, &ray, stack, &mut NoCount);
             self.shadows = self.shadows.wrapping_add(dark.into());
         }
     }
 }
 
-/// The ray from a hit to a light, which lies beyond everything.
+/// The ray from a hit to a light, as pictures cast it: none from a surface that is turned away.
 fn to(light: &Light, hit: Hit<N>, scene: &Scene<'static>) -> Option<Ray<N>> {
     let [x, y, z] = hit.normal;
-    let normal = if hit.front { [x, y, z] } else { [-x, -y, -z] };
-    let start = |axis: usize| hit.point[axis] + hit.error * normal[axis];
-    let origin = [start(0), start(1), start(2)].map(N::widen);
-    let far = light.vector.map(N::far);
-    let way = if light.directional == 1 {
-        far
+    let (start, normal) = if hit.front {
+        (hit.outside(), [x, y, z])
     } else {
-        [far[0] - origin[0], far[1] - origin[1], far[2] - origin[2]]
+        (hit.inside(scene), [-x, -y, -z])
     };
-    Ray::new(scene.bounds(), origin, way, N::far(0), N::far(1 << 60)).ok()
+    let start = start.map(N::widen);
+    let far = light.vector.map(N::far);
+    let (way, end) = if light.directional == 1 {
+        (far, N::far(1 << 60))
+    } else {
+        let way = [far[0] - start[0], far[1] - start[1], far[2] - start[2]];
+        let longest = way.iter().fold(N::far(0), |longest, &part| {
+            let length = if part < N::far(0) { -part } else { part };
+            if length > longest { length } else { longest }
+        });
+        (way, longest - hit.error.widen())
+    };
+    let ray = Ray::new(scene.bounds(), start, way, N::far(0), end).ok()?;
+    (N::from_wide(N::dot(normal, ray.slope())) > N::from_unit(0)).then_some(ray)
 }

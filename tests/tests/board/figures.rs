@@ -9,7 +9,7 @@ use std::{env, fs};
 type Table = BTreeMap<String, BTreeMap<String, u64>>;
 
 /// Counts that follow from the scene and are no cost.
-const NO_COST: [&str; 3] = ["rays", "hits", "shadows"];
+const NO_COST: [&str; 4] = ["rays", "hits", "facing", "shadows"];
 
 /// Figures by build and name.
 #[derive(Default)]

@@ -6,6 +6,7 @@
 use gridel_core::{NoCount, Rgb888, Scene, Settings, Stack};
 use gridel_firmware::board::File;
 use gridel_firmware::measure::{Cost, Meter};
+use gridel_firmware::rays::Until;
 use gridel_firmware::report::{cost, fail, line};
 use gridel_firmware::scene::{BLOB, STACK_DEPTH, SceneRenderer, Space, WIDTH};
 use gridel_firmware::{program, rays};
@@ -63,30 +64,49 @@ fn run(memory: &'static mut Memory) {
         }
     }
     let stack = stack.as_view();
-    let (mut primary, mut shadow) = (rays::Rays::default(), rays::Rays::default());
-    let (mut hits, mut surfaces) = (Cost::NONE, Cost::NONE);
+    let mut traced = [rays::Rays::default(); 4];
+    let mut costs = [Cost::NONE; 4];
     for y in 0..settings.height {
-        hits = hits.then(meter.run(|| primary.row(&renderer, scene, y, stack)));
-        surfaces = surfaces.then(meter.run(|| shadow.shadowed_row(&renderer, scene, y, stack)));
+        let parts = [
+            Until::Camera,
+            Until::Primitive,
+            Until::Surface,
+            Until::Light,
+        ];
+        for ((until, rays), cost) in parts.into_iter().zip(&mut traced).zip(&mut costs) {
+            *cost = cost.then(meter.run(|| rays.row(until, &renderer, scene, y, stack)));
+        }
     }
+    let [.., traced] = traced;
+    let [camera, hits, surfaces, lights] = costs;
 
     line("blob-bytes", BLOB.len() as u64);
     line("workspace-bytes", size_of::<Space>() as u64);
     line("row-bytes", size_of_val(row) as u64);
     cost("load-instructions", "load-stack-bytes", load);
     cost("picture-instructions", "picture-stack-bytes", picture);
-    line("rays", primary.rays.into());
-    line("hits", primary.hits.into());
-    line("shadows", shadow.shadows.into());
+    line("rays", traced.rays.into());
+    line("hits", traced.hits.into());
+    line("facing", traced.facing.into());
+    line("shadows", traced.shadows.into());
+    cost(
+        "camera-instructions",
+        "camera-stack-bytes",
+        camera.each(traced.rays),
+    );
     cost(
         "ray-instructions",
         "ray-stack-bytes",
-        hits.each(primary.rays),
+        hits.each(traced.rays),
     );
-    let shadow_rays = surfaces.beyond(hits).each(shadow.hits);
+    cost(
+        "surface-instructions",
+        "surface-stack-bytes",
+        surfaces.beyond(hits).each(traced.hits),
+    );
     cost(
         "shadow-ray-instructions",
         "shadow-ray-stack-bytes",
-        shadow_rays,
+        lights.beyond(surfaces).each(traced.facing),
     );
 }

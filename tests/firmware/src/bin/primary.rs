@@ -4,6 +4,7 @@
 
 use gridel_core::{Scene, Settings, Stack};
 use gridel_firmware::measure::Meter;
+use gridel_firmware::rays::Until;
 use gridel_firmware::report::{cost, fail, line};
 use gridel_firmware::scene::{BLOB, STACK_DEPTH, SceneRenderer};
 use gridel_firmware::{program, rays};
@@ -36,6 +37,6 @@ fn trace(scene: &Scene<'static>, stack: &mut Memory, rays: &mut rays::Rays) {
         fail("the scene is not for this renderer")
     };
     for y in 0..settings.height {
-        rays.row(&renderer, scene, y, stack.as_view());
+        rays.row(Until::Primitive, &renderer, scene, y, stack.as_view());
     }
 }

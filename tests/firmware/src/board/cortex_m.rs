@@ -33,30 +33,31 @@ impl Counter {
     pub fn calibrated() -> Self {
         write(RELOAD, START);
         write(CONTROL, RUN);
-        let idle = ticks_of(|| ());
-        let ticks = ticks_of(|| count_down(CALIBRATION / 2)).saturating_sub(idle);
+        let (Some(idle), Some(ticks)) = (ticks_of(|| ()), ticks_of(|| count_down(CALIBRATION / 2)))
+        else {
+            fail("the timer is too fast")
+        };
+        let ticks = ticks.saturating_sub(idle);
         Self { ticks, idle }
     }
 
-    /// Runs a phase and returns the instructions that it took, to within a few.
+    /// Runs a phase and returns the instructions that it took, to within a few; `None` where it was
+    /// too long for the timer.
     pub fn instructions(&self, phase: impl FnOnce()) -> Option<u64> {
-        let ticks = ticks_of(phase).saturating_sub(self.idle);
+        let ticks = ticks_of(phase)?.saturating_sub(self.idle);
         (u64::from(ticks) * u64::from(CALIBRATION)).checked_div(self.ticks.into())
     }
 }
 
 /// Ticks of a phase, of the call and the reading too.
-fn ticks_of(phase: impl FnOnce()) -> u32 {
+fn ticks_of(phase: impl FnOnce()) -> Option<u32> {
     // Clears the timer and the mark that it has reached 0; it reloads with its next tick.
     write(CURRENT, 0);
     while read(CURRENT) == 0 {}
     let start = read(CURRENT);
     phase();
     let end = read(CURRENT);
-    if read(CONTROL) & WRAPPED != 0 {
-        fail("the phase is too long for the timer");
-    }
-    start.wrapping_sub(end)
+    (read(CONTROL) & WRAPPED == 0).then_some(start.wrapping_sub(end))
 }
 
 /// Two instructions a round.
