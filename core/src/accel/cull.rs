@@ -126,6 +126,33 @@ impl<N: Number> PairCulling<N> for Cull {
     }
 }
 
+/// The form of rays that walk lists of candidates and cull no boxes: nothing, until a hit lies so
+/// near the side of its primitive's box that the integer form has to tell.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Deferred;
+
+impl<N: Number> Culling<N> for Deferred {
+    #[inline(always)]
+    fn new(_: &Ray<N>) -> Self {
+        Self
+    }
+
+    // Out of line, because hardly any hit comes this far.
+    #[inline(never)]
+    fn exact(&self, ray: &Ray<N>) -> Cull {
+        Culling::<N>::new(ray)
+    }
+
+    fn units(step: i32) -> f64 {
+        Cull::told(step)
+    }
+
+    #[inline(always)]
+    fn holds(ray: &Ray<N>, t: N, bounds: &UnitBox) -> bool {
+        holds(ray, t, bounds)
+    }
+}
+
 /// Where the upper half of a product comes for nothing, and there is no instruction for the upper
 /// 32 of 48 bits, as the extension for signal processing has it: small cores without floats.
 const UPPER_HALF: bool = cfg!(any(
@@ -247,9 +274,9 @@ impl Cull {
     }
 }
 
-/// Whether a t that is not negative is certain to lie in a box's interval, for float formats: the
-/// point lies within 1/8 unit of the box, and rounding moved it by less than 2^-6, which is nearer
-/// than the 1/4 unit by which intervals are widened.
+/// Whether a t that is not negative is certain to lie in a box's interval: the point lies within 1/8
+/// unit of the box, and rounding moved it by less than 2^-6, which is nearer than the 1/4 unit by
+/// which intervals are widened.
 #[inline(always)]
 pub(crate) fn holds<N: Number>(ray: &Ray<N>, t: N, bounds: &UnitBox) -> bool {
     let eighth = N::from_lattice(32);

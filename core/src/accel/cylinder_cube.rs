@@ -11,7 +11,7 @@
 //! [`CylinderCubeEntry`](super::CylinderCubeEntry) are what can be made of it.
 
 use super::candidates::ListSections;
-use super::cull::Cull;
+use super::cull::Deferred;
 use super::gridel_table::Table;
 use super::{Accel, Leaf, Records, StackView, Structure};
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
@@ -25,14 +25,14 @@ pub enum CylinderCube {}
 
 impl Accel for CylinderCube {
     const STRUCTURE: Structure = Structure::CylinderCube;
-    type Cull<N: Number> = Cull;
+    type Cull<N: Number> = Deferred;
 
     // Once, and not for every set of effects that the ray loop is compiled for.
     #[inline(never)]
     fn walk<N: Number, C: Count>(
         scene: &Scene<'_>,
         ray: &Ray<N>,
-        _: &Cull,
+        _: &Deferred,
         _: &mut StackView,
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,

@@ -10,7 +10,7 @@
 //! than in the paper's form.
 
 use super::candidates::ListSections;
-use super::cull::Cull;
+use super::cull::Deferred;
 use super::gridel_table::{Table, along};
 use super::{Accel, Leaf, Records, StackView, Structure};
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
@@ -24,14 +24,14 @@ pub enum CylinderCubeTight {}
 
 impl Accel for CylinderCubeTight {
     const STRUCTURE: Structure = Structure::CylinderCubeTight;
-    type Cull<N: Number> = Cull;
+    type Cull<N: Number> = Deferred;
 
     // Once, and not for every set of effects that the ray loop is compiled for.
     #[inline(never)]
     fn walk<N: Number, C: Count>(
         scene: &Scene<'_>,
         ray: &Ray<N>,
-        _: &Cull,
+        _: &Deferred,
         _: &mut StackView,
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,

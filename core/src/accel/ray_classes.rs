@@ -17,6 +17,7 @@
 
 use super::bvh::Bvh;
 use super::candidates::{Candidates, ListSections};
+use super::cull::{Culling, Deferred};
 use super::line::Line;
 use super::{Accel, Leaf, Records, StackView, Structure};
 use crate::blob::record::{Gridels, UnitBox};
@@ -161,14 +162,14 @@ impl ClassPoint {
 
 impl Accel for RayClasses {
     const STRUCTURE: Structure = Structure::RayClasses;
-    type Cull<N: Number> = N::Cull;
+    type Cull<N: Number> = Deferred;
 
     // Once, and not for every set of effects that the ray loop is compiled for.
     #[inline(never)]
     fn walk<N: Number, C: Count>(
         scene: &Scene<'_>,
         ray: &Ray<N>,
-        cull: &N::Cull,
+        _: &Deferred,
         stack: &mut StackView,
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
@@ -180,7 +181,8 @@ impl Accel for RayClasses {
             return;
         };
         let Some(cell) = held.cell(&point, scene.bounds()) else {
-            return Bvh::walk(scene, ray, cull, stack, count, leaf);
+            let cull = Culling::new(ray);
+            return Bvh::walk(scene, ray, &cull, stack, count, leaf);
         };
         count.cells(1);
         let a_step = ClassRange::levels_a_step(scene.bounds(), point.face / 2);

@@ -122,6 +122,17 @@ pub(crate) fn accept<N: Number, K: Culling<N>>(
     if enter.0 >= ray.tmin && crossing.leave.0 >= enter.0 && K::holds(ray, enter.0, &bounds) {
         return (enter.0 <= tmax).then_some(enter);
     }
+    // Of a ray that begins in the box the interval begins before the origin, by more than rounding:
+    // clamped or not, nothing behind the origin counts.
+    let leave = crossing.leave;
+    if enter.0 < N::ZERO && K::holds(ray, N::ZERO, &bounds) {
+        if leave.0 < ray.tmin {
+            return None;
+        }
+        if K::holds(ray, leave.0, &bounds) {
+            return (leave.0 <= tmax).then_some((leave.0, leave.1 | LEAVING));
+        }
+    }
     let interval = cull.exact(ray).interval(&bounds);
     if interval.near > interval.far {
         return None;
@@ -140,8 +151,9 @@ pub(crate) fn accept<N: Number, K: Culling<N>>(
     if enter >= ray.tmin && enter <= tmax {
         return Some((enter, crossing.enter.1));
     }
-    let leave = clamp(crossing.leave.0);
-    (leave >= ray.tmin && leave <= tmax).then_some((leave, crossing.leave.1 | LEAVING))
+    let part = leave.1 | LEAVING;
+    let leave = clamp(leave.0);
+    (leave >= ray.tmin && leave <= tmax).then_some((leave, part))
 }
 
 /// The crossing of a plane through `relative` (a point as seen from the ray's origin) with a normal
