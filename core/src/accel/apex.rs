@@ -1,4 +1,4 @@
-//! Lists for the rays of one point: an eye, or a light.
+//! Lists for the rays of one point, an eye or a light, or of one direction, a light's far away.
 //!
 //! Where one of the cylinder cube's two gridels shrinks to a point, n^2 lists remain of n^4, and
 //! each is short. This is nearer to the light buffer of E. Haines and D. Greenberg ("The Light
@@ -12,6 +12,10 @@
 //! list from there: rays from the eye, shadow rays to a light. All others walk the hierarchy
 //! ([`Bvh`]); so a camera that was moved is noticed by itself, and costs time alone.
 //!
+//! A directional light is an apex infinitely far away. Its rays differ by where they pass a *plane*
+//! across their major axis that lies beyond the scene, and its one window is a rectangle of that
+//! plane.
+//!
 //! **No candidate is lost.** Let a line in integers pass the apex, in the plane across its major
 //! axis, within four units on each of the other two axes; the ray itself then passes within a
 //! little more.
@@ -22,20 +26,31 @@
 //! along the major axis while its sides move by the least and the greatest slope of the cell. The
 //! builder lists what meets that volume.
 //!
-//! Memory: 24 bytes an apex, 32 a window, and the lists. Cost: two multiplications for each apex
-//! that is tried, four more for the cell, and one to four primitives.
+//! A line whose slopes lie within 2^-19 of a direction's moves away from it by less than an eighth
+//! of a unit between the plane and the scene's far end. So its points lie within a unit of the volume
+//! that the cell, a rectangle of the plane widened by [`Apex::REACH`], sweeps when it moves along the
+//! direction itself.
+//!
+//! **Lists may be cut.** What lies behind others is hardly ever asked for, and most of what lists would
+//! hold lies there. A last entry that is no slot stands for all that begins at its key or later: a
+//! ray that comes to it goes on in the hierarchy. So where a list is cut does not matter to an answer.
+//!
+//! Memory: 24 bytes an apex, 20 a direction, 32 a window, and the lists. Cost: three comparisons for
+//! each direction and two multiplications for each apex that is tried, two to four more for the
+//! cell, and one to four primitives.
 
 use super::bvh::Bvh;
 use super::candidates::{Candidates, ListSections};
+use super::cull::{Culling, Deferred};
 use super::line::Line;
 use super::{Accel, Leaf, Records, StackView, Structure};
-use crate::blob::record::{ApexPoint, ApexWindow, Gridels};
+use crate::blob::record::{ApexDirection, ApexPoint, ApexWindow, Gridels};
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
 use crate::count::Count;
 use crate::number::{Number, pick};
 use crate::ray::Ray;
 
-/// Lists for the rays of the camera and of point lights, and the hierarchy for all others.
+/// Lists for the rays of the camera and of lights, and the hierarchy for all others.
 #[derive(Clone, Copy, Debug)]
 pub enum Apex {}
 
@@ -52,41 +67,56 @@ impl Apex {
     pub const LAST_LEVEL: u8 = u8::MAX;
     /// Units that a line in integers may pass an apex by, with 8 fraction bits.
     const CLOSE: u32 = 4 << 8;
+    /// How far a line's slopes may lie from a direction's, with 30 fraction bits.
+    const PARALLEL: u32 = 1 << 11;
 }
 
 impl Accel for Apex {
     const STRUCTURE: Structure = Structure::Apex;
-    type Cull<N: Number> = N::Cull;
+    type Cull<N: Number> = Deferred;
 
     // Once, and not for every set of effects that the ray loop is compiled for.
     #[inline(never)]
     fn walk<N: Number, C: Count>(
         scene: &Scene<'_>,
         ray: &Ray<N>,
-        cull: &N::Cull,
+        _: &Deferred,
         stack: &mut StackView,
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let Held { lists, .. } = &scene.held.apex;
-        let Some(way) = scene.held.apex.way(ray) else {
-            return Bvh::walk(scene, ray, cull, stack, count, leaf);
-        };
-        count.cells(1);
+        let held = &scene.held.apex;
         let mut tmax = ray.tmax;
-        let mut end = if way.outward {
-            way.level(tmax.to_cull())
-        } else {
-            way.level(ray.tmin.to_cull())
-        };
-        lists.ascend(way.cell, end, |slot| {
-            let limit = leaf(scene.shapes.single(slot), count)?;
-            if way.outward && limit < tmax {
-                tmax = limit;
-                end = way.level(tmax.to_cull());
+        if let Some(way) = held.way(ray) {
+            count.cells(1);
+            let mut end = if way.outward {
+                way.level(tmax.to_cull())
+            } else {
+                way.level(ray.tmin.to_cull())
+            };
+            let mut cut = false;
+            held.lists.ascend(way.cell, end, |slot| {
+                let single = scene.shapes.single(slot);
+                if single.count == 0 {
+                    cut = true;
+                    return None;
+                }
+                let limit = leaf(single, count)?;
+                if limit < tmax {
+                    tmax = limit;
+                    if way.outward {
+                        end = way.level(tmax.to_cull());
+                    }
+                }
+                Some(end)
+            });
+            if !cut {
+                return;
             }
-            Some(end)
-        });
+        }
+        let rest = Ray { tmax, ..*ray };
+        let cull = Culling::new(&rest);
+        Bvh::walk(scene, &rest, &cull, stack, count, leaf);
     }
 }
 
@@ -124,15 +154,28 @@ impl ApexWindow {
         ((way * u64::from(self.a_step)) >> 24).min(Apex::LAST_LEVEL.into()) as u8
     }
 
-    /// The column or row of a slope, by the side that it is counted along.
+    /// The column or row of a slope or place, by the side that it is counted along.
     #[inline(always)]
-    fn place(&self, side: usize, slope: i32) -> Option<u32> {
-        let from_low = i64::from(slope) - i64::from(self.low[side & 1]);
-        let place = (u64::try_from(from_low).ok()? * u64::from(self.scale[side & 1])) >> 32;
-        (place < self.cells[side & 1].into()).then_some(place as u32)
+    fn column(&self, side: usize, value: i32) -> Option<u32> {
+        let low = self.low[side & 1];
+        if value < low {
+            return None;
+        }
+        let from_low = u64::from(value.wrapping_sub(low).cast_unsigned());
+        let column = ((from_low * u64::from(self.scale[side & 1])) >> 32) as u32;
+        (column < self.cells[side & 1].into()).then_some(column)
     }
 
-    /// The first and the last slope of a column or row; exactly what rays are sorted by.
+    /// The cell of a ray by what it is sorted by; `None` beside the window.
+    #[inline(always)]
+    fn cell(&self, values: [i32; 2]) -> Option<u32> {
+        let (column, row) = (self.column(0, values[0])?, self.column(1, values[1])?);
+        let number = column.wrapping_mul(self.cells[1].into()).wrapping_add(row);
+        // One of the table's cells.
+        Some(self.first_cell.wrapping_add(number))
+    }
+
+    /// The first and the last slope or place of a column or row; exactly what rays are sorted by.
     pub fn extent(&self, side: usize, place: u32) -> [i64; 2] {
         let scale = u64::from(self.scale[side & 1]).max(1);
         let first = |place: u32| {
@@ -146,15 +189,46 @@ impl ApexWindow {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Held<'a> {
     points: &'a [ApexPoint],
+    directions: &'a [ApexDirection],
     windows: &'a [ApexWindow],
     lists: Candidates<'a>,
 }
 
 impl<'a> Held<'a> {
-    /// The apex that a ray starts from or runs to, if its directions have lists there.
+    /// The apex that a ray starts from or runs to, if it has a list there.
     #[inline(always)]
     fn way<N: Number>(&self, ray: &Ray<N>) -> Option<Way<'a>> {
         let line = Line::of(ray);
+        self.way_along(&line).or_else(|| self.way_past(ray, &line))
+    }
+
+    /// The direction in which a ray runs.
+    #[inline(always)]
+    fn way_along(&self, line: &Line) -> Option<Way<'a>> {
+        let along = |direction: &&ApexDirection| {
+            let near = |axis: usize| {
+                let beside = pick(line.slope, axis).wrapping_sub(pick(direction.slope, axis));
+                beside.unsigned_abs() <= Apex::PARALLEL
+            };
+            near(0) && near(1) && near(2) && line.major == usize::from(direction.major)
+        };
+        let direction = self.directions.iter().find(along)?;
+        let window = self.windows.get(usize::from(direction.window))?;
+        let t = line.reach(direction.plane << 5);
+        // Within 2^19 units.
+        let at = |axis: usize| (line.at(axis, t) >> 5) as i32;
+        let [first, second] = Gridels::across(line.major);
+        Some(Way {
+            window,
+            cell: window.cell([at(first), at(second)])?,
+            outward: false,
+            apex: t >> 12,
+        })
+    }
+
+    /// The point that a ray starts from or runs to.
+    #[inline(always)]
+    fn way_past<N: Number>(&self, ray: &Ray<N>, line: &Line) -> Option<Way<'a>> {
         let major = line.major;
         let across = Gridels::across(major);
         let rises = line.ascends(major);
@@ -186,16 +260,10 @@ impl<'a> Held<'a> {
                 let slope = pick(line.slope, axis);
                 if outward { slope } else { slope.wrapping_neg() }
             };
-            let column = window.place(0, slope(across[0]));
-            let row = window.place(1, slope(across[1]));
-            if let (Some(column), Some(row)) = (column, row) {
-                // One of the table's cells.
-                let place = column
-                    .wrapping_mul(window.cells[1].into())
-                    .wrapping_add(row);
+            if let Some(cell) = window.cell([slope(across[0]), slope(across[1])]) {
                 return Some(Way {
                     window,
-                    cell: window.first_cell.wrapping_add(place),
+                    cell,
                     outward,
                     apex,
                 });
@@ -220,18 +288,20 @@ impl<'a> Records<'a> for Held<'a> {
         LISTS.starts,
         LISTS.entries,
         SectionKind::ApexKeys,
+        SectionKind::ApexDirections,
     ];
     const USES_LEAVES: bool = false;
 
     fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
         Ok(Self {
             points: sections.records(SectionKind::ApexPoints)?,
+            directions: sections.records(SectionKind::ApexDirections)?,
             windows: sections.records(SectionKind::ApexWindows)?,
             lists: Candidates::read(sections, &LISTS)?,
         })
     }
 
-    /// Proves that points lie within reach, that windows follow each other in the table and fill
+    /// Proves that points and planes lie within reach, that windows follow each other in the table and fill
     /// it, and the lists; and that the scene holds the hierarchy for all other rays.
     fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
         Structure::Bvh.needed_by(Structure::Apex, scene)?;
@@ -257,6 +327,26 @@ impl<'a> Records<'a> for Held<'a> {
                 }
             }
         }
+        for (index, direction) in self.directions.iter().enumerate() {
+            const MOST: u32 = 1 << 24;
+            let wrong = |what, found: i64, expected: i64| BlobError::Record {
+                section: SectionKind::ApexDirections,
+                index,
+                what,
+                found,
+                expected,
+            };
+            if direction.plane.unsigned_abs() > MOST {
+                return Err(wrong("plane", direction.plane.into(), MOST.into()));
+            }
+            if direction.major > 2 {
+                return Err(wrong("major axis", direction.major.into(), 2));
+            }
+            if usize::from(direction.window) >= self.windows.len() {
+                let last = self.windows.len() as i64 - 1;
+                return Err(wrong("window", direction.window.into(), last));
+            }
+        }
         let mut next: u32 = 0;
         for (index, window) in self.windows.iter().enumerate() {
             let wrong = |what, found: u32, expected: u32| BlobError::Record {
@@ -280,8 +370,9 @@ impl<'a> Records<'a> for Held<'a> {
             next = next.saturating_add(cells);
         }
         let ascend = |before: u8, after: u8| before <= after;
-        self.lists
-            .check(&LISTS, next.into(), scene.shapes.total(), ascend)?;
+        // One more than there are slots, for where a list is cut.
+        let end = scene.shapes.total().saturating_add(1);
+        self.lists.check(&LISTS, next.into(), end, ascend)?;
         Ok(0)
     }
 }

@@ -164,7 +164,7 @@ structures! {
     /// The cylinder cube with tight lists, sorted along the way from one gridel to the other.
     CylinderCubeTight = 5, "cylinder-cube-tight", cylinder_cube_tight,
         if feature = "cylinder-cube-tight";
-    /// Lists for the rays of the camera and of point lights; other rays walk `bvh`.
+    /// Lists for the rays of the camera and of lights; other rays walk `bvh`.
     Apex = 6, "apex", apex, if feature = "apex";
     /// The cylinder cube whose lists hold nodes of `bvh`, at which a ray enters it.
     CylinderCubeEntry = 7, "cylinder-cube-entry", cylinder_cube_entry,

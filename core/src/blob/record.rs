@@ -316,20 +316,35 @@ pub struct ApexPoint {
     pub windows: [u16; 6],
 }
 
-/// A rectangle of directions from an apex, by their slopes on the two axes that follow the major
-/// one in turn.
+/// A direction whose rays have lists: an apex infinitely far away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ApexDirection {
+    /// The slopes of rays that run that way, ratios with 30 fraction bits.
+    pub slope: [i32; 3],
+    /// The plane across the major axis that they run to, in 1/256 unit; magnitudes up to 2^24.
+    pub plane: i32,
+    /// The axis along which they run most.
+    pub major: u16,
+    /// Their window.
+    pub window: u16,
+}
+
+/// A rectangle of what tells the rays of an apex apart, on the two axes that follow the major one in
+/// turn: slopes, with 30 fraction bits, or, where the apex is infinitely far away, places in the
+/// plane that they run to, in 1/256 unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ApexWindow {
-    /// The least slopes, ratios with 30 fraction bits.
+    /// The least slopes or places.
     pub low: [i32; 2],
-    /// Cells a slope of 2^-30, with 32 fraction bits.
+    /// Cells for a slope of 2^-30 or 1/256 unit, with 32 fraction bits.
     pub scale: [u32; 2],
     /// Cells along each side, 1 to 1024.
     pub cells: [u16; 2],
     /// The first cell of the window in the table; cells lie row by row of the second slope.
     pub first_cell: u32,
-    /// Where the levels of keys begin: culling steps from the apex.
+    /// Where the levels of keys begin: culling steps from the apex or the plane.
     pub start: i32,
     /// Levels a culling step, with 24 fraction bits.
     pub a_step: u32,
@@ -530,6 +545,7 @@ const _: () = {
     assert!(offset_of!(Cone, base_radius) == 24 && offset_of!(Cone, bounds) == 32);
     assert!(size_of::<Gridels>() == 40 && offset_of!(Gridels, scale) == 28);
     assert!(size_of::<ApexPoint>() == 24 && offset_of!(ApexPoint, windows) == 12);
+    assert!(size_of::<ApexDirection>() == 20 && offset_of!(ApexDirection, window) == 18);
     assert!(size_of::<ApexWindow>() == 32 && offset_of!(ApexWindow, cells) == 16);
     assert!(size_of::<Pair>() == 32 && size_of::<FlaggedPair>() == 16);
     assert!(size_of::<DualNode>() == 16);

@@ -145,6 +145,8 @@ kinds! {
     OctreeStarts = 56, "octree-starts";
     /// The slots in the leaves of the octree (1 to 4 bytes).
     OctreeSlots = 57, "octree-slots";
+    /// [`ApexDirection`](super::record::ApexDirection)s.
+    ApexDirections = 58, "apex-directions";
 }
 
 /// A section's place, proved to lie in the blob.

@@ -9,10 +9,12 @@
 //! | `census.rs` | what the paper's table takes, without building it |
 //! | `entry.rs` | nodes of the hierarchy for pairs of gridels |
 //! | `apex.rs` | lists for the rays of the eye and of lights |
+//! | `bundle.rs` | these rays, and what they are sorted by |
 //! | `ray_classes.rs` | lists for classes of rays by origin and direction |
 //! | `own_rays.rs` | the rays of the scene's own picture, where classes are fine |
 
 pub mod apex;
+mod bundle;
 pub mod census;
 pub mod cylinder_cube;
 pub mod entry;
@@ -151,6 +153,7 @@ impl Layout {
             section(SectionKind::ApexWindows, &apexes.windows),
         ];
         sections.extend(kinds.of(apexes.lists));
+        sections.push(section(SectionKind::ApexDirections, &apexes.directions));
         Self {
             structure: Structure::Apex,
             sections,

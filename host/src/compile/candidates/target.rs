@@ -51,6 +51,17 @@ impl Target {
         met.then_some(span)
     }
 
+    /// How many times its way a ray goes until it enters the primitive, if that is a sphere before it.
+    pub fn entered_by(&self, from: DVec3, way: DVec3) -> Option<f64> {
+        let Surface::Sphere { center, radius2 } = self.surface else {
+            return None;
+        };
+        let to_center = DVec3::from_array(center) - from;
+        let (middle, length2) = (to_center.dot(way), way.length_squared());
+        let room = middle * middle - length2 * (to_center.length_squared() - radius2);
+        (room >= 0.0 && middle > 0.0).then(|| (middle - room.sqrt()) / length2)
+    }
+
     /// The widened box.
     pub fn bounds(&self) -> &[[f64; 2]; 3] {
         &self.bounds
