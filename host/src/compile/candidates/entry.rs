@@ -12,6 +12,7 @@ use super::target::{Node, Targets};
 use gridel_core::Structure;
 use gridel_core::accel::CylinderCubeEntry;
 use gridel_core::blob::record::Gridels;
+use std::cell::OnceCell;
 
 /// The form whose lists hold nodes.
 pub struct EntryNodes<'t>(pub &'t Targets<'t>);
@@ -35,6 +36,7 @@ impl Form for EntryNodes<'_> {
         let Some(root) = root else {
             return;
         };
+        let samples = Samples::of(pair);
         let mut waiting = vec![(root, whole)];
         let mut chosen = Vec::new();
         while let Some((node, bounds)) = waiting.pop() {
@@ -55,8 +57,12 @@ impl Form for EntryNodes<'_> {
             };
             let met = &met[..count];
             let room = waiting.len() + chosen.len() + count <= CylinderCubeEntry::MOST_NODES;
-            let tests: f64 = met.iter().map(|(_, bounds)| chance(pair, bounds)).sum();
-            if room && (count == 1 || tests > 1.0) {
+            let tests = || {
+                met.iter()
+                    .map(|(_, bounds)| samples.chance(bounds))
+                    .sum::<f64>()
+            };
+            if room && (count == 1 || tests() > 1.0) {
                 waiting.extend_from_slice(met);
             } else {
                 chosen.push((node, bounds));
@@ -85,9 +91,28 @@ impl EntryNodes<'_> {
     }
 }
 
-/// What part of a pair's rays meets a box, by a few of them.
-fn chance(pair: &Pair, bounds: &[[f64; 2]; 3]) -> f64 {
-    let met = (0..SAMPLES).filter(|&sample| {
+/// A few rays of a pair of gridels, made when they are asked for.
+struct Samples<'p> {
+    pair: &'p Pair,
+    rays: OnceCell<[Shaft; SAMPLES]>,
+}
+
+impl<'p> Samples<'p> {
+    fn of(pair: &'p Pair) -> Self {
+        let rays = OnceCell::new();
+        Self { pair, rays }
+    }
+
+    /// What part of the rays meets a box.
+    fn chance(&self, bounds: &[[f64; 2]; 3]) -> f64 {
+        let rays = self
+            .rays
+            .get_or_init(|| std::array::from_fn(|it| self.ray(it)));
+        let met = rays.iter().filter(|ray| ray.meets(bounds).is_some());
+        met.count() as f64 / SAMPLES as f64
+    }
+
+    fn ray(&self, number: usize) -> Shaft {
         // Four by four places of a gridel; those of the other are the same in another order.
         let place = |number: usize, sides: &[[f64; 2]; 3]| {
             let mut part = [number % 4, number / 4].into_iter().cycle();
@@ -99,9 +124,8 @@ fn chance(pair: &Pair, bounds: &[[f64; 2]; 3]) -> f64 {
                 [low + part * (high - low); 2]
             })
         };
-        let from = place(sample, &pair.0[0]);
-        let to = place((sample * 7 + 3) % SAMPLES, &pair.0[1]);
-        Shaft::between(from, to).meets(bounds).is_some()
-    });
-    met.count() as f64 / SAMPLES as f64
+        let from = place(number, &self.pair.0[0]);
+        let to = place((number * 7 + 3) % SAMPLES, &self.pair.0[1]);
+        Shaft::between(from, to)
+    }
 }
