@@ -45,18 +45,32 @@ pub fn glass_chess() -> Compiled {
 /// Scenes of the paper's sorts and sizes, a glass chessboard and two crystals for its molecules, with
 /// some structures.
 pub fn papers(structures: &[Structure]) -> [Compiled; 3] {
-    [
-        ("paper-150", load(&fixture_path("glass-chess"))),
-        ("paper-2800", sample::diamond(sample::DIAMOND_2_800)),
-        ("paper-27000", sample::diamond(sample::DIAMOND_27_000)),
-    ]
-    .map(|(name, scene)| {
-        let options = Options {
-            structures: structures.to_vec(),
-            ..Options::default()
-        };
-        compile_with(name, scene, [48, 36], options)
-    })
+    PAPERS.map(|name| paper(name, structures, None))
+}
+
+/// The names of these scenes.
+pub const PAPERS: [&str; 3] = ["paper-150", "paper-2800", "paper-27000"];
+/// The smaller crystal, seen from so near that it fills the picture.
+pub const CLOSE: &str = "paper-2800-close";
+
+/// One of these scenes, with some structures; the cylinder cubes with so many gridels a side.
+pub fn paper(name: &'static str, structures: &[Structure], gridels: Option<u32>) -> Compiled {
+    let mut scene = match name {
+        "paper-150" => load(&fixture_path("glass-chess")),
+        "paper-27000" => sample::diamond(sample::DIAMOND_27_000),
+        _ => sample::diamond(sample::DIAMOND_2_800),
+    };
+    if name == CLOSE
+        && let Some(camera) = &mut scene.camera
+    {
+        camera.eye = camera.target + 0.45 * (camera.eye - camera.target);
+    }
+    let options = Options {
+        structures: structures.to_vec(),
+        gridels,
+        ..Options::default()
+    };
+    compile_with(name, scene, [48, 36], options)
 }
 
 fn view_depth(compiled: &Compiled) -> u8 {
