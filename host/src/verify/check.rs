@@ -315,7 +315,8 @@ pub fn sealed<N: Number, A: Accel>(
     /// Surfaces of other objects that a ray is followed through.
     const MOST: usize = 256;
     let mut tmin = 0.0;
-    let mut passed: Vec<f64> = Vec::new();
+    // Where, and how far the ray was moved on.
+    let mut passed: Vec<(f64, f64)> = Vec::new();
     let whole = Ray::<N>::from_f64(scene.bounds(), origin, direction, 0.0, f64::INFINITY).ok()?;
     let rounded = RoundedRay::of(&whole);
     for _ in 0..MOST {
@@ -323,14 +324,14 @@ pub fn sealed<N: Number, A: Accel>(
             Ray::<N>::from_f64(scene.bounds(), origin, direction, tmin, f64::INFINITY).ok()?;
         let Some(hit) = ask::<N, A>(scene, &ray).hit else {
             // Where surfaces coincide, only one of them was told.
-            let crosses = |t: &f64| {
+            let crosses = |&(t, moved_on): &(f64, f64)| {
                 let mesh = (0..scene.count(Kind::Triangle)).filter_map(|slot| {
                     let primitive = scene.primitive(Kind::Triangle, slot as u32);
                     (scene.object(primitive) == object).then_some(primitive)
                 });
                 let t = t - rounded.moved;
                 mesh.into_iter()
-                    .any(|primitive| judge.crosses(N::FORMAT, primitive, &rounded, t))
+                    .any(|primitive| judge.crosses(N::FORMAT, primitive, &rounded, t, moved_on))
             };
             let hidden = passed.iter().any(crosses);
             return (!hidden).then(|| Fault {
@@ -344,8 +345,9 @@ pub fn sealed<N: Number, A: Accel>(
             return None;
         }
         let t = N::far_to_f64(hit.t);
-        passed.push(t);
-        tmin = t + 4.0 * step(N::FORMAT, t.abs().max(1.0)).max(hit.error.length_to_f64());
+        let on = 4.0 * step(N::FORMAT, t.abs().max(1.0)).max(hit.error.length_to_f64());
+        passed.push((t, on));
+        tmin = t + on;
     }
     None
 }

@@ -165,13 +165,19 @@ impl Judge {
         Ok(())
     }
 
-    /// Whether a ray crosses a primitive at `t`, within [`STEPS`].
-    pub fn crosses(&self, format: Format, primitive: u32, ray: &RoundedRay, t: f64) -> bool {
+    /// Whether a ray meets a primitive at `t`, which may be as far off as `within`, or [`STEPS`] more.
+    pub fn crosses(
+        &self,
+        format: Format,
+        primitive: u32,
+        ray: &RoundedRay,
+        t: f64,
+        within: f64,
+    ) -> bool {
         self.solid(primitive).is_some_and(|solid| {
-            let off = STEPS * step(format, ray.magnitude(t).max(solid.extent()));
-            let span = solid.span(&ray.line(), &Real::of(off));
-            let near = |place: &Real| (place - Real::of(t)).to_f64().abs() <= 4.0 * off;
-            span.is_some_and(|(enter, leave)| near(&enter) || near(&leave))
+            let off = within + STEPS * step(format, ray.magnitude(t).max(solid.extent()));
+            let begin = Real::of(ray.interval[0]);
+            Crossings::new(solid, &ray.line(), off).may_be_met_at(&Real::of(t), &begin)
         })
     }
 }
