@@ -206,8 +206,13 @@ fn text(report: &Report<'_>) -> String {
     }
     text += &format!("{makes}\n");
     text += &tests("a primary ray", comparison, |works| Some(works.primary));
-    if rays.shadow + rays.bounced > 0 {
-        text += &tests("a secondary ray", comparison, |works| works.secondary);
+    if rays.shadow > 0 {
+        text += &tests("a shadow ray", comparison, |works| works.shadow);
+    }
+    if rays.bounced > 0 {
+        text += &tests("a mirrored or refracted ray", comparison, |works| {
+            works.bounced
+        });
     }
     for finding in &report.findings {
         text += finding;

@@ -1,6 +1,6 @@
 //! The charts of a comparison.
 
-use super::findings::{primary_rate, secondary_rate};
+use super::findings::{bounced_rate, primary_rate, shadow_rate};
 use super::{Comparison, Growth, Row};
 use crate::report::chart::{ChartError, Curve, Series, bars, curves};
 
@@ -26,7 +26,8 @@ pub fn charts(
     ];
     let rates = [
         bar("primary", &primary_rate),
-        bar("secondary", &secondary_rate),
+        bar("shadow", &shadow_rate),
+        bar("mirrored and refracted", &bounced_rate),
     ];
     let curve = |of: fn(&Row) -> Option<f64>| -> Vec<Curve> {
         let curve = |name: &String| Curve {
@@ -75,6 +76,15 @@ pub fn charts(
                 objects,
                 "bytes",
                 &curve(|row| Some(row.own_bytes as f64)),
+            )?,
+        ),
+        (
+            "growth-peak.svg",
+            curves(
+                &title("most memory while building, over parts of the scene"),
+                objects,
+                "bytes",
+                &curve(|row| row.peak_bytes.map(|bytes| bytes as f64)),
             )?,
         ),
         (

@@ -33,9 +33,10 @@ impl Measure {
     }
 }
 
-const MEASURES: [Measure; 6] = [
+const MEASURES: [Measure; 7] = [
     Measure::timed("primary rays a second", primary_rate, true),
-    Measure::timed("secondary rays a second", secondary_rate, true),
+    Measure::timed("shadow rays a second", shadow_rate, true),
+    Measure::timed("bounced rays a second", bounced_rate, true),
     Measure::counted("tests a ray", tests),
     Measure::counted("bytes", |row| Some(row.own_bytes as f64)),
     Measure::timed("set-up", |row| Some(row.setup_seconds), false),
@@ -49,8 +50,12 @@ pub(super) fn primary_rate(row: &Row) -> Option<f64> {
     row.work?.primary.rays_per_second
 }
 
-pub(super) fn secondary_rate(row: &Row) -> Option<f64> {
-    row.work?.secondary?.rays_per_second
+pub(super) fn shadow_rate(row: &Row) -> Option<f64> {
+    row.work?.shadow?.rays_per_second
+}
+
+pub(super) fn bounced_rate(row: &Row) -> Option<f64> {
+    row.work?.bounced?.rays_per_second
 }
 
 /// Planes, cells and primitives: everything that a ray is tested against.
@@ -73,8 +78,8 @@ fn times(factor: f64) -> String {
     }
 }
 
-/// For each structure, by what it is beaten, in times only where these were repeated; the list, which takes nothing to make and to hold, is
-/// passed over where it comes to that.
+/// For each structure, by what it is beaten, in times only where these were repeated; the list,
+/// which takes nothing to make and to hold, is passed over where it comes to that.
 pub fn findings(comparison: &Comparison) -> Vec<String> {
     let list = Structure::List.name();
     let refused = comparison.refused.iter();

@@ -26,8 +26,8 @@ pub struct Questions<'q, N: Number> {
     pub shadow: Question,
 }
 
-/// Rays that are measured together, by what they are asked.
-type Group<'r, N> = Vec<(Question, &'r [Ray<N>])>;
+/// Rays that are measured together, and what they are asked.
+type Group<'r, N> = (Question, &'r [Ray<N>]);
 
 /// An answer to the last bit: the primitive and t, or whether anything was met.
 pub type Answer = (u32, u64);
@@ -35,22 +35,23 @@ pub type Answer = (u32, u64);
 const NOTHING: Answer = (u32::MAX, 0);
 
 impl<N: Number> Questions<'_, N> {
-    /// Rays from the camera, and all others.
-    fn groups(&self) -> [Group<'_, N>; 2] {
+    /// Rays from the camera, those to lights, and those that mirrors and glass send on.
+    fn groups(&self) -> [Group<'_, N>; 3] {
         let PictureRays {
             primary,
             shadow,
             bounced,
         } = self.rays;
         [
-            vec![(Question::Closest, primary)],
-            vec![(self.shadow, shadow), (Question::Closest, bounced)],
+            (Question::Closest, primary),
+            (self.shadow, shadow),
+            (Question::Closest, bounced),
         ]
     }
 
     /// All rays in one order.
     pub fn all(&self) -> impl Iterator<Item = (Question, &Ray<N>)> {
-        let groups = self.groups().into_iter().flatten();
+        let groups = self.groups().into_iter();
         groups.flat_map(|(question, rays)| rays.iter().map(move |ray| (question, ray)))
     }
 }
@@ -153,28 +154,26 @@ pub fn measure<N: Number>(
     let mut counts = Vec::new();
     for (&(scene, &structure), &stride) in contenders.iter().zip(&strides) {
         progress(&format!("counting {}", structure.name()));
-        counts.push([0, 1].map(|group: usize| {
-            let (mut counters, mut rays) = (Counters::default(), 0);
-            for &(question, all) in &groups[group] {
-                let mut some = all.iter().step_by(stride);
-                rays += some.len();
-                // The work is the same as through the structure's own code.
-                if let Some(scene) = scene.choose(structure) {
-                    ask_through::<N, Chosen, _>(
-                        &scene,
-                        question,
-                        &mut some,
-                        &mut counters,
-                        &mut |answer| {
-                            black_box(answer);
-                        },
-                    );
-                }
+        counts.push(groups.map(|(question, all)| {
+            let mut counters = Counters::default();
+            let mut some = all.iter().step_by(stride);
+            let rays = some.len();
+            // The work is the same as through the structure's own code.
+            if let Some(scene) = scene.choose(structure) {
+                ask_through::<N, Chosen, _>(
+                    &scene,
+                    question,
+                    &mut some,
+                    &mut counters,
+                    &mut |answer| {
+                        black_box(answer);
+                    },
+                );
             }
             (counters, rays)
         }));
     }
-    let mut seconds = vec![[const { Vec::new() }; 2]; contenders.len()];
+    let mut seconds = vec![[const { Vec::new() }; 3]; contenders.len()];
     for repeat in 0..options.repeats {
         for ((&(scene, &structure), &stride), seconds) in
             contenders.iter().zip(&strides).zip(&mut seconds)
@@ -185,27 +184,32 @@ pub fn measure<N: Number>(
                 repeat + 1,
                 options.repeats
             ));
-            for (group, seconds) in groups.iter().zip(seconds) {
+            for (&(question, all), seconds) in groups.iter().zip(seconds) {
                 let started = Instant::now();
-                for &(question, all) in group {
-                    let mut some = all.iter().step_by(stride);
-                    ask((scene, structure), question, &mut some, &mut |answer| {
-                        black_box(answer);
-                    });
-                }
+                let mut some = all.iter().step_by(stride);
+                ask((scene, structure), question, &mut some, &mut |answer| {
+                    black_box(answer);
+                });
                 seconds.push(started.elapsed().as_secs_f64());
             }
         }
     }
     let works = counts.into_iter().zip(seconds).map(|(counts, seconds)| {
-        let [primary, secondary] = counts;
-        let [primary_seconds, secondary_seconds] = seconds.map(median);
-        let both = primary_seconds.zip(secondary_seconds).map(|(a, b)| a + b);
+        let seconds = seconds.map(median);
+        let work = |group: usize| {
+            let (counters, rays) = &counts[group];
+            Work::of(*rays, counters, seconds[group])
+        };
+        let some = |work: Work| (work.rays > 0).then_some(work);
+        let all = counts
+            .iter()
+            .fold(Counters::default(), |all, (one, _)| all.plus(one));
+        let rays = counts.iter().map(|(_, rays)| rays).sum();
         Works {
-            primary: Work::of(primary.1, &primary.0, primary_seconds),
-            secondary: (secondary.1 > 0)
-                .then(|| Work::of(secondary.1, &secondary.0, secondary_seconds)),
-            all: Work::of(primary.1 + secondary.1, &primary.0.plus(&secondary.0), both),
+            primary: work(0),
+            shadow: some(work(1)),
+            bounced: some(work(2)),
+            all: Work::of(rays, &all, seconds.into_iter().sum()),
         }
     });
     works.collect()

@@ -154,8 +154,10 @@ pub struct Row {
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Works {
     pub primary: Work,
-    /// All others; `None` where there are none.
-    pub secondary: Option<Work>,
+    /// To lights; `None` where there are none.
+    pub shadow: Option<Work>,
+    /// Mirrored and refracted; `None` where there are none.
+    pub bounced: Option<Work>,
     pub all: Work,
 }
 

@@ -54,6 +54,7 @@ fn charts_are_written_whole() {
         "rates",
         "growth-rates",
         "growth-bytes",
+        "growth-peak",
         "growth-setup",
     ] {
         let svg = String::from_utf8(folder.read(&format!("charts/{chart}.svg"))).unwrap();
