@@ -1,0 +1,134 @@
+//! What the board tests recorded.
+
+use super::{holds_table, text};
+use gridel_host::board::Board;
+use gridel_host::report::grouped;
+
+/// What the board tests recorded of a scene on a board, through dual-split nodes.
+fn on_board(scene: &str, board: &str, format: &str) -> impl Fn(&str) -> u64 {
+    let recorded = text("fixtures/recorded/board.json");
+    let recorded: serde_json::Value = serde_json::from_str(&recorded).expect("a table");
+    let build = format!("{scene} {board} {format} dual-split");
+    move |name| {
+        let figure = recorded[&build][name].as_u64();
+        figure.unwrap_or_else(|| panic!("no {name} of {build} is recorded"))
+    }
+}
+
+/// What pictures and primary rays take on boards, as their tests recorded it. `GRIDEL_BLESS=1` writes
+/// it anew.
+#[test]
+fn the_readme_shows_what_boards_take() {
+    let place = |board: &str, format: &str| {
+        let core = Board::named(board).expect("a board").core;
+        format!("{core}, `{format}`")
+    };
+    let cells = |figure: &dyn Fn(&str) -> u64, names: &[&str]| {
+        let cells = names.iter().map(|name| grouped(figure(name)));
+        cells.collect::<Vec<_>>().join(" | ")
+    };
+    let mut pictures = String::from(
+        "| scene | board, format | call stack | RAM | flash | instructions to load | a primary ray | \
+         a shadow ray | the picture |\n|---|---|---|---|---|---|---|---|---|\n",
+    );
+    for (scene, board, format) in [
+        ("glass-chess-64", "stm32vldiscovery", "fixed"),
+        ("nanotube", "stm32vldiscovery", "fixed"),
+        ("3dqb", "stm32vldiscovery", "fixed"),
+        ("torus", "microbit", "fixed"),
+        ("glass-chess", "microbit", "fixed"),
+        ("glass-chess", "sifive_e", "fixed"),
+        ("glass-chess", "mps2-an385", "fixed"),
+        ("glass-chess", "mps2-an386", "f32"),
+        ("glass-chess", "mps2-an505", "f32"),
+        ("quick", "mps2-an386", "f32"),
+        ("quick", "mps2-an500", "f64"),
+    ] {
+        let figures = [
+            "stack-bound-bytes",
+            "ram-bytes",
+            "flash-bytes",
+            "load-instructions",
+            "ray-instructions",
+            "shadow-ray-instructions",
+            "picture-instructions",
+        ];
+        let figures = cells(&on_board(scene, board, format), &figures);
+        pictures += &format!(
+            "| {scene} | {board}, {} | {figures} |\n",
+            place(board, format)
+        );
+    }
+    holds_table("boards", &pictures);
+
+    let mut rays = String::from(
+        "| board, format | call stack | stack of the traversal | instructions to load | a ray | \
+         a ray, 16 bits |\n|---|---|---|---|---|---|\n",
+    );
+    for (board, format) in [
+        ("mps2-an386", "f32"),
+        ("mps2-an386", "fixed"),
+        ("mps2-an385", "fixed"),
+        ("sifive_e", "fixed"),
+        ("microbit", "fixed"),
+    ] {
+        let figures = [
+            "ray-stack-bytes",
+            "workspace-bytes",
+            "load-instructions",
+            "ray-instructions",
+        ];
+        let wide = cells(&on_board("suzanne", board, format), &figures);
+        let narrow = on_board("suzanne-16", board, format)("ray-instructions");
+        rays += &format!(
+            "| {} | {wide} | {} |\n",
+            place(board, format),
+            grouped(narrow)
+        );
+    }
+    holds_table("rays", &rays);
+}
+
+/// What each shape and effect takes, as the board tests recorded it. `GRIDEL_BLESS=1` writes it anew.
+#[test]
+fn the_readme_shows_what_parts_cost() {
+    let figure = |part: &str, figure: &str| {
+        let figure = on_board(part, "stm32vldiscovery", "fixed")(figure);
+        figure.cast_signed()
+    };
+    let parts = [
+        ("base", ""),
+        ("sphere", "base"),
+        ("box", "base"),
+        ("disc", "base"),
+        ("cone", "base"),
+        ("shadow", "base"),
+        ("highlight", "base"),
+        ("mirror", "base"),
+        ("glass", "base"),
+        ("absorption", "glass"),
+        ("checker", "base"),
+        ("sphere, triangle, shadow", "base"),
+    ];
+    let mut table = String::from(
+        "| | code, bytes | call stack, bytes | instructions of the picture |\n|---|---|---|---|\n",
+    );
+    for (part, without) in parts {
+        let cell = |name: &str| match without {
+            "" => grouped(figure(part, name)),
+            _ => {
+                let more = figure(part, name) - figure(without, name);
+                let sign = if more < 0 { '-' } else { '+' };
+                format!("{sign}{}", grouped(more.unsigned_abs()))
+            }
+        };
+        let name = match part {
+            "base" => "triangles in diffuse light",
+            _ => part,
+        };
+        let [code, stack, work] =
+            ["code-bytes", "call-stack-bytes", "picture-instructions"].map(cell);
+        table += &format!("| {name} | {code} | {stack} | {work} |\n");
+    }
+    holds_table("parts", &table);
+}
