@@ -1,5 +1,8 @@
-//! Real scene files for tests, which are not in the repository because of their size or licence.
+//! What the tests of all importers ask for: real scene files, which are not in the repository because
+//! of their size or licence, and the meshes that came of a file.
 
+use super::{Object, Shape};
+use glam::DVec3;
 use std::path::{Path, PathBuf};
 
 /// A file below the folder that the environment variable `GRIDEL_SCENES` names, or else below
@@ -18,4 +21,15 @@ pub(super) fn find(name: &str) -> Option<PathBuf> {
         return None;
     }
     Some(path)
+}
+
+/// The vertices and triangles of an object that must be a mesh.
+pub(super) fn mesh(object: &Object) -> (&[DVec3], &[[u32; 3]]) {
+    match &object.shape {
+        Shape::Mesh {
+            vertices,
+            triangles,
+        } => (vertices, triangles),
+        other => panic!("{other:?} is no mesh"),
+    }
 }

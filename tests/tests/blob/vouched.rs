@@ -1,17 +1,15 @@
 //! Blobs that a program vouches for: what is proved then, and that nothing depends on the rest.
 
 use super::forged::section;
-use super::{sealed, small_scene, speaks};
+use super::{render_small, sealed, small_scene, speaks};
 use gridel_core::accel::{Chosen, Leaf, MAX_STACK_DEPTH};
 use gridel_core::blob::SectionKind;
 use gridel_core::blob::record::{DualNode, FlaggedPair, Header, Pair};
 use gridel_core::{
-    BlobError, Counters, Format, Number, Scene, Settings, Stack, Structure, Vouched, any_hit,
-    closest_hit,
+    BlobError, Counters, Number, Scene, Settings, Stack, Structure, Vouched, any_hit, closest_hit,
 };
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
-use gridel_host::render::{Job, render};
 use gridel_tests::query::{held, through};
 use gridel_tests::random::Random;
 use gridel_tests::{every_format, rays};
@@ -211,23 +209,11 @@ fn spoil(record: &mut [u8], random: &mut Random) {
 fn ends(scene: &Scene<'_>, leaves: u32, rays_each: usize) {
     every_format!(walks_end(scene, leaves, rays_each));
     let settings = Settings {
-        width: 4,
-        height: 3,
         samples: 2,
         depth: 4,
         ..Settings::of(scene)
     };
-    for (format, structure) in Format::ALL.into_iter().zip(held(scene)) {
-        let job = Job {
-            format,
-            structure,
-            settings,
-            rows: 0..settings.height,
-            count: false,
-        };
-        let picture = render(scene, &job, &|| ()).expect("a picture");
-        assert_eq!(picture.pixels.len(), 12);
-    }
+    render_small(scene, settings);
 }
 
 fn walks_end<N: Number>(scene: &Scene<'_>, leaves: u32, rays_each: usize) {

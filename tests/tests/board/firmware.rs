@@ -27,9 +27,7 @@ pub const AARCH64: Board = Board {
     name: "linux-aarch64",
     core: "Armv8-A",
     target: "aarch64-unknown-linux-gnu",
-    flash: u32::MAX as u64,
-    ram: u32::MAX as u64,
-    formats: &[Format::F32, Format::Fixed, Format::F64],
+    ..WASM
 };
 
 /// A big-endian machine, as a program of Linux.

@@ -4,10 +4,15 @@ use super::{holds_table, text};
 use gridel_host::board::Board;
 use gridel_host::report::grouped;
 
-/// What the board tests recorded of a scene on a board, through dual-split nodes.
-fn on_board(scene: &str, board: &str, format: &str) -> impl Fn(&str) -> u64 {
+/// What the board tests recorded.
+pub fn boards() -> serde_json::Value {
     let recorded = text("fixtures/recorded/board.json");
-    let recorded: serde_json::Value = serde_json::from_str(&recorded).expect("a table");
+    serde_json::from_str(&recorded).expect("a table")
+}
+
+/// What they recorded of a scene on a board, through dual-split nodes.
+fn on_board(scene: &str, board: &str, format: &str) -> impl Fn(&str) -> u64 {
+    let recorded = boards();
     let build = format!("{scene} {board} {format} dual-split");
     move |name| {
         let figure = recorded[&build][name].as_u64();

@@ -1,6 +1,8 @@
 //! The paper's tables beside ours.
 
+use super::boards::boards;
 use super::{holds_table, text};
+use gridel_host::board::Board;
 use gridel_host::report::grouped;
 
 /// The paper's tables beside ours, as the test `tables` recorded them.
@@ -80,6 +82,131 @@ fn the_readme_shows_the_papers_tables() {
         cubes += "\n";
     }
     holds_table("paper-cube", &cubes);
+}
+
+/// Where the paper's scenes are measured, and what of a ray of theirs.
+const PAPER_BOARDS: [(&str, &str); 2] = [("mps2-an385", "fixed"), ("mps2-an386", "f32")];
+
+/// Instructions of a primary ray without the camera, of a shadow ray without the surface that it
+/// starts from, and of the picture, as the board tests recorded them.
+fn paper_on_board(
+    boards: &serde_json::Value,
+    scene: &str,
+    (board, format): (&str, &str),
+    structure: &str,
+) -> Option<[u64; 3]> {
+    let report = &boards[format!("{scene} {board} {format} {structure}")];
+    let figure = |name: &str| report[format!("{name}-instructions")].as_u64();
+    let primary = figure("ray")? - figure("camera")?;
+    Some([primary, figure("shadow-ray")?, figure("picture")?])
+}
+
+/// The paper's tables in instructions.
+#[test]
+fn the_readme_shows_the_papers_tables_on_boards() {
+    let boards = boards();
+    let recorded = text("fixtures/recorded/structures.json");
+    let recorded: serde_json::Value = serde_json::from_str(&recorded).expect("tables");
+    let counted = &recorded["256 by 256 pixels"];
+    let millions = |instructions: u64| format!("{:.1}", instructions as f64 / 1e6);
+    let mut hierarchies = String::from("| objects | time, theirs |");
+    for (board, format) in PAPER_BOARDS {
+        let core = Board::named(board).expect("a board").core;
+        hierarchies +=
+            &format!(" {core}, `{format}`: plain : flagged : dual-split | plain takes |");
+    }
+    hierarchies += "\n|---|---|---|---|---|---|\n";
+    for (scene, name) in [
+        ("paper-150", "glass-chess"),
+        ("paper-2800", "diamond"),
+        ("paper-27000", "diamond-large"),
+    ] {
+        let whole = |value: &serde_json::Value| value.as_u64().expect("a count");
+        let (scene_counted, paper) = (&counted[name], &counted[name]["paper"]);
+        let (plain, flagged) = (whole(&paper["plain"]), whole(&paper["flagged"]));
+        hierarchies += &format!(
+            "| {} | {plain} : {flagged} = {:.2} |",
+            grouped(whole(&scene_counted["primitives"])),
+            plain as f64 / flagged as f64
+        );
+        for place in PAPER_BOARDS {
+            let pictures = ["bvh", "flagged", "dual-split"].map(|structure| {
+                let recorded = paper_on_board(&boards, scene, place, structure);
+                recorded.expect("a record")[2]
+            });
+            let [plain, flagged, dual] = pictures;
+            let ahead = [flagged, dual].map(|other| plain as f64 / other as f64);
+            hierarchies += &format!(
+                " {} | {:.2}, {:.2} |",
+                pictures.map(millions).join(" : "),
+                ahead[0],
+                ahead[1]
+            );
+        }
+        hierarchies += "\n";
+    }
+    holds_table("board-hierarchies", &hierarchies);
+
+    for place in PAPER_BOARDS {
+        let mut cubes = String::from(
+            "| | 156 objects | 2,833 objects | the same, filling the picture | 27,079 objects |\n\
+             |---|---|---|---|---|\n",
+        );
+        for structure in [
+            "grid",
+            "cylinder-cube",
+            "cylinder-cube-tight",
+            "cylinder-cube-entry",
+            "apex",
+            "bvh",
+            "flagged",
+            "dual-split",
+        ] {
+            cubes += &format!("| `{structure}` |");
+            for scene in PAPER_SCENES {
+                cubes += &match paper_on_board(&boards, scene, place, structure) {
+                    Some([primary, shadow, picture]) => format!(
+                        " {} / {} / {} |",
+                        grouped(primary),
+                        grouped(shadow),
+                        millions(picture)
+                    ),
+                    None => String::from(" - |"),
+                };
+            }
+            cubes += "\n";
+        }
+        holds_table(&format!("board-cube-{}", place.1), &cubes);
+    }
+}
+
+/// The scenes of the second table, by the names of their records.
+const PAPER_SCENES: [&str; 4] = ["paper-150", "paper-2800", "paper-2800-close", "paper-27000"];
+
+/// Lists for the rays of the eye and of lights, against the grid and the best hierarchy, in
+/// instructions on boards.
+#[test]
+fn apex_lists_are_ahead_on_boards() {
+    let boards = boards();
+    for place in PAPER_BOARDS {
+        for scene in PAPER_SCENES {
+            let rays = |structure: &str| paper_on_board(&boards, scene, place, structure);
+            let (apex, grid) = (rays("apex").expect("a record"), rays("grid").expect("one"));
+            let hierarchies = ["bvh", "flagged", "dual-split"].map(rays);
+            for (kind, what) in ["primary", "shadow"].into_iter().enumerate() {
+                let best = hierarchies.iter().flatten().map(|rays| rays[kind]).min();
+                let of = |other: u64| apex[kind] as f64 / other as f64;
+                let ratios = [grid[kind], best.expect("a hierarchy")].map(of);
+                let most = match scene {
+                    "paper-150" => [0.7, 0.95],
+                    _ => [0.4, 0.5],
+                };
+                println!("{scene} {place:?} {what}: {ratios:.3?} of grid and hierarchy");
+                let within = ratios.iter().zip(most).all(|(&ratio, most)| ratio <= most);
+                assert!(within, "{scene} {place:?} {what}: {ratios:.3?}");
+            }
+        }
+    }
 }
 
 /// What the paper's cylinder cube takes, as the test `cylinder_cube` recorded it.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::{Camera, Diffuse, Light, Material, test_scenes};
+use crate::scene::{Camera, Diffuse, Light, Material, test_scenes, test_scenes::mesh};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
@@ -83,16 +83,6 @@ fn cause(document: &Value) -> String {
     let error = read(document.to_string().as_bytes()).unwrap_err();
     assert!(!error.remedy.is_empty());
     error.cause
-}
-
-fn mesh(object: &Object) -> (&[DVec3], &[[u32; 3]]) {
-    match &object.shape {
-        Shape::Mesh {
-            vertices,
-            triangles,
-        } => (vertices, triangles),
-        _ => panic!("not a mesh"),
-    }
 }
 
 /// The sum of the triangles' normals, each as long as twice its area.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::{Diffuse, test_scenes};
+use crate::scene::{Diffuse, test_scenes, test_scenes::mesh};
 
 fn read(text: &str) -> Result<Imported, SceneError> {
     import(&Source::from_bytes(Path::new("t.obj"), text.as_bytes()))
@@ -7,16 +7,6 @@ fn read(text: &str) -> Result<Imported, SceneError> {
 
 fn fault(text: &str) -> String {
     read(text).unwrap_err().to_string()
-}
-
-fn mesh(object: &Object) -> (&[DVec3], &[[u32; 3]]) {
-    match &object.shape {
-        Shape::Mesh {
-            vertices,
-            triangles,
-        } => (vertices, triangles),
-        other => panic!("{other:?} is no mesh"),
-    }
 }
 
 const CORNERS: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";

@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::test_scenes;
+use crate::scene::test_scenes::{self, mesh};
 
 /// A square and a line, with colours and an element that nobody knows.
 pub(in crate::scene) const SQUARE: &str = "\
@@ -32,20 +32,10 @@ fn read(bytes: &[u8]) -> Result<Imported, SceneError> {
     load(&path)
 }
 
-fn mesh(imported: &Imported) -> (&[DVec3], &[[u32; 3]]) {
-    match &imported.scene.objects[0].shape {
-        Shape::Mesh {
-            vertices,
-            triangles,
-        } => (vertices, triangles),
-        _ => panic!("not a mesh"),
-    }
-}
-
 #[test]
 fn faces_become_triangles() {
     let imported = read(SQUARE.as_bytes()).unwrap();
-    let (vertices, triangles) = mesh(&imported);
+    let (vertices, triangles) = mesh(&imported.scene.objects[0]);
     assert_eq!(vertices[2], DVec3::new(1.0, 1.5, 0.0));
     assert_eq!(triangles, [[0, 1, 2], [0, 2, 3]]);
     assert_eq!(imported.scene.objects[0].name, "thing");
@@ -78,7 +68,7 @@ fn both_orders_of_bytes_are_understood() {
             });
         }
         let imported = read(&bytes).unwrap();
-        let (vertices, triangles) = mesh(&imported);
+        let (vertices, triangles) = mesh(&imported.scene.objects[0]);
         assert_eq!(vertices[1], DVec3::new(2.0, 0.0, 1.0));
         assert_eq!(triangles, [[0, 1, 2]]);
         let cut = read(&bytes[..bytes.len() - 2]).unwrap_err();
@@ -132,7 +122,7 @@ fn real_files() {
             continue;
         };
         let imported = load(&path).unwrap();
-        let (vertices, triangles) = mesh(&imported);
+        let (vertices, triangles) = mesh(&imported.scene.objects[0]);
         assert!(vertices.len() > 100 && triangles.len() > 100, "{name}");
     }
 }

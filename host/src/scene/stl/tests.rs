@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::test_scenes;
+use crate::scene::test_scenes::{self, mesh};
 
 /// Two solids, the second with a name of two words and keywords in capitals.
 pub(in crate::scene) const TWO_SOLIDS: &str = "\
@@ -35,16 +35,6 @@ fn read(bytes: &[u8]) -> Result<Imported, SceneError> {
     let path = folder.path().join("thing.stl");
     std::fs::write(&path, bytes).unwrap();
     load(&path)
-}
-
-fn mesh(object: &Object) -> (&[DVec3], &[[u32; 3]]) {
-    match &object.shape {
-        Shape::Mesh {
-            vertices,
-            triangles,
-        } => (vertices, triangles),
-        _ => panic!("not a mesh"),
-    }
 }
 
 /// A binary file of triangles.
