@@ -1,9 +1,8 @@
 //! Which nodes of the hierarchy a ray between two gridels enters at.
 //!
-//! A node is replaced by those of its children that lead to something, as long as this pays: to
-//! enter at two children costs a test more than to enter at their parent, and saves one wherever
-//! both would have been entered. How often rays of the pair meet each child is found with a few of
-//! them.
+//! A node is replaced by those of its children that lead to something, as long as this pays: it saves
+//! the test of their boxes, and costs what each child would have been spared by its box. How often
+//! rays of the pair miss a child's box is found with a few of them.
 
 use super::cylinder_cube::{Form, Pair, sorted};
 use super::lists::List;
@@ -57,12 +56,15 @@ impl Form for EntryNodes<'_> {
             };
             let met = &met[..count];
             let room = waiting.len() + chosen.len() + count <= CylinderCubeEntry::MOST_NODES;
-            let tests = || {
-                met.iter()
-                    .map(|(_, bounds)| samples.chance(bounds))
-                    .sum::<f64>()
+            // Of a single pair no box is tested twice.
+            let free = count == 1 && self.0.children(met[0].0).is_some();
+            let wasted = || {
+                let each = met.iter().map(|&(child, bounds)| {
+                    (1.0 - samples.chance(&bounds)) * self.tests(child)
+                });
+                each.sum::<f64>()
             };
-            if room && (count == 1 || tests() > 1.0) {
+            if room && (free || wasted() < 1.0) {
                 waiting.extend_from_slice(met);
             } else {
                 chosen.push((node, bounds));
@@ -77,6 +79,15 @@ impl Form for EntryNodes<'_> {
 }
 
 impl EntryNodes<'_> {
+    /// What a ray is tested against first where it enters at a node: two boxes, which count as one
+    /// test, or all primitives of a leaf.
+    fn tests(&self, node: Node) -> f64 {
+        match self.0.children(node) {
+            Some(_) => 1.0,
+            None => self.0.slots(node).count() as f64,
+        }
+    }
+
     /// Whether a shaft meets a primitive below a node.
     fn leads_on(&self, node: Node, shaft: &Shaft) -> bool {
         match self.0.children(node) {
