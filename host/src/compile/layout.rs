@@ -71,7 +71,7 @@ impl<'g> Ground<'g> {
     /// The rays of the scene's own picture, through a blob with nothing but the hierarchy.
     fn own_rays(&self) -> Result<Vec<ClassPoint>, CompileError> {
         let hierarchy = Layout::of(Structure::Flagged, self)?;
-        let blob = writer::write(self, vec![hierarchy])?;
+        let blob = writer::write(writer::parts(self, vec![hierarchy]))?;
         // What the writer writes, the core reads: the tests hold them to it.
         Ok(blob
             .scene()

@@ -302,7 +302,10 @@ pub fn compile_telling(
     let longest_lists = layouts.iter().map(|layout| layout.longest_list);
     let longest_list = longest_lists.max().unwrap_or(0);
     let sizes: Vec<Size> = layouts.iter().map(Size::of).collect();
-    let blob = writer::write(&ground, layouts)?;
+    let parts = writer::parts(&ground, layouts);
+    // A table may fill what memory there is; all that it was built from makes room for the blob.
+    drop((root, order, wide));
+    let blob = writer::write(parts)?;
     let bytes = blob.bytes().len();
     if let Some(most) = options.max_bytes.filter(|&most| bytes as u64 > most) {
         let leaves = writer::taken(flat.leaves.len() * size_of::<Leaf>());

@@ -63,8 +63,14 @@ fn counts_up(values: &[u32]) -> bool {
         .all(|(index, &value)| index as u32 == value)
 }
 
-/// Writes a blob.
-pub fn write(ground: &Ground<'_>, layouts: Vec<Layout>) -> Result<Blob, CompileError> {
+/// All that goes into a blob, before it has places.
+pub struct Parts {
+    header: Header,
+    sections: Vec<Section>,
+}
+
+/// Makes what goes into a blob.
+pub fn parts(ground: &Ground<'_>, layouts: Vec<Layout>) -> Parts {
     let uses_leaves = layouts.iter().any(|layout| layout.uses_leaves);
     let Ground {
         scene,
@@ -145,7 +151,7 @@ pub fn write(ground: &Ground<'_>, layouts: Vec<Layout>) -> Result<Blob, CompileE
         stack_bytes: u32::from(stack_depth) * size_of::<Entry>() as u32,
         spare: [0; 2],
     };
-    assemble(header, sections)
+    Parts { header, sections }
 }
 
 /// The geometry, every kind in the order of its slots.
@@ -242,8 +248,12 @@ pub fn taken(bytes: usize) -> usize {
     }
 }
 
-/// Puts header, table and sections together.
-fn assemble(mut header: Header, sections: Vec<Section>) -> Result<Blob, CompileError> {
+/// Puts header, table and sections together. Large sections are in memory twice meanwhile.
+pub fn write(parts: Parts) -> Result<Blob, CompileError> {
+    let Parts {
+        mut header,
+        sections,
+    } = parts;
     let mut offset = size_of::<Header>() + sections.len() * size_of::<SectionEntry>();
     let mut entries = Vec::with_capacity(sections.len());
     for section in &sections {

@@ -3,6 +3,7 @@
 mod boards;
 mod paper;
 mod peers;
+mod times;
 
 use gridel_core::Structure;
 use gridel_host::compile::{Options, compile};

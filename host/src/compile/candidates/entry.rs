@@ -56,7 +56,7 @@ impl Form for EntryNodes<'_> {
             };
             let met = &met[..count];
             let room = waiting.len() + chosen.len() + count <= CylinderCubeEntry::MOST_NODES;
-            // Of a single pair no box is tested twice.
+            // One pair for another costs nothing more.
             let free = count == 1 && self.0.children(met[0].0).is_some();
             let wasted = || {
                 let each = met.iter().map(|&(child, bounds)| {

@@ -112,7 +112,11 @@ impl ListSections {
             array(self.starts, lists.starts),
             array(self.entries, lists.entries),
         ];
-        sections.extend(self.keys.map(|kind| section(kind, &lists.keys)));
+        sections.extend(self.keys.map(|kind| Section {
+            kind,
+            stride: 1,
+            bytes: lists.keys,
+        }));
         sections
     }
 }

@@ -1,0 +1,102 @@
+//! What `gridel compare` measured on a host: the paper's scenes, and how structures fare as one grows.
+
+use super::{holds_table, text};
+use gridel_host::report::grouped;
+use serde_json::Value;
+
+/// What `gridel compare --json` printed.
+fn recorded(scene: &str) -> Value {
+    let recorded = text(&format!("fixtures/recorded/compare/{scene}.json"));
+    serde_json::from_str(&recorded).expect("a comparison")
+}
+
+fn rows(comparison: &Value) -> &Vec<Value> {
+    let rows = comparison["rows"].as_array().expect("rows");
+    for row in rows {
+        assert!(row["wrong"].is_null(), "{row}");
+    }
+    rows
+}
+
+fn row<'c>(comparison: &'c Value, structure: &str) -> Option<&'c Value> {
+    let mut rows = rows(comparison).iter();
+    rows.find(|row| row["structure"] == structure)
+}
+
+fn rate(row: &Value, rays: &str) -> Option<f64> {
+    row["work"][rays]["rays_per_second"].as_f64()
+}
+
+/// Two digits, or all before the point.
+fn short(figure: f64) -> String {
+    match figure {
+        10.0.. => grouped(figure.round() as u64),
+        1.0.. => format!("{figure:.1}"),
+        0.1.. => format!("{figure:.2}"),
+        _ => format!("{figure:.3}"),
+    }
+}
+
+/// Times a ray, those of `bvh` being 1, and what structures take to set up.
+#[test]
+fn the_readme_shows_the_papers_tables_in_time() {
+    let scenes = ["glass-chess", "diamond", "diamond-large"].map(recorded);
+    let mut table = String::from("| |");
+    for scene in &scenes {
+        let primitives = grouped(scene["primitives"].as_u64().expect("a count"));
+        table += &format!(" {primitives} objects: primary, shadow, bounced | set-up, ms |");
+    }
+    table += "\n|---|---|---|---|---|---|---|\n";
+    for name in rows(&scenes[0]).iter().map(|row| &row["structure"]) {
+        let name = name.as_str().expect("a name");
+        table += &format!("| `{name}` |");
+        for scene in &scenes {
+            let (bvh, Some(row)) = (row(scene, "bvh").expect("a row"), row(scene, name)) else {
+                table += " - | - |";
+                continue;
+            };
+            let times = ["primary", "shadow", "bounced"].map(|rays| {
+                let times = rate(bvh, rays)
+                    .zip(rate(row, rays))
+                    .map(|(bvh, own)| bvh / own);
+                times.map_or(String::from("-"), |times| format!("{times:.2}"))
+            });
+            let setup = 1e3 * row["setup_seconds"].as_f64().expect("a time");
+            table += &format!(" {} | {} |", times.join(", "), short(setup));
+        }
+        table += "\n";
+    }
+    holds_table("paper-times", &table);
+}
+
+/// Rates and bytes over ever larger parts of one scene.
+#[test]
+fn the_readme_shows_how_structures_grow() {
+    let report = recorded("growth");
+    let steps = report["growth"]["steps"].as_array().expect("steps");
+    let mut table = String::from("| |");
+    for step in steps {
+        let primitives = grouped(step["primitives"].as_u64().expect("a count"));
+        table += &format!(" {primitives} |");
+    }
+    table += &format!("\n|---|{}\n", "---|".repeat(steps.len()));
+    for name in rows(&report).iter().map(|row| &row["structure"]) {
+        let name = name.as_str().expect("a name");
+        table += &format!("| `{name}` |");
+        for step in steps {
+            let Some(row) = row(step, name) else {
+                table += " - |";
+                continue;
+            };
+            let millions = rate(row, "primary").expect("a rate") / 1e6;
+            let bytes = row["own_bytes"].as_u64().expect("bytes");
+            table += &format!(
+                " {}, {} |",
+                short(millions),
+                short(bytes as f64 / 1e3)
+            );
+        }
+        table += "\n";
+    }
+    holds_table("growth", &table);
+}
