@@ -38,7 +38,9 @@ fn builders_keep_to_their_budgets() {
         for budget in [50_000, 500_000] {
             let (peak, compiled) = peak(&soup, structure, Some(budget));
             let figures = compiled.report.tables[0].figures;
-            assert!(figures.bytes <= budget, "{figures:?}");
+            // For the eye and for the light that the compiler supplies.
+            let budgets = if structure == Structure::Apex { 2 } else { 1 };
+            assert!(figures.bytes <= budgets * budget, "{figures:?}");
             let most = base + 2 * figures.bytes + 72 * figures.cells + (256 << 10);
             eprintln!("{}, {budget}: {peak} of {most}", structure.name());
             assert!(peak <= most, "{}: {peak} of {most}", structure.name());

@@ -230,7 +230,7 @@ pub struct StructureOptions {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     gridels: Option<u32>,
 
-    /// Most bytes of each table of candidate lists, for `apex` of the lists of each point; 64K and
+    /// Most bytes of each table of candidate lists, for `apex` of those of each point or direction; 64K and
     /// 1M are understood [default: 48M for `cylinder-cube`, 4M for `cylinder-cube-tight` and
     /// `ray-classes`, 2M for `cylinder-cube-entry`, 1M for `apex`]
     #[arg(long, value_name = "N", value_parser = bytes)]

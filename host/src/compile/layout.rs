@@ -228,7 +228,7 @@ pub const fn usual_budget(structure: Structure) -> u64 {
         // What the paper's machine had.
         Structure::CylinderCube => 48 * MEGABYTE,
         Structure::CylinderCubeEntry => 2 * MEGABYTE,
-        // For each point.
+        // For each point and each direction.
         Structure::Apex => MEGABYTE,
         _ => 4 * MEGABYTE,
     }

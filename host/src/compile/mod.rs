@@ -62,7 +62,8 @@ pub struct Options {
     /// Gridels along a side of a cylinder cube's faces, 1 to 64; otherwise as many as the budget
     /// holds.
     pub gridels: Option<u32>,
-    /// Most bytes of each table of candidate lists; otherwise what [`usual_budget`] says.
+    /// Most bytes of each table of candidate lists, and in the apexes' of each point or direction;
+    /// otherwise what [`usual_budget`] says.
     pub budget: Option<u64>,
 }
 

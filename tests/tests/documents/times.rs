@@ -90,11 +90,7 @@ fn the_readme_shows_how_structures_grow() {
             };
             let millions = rate(row, "primary").expect("a rate") / 1e6;
             let bytes = row["own_bytes"].as_u64().expect("bytes");
-            table += &format!(
-                " {}, {} |",
-                short(millions),
-                short(bytes as f64 / 1e3)
-            );
+            table += &format!(" {}, {} |", short(millions), short(bytes as f64 / 1e3));
         }
         table += "\n";
     }

@@ -55,7 +55,7 @@ struct Seen {
     ranges: Ranges,
 }
 
-/// Builds the lists of all apexes, each with its share of the budget.
+/// Builds the lists of all apexes, which together take at most the budget of each.
 pub fn build(targets: &Targets<'_>, view: &View, lights: &[Light], budget: Budget<'_>) -> Apexes {
     // Sizes are chosen by an estimate. Where it falls short, cells are made coarser.
     let mut share = budget.bytes as f64;

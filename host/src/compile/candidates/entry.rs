@@ -59,9 +59,9 @@ impl Form for EntryNodes<'_> {
             // One pair for another costs nothing more.
             let free = count == 1 && self.0.children(met[0].0).is_some();
             let wasted = || {
-                let each = met.iter().map(|&(child, bounds)| {
-                    (1.0 - samples.chance(&bounds)) * self.tests(child)
-                });
+                let each = met
+                    .iter()
+                    .map(|&(child, bounds)| (1.0 - samples.chance(&bounds)) * self.tests(child));
                 each.sum::<f64>()
             };
             if room && (free || wasted() < 1.0) {
