@@ -67,7 +67,7 @@ pub enum Event {
         /// Its number in scene-file order.
         primitive: u32,
         /// Where the line of the ray enters and leaves it, from the query's origin; `None` if it
-        /// does not meet it.
+        /// does not meet it, or was seen to meet it behind the origin before that was computed.
         crossing: Option<[f64; 2]>,
         /// Whether it is the nearest hit so far.
         nearest: bool,

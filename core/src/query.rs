@@ -17,7 +17,7 @@ use crate::shape::{
 #[cfg(feature = "wide")]
 use crate::{
     blob::cluster::{Pack, Strip},
-    shape::{Packs, Strips, pack, strip},
+    shape::{Packs, Strips, pack, strip::StripRay},
 };
 
 /// What a ray met.
@@ -56,9 +56,9 @@ struct Search<'s, 'a, N: Number, K> {
     ray: &'s Ray<N>,
     cull: &'s K,
     recip_norm2: N,
-    /// The projection of strips.
+    /// The ray as strips are tested with it.
     #[cfg(feature = "wide")]
-    projection: Projection<N>,
+    strip_ray: StripRay<N>,
     /// No hit beyond this counts.
     tmax: N,
     best: Option<Best<N>>,
@@ -77,7 +77,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                 N::ZERO
             },
             #[cfg(feature = "wide")]
-            projection: strip::projection(ray, &scene.shapes.clusters.strips),
+            strip_ray: StripRay::new(ray, &scene.shapes.clusters.strips),
             tmax: ray.tmax,
             best: None,
         }
@@ -149,7 +149,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             return;
         };
         count.objects(strip.members().count());
-        let mut met = strip::met(&self.projection, self.ray.major, strip);
+        let mut met = self.strip_ray.met(strip);
         let missed = strip.members().places() & !met;
         self.tell_missed(missed, |place| Place::Strip(number, place), count);
         while met != 0 {

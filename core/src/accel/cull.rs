@@ -42,8 +42,8 @@ pub trait Culling<N: Number>: Copy + core::fmt::Debug + Default + Send + Sync {
     fn exact(&self, ray: &Ray<N>) -> Cull;
     /// What stands for a place on the ray in this form, in units, as events tell it.
     fn units(place: i32) -> f64;
-    /// Whether t is certain to lie in the integer form's interval of a box, where that is cheaper to
-    /// see than to set up the integer form.
+    /// Whether t is certain to stay as it is, or below 0 where it is below 0, when it is clamped to
+    /// the integer form's interval of a box; where that is cheaper to see than to set up that form.
     #[inline(always)]
     fn holds(_: &Ray<N>, _: N, _: &UnitBox) -> bool {
         false
@@ -274,9 +274,12 @@ impl Cull {
     }
 }
 
-/// Whether a t that is not negative is certain to lie in a box's interval: the point lies within 1/8
-/// unit of the box, and rounding moved it by less than 2^-6, which is nearer than the 1/4 unit by
-/// which intervals are widened.
+/// [`Culling::holds`] for float formats: the point lies within 1/8 unit of the box, and rounding
+/// moved it by less than 2^-6, which is nearer than the 1/4 unit by which intervals are widened.
+///
+/// So a t that is not negative lies in the interval. Of one that is, the point lies behind the
+/// origin, which so has no plane of the box farther ahead than 1/4 unit: every axis is entered below
+/// 0, and so are the interval's start and whatever t is clamped to.
 #[inline(always)]
 pub(crate) fn holds<N: Number>(ray: &Ray<N>, t: N, bounds: &UnitBox) -> bool {
     let eighth = N::from_lattice(32);
@@ -285,7 +288,7 @@ pub(crate) fn holds<N: Number>(ray: &Ray<N>, t: N, bounds: &UnitBox) -> bool {
         let along = ray.origin[axis] + t * ray.slope[axis];
         along >= low - eighth && along <= high + eighth
     };
-    t >= N::ZERO && within(0) && within(1) && within(2)
+    within(0) && within(1) && within(2)
 }
 
 /// The form in which rays of a float format cull on this machine.

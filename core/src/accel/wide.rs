@@ -123,44 +123,13 @@ impl Accel for Wide {
         let mut current = Child::node(0);
         stack.clear();
         loop {
-            if C::TELLS {
+            if current.as_node().is_some() {
+                current = descend::<N, C>(nodes, cull, limit, current, stack, count);
+            } else if C::TELLS {
                 count.tell(Event::Opened(current.place()));
             }
-            if let Some(number) = current.as_node() {
-                let Some(node) = nodes.get(number as usize) else {
-                    return;
-                };
-                let (mut met, near) = cull.children(node, limit);
-                let children = children(node).count() as u32;
-                count.planes(6 * children);
-                count.boxes(children);
-                if C::TELLS {
-                    tell_tested::<N, C>(node, cull, limit, count);
-                }
-                if met != 0 {
-                    let mut nearest = take_lowest(&mut met, &near);
-                    while met != 0 {
-                        let other = take_lowest(&mut met, &near);
-                        // No branches, which would be guessed wrong every other time.
-                        let later = nearest.max(other);
-                        nearest = nearest.min(other);
-                        let entry = Entry {
-                            node: node.child(lane(later)).0,
-                            near: (later >> 32) as i32,
-                            far: 0,
-                        };
-                        if stack.push(entry).is_err() {
-                            return;
-                        }
-                    }
-                    current = node.child(lane(nearest));
-                    continue;
-                }
-            } else {
-                let Some(cluster) = Leaf::from_word(current.0) else {
-                    return;
-                };
-                let Some(tmax) = leaf(cluster, count) else {
+            if current != Child::NONE {
+                let Some(tmax) = Leaf::from_word(current.0).and_then(|it| leaf(it, count)) else {
                     return;
                 };
                 limit = N::WideCull::limit(tmax);
@@ -180,6 +149,61 @@ impl Accel for Wide {
                 }
             }
         }
+    }
+}
+
+/// Goes down from a node, each time to the child that is met first, while the others are left to
+/// wait; to a leaf, or to none where nothing is met.
+///
+/// Out of line, because the ray's constants for nodes and those for leaves do not fit the registers
+/// together.
+#[inline(never)]
+fn descend<N: Number, C: Count>(
+    nodes: &[WideNode],
+    cull: &N::WideCull,
+    limit: i32,
+    mut current: Child,
+    stack: &mut StackView,
+    count: &mut C,
+) -> Child {
+    loop {
+        if C::TELLS {
+            count.tell(Event::Opened(current.place()));
+        }
+        let Some(number) = current.as_node() else {
+            return current;
+        };
+        let Some(node) = nodes.get(number as usize) else {
+            return Child::NONE;
+        };
+        let (mut met, near) = cull.children(node, limit);
+        let children = children(node).count() as u32;
+        count.planes(6 * children);
+        count.boxes(children);
+        if C::TELLS {
+            tell_tested::<N, C>(node, cull, limit, count);
+        }
+        if met == 0 {
+            return Child::NONE;
+        }
+        let mut nearest = take_lowest(&mut met, &near);
+        while met != 0 {
+            let other = take_lowest(&mut met, &near);
+            // No branches, which would be guessed wrong every other time.
+            let later = nearest.max(other);
+            nearest = nearest.min(other);
+            let entry = Entry {
+                node: node.child(lane(later)).0,
+                near: (later >> 32) as i32,
+                far: 0,
+            };
+            if stack.push(entry).is_err() {
+                // Only a forged blob is deeper than it says: the walk ends.
+                stack.clear();
+                return Child::NONE;
+            }
+        }
+        current = node.child(lane(nearest));
     }
 }
 

@@ -205,6 +205,8 @@ pub(crate) trait Rows: Pod {
     fn units(&self, axis: usize) -> Eight;
     /// The point in a lane.
     fn vertex(&self, lane: usize) -> Self::Vertex;
+    /// The point in a lane, in 1/256 unit.
+    fn position(&self, lane: usize) -> [i32; 3];
 }
 
 impl Rows for Rows16 {
@@ -225,6 +227,11 @@ impl Rows for Rows16 {
         let [x, y, z] = &self.0;
         Vertex16([x[lane & 7], y[lane & 7], z[lane & 7]])
     }
+
+    #[inline(always)]
+    fn position(&self, lane: usize) -> [i32; 3] {
+        self.vertex(lane).position()
+    }
 }
 
 impl Rows for Rows24 {
@@ -232,8 +239,7 @@ impl Rows for Rows24 {
 
     #[inline(always)]
     fn measure(&self, axis: usize) -> Eight {
-        let low = Eight::from_u16(row(&self.low, axis));
-        low + Eight::from_signed_bytes(row(&self.high, axis)) * Eight::splat(65_536.0)
+        Eight::from_i24(row(&self.low, axis), row(&self.high, axis))
     }
 
     #[inline(always)]
@@ -244,28 +250,33 @@ impl Rows for Rows24 {
     #[inline(always)]
     fn vertex(&self, lane: usize) -> Vertex24 {
         let axis = |axis: usize| {
-            let [low, middle] = row(&self.low, axis)[lane & 7].to_le_bytes();
-            [low, middle, high_byte(row(&self.high, axis), lane)]
+            let [low, middle] = self.low[axis][lane & 7].to_le_bytes();
+            [low, middle, high_byte(&self.high[axis], lane)]
         };
         Vertex24([axis(0), axis(1), axis(2)])
     }
+
+    #[inline(always)]
+    fn position(&self, lane: usize) -> [i32; 3] {
+        let axis = |axis: usize| {
+            let high = high_byte(&self.high[axis], lane) as i8;
+            i32::from(self.low[axis][lane & 7]) | i32::from(high) << 16
+        };
+        [axis(0), axis(1), axis(2)]
+    }
 }
 
-/// A row by number, which is below 3.
+/// A row by number, which is below 3: an address, and no branch that would be guessed wrong.
 #[inline(always)]
 fn row<T, const N: usize>(rows: &[[T; N]; 3], axis: usize) -> &[T; N] {
-    match axis {
-        0 => &rows[0],
-        1 => &rows[1],
-        _ => &rows[2],
-    }
+    rows.get(axis).unwrap_or(&rows[0])
 }
 
 /// The high byte of a lane.
 #[inline(always)]
 fn high_byte(words: &[u16; LANES / 2], lane: usize) -> u8 {
-    let [low, high] = words[lane & 3].to_le_bytes();
-    if lane & 4 == 0 { low } else { high }
+    let bytes = bytemuck::bytes_of(words);
+    bytes[(lane & 3) << 1 | lane >> 2 & 1]
 }
 
 /// High bytes as words.
@@ -297,8 +308,8 @@ pub(crate) trait Strip: Pod {
     /// The corners of a place's triangle, in 1/256 unit.
     #[inline(always)]
     fn triangle(&self, place: u32) -> Option<[[i32; 3]; 3]> {
-        let [a, b, c] = self.vertices(place)?;
-        Some([a.position(), b.position(), c.position()])
+        let corners = self.members().corners(place)?;
+        Some(corners.map(|lane| self.rows().position(lane)))
     }
 }
 
@@ -317,7 +328,7 @@ pub(crate) trait Pack: Pod {
     #[inline(always)]
     fn sphere(&self, lane: u32) -> Option<([i32; 3], i32)> {
         let lane = (lane < self.members().count()).then_some(lane as usize)?;
-        Some((self.rows().vertex(lane).position(), self.radius(lane)))
+        Some((self.rows().position(lane), self.radius(lane)))
     }
 }
 

@@ -65,7 +65,10 @@ mod tests {
         let bytes = [0, 1, 0x7f, 0x80, 0xff, 0xfe, 3, 200];
         let words = [[0, 0xff], [1, 0xfe], [0x7f, 3], [0x80, 200]].map(u16::from_le_bytes);
         assert_eq!(Eight::from_bytes(&words).to_array(), bytes.map(f32::from));
-        let signed = bytes.map(|byte: u8| f32::from(byte as i8));
-        assert_eq!(Eight::from_signed_bytes(&words).to_array(), signed);
+        let low = [0, 1, 0xffff, 0x8000, 0x7fff, 2, 3, 0xfffe];
+        let expected: [f32; 8] = core::array::from_fn(|lane| {
+            (i32::from(low[lane]) | i32::from(bytes[lane] as i8) << 16) as f32
+        });
+        assert_eq!(Eight::from_i24(&low, &words).to_array(), expected);
     }
 }

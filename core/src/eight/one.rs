@@ -36,14 +36,18 @@ impl Eight {
         Self(f32x8::from_i32x8(i32x8::from_u16x8(u16x8::new(*lanes))))
     }
 
-    /// The signed bytes of words as numbers, the low ones in the first four lanes; exact.
+    /// Integers of 24 bits as numbers, given by their low 16 bits, and by their high 8 as the bytes of
+    /// words, the low ones in the first four lanes; exact.
     #[inline(always)]
-    pub(crate) fn from_signed_bytes(&[a, b, c, d]: &[u16; 4]) -> Self {
-        let words = i16x8::new([a, b, c, d, a, b, c, d].map(|word| word as i16));
-        let words = i32x8::from_i16x8(words);
-        let sign = i32x8::splat(0x80);
-        let low = ((words & i32x8::splat(0xff)) ^ sign) - sign;
-        Self::from_halves(low, words.unbounded_shr_scalar(8))
+    pub(crate) fn from_i24(low: &[u16; 8], &[a, b, c, d]: &[u16; 4]) -> Self {
+        let words = i32x8::from_u16x8(u16x8::new([a, b, c, d, a, b, c, d]));
+        // Shifts, a number of bits for each lane.
+        let [first, last] = [1 << 24, 1 << 16];
+        let top = words * i32x8::new([first, first, first, first, last, last, last, last]);
+        let high = top.unbounded_shr_scalar(8) & i32x8::splat(-1 << 16);
+        Self(f32x8::from_i32x8(
+            high | i32x8::from_u16x8(u16x8::new(*low)),
+        ))
     }
 
     /// The bytes of words as numbers, the low ones in the first four lanes; exact.

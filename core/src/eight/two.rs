@@ -38,9 +38,16 @@ impl Eight {
         Self::new(lanes.map(f32::from))
     }
 
+    /// Integers of 24 bits as numbers, given by their low 16 bits, and by their high 8 as the bytes of
+    /// words, the low ones in the first four lanes; exact.
+    #[inline(always)]
+    pub(crate) fn from_i24(low: &[u16; 8], high: &[u16; 4]) -> Self {
+        Self::from_u16(low) + Self::from_signed_bytes(high) * Self::splat(65_536.0)
+    }
+
     /// The signed bytes of words as numbers, the low ones in the first four lanes; exact.
     #[inline(always)]
-    pub(crate) fn from_signed_bytes(words: &[u16; 4]) -> Self {
+    fn from_signed_bytes(words: &[u16; 4]) -> Self {
         // In terms that the compiler finds lanes in.
         let low = words.map(|word| f32::from((word & 0xff) ^ 0x80));
         let high = words.map(|word| f32::from(word as i16 >> 8));

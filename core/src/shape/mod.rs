@@ -118,19 +118,18 @@ pub(crate) fn accept<N: Number, K: Culling<N>>(
     bounds: UnitBox,
     tmax: N,
 ) -> Option<(N, Part)> {
-    let enter = crossing.enter;
-    if enter.0 >= ray.tmin && crossing.leave.0 >= enter.0 && K::holds(ray, enter.0, &bounds) {
-        return (enter.0 <= tmax).then_some(enter);
-    }
-    // Of a ray that begins in the box the interval begins before the origin, by more than rounding:
-    // clamped or not, nothing behind the origin counts.
-    let leave = crossing.leave;
-    if enter.0 < N::ZERO && K::holds(ray, N::ZERO, &bounds) {
-        if leave.0 < ray.tmin {
+    let Crossing { enter, leave } = crossing;
+    // What clamping would not change needs no interval.
+    if leave.0 >= enter.0 && K::holds(ray, enter.0, &bounds) {
+        if enter.0 >= ray.tmin {
+            return (enter.0 <= tmax).then_some(enter);
+        }
+        if leave.0 == enter.0 {
             return None;
         }
         if K::holds(ray, leave.0, &bounds) {
-            return (leave.0 <= tmax).then_some((leave.0, leave.1 | LEAVING));
+            let is_hit = leave.0 >= ray.tmin && leave.0 <= tmax;
+            return is_hit.then_some((leave.0, leave.1 | LEAVING));
         }
     }
     let interval = cull.exact(ray).interval(&bounds);
@@ -147,13 +146,11 @@ pub(crate) fn accept<N: Number, K: Culling<N>>(
             t
         }
     };
-    let enter = clamp(crossing.enter.0);
-    if enter >= ray.tmin && enter <= tmax {
-        return Some((enter, crossing.enter.1));
+    let (enter, leave) = ((clamp(enter.0), enter.1), (clamp(leave.0), leave.1));
+    if enter.0 >= ray.tmin && enter.0 <= tmax {
+        return Some(enter);
     }
-    let part = leave.1 | LEAVING;
-    let leave = clamp(leave.0);
-    (leave >= ray.tmin && leave <= tmax).then_some((leave, part))
+    (leave.0 >= ray.tmin && leave.0 <= tmax).then_some((leave.0, leave.1 | LEAVING))
 }
 
 /// The crossing of a plane through `relative` (a point as seen from the ray's origin) with a normal
