@@ -62,7 +62,7 @@ mod tests {
         assert_eq!(Eight::from_i16(&shorts).to_array(), shorts.map(f32::from));
         let words = [0, 1, u16::MAX, 0x7fff, 0x8000, 255, 256, 77];
         assert_eq!(Eight::from_u16(&words).to_array(), words.map(f32::from));
-        let bytes = [0, 1, 0x7f, 0x80, 0xff, 0xfe, 3, 200];
+        let bytes: [u8; 8] = [0, 1, 0x7f, 0x80, 0xff, 0xfe, 3, 200];
         let words = [[0, 0xff], [1, 0xfe], [0x7f, 3], [0x80, 200]].map(u16::from_le_bytes);
         assert_eq!(Eight::from_bytes(&words).to_array(), bytes.map(f32::from));
         let low = [0, 1, 0xffff, 0x8000, 0x7fff, 2, 3, 0xfffe];
