@@ -68,6 +68,18 @@ impl Way {
         (self.0 >> 24 & 3) as usize
     }
 
+    /// The axes of the split and the first carve, four times the latter.
+    #[inline(always)]
+    const fn kind(self) -> u32 {
+        self.0 >> 24 & 15
+    }
+
+    /// The axis of the second carve, or 3.
+    #[inline(always)]
+    const fn second_carve(self) -> usize {
+        (self.0 >> 28) as usize
+    }
+
     /// The axes of the carves, or 3.
     #[inline(always)]
     pub const fn carves(self) -> [usize; 2] {
@@ -197,6 +209,8 @@ enum Next {
 }
 
 /// Narrows a ray's interval to a node's and then to the child's where the walk goes on.
+///
+/// Compiled for each pair of a first carve's axis and a split's, so that neither is looked up.
 #[inline(always)]
 fn visit<C: Count>(
     record: &DualNode,
@@ -205,17 +219,49 @@ fn visit<C: Count>(
     cull: &Cull,
     count: &mut C,
 ) -> Next {
+    match Way(record.way).kind() {
+        0 => visit_kind::<0, 0, C>(record, number, interval, cull, count),
+        1 => visit_kind::<1, 0, C>(record, number, interval, cull, count),
+        2 => visit_kind::<2, 0, C>(record, number, interval, cull, count),
+        3 => visit_kind::<3, 0, C>(record, number, interval, cull, count),
+        4 => visit_kind::<0, 1, C>(record, number, interval, cull, count),
+        5 => visit_kind::<1, 1, C>(record, number, interval, cull, count),
+        6 => visit_kind::<2, 1, C>(record, number, interval, cull, count),
+        7 => visit_kind::<3, 1, C>(record, number, interval, cull, count),
+        8 => visit_kind::<0, 2, C>(record, number, interval, cull, count),
+        9 => visit_kind::<1, 2, C>(record, number, interval, cull, count),
+        10 => visit_kind::<2, 2, C>(record, number, interval, cull, count),
+        11 => visit_kind::<3, 2, C>(record, number, interval, cull, count),
+        12 => visit_kind::<0, 3, C>(record, number, interval, cull, count),
+        13 => visit_kind::<1, 3, C>(record, number, interval, cull, count),
+        14 => visit_kind::<2, 3, C>(record, number, interval, cull, count),
+        _ => visit_kind::<3, 3, C>(record, number, interval, cull, count),
+    }
+}
+
+#[inline(always)]
+fn visit_kind<const SPLIT: usize, const CARVE: usize, C: Count>(
+    record: &DualNode,
+    number: u32,
+    interval: &mut Interval,
+    cull: &Cull,
+    count: &mut C,
+) -> Next {
     let way = Way(record.way);
-    for (axis, planes) in way.carves().into_iter().zip(record.carves) {
-        let Some(form) = cull.axes.get(axis) else {
-            break;
-        };
-        carve_ray(form, axis, planes, number, interval, count);
+    if let Some(form) = cull.axes.get(CARVE) {
+        carve_ray(form, CARVE, record.carves[0], number, interval, count);
         if interval.near > interval.far {
             return Next::Nothing;
         }
+        let second = way.second_carve();
+        if let Some(form) = cull.axes.get(second) {
+            carve_ray(form, second, record.carves[1], number, interval, count);
+            if interval.near > interval.far {
+                return Next::Nothing;
+            }
+        }
     }
-    match cull.axes.get(way.split()) {
+    match cull.axes.get(SPLIT) {
         Some(form) => split(record, interval, form, count),
         None => Next::Leaf(way.number()),
     }
@@ -275,11 +321,9 @@ fn split<C: Count>(
         }
     }
     if whole.near > leave {
-        // Between the two, or past the far one: its own planes may be of other axes, or none.
+        // Between the two, where few rays end, or past the far one: its own planes may be of other
+        // axes, or none.
         interval.near = whole.near.max(enter);
-        if interval.near > whole.far {
-            return Next::Nothing;
-        }
         return Next::Near(far);
     }
     interval.far = whole.far.min(leave);

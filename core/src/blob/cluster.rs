@@ -199,7 +199,7 @@ fn to_24(value: u32) -> [u8; 3] {
 pub(crate) trait Rows: Pod {
     /// One point.
     type Vertex: Vertex;
-    /// One coordinate of every point in the measure of projections; exact.
+    /// One coordinate of every point in the steps of [`Vertex`]; exact.
     fn measure(&self, axis: usize) -> Eight;
     /// One coordinate of every point in units; exact.
     fn units(&self, axis: usize) -> Eight;

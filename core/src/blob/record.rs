@@ -3,7 +3,6 @@
 //! Little-endian, naturally aligned, without padding. `FORMAT.md` specifies every field; the
 //! assertions at the end of this file hold the layout to it.
 
-use crate::number::Number;
 use bytemuck::{Pod, Zeroable};
 use core::mem::{align_of, offset_of, size_of};
 
@@ -430,10 +429,10 @@ pub const fn plane_word(planes: [i16; 2]) -> u32 {
 pub trait Vertex: Pod {
     /// A coordinate in 1/256 unit.
     fn lattice(&self, axis: usize) -> i32;
-    /// A coordinate in the measure of projections; exact.
-    fn measure<N: Number>(&self, axis: usize) -> N;
-    /// A length in that measure.
-    fn to_measure<N: Number>(length: N) -> N;
+    /// A unit has 2 to the power of this many steps.
+    const STEP_BITS: u32;
+    /// A coordinate in steps.
+    fn steps(&self, axis: usize) -> i32;
     /// All three coordinates in 1/256 unit.
     #[inline(always)]
     fn position(&self) -> [i32; 3] {
@@ -442,23 +441,22 @@ pub trait Vertex: Pod {
 }
 
 impl Vertex for Vertex16 {
+    const STEP_BITS: u32 = 0;
+
     #[inline(always)]
     fn lattice(&self, axis: usize) -> i32 {
         (self.0[axis] as i32) << 8
     }
 
     #[inline(always)]
-    fn measure<N: Number>(&self, axis: usize) -> N {
-        N::from_unit(self.0[axis])
-    }
-
-    #[inline(always)]
-    fn to_measure<N: Number>(length: N) -> N {
-        length
+    fn steps(&self, axis: usize) -> i32 {
+        self.0[axis] as i32
     }
 }
 
 impl Vertex for Vertex24 {
+    const STEP_BITS: u32 = 8;
+
     #[inline(always)]
     fn lattice(&self, axis: usize) -> i32 {
         let [low, middle, high] = self.0[axis];
@@ -466,13 +464,8 @@ impl Vertex for Vertex24 {
     }
 
     #[inline(always)]
-    fn measure<N: Number>(&self, axis: usize) -> N {
-        N::steps(self.lattice(axis))
-    }
-
-    #[inline(always)]
-    fn to_measure<N: Number>(length: N) -> N {
-        length.to_steps()
+    fn steps(&self, axis: usize) -> i32 {
+        self.lattice(axis)
     }
 }
 

@@ -2,8 +2,9 @@
 
 mod halves;
 
-use self::halves::{product, product_unsigned, quotient};
-use super::{CullAxis, Format, NARROW_PRODUCTS, Number};
+pub(crate) use self::halves::product;
+use self::halves::{product_unsigned, quotient};
+use super::{CullAxis, Format, NARROW_PRODUCTS, Number, Sight};
 use crate::accel::cull::Cull;
 use core::ops::{Add, Mul, Neg, Sub};
 
@@ -128,6 +129,14 @@ fn reciprocal(d: u32) -> u32 {
     // d * coarse is 2^61 but for a part in 2^15.
     let excess = (product_unsigned(d, coarse) >> 29) as u32 as i32;
     coarse.wrapping_sub((product(coarse as i32, excess) >> 32) as u32)
+}
+
+/// [`Number::surround`] by the sides on which the edges leave the origin, where they differ: those that
+/// lead through it are on neither.
+fn surround_by_sides(sides: [i64; 3]) -> bool {
+    let negative = sides.iter().any(|&side| side < 0);
+    let positive = sides.iter().any(|&side| side > 0);
+    negative != positive
 }
 
 /// [`Number::slopes`] of a vector beyond 31 bits.
@@ -260,16 +269,6 @@ impl Number for Fixed {
     #[inline(always)]
     fn from_lattice(steps: i32) -> Self {
         Fixed(steps.wrapping_shl(LENGTH_BITS - 8))
-    }
-
-    #[inline(always)]
-    fn steps(steps: i32) -> Self {
-        Self::from_lattice(steps)
-    }
-
-    #[inline(always)]
-    fn to_steps(self) -> Self {
-        self
     }
 
     #[inline(always)]
@@ -533,20 +532,58 @@ impl Number for Fixed {
     }
 
     #[inline(always)]
+    fn sight(origin: Self, slope: Self, bits: u32) -> Sight<Self> {
+        // All that is seen is counted in the direction in which the ray runs, so that what is rounded
+        // down is rounded alike in a mirrored scene.
+        let turned = slope.0 >> 31;
+        let turn = |x: i32| (x ^ turned).wrapping_sub(turned);
+        Sight {
+            origin: Fixed(turn(origin.0)),
+            scale: turn(1_i32.wrapping_shl(LENGTH_BITS.wrapping_sub(bits))),
+        }
+    }
+
+    #[inline(always)]
+    fn seen(coordinate: i32, sight: &Sight<Self>) -> Self {
+        Fixed(coordinate.wrapping_mul(sight.scale)) - sight.origin
+    }
+
+    #[inline(always)]
+    fn shear(slope: Self, _: Self) -> Self {
+        // With 31 fraction bits, of which -1 has room.
+        Fixed((slope.0.unsigned_abs() << 1).wrapping_neg() as i32)
+    }
+
+    #[inline(always)]
+    fn stray(depth: Self, shear: Self) -> Self {
+        keep(|| depth.0.unsigned_abs() < 1 << 30);
+        // The upper half of a product, which costs least.
+        Fixed((product(depth.0.wrapping_shl(1), shear.0) >> 32) as i32)
+    }
+
+    #[inline(always)]
     fn surround(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool {
         if NARROW_PRODUCTS && let Some(surround) = halves::surround(a, b, c) {
             return surround;
         }
         let cross = |a: [Self; 2], b: [Self; 2]| (a[0].wide(b[1]) - a[1].wide(b[0])).0;
         let (u, v) = (cross(b, c), cross(c, a));
-        // Few triangles come further.
-        if u ^ v < 0 && u != 0 && v != 0 {
+        // Few triangles come further. Where an upper half is not 0, neither is the whole.
+        let (upper_u, upper_v) = ((u >> 32) as i32, (v >> 32) as i32);
+        if upper_u ^ upper_v < 0 && upper_u != 0 && upper_v != 0 {
             return false;
         }
         let w = cross(a, b);
-        let negative = u < 0 || v < 0 || w < 0;
-        let positive = u > 0 || v > 0 || w > 0;
-        negative != positive
+        if (u ^ v | u ^ w) < 0 {
+            return surround_by_sides([u, v, w]);
+        }
+        u | v | w != 0
+    }
+
+    #[inline(always)]
+    fn beside(v: [Self; 3]) -> bool {
+        let zero = Self::ZERO;
+        v[0] < zero && v[1] < zero && v[2] < zero || v[0] > zero && v[1] > zero && v[2] > zero
     }
 
     #[inline(always)]
@@ -627,9 +664,9 @@ impl Number for Fixed {
         let (steepness, parallel) = if magnitude == 1 << RATIO_BITS {
             (1 << 17, 0)
         } else if magnitude > 1 << 18 {
-            // 2^47 / magnitude; at most 11 bits to shift up.
-            let up = magnitude.leading_zeros().saturating_sub(1) & 15;
-            let inverse = reciprocal(magnitude << up) >> (14 - up.min(14));
+            // 2^47 / magnitude; from 1 to 12 leading zeros, since slopes are at most 1.
+            let up = magnitude.leading_zeros().wrapping_sub(1) & 15;
+            let inverse = reciprocal(magnitude << up) >> (14_u32.wrapping_sub(up) & 31);
             (inverse as i32, 0)
         } else {
             (1 << 29, 1 << 17)

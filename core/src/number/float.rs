@@ -3,7 +3,7 @@
 //! Only operations whose result is the same on every machine: no fused multiply-add, no `min` and
 //! `max` of the standard library (they differ on signed zeros), square roots by libm.
 
-use super::{CullAxis, Format, Number, pick};
+use super::{CullAxis, Format, Number, Sight, pick};
 use crate::accel::cull::FloatCulling;
 use crate::shape::extent;
 use core::cmp::Ordering;
@@ -84,6 +84,18 @@ fn slope_of_extremes<N: Number<Wide = N>>(x: N, y: N, z: N, axis: usize) -> Opti
     N::slopes(scaled).map(|(slopes, _)| pick(slopes, axis))
 }
 
+/// All of them. Not a closure, whose captures would lie in memory for all rays.
+#[inline(always)]
+fn slopes_of_extremes<N: Number<Wide = N>>(
+    x: N,
+    y: N,
+    z: N,
+    major: usize,
+) -> Option<([N; 3], usize)> {
+    let slope = |axis: usize| slope_of_extremes(x, y, z, axis);
+    Some(([slope(0)?, slope(1)?, slope(2)?], major))
+}
+
 /// The largest inverse slope in culling.
 const STEEPEST: f64 = 536_870_912.0;
 
@@ -126,16 +138,6 @@ macro_rules! float_number {
             #[inline(always)]
             fn from_lattice(steps: i32) -> Self {
                 steps as $float * (1.0 / 256.0)
-            }
-
-            #[inline(always)]
-            fn steps(steps: i32) -> Self {
-                steps as $float
-            }
-
-            #[inline(always)]
-            fn to_steps(self) -> Self {
-                self * 256.0
             }
 
             #[inline(always)]
@@ -315,6 +317,30 @@ macro_rules! float_number {
             }
 
             #[inline(always)]
+            fn sight(origin: Self, _: Self, bits: u32) -> Sight<Self> {
+                Sight {
+                    origin: origin * (1_u32 << (bits & 31)) as $float,
+                    scale: 1,
+                }
+            }
+
+            #[inline(always)]
+            fn seen(coordinate: i32, sight: &Sight<Self>) -> Self {
+                coordinate as $float - sight.origin
+            }
+
+            #[inline(always)]
+            fn shear(slope: Self, major: Self) -> Self {
+                // The latter is 1 or -1.
+                -(slope * major)
+            }
+
+            #[inline(always)]
+            fn stray(depth: Self, shear: Self) -> Self {
+                depth * shear
+            }
+
+            #[inline(always)]
             fn surround(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool {
                 // Rounding is monotone, so the difference of the rounded products has the right
                 // sign unless it is zero.
@@ -348,24 +374,20 @@ macro_rules! float_number {
                 // Adding zero turns -0.0 into 0.0.
                 let over = |x: $float, largest: $float| $settle(x * (1.0 / largest.abs()) + 0.0);
                 let [a, b, c] = v;
-                let extremes = |axis: usize| {
-                    let slope = |k: usize| slope_of_extremes(a, b, c, k);
-                    Some(([slope(0)?, slope(1)?, slope(2)?], axis))
-                };
                 // Written out by axis, so that nothing is looked up.
                 if x >= y && x >= z {
                     if !is_ordinary(a) {
-                        return extremes(0);
+                        return slopes_of_extremes(a, b, c, 0);
                     }
                     Some(([one(a), over(b, a), over(c, a)], 0))
                 } else if y >= z {
                     if !is_ordinary(b) {
-                        return extremes(1);
+                        return slopes_of_extremes(a, b, c, 1);
                     }
                     Some(([over(a, b), one(b), over(c, b)], 1))
                 } else {
                     if !is_ordinary(c) {
-                        return extremes(2);
+                        return slopes_of_extremes(a, b, c, 2);
                     }
                     Some(([over(a, c), over(b, c), one(c)], 2))
                 }

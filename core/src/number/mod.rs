@@ -22,6 +22,7 @@ mod fixed;
 mod float;
 
 pub use fixed::Fixed;
+pub(crate) use fixed::product;
 
 use crate::accel::cull::PairCulling;
 #[cfg(feature = "wide")]
@@ -130,11 +131,6 @@ pub trait Number:
 
     /// A length from a coordinate of the storage lattice, in 1/256 unit; exact for 24 bits.
     fn from_lattice(steps: i32) -> Self;
-    /// A coordinate of the storage lattice in [steps](Self::to_steps); exact for 24 bits.
-    fn steps(steps: i32) -> Self;
-    /// A length in the steps of the storage lattice, 256 a unit, where conversions are cheaper so:
-    /// in floats. [`Fixed`] stays with units.
-    fn to_steps(self) -> Self;
     /// A length from whole units; exact.
     fn from_unit(unit: i16) -> Self;
     /// A ratio from an integer with 30 fraction bits.
@@ -241,11 +237,32 @@ pub trait Number:
     /// Square root of the product of two non-negative products, as the same kind of product.
     fn geometric_mean(a: Self::Wide, b: Self::Wide) -> Self::Wide;
 
+    // Projections along a ray: see `shape/triangle.rs`
+
+    /// How vertices whose coordinates count `2^bits` steps a unit are seen along an axis, from a ray's
+    /// origin and with its slope there.
+    fn sight(origin: Self, slope: Self, bits: u32) -> Sight<Self>;
+    /// Where a coordinate, of at most 24 bits, lies as seen so: in floats in steps, in [`Fixed`] a
+    /// length, and in the direction in which the ray runs.
+    fn seen(coordinate: i32, sight: &Sight<Self>) -> Self;
+    /// How far what is [seen](Self::seen) strays from a ray along a minor axis for each step along its
+    /// major one, given the slopes there.
+    fn shear(slope: Self, major: Self) -> Self;
+    /// How far it strays over a depth, of less than 2^17 units, by the same arithmetic for every
+    /// vertex; in [`Fixed`] rounded down.
+    fn stray(depth: Self, shear: Self) -> Self;
+
     // Vectors
 
     /// Whether the triangle of three points of the plane holds the origin, edges included; not if
     /// all edges lead through it. Whichever way the points run, and always exact.
     fn surround(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool;
+    /// Whether three numbers are certain to be all above or all below zero, where that is cheaper to
+    /// see than what comes of it.
+    #[inline(always)]
+    fn beside(_: [Self; 3]) -> bool {
+        false
+    }
     /// A vector of integers (below 2^52) as ratios: exact up to one common factor and two roundings
     /// each; the largest magnitude in \[1/4, 1\] in [`Fixed`], unscaled in floats.
     fn direction(v: [i64; 3]) -> [Self; 3];
@@ -270,6 +287,15 @@ pub trait Number:
     /// bits, limited to 2^29, with the sign of the slope; and what that times a plane lacks to the
     /// step of entry and to that of exit, the margins included.
     fn cull_axis(slope: Self, origin: Self) -> CullAxis;
+}
+
+/// How vertices are seen along one axis of a ray: see [`Number::sight`].
+#[derive(Clone, Copy, Debug)]
+pub struct Sight<N> {
+    /// The ray's origin, in the measure of what is seen.
+    pub(crate) origin: N,
+    /// What makes a coordinate a length, with the sign of the slope; for integers.
+    scale: i32,
 }
 
 /// The culling form of one axis: see [`Number::cull_axis`].

@@ -81,12 +81,12 @@ impl<N: Number> StripRay<N> {
     /// The places that are met, and those of which lanes cannot say.
     #[inline(always)]
     fn met_in_lanes<S: Strip>(&self, strip: &S) -> (u32, u32) {
-        let Projection { origin, shear } = self.projection;
+        let Projection { sight, shear } = &self.projection;
         let all = |number: N| Eight::splat(number.to_f32());
         let [first, second, last] = self.axes.map(|axis| strip.rows().measure(axis));
-        let depth = last - all(origin[2]);
-        let (right, up) = (first - all(origin[0]), second - all(origin[1]));
-        let (x, y) = (right - depth * all(shear[0]), up - depth * all(shear[1]));
+        let depth = last - all(sight[2].origin);
+        let (right, up) = (first - all(sight[0].origin), second - all(sight[1].origin));
+        let (x, y) = (right + depth * all(shear[0]), up + depth * all(shear[1]));
         let (x1, y1) = (x.next(), y.next());
         let (x2, y2) = (x1.next(), y1.next());
         // From each vertex to the next, and to the one after that.

@@ -10,46 +10,31 @@
 
 use super::{Crossing, Surface, cross_plane, extent};
 use crate::blob::record::{UnitBox, Vertex};
-use crate::number::Number;
+use crate::number::{Number, Sight, product};
 use crate::ray::Ray;
 
-/// The projection along a ray: its origin, and how far it strays for each unit of depth, with the
-/// axes in the order of their roles (the two minor ones, then the major one).
+/// The projection along a ray: how its origin sees coordinates on the axes in the order of their roles
+/// (the two minor ones, then the major one), and how far the ray strays for each step of depth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projection<N> {
-    pub(super) origin: [N; 3],
+    pub(super) sight: [Sight<N>; 3],
     pub(super) shear: [N; 2],
 }
 
 impl<N: Number> Projection<N> {
-    /// The projection along a ray whose major axis is `MAJOR`, in the measure of vertices `V`.
+    /// The projection of vertices `V` along a ray whose major axis is `MAJOR`.
     #[inline(always)]
     pub(crate) fn of<const MAJOR: usize, V: Vertex>(ray: &Ray<N>) -> Self {
-        let role = |role: usize| (MAJOR + 1 + role) % 3;
-        let origin = |axis: usize| V::to_measure(ray.origin[axis]);
-        let forward = ray.slope[MAJOR] > N::ZERO;
-        let shear = |axis: usize| {
-            if forward {
-                ray.slope[axis]
-            } else {
-                -ray.slope[axis]
-            }
+        let axis = |role: usize| (MAJOR + 1 + role) % 3;
+        let sight = |role: usize| {
+            let axis = axis(role);
+            N::sight(ray.origin[axis], ray.slope[axis], V::STEP_BITS)
         };
+        let shear = |role: usize| N::shear(ray.slope[axis(role)], ray.slope[MAJOR]);
         Self {
-            origin: [origin(role(0)), origin(role(1)), origin(MAJOR)],
-            shear: [shear(role(0)), shear(role(1))],
+            sight: [sight(0), sight(1), sight(2)],
+            shear: [shear(0), shear(1)],
         }
-    }
-
-    /// A vertex, projected.
-    #[inline(always)]
-    fn project<const MAJOR: usize, V: Vertex>(&self, vertex: &V) -> [N; 2] {
-        let depth = vertex.measure::<N>(MAJOR) - self.origin[2];
-        let across = |role: usize| {
-            let coordinate = vertex.measure::<N>((MAJOR + 1 + role) % 3);
-            coordinate - self.origin[role] - depth * self.shear[role]
-        };
-        [across(0), across(1)]
     }
 
     /// Whether a ray whose major axis is `MAJOR` meets a triangle, edges included; not if it is
@@ -58,10 +43,28 @@ impl<N: Number> Projection<N> {
     /// Cost: 9 loads and some 30 multiplications and additions.
     #[inline(always)]
     pub(crate) fn meets<const MAJOR: usize, V: Vertex>(&self, a: &V, b: &V, c: &V) -> bool {
-        let a = self.project::<MAJOR, V>(a);
-        let b = self.project::<MAJOR, V>(b);
-        let c = self.project::<MAJOR, V>(c);
-        N::surround(a, b, c)
+        let seen = |vertex: &V, role: usize| {
+            let coordinate = vertex.steps((MAJOR + 1 + role) % 3);
+            N::seen(coordinate, &self.sight[role])
+        };
+        let depth = [seen(a, 2), seen(b, 2), seen(c, 2)];
+        let across = |role: usize| {
+            let stray = |corner: usize| N::stray(depth[corner], self.shear[role]);
+            [
+                seen(a, role) + stray(0),
+                seen(b, role) + stray(1),
+                seen(c, role) + stray(2),
+            ]
+        };
+        let x = across(0);
+        if N::beside(x) {
+            return false;
+        }
+        let y = across(1);
+        if N::beside(y) {
+            return false;
+        }
+        N::surround([x[0], y[0]], [x[1], y[1]], [x[2], y[2]])
     }
 }
 
@@ -77,15 +80,12 @@ pub(crate) fn cross<N: Number>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> Option<C
 #[inline(always)]
 fn normal<N: Number>([a, b, c]: [[i32; 3]; 3]) -> [N; 3] {
     let edge = |from: [i32; 3], to: [i32; 3]| {
-        let axis = |k: usize| to[k].wrapping_sub(from[k]) as i64;
+        let axis = |k: usize| to[k].wrapping_sub(from[k]);
         [axis(0), axis(1), axis(2)]
     };
     let (p, q) = (edge(a, b), edge(a, c));
     // Edges have 25 bits and a sign, so the products have 51.
-    let component = |i: usize, j: usize| {
-        p[i].wrapping_mul(q[j])
-            .wrapping_sub(p[j].wrapping_mul(q[i]))
-    };
+    let component = |i: usize, j: usize| product(p[i], q[j]).wrapping_sub(product(p[j], q[i]));
     N::direction([component(1, 2), component(2, 0), component(0, 1)])
 }
 

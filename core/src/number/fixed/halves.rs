@@ -6,7 +6,7 @@ use crate::number::NARROW_PRODUCTS;
 
 /// A product in 64 bits.
 #[inline(always)]
-pub(super) const fn product(a: i32, b: i32) -> i64 {
+pub(crate) const fn product(a: i32, b: i32) -> i64 {
     if NARROW_PRODUCTS {
         product_of_halves(a, b)
     } else {
