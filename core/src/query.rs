@@ -297,6 +297,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         }
     }
 
+    // Apart from the walk both keep more of what they need in the few registers of small cores.
     #[cfg_attr(not(feature = "wide"), inline(never))]
     fn triangles_along<const MAJOR: usize, V: Vertex, I: Corners, C: Count>(
         &mut self,

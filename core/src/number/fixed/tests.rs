@@ -121,6 +121,53 @@ proptest! {
         prop_assert!((found * norm2 - 1.0).abs() < f64::powi(2.0, -27), "{found} {norm2}");
     }
 
+    /// Whatever the shortcuts, and beside what lies on one side nothing is met.
+    #[test]
+    fn triangles_are_met_by_the_signs_of_their_edges(
+        corners: [[i32; 2]; 3], shift in 2_u32..32, flat in 0..4_usize,
+    ) {
+        let [a, b, mut c] = corners.map(|corner| corner.map(|x| Fixed(x >> shift)));
+        if flat == 0 {
+            c = a;
+        }
+        let cross = |p: [Fixed; 2], q: [Fixed; 2]| {
+            let product = |x: Fixed, y: Fixed| i128::from(x.0) * i128::from(y.0);
+            (product(p[0], q[1]) - product(p[1], q[0])).signum()
+        };
+        let sides = [cross(b, c), cross(c, a), cross(a, b)];
+        let met = sides.contains(&-1) != sides.contains(&1);
+        prop_assert_eq!(Fixed::surround(a, b, c), met);
+        let beside = |axis: usize| Fixed::beside([a[axis], b[axis], c[axis]]);
+        prop_assert!(!met || !beside(0) && !beside(1));
+    }
+
+    /// What a ray sees of a vertex does not depend on which way axes run.
+    #[test]
+    fn projections_are_mirrored(
+        vertex in -(1_i32 << 23)..1_i32 << 23, depth in -(1_i32 << 23)..1_i32 << 23,
+        origin in -(1_i32 << 28)..1_i32 << 28, slope in -(1_i32 << 30)..=1_i32 << 30,
+    ) {
+        let project = |turn: i32, turn_depth: i32| {
+            let slope = Fixed(turn * slope);
+            let major = Fixed(turn_depth * Fixed::ONE.0);
+            let across = Fixed::sight(Fixed(turn * origin), slope, 8);
+            let along = Fixed::sight(Fixed(0), major, 8);
+            let stray = Fixed::stray(
+                Fixed::seen(turn_depth * depth, &along),
+                Fixed::shear(slope, major),
+            );
+            let across = Fixed::seen(turn * vertex, &across) + stray;
+            // Without a slope there is no way in which the ray runs.
+            if slope.0 == 0 { across.0.abs() } else { across.0 }
+        };
+        let plain = project(1, 1);
+        prop_assert_eq!([plain; 3], [project(-1, 1), project(1, -1), project(-1, -1)]);
+        let exact = f64::from((vertex << 5) - origin) * f64::from(slope.signum() | 1)
+            - f64::from(depth << 5) * Fixed(slope.abs()).ratio_to_f64();
+        let exact = if slope == 0 { exact.abs() } else { exact };
+        prop_assert!((f64::from(plain) - exact).abs() <= 1.0, "{plain} {exact}");
+    }
+
     /// Ratios by ratios of products, as kernels scale them.
     #[test]
     fn scaled_products_agree_with_128_bits(wide: i64, ratio in -(1 << 30)..=1 << 30_i32) {
