@@ -15,7 +15,7 @@ const VISIT: f64 = 18.0;
 const CARVE: f64 = 14.0;
 const SPLIT: f64 = 26.0;
 const LEAF: f64 = 40.0;
-const PRIMITIVE: f64 = 80.0;
+const TRIANGLE: f64 = 80.0;
 
 /// All ways to carve a node: the axes, in the order in which they are tested.
 static CARVES: [&[usize]; 10] = [
@@ -119,8 +119,8 @@ fn choices_of_split(
     look_ahead: u32,
 ) -> impl Iterator<Item = (Option<(usize, bool)>, f64)> {
     let (leaf, children) = match node {
-        Node::Leaf { count, .. } => (
-            Some((None, area(&region) * (LEAF + PRIMITIVE * *count as f64))),
+        Node::Leaf { tests, .. } => (
+            Some((None, area(&region) * (LEAF + TRIANGLE * tests))),
             None,
         ),
         Node::Inner { children, .. } => (None, Some(children)),

@@ -22,6 +22,16 @@ pub struct Primitive {
 }
 
 impl Primitive {
+    /// What its test costs, a triangle's being 1: about what boards pay, with and without floats.
+    /// Where tests are dear, leaves are small.
+    pub const fn test_cost(&self) -> f64 {
+        match self.kind {
+            Kind::Triangle | Kind::Sphere => 1.0,
+            Kind::Box | Kind::Disc => 2.0,
+            Kind::Cone => 6.0,
+        }
+    }
+
     /// Twice the box's centre.
     pub fn centroid(&self, axis: usize) -> i32 {
         let [low, high] = self.bounds.0[axis];
@@ -36,6 +46,8 @@ pub enum Node {
         bounds: UnitBox,
         first: usize,
         count: usize,
+        /// What the tests of its primitives cost.
+        tests: f64,
     },
     Inner {
         bounds: UnitBox,
@@ -51,7 +63,7 @@ impl Node {
     }
 }
 
-/// What a step down the hierarchy costs, a primitive's test being 1.
+/// What a step down the hierarchy costs, a triangle's test being 1.
 pub const STEP_COST: f64 = 1.5;
 /// Most primitives in a leaf, unless they cannot be told apart.
 pub const LEAF_SIZE: usize = 4;
@@ -91,7 +103,7 @@ pub fn bounds(primitives: &[Primitive]) -> Option<UnitBox> {
 pub fn sah_cost(root: &Node) -> f64 {
     fn sum(node: &Node) -> f64 {
         match node {
-            Node::Leaf { bounds, count, .. } => area(bounds) * *count as f64,
+            Node::Leaf { bounds, tests, .. } => area(bounds) * tests,
             Node::Inner { bounds, children } => {
                 area(bounds) * STEP_COST + sum(&children[0]) + sum(&children[1])
             }
@@ -121,10 +133,12 @@ fn build_node(
 ) -> Node {
     let bounds = union(primitives);
     let count = primitives.len();
+    let tests = primitives.iter().map(Primitive::test_cost).sum();
     let leaf = Node::Leaf {
         bounds,
         first,
         count,
+        tests,
     };
     let one_kind = primitives.iter().all(|p| p.kind == primitives[0].kind);
     if count == 1 || one_kind && count <= leaf_size {
@@ -135,8 +149,7 @@ fn build_node(
     } else {
         best_split(primitives, &bounds, splits)
     };
-    let leaf_cost = count as f64;
-    let worth_it = split.as_ref().is_some_and(|split| split.cost < leaf_cost);
+    let worth_it = split.as_ref().is_some_and(|split| split.cost < tests);
     if one_kind && count <= LEAF_SIZE && !worth_it {
         return leaf;
     }
@@ -216,17 +229,18 @@ fn sweep(primitives: &[Primitive], axis: usize, scale: f64) -> Option<Split> {
     let mut ordered = primitives.to_vec();
     sort(&mut ordered, axis);
     let mut right_costs = vec![0.0; ordered.len()];
-    let mut right: Option<UnitBox> = None;
+    let (mut right, mut tests) = (None, 0.0);
     for (place, primitive) in ordered.iter().enumerate().rev() {
         let bounds = grow(right, &primitive.bounds);
-        right = Some(bounds);
-        right_costs[place] = area(&bounds) * (ordered.len() - place) as f64;
+        (right, tests) = (Some(bounds), tests + primitive.test_cost());
+        right_costs[place] = area(&bounds) * tests;
     }
-    let mut left: Option<UnitBox> = None;
+    let (mut left, mut tests) = (None, 0.0);
     let costs = ordered.iter().enumerate().skip(1).map(|(place, _)| {
-        let bounds = grow(left, &ordered[place - 1].bounds);
-        left = Some(bounds);
-        (area(&bounds) * place as f64 + right_costs[place], place)
+        let before = &ordered[place - 1];
+        let bounds = grow(left, &before.bounds);
+        (left, tests) = (Some(bounds), tests + before.test_cost());
+        (area(&bounds) * tests + right_costs[place], place)
     });
     let (cost, place) = costs.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(Split {
@@ -241,28 +255,26 @@ fn bin(primitives: &[Primitive], axis: usize, low: i32, high: i32, scale: f64) -
     let width = i64::from(high - low) + 1;
     let bin_of = |centroid: i32| (i64::from(centroid - low) * BINS as i64 / width) as usize;
     let mut bins: [Option<UnitBox>; BINS] = [None; BINS];
-    let mut counts = [0_usize; BINS];
+    let mut tests = [0.0; BINS];
     for primitive in primitives {
         let bin = bin_of(primitive.centroid(axis));
         bins[bin] = Some(grow(bins[bin], &primitive.bounds));
-        counts[bin] += 1;
+        tests[bin] += primitive.test_cost();
     }
-    let mut right_costs = [0.0; BINS];
-    let (mut right, mut right_count) = (None, 0);
+    let mut rights = [(None, 0.0); BINS];
+    let mut right = (None, 0.0);
     for place in (1..BINS).rev() {
-        right = join(right, bins[place]);
-        right_count += counts[place];
-        right_costs[place] = right.map_or(0.0, |bounds| area(&bounds)) * right_count as f64;
+        right = (join(right.0, bins[place]), right.1 + tests[place]);
+        rights[place] = right;
     }
-    let (mut left, mut left_count, mut best) = (None, 0, None);
+    let (mut left, mut left_tests, mut best) = (None, 0.0, None);
     for place in 1..BINS {
         left = join(left, bins[place - 1]);
-        left_count += counts[place - 1];
-        if left_count == 0 || left_count == primitives.len() {
+        left_tests += tests[place - 1];
+        let (Some(below), (Some(above), right_tests)) = (left, rights[place]) else {
             continue;
-        }
-        let cost =
-            left.map_or(0.0, |bounds| area(&bounds)) * left_count as f64 + right_costs[place];
+        };
+        let cost = area(&below) * left_tests + area(&above) * right_tests;
         if best.is_none_or(|(least, _)| cost < least) {
             best = Some((cost, place));
         }

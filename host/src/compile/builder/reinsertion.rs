@@ -37,6 +37,7 @@ fn copy(node: &Node, tree: &mut Tree) -> usize {
             bounds,
             first,
             count,
+            ..
         } => tree.leaf(*bounds, (*first..first + count).collect()),
         Node::Inner { children, .. } => {
             let children = [copy(&children[0], tree), copy(&children[1], tree)];

@@ -54,6 +54,7 @@ fn check(node: &Node, primitives: &[Primitive], next: &mut usize) -> usize {
             bounds,
             first,
             count,
+            ..
         } => {
             assert_eq!(first, next);
             *next += count;

@@ -77,25 +77,30 @@ impl Tree {
         for &number in self.parents_first().iter().rev() {
             let node = &self.nodes[number];
             facts[number] = match &node.below {
-                Below::Primitives(places) => Facts {
-                    count: places.len(),
-                    cost: area(&node.bounds) * places.len() as f64,
-                    // What is more than a leaf is halved.
-                    height: if places.len() > LEAF_SIZE {
-                        halvings(places.len())
-                    } else {
-                        0
-                    },
-                    one_kind: places
-                        .iter()
-                        .all(|&p| primitives[p].kind == primitives[places[0]].kind),
-                    is_leaf: false,
-                },
+                Below::Primitives(places) => {
+                    let tests = places.iter().map(|&p| primitives[p].test_cost()).sum();
+                    Facts {
+                        count: places.len(),
+                        tests,
+                        cost: area(&node.bounds) * tests,
+                        // What is more than a leaf is halved.
+                        height: if places.len() > LEAF_SIZE {
+                            halvings(places.len())
+                        } else {
+                            0
+                        },
+                        one_kind: places
+                            .iter()
+                            .all(|&p| primitives[p].kind == primitives[places[0]].kind),
+                        is_leaf: false,
+                    }
+                }
                 Below::Children(children) => {
                     let [left, right] = children.map(|child| facts[child]);
                     let kind = |child| primitives[self.first(child)].kind;
                     Facts {
                         count: left.count + right.count,
+                        tests: left.tests + right.tests,
                         cost: STEP_COST * area(&node.bounds) + left.cost + right.cost,
                         height: 1 + left.height.max(right.height),
                         one_kind: left.one_kind
@@ -106,7 +111,7 @@ impl Tree {
                 }
             };
             let fact = &mut facts[number];
-            let as_leaf = area(&node.bounds) * fact.count as f64;
+            let as_leaf = area(&node.bounds) * fact.tests;
             fact.is_leaf = fact.one_kind && fact.count <= LEAF_SIZE && as_leaf <= fact.cost;
             if fact.is_leaf {
                 (fact.cost, fact.height) = (as_leaf, 0);
@@ -151,6 +156,8 @@ impl Tree {
 #[derive(Clone, Copy, Default)]
 struct Facts {
     count: usize,
+    /// What the tests of its primitives cost.
+    tests: f64,
     /// By the surface area heuristic.
     cost: f64,
     /// Levels of inner nodes.
@@ -195,6 +202,7 @@ impl Finish<'_> {
                         bounds: node.bounds,
                         first,
                         count: new.len(),
+                        tests: fact.tests,
                     }
                 } else {
                     build_halved(new, first, levels)
