@@ -186,9 +186,15 @@ fn descend<N: Number, C: Count>(
         if met == 0 {
             return Child::NONE;
         }
-        let mut nearest = take_lowest(&mut met, &near);
+        let first = take_lowest(&mut met);
+        if met == 0 {
+            // Every other node: no need to wait for where it is entered.
+            current = node.child(first);
+            continue;
+        }
+        let mut nearest = entered(first, &near);
         while met != 0 {
-            let other = take_lowest(&mut met, &near);
+            let other = entered(take_lowest(&mut met), &near);
             // No branches, which would be guessed wrong every other time.
             let later = nearest.max(other);
             nearest = nearest.min(other);
@@ -229,16 +235,21 @@ fn tell_tested<N: Number, C: Count>(
     }
 }
 
-/// The lowest lane of a set that is not empty, which is removed: where it is entered, which is not
-/// negative, in the high half of what is returned, and its number in the low half.
+/// The lowest lane of a set that is not empty, which is removed.
 #[inline(always)]
-fn take_lowest(lanes: &mut u32, near: &[i32; LANES]) -> u64 {
+fn take_lowest(lanes: &mut u32) -> usize {
     let lowest = lanes.trailing_zeros();
     *lanes &= lanes.wrapping_sub(1);
-    (near[(lowest & 7) as usize] as u64) << 32 | u64::from(lowest)
+    (lowest & 7) as usize
 }
 
-/// The lane of [`take_lowest`].
+/// Where a lane is entered, which is not negative, in the high half, and its number in the low half.
+#[inline(always)]
+fn entered(lane: usize, near: &[i32; LANES]) -> u64 {
+    (near[lane & 7] as u64) << 32 | lane as u64
+}
+
+/// The lane of [`entered`].
 #[inline(always)]
 fn lane(entered: u64) -> usize {
     (entered & 7) as usize

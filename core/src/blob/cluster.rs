@@ -275,8 +275,9 @@ fn row<T, const N: usize>(rows: &[[T; N]; 3], axis: usize) -> &[T; N] {
 /// The high byte of a lane.
 #[inline(always)]
 fn high_byte(words: &[u16; LANES / 2], lane: usize) -> u8 {
+    let place = (lane & 3) << 1 | lane >> 2 & 1;
     let bytes = bytemuck::bytes_of(words);
-    bytes[(lane & 3) << 1 | lane >> 2 & 1]
+    bytes.get(place).copied().unwrap_or_default()
 }
 
 /// High bytes as words.

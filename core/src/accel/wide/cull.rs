@@ -34,21 +34,19 @@ pub struct WideLanes {
     near: Vec4,
     /// What the far plane's product lacks to t.
     far: Vec4,
-    /// Which of a node's two rows an axis has the near planes: 1, the upper ones, where the ray runs
-    /// down it.
-    near_rows: [u32; 3],
+    /// For each axis whether the ray runs down it: then a node's upper row has the near planes.
+    descends: [bool; 3],
 }
 
 impl<N: Number> Culling<N> for WideLanes {
     #[inline(always)]
     fn new(ray: &Ray<N>) -> Self {
         let Single { inverse, near, far } = Single::of(ray);
-        let descending = inverse.is_negative_bitmask();
         Self {
             inverse,
             near: near.with_w(ray.tmin.to_f32()),
             far,
-            near_rows: [descending & 1, descending >> 1 & 1, descending >> 2 & 1],
+            descends: [inverse.x < 0.0, inverse.y < 0.0, inverse.z < 0.0],
         }
     }
 
@@ -76,7 +74,7 @@ impl<N: Number> WideCulling<N> for WideLanes {
     fn span(&self, bounds: &UnitBox, limit: i32) -> [f64; 2] {
         let (mut enters, mut leaves) = (f64::from(self.near.w), Single::units(limit));
         for (axis, sides) in bounds.0.iter().enumerate() {
-            let row = self.near_rows[axis] as usize & 1;
+            let row = usize::from(self.descends[axis]);
             let t = |plane: i16, rest: f32| f64::from(f32::from(plane) * self.inverse[axis] + rest);
             enters = enters.max(t(sides[row], self.near[axis]));
             leaves = leaves.min(t(sides[row ^ 1], self.far[axis]));
@@ -90,7 +88,7 @@ impl<N: Number> WideCulling<N> for WideLanes {
             inverse, near, far, ..
         } = self;
         let axis = |axis: usize, inverse: f32, to_near: f32, to_far: f32| {
-            let (rows, near) = (&node.planes[axis], self.near_rows[axis] as usize & 1);
+            let (rows, near) = (&node.planes[axis], usize::from(self.descends[axis]));
             let inverse = Eight::splat(inverse);
             (
                 Eight::from_i16(&rows[near]) * inverse + Eight::splat(to_near),

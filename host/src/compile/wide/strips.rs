@@ -8,15 +8,16 @@
 use super::super::hierarchy::area;
 use gridel_core::blob::cluster::{LANES, STRIP_TRIANGLES, StripMembers};
 use gridel_core::blob::record::UnitBox;
+use heapless::Vec as Few;
 use rayon::prelude::*;
 use std::collections::BinaryHeap;
 
-/// A strip: its vertices, and its triangles by place.
+/// A strip: its vertices, and its triangles by place. There are very many, so none allocates.
 #[derive(Clone, Debug)]
 pub struct Strip {
-    pub vertices: Vec<u32>,
-    /// Triangles at their places; at most [`STRIP_TRIANGLES`].
-    pub triangles: Vec<Option<u32>>,
+    pub vertices: Few<u32, LANES>,
+    /// Triangles at their places.
+    pub triangles: Few<Option<u32>, STRIP_TRIANGLES>,
     pub bounds: UnitBox,
 }
 
@@ -157,8 +158,8 @@ impl Mesh<'_> {
         }
         let (count, _, way, bounds) = best.expect("a triangle is a strip");
         Strip {
-            vertices: way.vertices[..count + 2].to_vec(),
-            triangles: way.triangles[..count].iter().map(|&it| Some(it)).collect(),
+            vertices: way.vertices[..count + 2].iter().copied().collect(),
+            triangles: way.triangles[..count].iter().copied().map(Some).collect(),
             bounds,
         }
     }
@@ -242,10 +243,12 @@ fn join(strips: Vec<Strip>) -> Vec<Strip> {
             let best = others
                 .filter_map(|(place, other)| {
                     let other = other.as_ref()?;
-                    let joined = strip.and(other)?;
                     let alone = (cost + area(&other.bounds)).max(1.0);
-                    let ratio = area(&joined.bounds) / alone;
-                    (ratio <= JOINED_COST).then_some((ratio, place, joined))
+                    let ratio = area(&strip.bounds.union(&other.bounds)) / alone;
+                    if ratio > JOINED_COST {
+                        return None;
+                    }
+                    Some((ratio, place, strip.and(other)?))
                 })
                 .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             let Some((_, place, joined)) = best else {
@@ -263,26 +266,31 @@ impl Strip {
     /// Both strips as one, if it has room for them: end to end, over a vertex or an edge that ends
     /// of theirs share.
     fn and(&self, other: &Strip) -> Option<Strip> {
-        let turned = [(false, false), (false, true), (true, false), (true, true)];
-        let joints = turned.into_iter().map(|(turn, turn_other)| {
-            let (front, back) = (self.turned(turn), other.turned(turn_other));
-            let shared = if front.vertices.last() == back.vertices.first() {
-                1
-            } else {
-                0
-            };
-            (shared, front, back)
+        let turns = [(false, false), (false, true), (true, false), (true, true)];
+        let joints = turns.into_iter().map(|(turn, turn_other)| {
+            let (_, end) = self.ends(turn);
+            let (start, _) = other.ends(turn_other);
+            (usize::from(end == start), turn, turn_other)
         });
-        let (shared, mut front, back) = joints.max_by_key(|joint| joint.0)?;
+        let (shared, turn, turn_other) = joints.max_by_key(|joint| joint.0)?;
         let gap = 2 - shared;
-        if front.vertices.len() + back.vertices.len() - shared > LANES {
+        if self.vertices.len() + other.vertices.len() - shared > LANES {
             return None;
         }
-        front.vertices.extend(&back.vertices[shared..]);
+        let (mut front, back) = (self.turned(turn), other.turned(turn_other));
+        front
+            .vertices
+            .extend(back.vertices[shared..].iter().copied());
         front.triangles.extend(std::iter::repeat_n(None, gap));
-        front.triangles.extend(&back.triangles);
+        front.triangles.extend(back.triangles.iter().copied());
         front.bounds = front.bounds.union(&back.bounds);
         Some(front)
+    }
+
+    /// The first and the last vertex, the other way round where the strip is turned.
+    fn ends(&self, turn: bool) -> (Option<&u32>, Option<&u32>) {
+        let (first, last) = (self.vertices.first(), self.vertices.last());
+        if turn { (last, first) } else { (first, last) }
     }
 
     fn turned(&self, turn: bool) -> Strip {
