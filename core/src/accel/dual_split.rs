@@ -321,9 +321,11 @@ fn split<C: Count>(
         }
     }
     if whole.near > leave {
-        // Between the two, where few rays end, or past the far one: its own planes may be of other
-        // axes, or none.
+        // Between the two, or past the far one: its own planes may be of other axes, or none.
         interval.near = whole.near.max(enter);
+        if interval.near > whole.far {
+            return Next::Nothing;
+        }
         return Next::Near(far);
     }
     interval.far = whole.far.min(leave);
