@@ -509,7 +509,7 @@ fn lists_of_candidates((name, format): (&str, Format)) {
             (chess, Grid, None),
             (chess, CylinderCube, None),
             (chess, CylinderCubeTight, Some(12)),
-            (chess, CylinderCubeEntry, Some(14)),
+            (chess, CylinderCubeEntry, Some(12)),
             (chess, Apex, None),
             (molecule, Grid, None),
             (molecule, CylinderCube, None),
