@@ -142,6 +142,9 @@ fn what_a_ray_leaves_is_judged_as_fairly_as_what_it_enters() {
         };
         let middle = [0, 1, 2].map(|k| 0.5 * (lowest[k] + highest[k]));
         let size = highest[0] - lowest[0];
+        let mut slots = 0..scene.count(Kind::Box);
+        let second = slots.find(|&slot| scene.primitive(Kind::Box, slot as u32) == 1);
+        let second = second.expect("the second box");
         for _ in 0..3000 {
             let origin = middle.map(|x| x + 0.4 * size * random.signed());
             let ray = UnitRay::new(origin, random.direction());
@@ -155,7 +158,7 @@ fn what_a_ray_leaves_is_judged_as_fairly_as_what_it_enters() {
             // The second box is left last wherever it is not left at the shared face.
             let rounded = RoundedRay::of(&ready);
             let outer = |k: usize| {
-                let sides = scene.primitive_bounds(Kind::Box, 1).expect("a box").0[k];
+                let sides = scene.primitive_bounds(Kind::Box, second).expect("a box").0[k];
                 let sides = sides.map(f64::from).map(|x| x - rounded.start[k]);
                 let [a, b] = sides.map(|x| x / rounded.slope[k]);
                 a.max(b)
