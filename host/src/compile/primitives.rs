@@ -222,6 +222,8 @@ impl Primitives {
                 triangles,
             } => {
                 let snapped: Vec<_> = vertices.iter().map(|&v| self.point(v, lattice)).collect();
+                // Their numbers among all distinct ones, as soon as they are looked up.
+                let mut numbers = vec![None; vertices.len()];
                 for (number, triangle) in triangles.iter().enumerate() {
                     let corners = triangle.map(|vertex| snapped[vertex as usize]);
                     if is_degenerate(corners) {
@@ -234,10 +236,13 @@ impl Primitives {
                             self.collapsed.add(name);
                         }
                     } else {
-                        let triangle = corners.map(|corner| {
-                            *vertex_numbers.entry(corner).or_insert_with(|| {
-                                self.vertices.push(corner);
-                                self.vertices.len() as u32 - 1
+                        let triangle = triangle.map(|vertex| {
+                            *numbers[vertex as usize].get_or_insert_with(|| {
+                                let corner = snapped[vertex as usize];
+                                *vertex_numbers.entry(corner).or_insert_with(|| {
+                                    self.vertices.push(corner);
+                                    self.vertices.len() as u32 - 1
+                                })
                             })
                         });
                         self.triangles.push(triangle);

@@ -29,7 +29,7 @@ impl Forests {
             lefts: vec![[0; FORESTS]; order.len()],
         };
         for node in order {
-            let area = tree.area(node);
+            let area = tree.area(node) as f64;
             let Some([left, right]) = tree.children(node) else {
                 forests.costs[node as usize] = [area * LEAF_COST; FORESTS];
                 continue;

@@ -7,6 +7,7 @@
 //! of threads. Memory is linear: some 100 bytes a triangle.
 
 mod collapse;
+mod hull;
 mod packs;
 mod strips;
 mod tree;
@@ -25,7 +26,8 @@ use gridel_core::blob::SectionKind;
 use gridel_core::blob::cluster::{
     LANES, Pack16, Pack24, PackMembers, Rows16, Rows24, Strip16, Strip24, StripMembers, high_bytes,
 };
-use gridel_core::blob::record::{UnitBox, WideNode};
+use gridel_core::blob::record::WideNode;
+use hull::Hull;
 use packs::Pack;
 use strips::Strip;
 use tree::Tree;
@@ -92,7 +94,7 @@ impl Wide {
             || strips::find(&primitives.vertices, &primitives.triangles),
             || packs::find(of_kind(Kind::Sphere).collect()),
         );
-        let mut items: Vec<(UnitBox, Item)> = Vec::new();
+        let mut items: Vec<(Hull, Item)> = Vec::new();
         items.extend(
             (0..)
                 .zip(&strips)
@@ -100,9 +102,9 @@ impl Wide {
         );
         items.extend((0..).zip(&packs).map(|(n, it)| (it.bounds, Item::Pack(n))));
         for kind in [Kind::Box, Kind::Disc, Kind::Cone] {
-            items.extend(of_kind(kind).map(|it| (it.bounds, Item::Single(kind, it.index))));
+            items.extend(of_kind(kind).map(|it| (it.bounds.into(), Item::Single(kind, it.index))));
         }
-        let bounds: Vec<UnitBox> = items.iter().map(|item| item.0).collect();
+        let bounds: Vec<Hull> = items.iter().map(|item| item.0).collect();
         for balanced in [false, true] {
             let Some(mut tree) = Tree::build(&bounds, balanced) else {
                 return Ok(Self::default());
@@ -128,7 +130,7 @@ impl Wide {
     /// Numbers nodes and clusters breadth first.
     fn flatten(
         tree: &Tree,
-        items: &[(UnitBox, Item)],
+        items: &[(Hull, Item)],
         (strips, packs): (&[Strip], &[Pack]),
         shared: Option<&Flat>,
     ) -> Self {

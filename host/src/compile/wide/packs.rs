@@ -1,15 +1,15 @@
 //! Packs spheres by eights: split by the surface area heuristic, but only behind a multiple of 8,
 //! so that every pack but one is full.
 
-use super::super::hierarchy::{Primitive, area};
+use super::super::hierarchy::Primitive;
+use super::hull::Hull;
 use gridel_core::blob::cluster::LANES;
-use gridel_core::blob::record::UnitBox;
 
 /// A pack: the spheres' places among the compiler's.
 #[derive(Clone, Debug)]
 pub struct Pack {
     pub spheres: Vec<u32>,
-    pub bounds: UnitBox,
+    pub bounds: Hull,
 }
 
 /// Below this depth spheres are halved, so that no scene makes the builder recurse without end.
@@ -28,9 +28,9 @@ fn split(spheres: &mut [Primitive], packs: &mut Vec<Pack>, depth: usize) {
     };
     if spheres.len() <= LANES {
         packs.push(Pack {
-            bounds: rest
-                .iter()
-                .fold(first.bounds, |all, it| all.union(&it.bounds)),
+            bounds: rest.iter().fold(first.bounds.into(), |all: Hull, it| {
+                all.union(&it.bounds.into())
+            }),
             spheres: spheres.iter().map(|sphere| sphere.index).collect(),
         });
         return;
@@ -41,7 +41,7 @@ fn split(spheres: &mut [Primitive], packs: &mut Vec<Pack>, depth: usize) {
             let (cost, middle) = cheapest(spheres, depth > DEEP);
             (cost, axis, middle)
         })
-        .min_by(|a, b| a.0.total_cmp(&b.0));
+        .min_by_key(|split| split.0);
     let Some((_, axis, middle)) = best else {
         return;
     };
@@ -56,18 +56,21 @@ fn sort(spheres: &mut [Primitive], axis: usize) {
 }
 
 /// The cheapest split behind a multiple of 8 spheres, or that in the middle, and its cost.
-fn cheapest(spheres: &[Primitive], balanced: bool) -> (f64, usize) {
-    let chunks: Vec<UnitBox> = spheres
+fn cheapest(spheres: &[Primitive], balanced: bool) -> (i64, usize) {
+    let chunks: Vec<Hull> = spheres
         .chunks(LANES)
-        .filter_map(|chunk| chunk.iter().map(|it| it.bounds).reduce(|a, b| a.union(&b)))
+        .filter_map(|chunk| {
+            let hulls = chunk.iter().map(|it| Hull::from(it.bounds));
+            hulls.reduce(|a, b| a.union(&b))
+        })
         .collect();
-    let union = |all: &mut Option<UnitBox>, next: &UnitBox| {
+    let union = |all: &mut Option<Hull>, next: &Hull| {
         let bounds = all.map_or(*next, |bounds| bounds.union(next));
         *all = Some(bounds);
-        Some(area(&bounds))
+        Some(bounds.area())
     };
-    let left: Vec<f64> = chunks.iter().scan(None, union).collect();
-    let right: Vec<f64> = chunks.iter().rev().scan(None, union).collect();
+    let left: Vec<i64> = chunks.iter().scan(None, union).collect();
+    let right: Vec<i64> = chunks.iter().rev().scan(None, union).collect();
     let middle = chunks.len() / 2;
     let counts = if balanced {
         middle..middle + 1
@@ -77,9 +80,9 @@ fn cheapest(spheres: &[Primitive], balanced: bool) -> (f64, usize) {
     counts
         .map(|count| {
             let others = chunks.len() - count;
-            let cost = left[count - 1] * count as f64 + right[others - 1] * others as f64;
+            let cost = left[count - 1] * count as i64 + right[others - 1] * others as i64;
             (cost, count * LANES)
         })
-        .min_by(|a, b| a.0.total_cmp(&b.0))
-        .unwrap_or((0.0, LANES))
+        .min_by_key(|split| split.0)
+        .unwrap_or((0, LANES))
 }

@@ -5,12 +5,11 @@
 //! smallest box. What is left over is joined, two strips in one, where one box around both costs
 //! no more than two. Places between them hold no triangle.
 
-use super::super::hierarchy::area;
+use super::hull::Hull;
 use gridel_core::blob::cluster::{LANES, STRIP_TRIANGLES, StripMembers};
 use gridel_core::blob::record::UnitBox;
 use heapless::Vec as Few;
 use rayon::prelude::*;
-use std::collections::BinaryHeap;
 
 /// A strip: its vertices, and its triangles by place. There are very many, so none allocates.
 #[derive(Clone, Debug)]
@@ -18,7 +17,7 @@ pub struct Strip {
     pub vertices: Few<u32, LANES>,
     /// Triangles at their places.
     pub triangles: Few<Option<u32>, STRIP_TRIANGLES>,
-    pub bounds: UnitBox,
+    pub bounds: Hull,
 }
 
 /// No triangle, as a neighbour.
@@ -26,14 +25,15 @@ const NOBODY: u32 = u32::MAX;
 /// Strips that are looked at, in the order of their places in space, to join one with.
 const REACH: usize = 24;
 /// What a joined box may cost, the sum of the two being 1: a node has one child less.
-const JOINED_COST: f64 = 1.25;
+const JOINED_COST: f64 = 1.5;
 
 /// Finds strips that hold every triangle once.
 pub fn find(vertices: &[[i32; 3]], triangles: &[[u32; 3]]) -> Vec<Strip> {
+    let point = |&vertex: &[i32; 3]| UnitBox::around(vertex, vertex).into();
     let mesh = Mesh {
-        vertices,
+        vertices: vertices.iter().map(point).collect(),
         triangles,
-        neighbours: neighbours(triangles),
+        neighbours: neighbours(vertices.len(), triangles),
     };
     join(mesh.strips())
 }
@@ -55,36 +55,55 @@ impl Strip {
 }
 
 struct Mesh<'m> {
-    vertices: &'m [[i32; 3]],
+    /// The box of each vertex.
+    vertices: Vec<Hull>,
     triangles: &'m [[u32; 3]],
     /// For each triangle, the neighbour over the edge opposite to each corner.
     neighbours: Vec<[u32; 3]>,
 }
 
 /// Pairs triangles over their edges; where more than two meet, in the order of their numbers.
-fn neighbours(triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
-    let mut edges: Vec<(u64, u32, u32)> = (0..)
-        .zip(triangles)
-        .flat_map(|(triangle, corners)| {
+fn neighbours(vertices: usize, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    let edges = || {
+        (0..).zip(triangles).flat_map(|(triangle, corners)| {
             [0, 1, 2].map(|corner: usize| {
                 let (a, b) = (corners[(corner + 1) % 3], corners[(corner + 2) % 3]);
-                let edge = u64::from(a.min(b)) << 32 | u64::from(a.max(b));
-                (edge, triangle, corner as u32)
+                (a.min(b) as usize, a.max(b), triangle << 2 | corner as u32)
             })
         })
-        .collect();
-    edges.par_sort_unstable();
+    };
+    // The edges of each lower vertex side by side.
+    let mut ends = vec![0; vertices];
+    for (low, ..) in edges() {
+        ends[low] += 1;
+    }
+    let mut sum = 0;
+    for end in &mut ends {
+        sum += *end;
+        *end = sum - *end;
+    }
+    let mut sides = vec![(0, 0); sum];
+    for (low, high, side) in edges() {
+        sides[ends[low]] = (high, side);
+        ends[low] += 1;
+    }
     let mut neighbours = vec![[NOBODY; 3]; triangles.len()];
-    let mut rest = &edges[..];
-    while let [(edge, one, corner), tail @ ..] = rest {
-        rest = tail;
-        if let [(same, other, its_corner), tail @ ..] = tail
-            && same == edge
-            && one != other
-        {
-            neighbours[*one as usize][*corner as usize] = *other;
-            neighbours[*other as usize][*its_corner as usize] = *one;
+    let mut first = 0;
+    for end in ends {
+        let edges = &mut sides[first..end];
+        first = end;
+        edges.sort_unstable();
+        let mut rest = &*edges;
+        while let [(high, one), tail @ ..] = rest {
             rest = tail;
+            if let [(same, other), tail @ ..] = tail
+                && same == high
+                && one >> 2 != other >> 2
+            {
+                neighbours[(one >> 2) as usize][(one & 3) as usize] = other >> 2;
+                neighbours[(other >> 2) as usize][(other & 3) as usize] = one >> 2;
+                rest = tail;
+            }
         }
     }
     neighbours
@@ -104,14 +123,19 @@ impl Mesh<'_> {
         let degree = |triangle: u32, free: &[bool]| {
             let neighbours = self.neighbours[triangle as usize].iter();
             let free = neighbours.filter(|&&it| it != NOBODY && free[it as usize]);
-            free.count() as u32
+            free.count()
         };
-        // The fewest free neighbours first, then the lowest number; entries may be out of date.
-        let mut queue: BinaryHeap<_> = (0..self.triangles.len() as u32)
-            .map(|triangle| std::cmp::Reverse((degree(triangle, &free), triangle)))
-            .collect();
+        // By how many neighbours are free; what was left last goes on first. Entries may be out of
+        // date.
+        let mut waiting: [Vec<u32>; 4] = Default::default();
+        for triangle in (0..self.triangles.len() as u32).rev() {
+            waiting[degree(triangle, &free)].push(triangle);
+        }
         let mut strips = Vec::with_capacity(self.triangles.len() / 4);
-        while let Some(std::cmp::Reverse((known, triangle))) = queue.pop() {
+        let fewest = |waiting: &mut [Vec<u32>; 4]| {
+            (0..4).find_map(|known| Some((known, waiting[known].pop()?)))
+        };
+        while let Some((known, triangle)) = fewest(&mut waiting) {
             if !free[triangle as usize] || degree(triangle, &free) != known {
                 continue;
             }
@@ -123,8 +147,7 @@ impl Mesh<'_> {
             for member in members() {
                 for &neighbour in &self.neighbours[member as usize] {
                     if neighbour != NOBODY && free[neighbour as usize] {
-                        let entry = (degree(neighbour, &free), neighbour);
-                        queue.push(std::cmp::Reverse(entry));
+                        waiting[degree(neighbour, &free)].push(neighbour);
                     }
                 }
             }
@@ -136,7 +159,7 @@ impl Mesh<'_> {
     /// The best strip of free triangles through one of them.
     fn best_through(&self, triangle: u32, free: &[bool]) -> Strip {
         let [a, b, c] = self.triangles[triangle as usize];
-        let mut best: Option<(usize, f64, Way, UnitBox)> = None;
+        let mut best: Option<(usize, i64, Way, Hull)> = None;
         // The same zigzag backwards is another of the six.
         for vertices in [[a, b, c], [b, c, a], [c, a, b]] {
             let ahead = self.zigzag(triangle, vertices, free);
@@ -147,7 +170,7 @@ impl Mesh<'_> {
                     continue;
                 };
                 let bounds = self.bounds(&way.vertices[..way.count + 2]);
-                let cost = area(&bounds);
+                let cost = bounds.area();
                 let better = best.as_ref().is_none_or(|(count, least, ..)| {
                     way.count > *count || way.count == *count && cost < *least
                 });
@@ -197,15 +220,11 @@ impl Mesh<'_> {
         way
     }
 
-    fn bounds(&self, vertices: &[u32]) -> UnitBox {
-        let points = || vertices.iter().map(|&it| self.vertices[it as usize]);
-        let extreme = |axis: usize| {
-            points().fold((i32::MAX, i32::MIN), |(low, high), point| {
-                (low.min(point[axis]), high.max(point[axis]))
-            })
-        };
-        let (x, y, z) = (extreme(0), extreme(1), extreme(2));
-        UnitBox::around([x.0, y.0, z.0], [x.1, y.1, z.1])
+    fn bounds(&self, vertices: &[u32]) -> Hull {
+        let first = self.vertices[vertices[0] as usize];
+        vertices[1..].iter().fold(first, |all, &vertex| {
+            all.union(&self.vertices[vertex as usize])
+        })
     }
 }
 
@@ -238,13 +257,13 @@ fn join(strips: Vec<Strip>) -> Vec<Strip> {
     let mut short: Vec<Option<Strip>> = short.into_iter().map(Some).collect();
     for index in 0..short.len() {
         while let Some(strip) = &short[index] {
-            let cost = area(&strip.bounds);
+            let cost = strip.bounds.area();
             let others = short.iter().enumerate().skip(index + 1).take(REACH);
             let best = others
                 .filter_map(|(place, other)| {
                     let other = other.as_ref()?;
-                    let alone = (cost + area(&other.bounds)).max(1.0);
-                    let ratio = area(&strip.bounds.union(&other.bounds)) / alone;
+                    let alone = (cost + other.bounds.area()).max(1) as f64;
+                    let ratio = strip.bounds.union(&other.bounds).area() as f64 / alone;
                     if ratio > JOINED_COST {
                         return None;
                     }
@@ -304,10 +323,9 @@ impl Strip {
 }
 
 /// The place of a box's middle along a curve that keeps neighbours together.
-fn morton(bounds: &UnitBox) -> u64 {
+fn morton(bounds: &Hull) -> u64 {
     let spread = |axis: usize| {
-        let [low, high] = bounds.0[axis].map(i64::from);
-        let mut bits = (low + high + (1 << 16)) as u64 & 0x1_ffff;
+        let mut bits = (bounds.middle(axis) + (1 << 16)) as u64 & 0x1_ffff;
         for shift in [16, 8, 4, 2] {
             let mask = match shift {
                 16 => 0x001f_0000_0000_ffff,

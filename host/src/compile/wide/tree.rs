@@ -5,15 +5,17 @@
 //! Optimization", 2018), one node at a time: a node is taken out and put where the sum of areas is
 //! least, found by branch and bound.
 
-use super::super::hierarchy::area;
+use super::hull::Hull;
+use super::inverse;
 use gridel_core::blob::record::UnitBox;
+use std::cmp::Reverse;
 
 /// A binary tree: nodes below the number of items are the items, the others have two children.
 #[derive(Clone, Debug)]
 pub struct Tree {
     items: usize,
     pub root: u32,
-    bounds: Vec<UnitBox>,
+    bounds: Vec<Hull>,
     parents: Vec<u32>,
     /// Of the nodes that are no items.
     children: Vec<[u32; 2]>,
@@ -29,18 +31,15 @@ const NOBODY: u32 = u32::MAX;
 #[derive(Clone, Copy)]
 struct Inner {
     children: [u32; 2],
-    bounds: UnitBox,
+    bounds: Hull,
 }
 
 impl Tree {
     /// A tree over items, at most one of which may be missing.
-    pub fn build(items: &[UnitBox], balanced: bool) -> Option<Self> {
+    pub fn build(items: &[Hull], balanced: bool) -> Option<Self> {
         let first = *items.first()?;
-        let mut orders = [0, 1, 2].map(|axis| {
-            let mut order: Vec<u32> = (0..items.len() as u32).collect();
-            order.sort_unstable_by_key(|&item| key(items, axis, item));
-            order
-        });
+        let places = [0, 1, 2].map(|axis| places(items, axis));
+        let mut orders = places.each_ref().map(|places| inverse(places));
         let mut inner = vec![
             Inner {
                 children: [0; 2],
@@ -49,18 +48,23 @@ impl Tree {
             items.len() - 1
         ];
         let [x, y, z] = &mut orders;
-        let builder = Builder { items, balanced };
+        let builder = Builder {
+            items,
+            places: &places,
+            balanced,
+        };
         let root = builder.build([x, y, z], &mut inner, items.len() as u32, 0);
+        let count = items.len();
         let mut bounds = items.to_vec();
         bounds.extend(inner.iter().map(|node| node.bounds));
         let mut parents = vec![NOBODY; bounds.len()];
-        for (number, node) in (items.len() as u32..).zip(&inner) {
+        for (number, node) in (count as u32..).zip(&inner) {
             for child in node.children {
                 parents[child as usize] = number;
             }
         }
         Some(Self {
-            items: items.len(),
+            items: count,
             root,
             bounds,
             parents,
@@ -74,12 +78,17 @@ impl Tree {
         Some(self.children[inner])
     }
 
-    pub fn bounds(&self, node: u32) -> &UnitBox {
-        &self.bounds[node as usize]
+    pub fn bounds(&self, node: u32) -> UnitBox {
+        self.hull(node).into()
     }
 
-    pub fn area(&self, node: u32) -> f64 {
-        area(&self.bounds[node as usize])
+    /// Half the surface area of a node's box in units.
+    pub fn area(&self, node: u32) -> i64 {
+        self.hull(node).area()
+    }
+
+    fn hull(&self, node: u32) -> Hull {
+        self.bounds[node as usize]
     }
 
     /// All nodes, children before their parents.
@@ -99,7 +108,7 @@ impl Tree {
     pub fn reinsert(&mut self) -> bool {
         let mut nodes: Vec<u32> = (0..self.bounds.len() as u32).collect();
         nodes.retain(|&node| self.grandparent(node).is_some());
-        nodes.sort_by(|&a, &b| self.area(b).total_cmp(&self.area(a)).then(a.cmp(&b)));
+        nodes.sort_by_cached_key(|&node| (Reverse(self.area(node)), node));
         let mut stack = Vec::new();
         let mut moved = false;
         for node in nodes {
@@ -126,15 +135,16 @@ impl Tree {
     }
 
     /// The node beside which another would cost least, if that is better than where it is.
-    fn best_place(&self, node: u32, stack: &mut Vec<(f64, u32)>) -> Option<u32> {
+    fn best_place(&self, node: u32, stack: &mut Vec<(i64, u32)>) -> Option<u32> {
         let own = self.area(node);
         let parent = self.parent(node)?;
         self.parent(parent)?;
         let sibling = self.sibling(node)?;
-        let mut best = (0.0, None);
+        let mut best = (0, None);
         // What is saved up to here by taking the node out.
         let mut saved = self.area(parent);
-        let mut without = *self.bounds(sibling);
+        let hull = self.hull(node);
+        let mut without = self.hull(sibling);
         let (mut beside, mut pivot) = (sibling, parent);
         loop {
             stack.push((saved, beside));
@@ -142,7 +152,7 @@ impl Tree {
                 if saved - own <= best.0 {
                     continue;
                 }
-                let joined = area(&self.bounds(place).union(self.bounds(node)));
+                let joined = self.hull(place).union(&hull).area();
                 let gain = saved - joined;
                 if gain > best.0 {
                     best = (gain, Some(place));
@@ -153,8 +163,8 @@ impl Tree {
                 }
             }
             if pivot != parent {
-                without = without.union(self.bounds(beside));
-                saved += self.area(pivot) - area(&without);
+                without = without.union(&self.hull(beside));
+                saved += self.area(pivot) - without.area();
             }
             let Some(next) = self.parent(pivot) else {
                 break;
@@ -186,7 +196,7 @@ impl Tree {
         self.parents[to as usize] = parent;
         self.parents[node as usize] = parent;
         // Whatever its box was elsewhere, those above have not seen it here.
-        self.bounds[parent as usize] = self.bounds(to).union(self.bounds(node));
+        self.bounds[parent as usize] = self.hull(to).union(&self.hull(node));
         self.refit(above);
     }
 
@@ -206,8 +216,8 @@ impl Tree {
             let Some([left, right]) = self.children(node) else {
                 return;
             };
-            let bounds = self.bounds(left).union(self.bounds(right));
-            if bounds == *self.bounds(node) {
+            let bounds = self.hull(left).union(&self.hull(right));
+            if bounds == self.hull(node) {
                 return;
             }
             self.bounds[node as usize] = bounds;
@@ -216,14 +226,24 @@ impl Tree {
     }
 }
 
-/// What items are sorted by along an axis; no two are equal.
-fn key(items: &[UnitBox], axis: usize, item: u32) -> (i32, u32) {
-    let [low, high] = items[item as usize].0[axis].map(i32::from);
-    (low + high, item)
+/// Where each item comes along an axis.
+fn places(items: &[Hull], axis: usize) -> Vec<u32> {
+    let mut order: Vec<(i32, u32)> = (0..)
+        .zip(items)
+        .map(|(number, item)| (item.middle(axis), number))
+        .collect();
+    order.sort_unstable();
+    let mut places = vec![0; items.len()];
+    for (place, (_, item)) in (0..).zip(order) {
+        places[item as usize] = place;
+    }
+    places
 }
 
 struct Builder<'b> {
-    items: &'b [UnitBox],
+    items: &'b [Hull],
+    /// Where each item comes along each axis.
+    places: &'b [Vec<u32>; 3],
     /// Whether halves are of equal count, whatever it costs, so that the tree is not deep.
     balanced: bool,
 }
@@ -244,8 +264,9 @@ impl Builder<'_> {
         };
         let count = x.len();
         let (axis, left_count) = self.split([x, y, z], self.balanced || depth > DEEP);
-        let pivot = key(self.items, axis, [&*x, &*y, &*z][axis][left_count]);
-        let is_left = |item: u32| key(self.items, axis, item) < pivot;
+        let places = &self.places[axis];
+        let pivot = places[[&*x, &*y, &*z][axis][left_count] as usize];
+        let is_left = |item: u32| places[item as usize] < pivot;
         let [(lx, rx), (ly, ry), (lz, rz)] =
             [x, y, z].map(|order| partition(order, left_count, is_left));
         let (left_inner, right_inner) = inner.split_at_mut(left_count - 1);
@@ -274,18 +295,20 @@ impl Builder<'_> {
     /// The axis of the cheapest split and the number of items on its left.
     fn split(&self, orders: [&[u32]; 3], balanced: bool) -> (usize, usize) {
         let count = orders[0].len();
-        let mut best = (f64::INFINITY, 0, count / 2);
-        let mut right_costs = vec![0.0; count];
+        let hull = |item: &u32| self.items[*item as usize];
+        let mut best = (i64::MAX, 0, count / 2);
+        let mut right_costs = vec![0; count];
         for (axis, order) in orders.iter().enumerate() {
-            let mut bounds = self.items[order[count - 1] as usize];
-            for place in (1..count).rev() {
-                bounds = bounds.union(&self.items[order[place] as usize]);
-                right_costs[place] = area(&bounds) * (count - place) as f64;
+            let mut bounds = hull(&order[count - 1]);
+            for (place, (item, cost)) in order.iter().zip(&mut right_costs).enumerate().rev() {
+                bounds = bounds.union(&hull(item));
+                *cost = bounds.area() * (count - place) as i64;
             }
-            let mut bounds = self.items[order[0] as usize];
-            for place in 1..count {
-                bounds = bounds.union(&self.items[order[place - 1] as usize]);
-                let cost = area(&bounds) * place as f64 + right_costs[place];
+            let mut bounds = hull(&order[0]);
+            for (before, (item, right)) in order.iter().zip(&right_costs[1..]).enumerate() {
+                bounds = bounds.union(&hull(item));
+                let place = before + 1;
+                let cost = bounds.area() * place as i64 + right;
                 if cost < best.0 && (!balanced || place == count / 2) {
                     best = (cost, axis, place);
                 }
