@@ -38,6 +38,19 @@ pub struct Job {
     pub count: bool,
 }
 
+impl Job {
+    /// All rows, without counting.
+    pub fn whole(format: Format, structure: Structure, settings: Settings) -> Self {
+        Self {
+            format,
+            structure,
+            settings,
+            rows: 0..settings.height,
+            count: false,
+        }
+    }
+}
+
 /// Renders some rows. `progress` is told of every row that is done, from any thread.
 ///
 /// # Errors

@@ -39,17 +39,12 @@ fn blob(name: &str) -> Blob {
 /// What `gridel render` makes, as the pixels of a display.
 fn rendered(blob: &Blob, [width, height]: [u16; 2]) -> Vec<u16> {
     let scene = blob.scene().expect("the compiler's blob");
-    let job = Job {
-        format: Format::F32,
-        structure: Structure::DualSplit,
-        settings: Settings {
-            width,
-            height,
-            ..Settings::of(&scene)
-        },
-        rows: 0..height,
-        count: false,
+    let settings = Settings {
+        width,
+        height,
+        ..Settings::of(&scene)
     };
+    let job = Job::whole(Format::F32, Structure::DualSplit, settings);
     let picture = render(&scene, &job, &|| ()).expect("a picture");
     let pixels = picture.pixels.iter().enumerate().map(|(place, &linear)| {
         let place = [place as u16 % width, place as u16 / width];

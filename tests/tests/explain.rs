@@ -34,11 +34,8 @@ fn parts_add_up(name: &str, scene: &Scene<'_>, samples: u16) {
     let structures = Structure::ALL.into_iter().filter(|&s| scene.holds(s));
     for (format, structure) in structures.flat_map(|s| Format::ALL.map(|format| (format, s))) {
         let job = Job {
-            format,
-            structure,
-            settings,
-            rows: 0..settings.height,
             count: true,
+            ..Job::whole(format, structure, settings)
         };
         let picture = render(scene, &job, &|| ()).expect("a picture");
         let (mut hits, mut rays, mut opened) = (0, 0, 0);

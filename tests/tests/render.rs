@@ -27,13 +27,7 @@ fn small(scene: &Scene<'_>) -> Settings {
 }
 
 fn job(format: Format, settings: Settings) -> Job {
-    Job {
-        format,
-        structure: Structure::DualSplit,
-        settings,
-        rows: 0..settings.height,
-        count: false,
-    }
+    Job::whole(format, Structure::DualSplit, settings)
 }
 
 fn picture(scene: &Scene<'_>, job: &Job) -> Picture {

@@ -255,13 +255,7 @@ fn lights_near_a_surface_shine_on_it() {
                 samples: 1,
                 ..Settings::of(&scene)
             };
-            let job = Job {
-                format,
-                structure: Structure::Flagged,
-                settings,
-                rows: 0..33,
-                count: false,
-            };
+            let job = Job::whole(format, Structure::Flagged, settings);
             let picture = render(&scene, &job, &|| ()).expect("a picture");
             let dark = picture
                 .pixels

@@ -200,12 +200,10 @@ impl<'s> Bench<'s> {
 
     /// A picture, and the seconds that it took.
     fn picture(&mut self, setting: &Setting, count: bool) -> Result<(Picture, f64), MeasureError> {
+        let settings = settings(self.size, setting);
         let job = Job {
-            format: setting.format,
-            structure: self.structure,
-            settings: settings(self.size, setting),
-            rows: 0..self.size[1],
             count,
+            ..Job::whole(setting.format, self.structure, settings)
         };
         let scene = self.blob(setting)?.scene()?;
         let begun = Instant::now();

@@ -174,11 +174,8 @@ impl Run<'_> {
         count: bool,
     ) -> Result<Picture, String> {
         let job = Job {
-            format,
-            structure,
-            settings,
-            rows: 0..settings.height,
             count,
+            ..Job::whole(format, structure, settings)
         };
         render(scene, &job, &|| ())
             .map_err(|error| format!("{}: {error}", self.check.scene.display()))

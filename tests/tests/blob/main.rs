@@ -139,13 +139,7 @@ fn render_small(scene: &Scene<'_>, settings: Settings) {
         ..settings
     };
     for (format, structure) in Format::ALL.into_iter().zip(held(scene)) {
-        let job = Job {
-            format,
-            structure,
-            settings,
-            rows: 0..settings.height,
-            count: false,
-        };
+        let job = Job::whole(format, structure, settings);
         let picture = render(scene, &job, &|| ()).expect("a picture");
         assert_eq!(picture.pixels.len(), 12);
     }

@@ -205,14 +205,7 @@ impl Compiled {
     /// The same through a structure of choice.
     pub fn picture_through(&self, structure: Structure, format: Format) -> Vec<u8> {
         let scene = self.blob.scene().expect("the compiler's own blob");
-        let settings = Settings::of(&scene);
-        let job = Job {
-            format,
-            structure,
-            settings,
-            rows: 0..settings.height,
-            count: false,
-        };
+        let job = Job::whole(format, structure, Settings::of(&scene));
         let picture = render(&scene, &job, &|| ()).expect("the blob holds the structure");
         let encoded = picture
             .pixels
