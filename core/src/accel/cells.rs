@@ -71,7 +71,17 @@ impl Divisions {
     /// The divisions that a closed interval meets, ends included: those from the last that begins at
     /// or below its lower end, to the last that begins at or below its upper end.
     pub fn met_by(&self, low: i32, high: i32) -> [u32; 2] {
-        [low, high].map(|end| self.last(|plane| i32::from(plane) <= end))
+        [low, high].map(|end| {
+            if end < self.low {
+                return 0;
+            }
+            // `floor(i * pitch / 2^16) <= rise` where `i * pitch <= (rise + 1) * 2^16 - 1`.
+            let rise = end.min(self.high).wrapping_sub(self.low) as u32;
+            let most = rise.wrapping_shl(16) | 0xffff;
+            let last = self.count.wrapping_sub(1);
+            most.checked_div(self.pitch)
+                .map_or(0, |division| division.min(last))
+        })
     }
 }
 
@@ -121,6 +131,25 @@ impl<'a> Lists<'a> {
         let start = self.starts.get(list).unwrap_or(0) as usize;
         let end = self.starts.get(list.wrapping_add(1)).unwrap_or(0) as usize;
         start..end
+    }
+
+    /// Number of entries of all lists.
+    pub(super) fn entries(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// Whether a list, whose slots ascend, holds a slot.
+    pub(super) fn holds(&self, list: usize, slot: u32) -> bool {
+        let mut range = self.range(list);
+        while range.len() > 1 {
+            let middle = range.start.wrapping_add(range.end) / 2;
+            if self.slots.get(middle).is_some_and(|found| found <= slot) {
+                range.start = middle;
+            } else {
+                range.end = middle;
+            }
+        }
+        range.start < range.end && self.slots.get(range.start) == Some(slot)
     }
 
     /// Proves that lists follow each other without a gap and fill the array.
@@ -236,8 +265,9 @@ pub(super) fn reach(
     margin: i32,
 ) -> impl Fn(usize) -> Option<Range> {
     let shapes = scene.shapes;
+    let ends = kind_ends(&shapes);
     move |slot| {
-        let leaf = locate(&kind_ends(&shapes), slot as u32)?;
+        let leaf = locate(&ends, slot as u32)?;
         let bounds = shapes.bounds(leaf.kind, leaf.first as usize)?;
         Some(cells_of(&divisions, &bounds, margin))
     }
@@ -346,6 +376,30 @@ mod tests {
                     first >= division && last > division || division + 1 == count || low == high
                 );
                 assert!(divisions.plane(first) <= low && divisions.plane(last + 1) >= high);
+            }
+        }
+    }
+
+    /// The quotient is what a search of all planes finds.
+    #[test]
+    fn the_divisions_that_are_met_are_those_whose_planes_say_so() {
+        for (sides, count) in [
+            ([-32767, 32767], 1024),
+            ([-32767, 32767], 1),
+            ([-5, 5], 7),
+            ([-5, 5], 64),
+            ([3, 3], 1),
+            ([-100, 900], 333),
+            ([0, 1023], 1024),
+        ] {
+            let divisions = Divisions::of(sides, count);
+            for end in (i32::from(sides[0]) - 3..=i32::from(sides[1]) + 3).step_by(7) {
+                let searched = divisions.last(|plane| i32::from(plane) <= end);
+                assert_eq!(
+                    divisions.met_by(end, end),
+                    [searched; 2],
+                    "{sides:?} {count} {end}"
+                );
             }
         }
     }

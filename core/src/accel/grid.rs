@@ -18,7 +18,7 @@
 //! [`MARGIN`], so it is tested at the latest in the cell that the ray is in at the hit; the walk
 //! ends only where the next cell begins beyond the best hit.
 
-use super::cells::{Divisions, Lists, Range, Tester, check_complete, divide, reach, record};
+use super::cells::{Divisions, Lists, Tester, check_complete, divide, reach, record};
 use super::cull::{Cull, PairCulling};
 use super::{Accel, Leaf, Records, StackView, Structure};
 use crate::blob::record::GridShape;
@@ -181,6 +181,32 @@ impl<'c> Steps<'c> {
     }
 }
 
+impl Held<'_> {
+    /// Proves that every primitive is in the lists of all cells that it reaches into, and that there
+    /// are as many entries as that takes: so there are no others. A search that finds each entry of a
+    /// list proves that they ascend.
+    fn check_lists(&self, scene: &Scene<'_>, counts: [u32; 3]) -> Result<(), BlobError> {
+        let slots = scene.shapes.total();
+        let reach = reach(scene, divide(scene.bounds(), counts), MARGIN);
+        let listed = self.lists.entries() as u64;
+        // First, because it bounds the work.
+        check_complete(listed, slots, &reach, SectionKind::GridSlots)?;
+        for (slot, [xs, ys, zs]) in (0..slots).filter_map(|slot| Some((slot, reach(slot)?))) {
+            for (z, y) in (zs[0]..=zs[1]).flat_map(|z| (ys[0]..=ys[1]).map(move |y| (z, y))) {
+                let row = z.wrapping_mul(counts[1]).wrapping_add(y);
+                for x in xs[0]..=xs[1] {
+                    let list = row.wrapping_mul(counts[0]).wrapping_add(x) as usize;
+                    if !self.lists.holds(list, slot as u32) {
+                        let what = "number of times that a list holds what reaches into its cell";
+                        return Err(record(SectionKind::GridStarts, list, what, 0, 1));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
 impl<'a> Records<'a> for Held<'a> {
     const SECTIONS: &'static [SectionKind] = &[
         SectionKind::GridShape,
@@ -230,9 +256,9 @@ impl<'a> Records<'a> for Held<'a> {
             let found = shape.spare.into();
             return Err(record(SectionKind::GridShape, 0, "spare word", found, 0));
         }
-        let [x, y, z] = shape.counts();
+        let counts = shape.counts();
         // At most 2^30.
-        let expected = x.wrapping_mul(y).wrapping_mul(z) as usize;
+        let expected = counts.into_iter().fold(1, u32::wrapping_mul) as usize;
         if self.lists.len() != expected {
             return Err(BlobError::Count {
                 section: SectionKind::GridStarts,
@@ -241,18 +267,7 @@ impl<'a> Records<'a> for Held<'a> {
             });
         }
         self.lists.check(SectionKind::GridStarts)?;
-        let reach = reach(scene, divide(scene.bounds(), shape.counts()), MARGIN);
-        let section = SectionKind::GridSlots;
-        let (mut list, mut pairs) = (0, 0);
-        for (z, y) in (0..z).flat_map(|z| (0..y).map(move |y| (z, y))) {
-            for x in 0..x {
-                let cell: Range = [[x, x], [y, y], [z, z]];
-                let listed = self.lists.check_list(list, &cell, &reach, section)?;
-                pairs = u64::saturating_add(pairs, listed);
-                list = usize::wrapping_add(list, 1);
-            }
-        }
-        check_complete(pairs, slots, &reach, section)?;
+        self.check_lists(scene, counts)?;
         Ok(0)
     }
 }

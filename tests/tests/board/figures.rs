@@ -77,17 +77,12 @@ fn path() -> PathBuf {
     repository().join("fixtures/recorded/board.json")
 }
 
-/// What is recorded is what the boards are held to: blobs of hierarchies. Of a grid's few bytes each
-/// takes more, because the cells of every primitive are found again.
+/// What is recorded is what the boards are held to.
 #[test]
 fn loading_takes_less_than_40_instructions_a_byte() {
     let recorded = fs::read(path()).expect("fixtures/recorded/board.json");
     let recorded: Table = serde_json::from_slice(&recorded).expect("a table of integers");
-    let of_hierarchies = recorded.iter().filter(|(build, _)| {
-        let hierarchies = ["bvh", "flagged", "dual-split"];
-        hierarchies.iter().any(|name| build.ends_with(name))
-    });
-    let loads = of_hierarchies.filter_map(|(build, report)| {
+    let loads = recorded.iter().filter_map(|(build, report)| {
         let (load, bytes) = (report.get("load-instructions")?, report.get("blob-bytes")?);
         Some((*load as f64 / *bytes as f64, build))
     });
