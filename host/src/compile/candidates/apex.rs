@@ -348,8 +348,10 @@ struct Window<'t> {
     record: ApexWindow,
     bundle: Bundle,
     targets: &'t [Target],
-    /// For each column its targets, the nearest first.
-    columns: Vec<Vec<Seen>>,
+    /// All that is seen through it, the nearest first.
+    seen: Vec<Seen>,
+    /// For each column those that are seen through it, by their places.
+    columns: Vec<Vec<u32>>,
     /// The farthest that anything lies along the axis.
     last: f64,
 }
@@ -393,20 +395,21 @@ impl<'t> Window<'t> {
             record,
             bundle: *bundle,
             targets,
+            seen: seen.clone(),
             columns: vec![Vec::new(); cells[0] as usize],
             last,
         };
         let edges: Vec<[f64; 2]> = (0..cells[0])
             .map(|column| window.range(0, column))
             .collect();
-        for one in seen {
+        for (place, one) in seen.iter().enumerate() {
             let across = one.ranges[0];
             let first = edges.partition_point(|&[_, end]| end < across[0]);
             for (column, edge) in window.columns.iter_mut().zip(&edges).skip(first) {
                 if edge[0] > across[1] {
                     break;
                 }
-                column.push(*one);
+                column.push(place as u32);
             }
         }
         window
@@ -453,7 +456,8 @@ impl<'t> Window<'t> {
         let mut met: Vec<(f64, u32)> = Vec::new();
         // The least depth of what is left out.
         let mut cut = f64::INFINITY;
-        for one in &self.columns[column as usize] {
+        for &place in &self.columns[column as usize] {
+            let one = &self.seen[place as usize];
             if one.depths[0] > sight.end {
                 cut = one.depths[0];
                 break;
