@@ -1,5 +1,6 @@
 //! Compiles a scene into a blob: lattice, primitives, hierarchy, effects, bytes.
 
+mod advice;
 mod builder;
 mod candidates;
 mod cells;
@@ -22,16 +23,17 @@ pub use layout::{takes_hierarchy, usual_budget};
 pub use primitives::LeftOut;
 pub use wide::Quality;
 
-use crate::report::grouped;
 use crate::scene::{Object, Scene};
+use advice::{Size, advice};
 use candidates::target::Targets;
 use glam::DVec3;
 use gridel_core::Structure;
 use gridel_core::accel::Leaf;
 use gridel_core::blob::record::{Gridels, UnitBox};
-use hierarchy::{Primitive, Splits};
+use hierarchy::{Node, Primitive, Splits};
 use lattice::Lattice;
 use layout::{Ground, Layout};
+use pairs::Flat;
 use primitives::Primitives;
 use std::time::{Duration, Instant};
 use wide::Wide;
@@ -210,68 +212,20 @@ pub fn compile_telling(
     options: &Options,
     tell: Tell<'_>,
 ) -> Result<Compiled, CompileError> {
-    if !LATTICE_BITS.contains(&options.lattice_bits) {
-        return Err(CompileError::LatticeBits {
-            bits: options.lattice_bits,
-        });
-    }
-    let bad = |object: &&Object| !primitives::is_finite(&object.shape);
-    if let Some(object) = scene.objects.iter().find(bad) {
-        return Err(CompileError::NotFinite {
-            object: object.name.clone(),
-        });
-    }
+    check(scene, options)?;
     let (lowest, highest) = primitives::extent(scene);
     let lattice = Lattice::around(lowest, highest, options.lattice_bits)?;
     let snapped = Primitives::snap(scene, &lattice)?;
-    let mut structures = options.structures.clone();
-    let more: Vec<_> = structures
-        .iter()
-        .filter_map(|&it| layout::leads_to(it))
-        .collect();
-    structures.extend(more);
-    structures.sort();
-    structures.dedup();
+    let structures = held(&options.structures);
     let surroundings = surroundings::Surroundings::of(scene, &lattice, (lowest, highest))?;
     let started = Instant::now();
-    let mut order: Vec<Primitive> = snapped.boxes();
+    let Hierarchies {
+        root,
+        order,
+        flat,
+        wide,
+    } = Hierarchies::build(scene, &snapped, &structures, options)?;
     let bounds = hierarchy::bounds(&order);
-    let mut root = if structures.iter().copied().any(layout::takes_hierarchy) {
-        builder::build(
-            options.builder,
-            &mut order,
-            options.leaf_size.min(LARGEST_LEAF),
-            |primitive| snapped.groups(scene, primitive),
-        )
-    } else {
-        None
-    };
-    // First, because it decides which child is the first.
-    let dual = match &mut root {
-        Some(root) if structures.contains(&Structure::DualSplit) => dual_split::lay_out(root),
-        _ => Vec::new(),
-    };
-    // The eight-wide hierarchy holds triangles and spheres itself; alone it needs no slots of them.
-    let has_wide = structures.contains(&Structure::Wide);
-    let wide_alone = has_wide
-        && structures
-            .iter()
-            .all(|it| [Structure::Wide, Structure::List].contains(it));
-    let mut flat = match &root {
-        Some(root) => pairs::flatten(root, &order),
-        None if wide_alone => pairs::Flat::default(),
-        None => pairs::Flat::in_file_order(&order),
-    };
-    flat.dual = dual;
-    let wide = if has_wide {
-        let shared = (!wide_alone).then_some(&flat);
-        Wide::build(&snapped, &order, options.quality, shared)?
-    } else {
-        Wide::default()
-    };
-    if wide_alone {
-        flat.slots.clone_from(&wide.slots);
-    }
     let sah_cost = root.as_ref().map(hierarchy::sah_cost);
     let ground = Ground {
         scene,
@@ -333,6 +287,94 @@ pub fn compile_telling(
     Ok(Compiled { blob, report })
 }
 
+/// That coordinates are numbers, and that there are as many lattice bits as can be.
+fn check(scene: &Scene, options: &Options) -> Result<(), CompileError> {
+    if !LATTICE_BITS.contains(&options.lattice_bits) {
+        return Err(CompileError::LatticeBits {
+            bits: options.lattice_bits,
+        });
+    }
+    let bad = |object: &&Object| !primitives::is_finite(&object.shape);
+    if let Some(object) = scene.objects.iter().find(bad) {
+        return Err(CompileError::NotFinite {
+            object: object.name.clone(),
+        });
+    }
+    Ok(())
+}
+
+/// Structures that are asked for, and those that they need.
+fn held(asked: &[Structure]) -> Vec<Structure> {
+    let mut structures = asked.to_vec();
+    structures.extend(asked.iter().filter_map(|&it| layout::leads_to(it)));
+    structures.sort();
+    structures.dedup();
+    structures
+}
+
+/// What structures are laid out from.
+struct Hierarchies {
+    /// What all share that need one.
+    root: Option<Node>,
+    /// Primitives in the order of its leaves.
+    order: Vec<Primitive>,
+    flat: Flat,
+    wide: Wide,
+}
+
+impl Hierarchies {
+    fn build(
+        scene: &Scene,
+        snapped: &Primitives,
+        structures: &[Structure],
+        options: &Options,
+    ) -> Result<Self, CompileError> {
+        let mut order: Vec<Primitive> = snapped.boxes();
+        let mut root = if structures.iter().copied().any(layout::takes_hierarchy) {
+            builder::build(
+                options.builder,
+                &mut order,
+                options.leaf_size.min(LARGEST_LEAF),
+                |primitive| snapped.groups(scene, primitive),
+            )
+        } else {
+            None
+        };
+        // First, because it decides which child is the first.
+        let dual = match &mut root {
+            Some(root) if structures.contains(&Structure::DualSplit) => dual_split::lay_out(root),
+            _ => Vec::new(),
+        };
+        // The eight-wide hierarchy holds triangles and spheres itself; alone it needs no slots of them.
+        let has_wide = structures.contains(&Structure::Wide);
+        let wide_alone = has_wide
+            && structures
+                .iter()
+                .all(|it| [Structure::Wide, Structure::List].contains(it));
+        let mut flat = match &root {
+            Some(root) => pairs::flatten(root, &order),
+            None if wide_alone => Flat::default(),
+            None => Flat::in_file_order(&order),
+        };
+        flat.dual = dual;
+        let wide = if has_wide {
+            let shared = (!wide_alone).then_some(&flat);
+            Wide::build(snapped, &order, options.quality, shared)?
+        } else {
+            Wide::default()
+        };
+        if wide_alone {
+            flat.slots.clone_from(&wide.slots);
+        }
+        Ok(Self {
+            root,
+            order,
+            flat,
+            wide,
+        })
+    }
+}
+
 /// Counts what the cylinder cube of a scene takes, with a number of gridels a side (1 to 64). Builds
 /// nothing, so it takes time and no memory.
 ///
@@ -349,91 +391,4 @@ pub fn cube_census(scene: &Scene, gridels: u32) -> Result<CubeCensus, CompileErr
     let flat = flat.unwrap_or_default();
     let targets = Targets::new(&snapped, &flat, bounds);
     Ok(CubeCensus::of(&targets, gridels.clamp(1, Gridels::MOST)))
-}
-
-/// What a structure takes of a blob.
-struct Size {
-    structure: Structure,
-    /// Of its own sections.
-    bytes: usize,
-    uses_leaves: bool,
-}
-
-impl Size {
-    fn of(layout: &Layout) -> Self {
-        let sections = layout.sections.iter();
-        Self {
-            structure: layout.structure,
-            bytes: sections
-                .map(|section| writer::taken(section.bytes.len()))
-                .sum(),
-            uses_leaves: layout.uses_leaves,
-        }
-    }
-}
-
-/// What makes a blob smaller, by its own figures: its bytes, and those of the leaves that hierarchies
-/// share.
-fn advice(
-    scene: &Scene,
-    options: &Options,
-    snapped: &Primitives,
-    (bytes, leaves): (usize, usize),
-    sizes: &[Size],
-) -> String {
-    let mut steps = Vec::new();
-    if options.lattice_bits > 16 {
-        let saved = 3 * snapped.vertices.len() + 4 * snapped.spheres.len();
-        if saved > 0 {
-            steps.push(format!(
-                "`--lattice-bits 16` saves {} bytes",
-                grouped(saved)
-            ));
-        }
-    }
-    let mut asked = options.structures.clone();
-    asked.sort();
-    asked.dedup();
-    asked.retain(|&structure| structure != Structure::List);
-    if options.leaf_size == 0 && asked.iter().copied().any(takes_hierarchy) {
-        steps.push(String::from(
-            "`--leaf-size 8` makes fewer nodes and costs time",
-        ));
-    }
-    if let [structure] = asked[..] {
-        // Without a hierarchy primitives keep the file's order as well, so all of it is built.
-        let list = Options {
-            structures: vec![Structure::List],
-            max_bytes: None,
-            ..options.clone()
-        };
-        if let Ok(list) = compile(scene, &list) {
-            steps.push(format!(
-                "`--accel list` instead of {} saves {} bytes and costs time",
-                structure.name(),
-                grouped(bytes - list.report.bytes)
-            ));
-        }
-    }
-    for &structure in asked.iter().filter(|_| asked.len() > 1) {
-        let others = asked.iter().copied().filter(|&it| it != structure);
-        let kept: Vec<_> = others
-            .flat_map(|it| [Some(it), layout::leads_to(it)])
-            .flatten()
-            .collect();
-        let (stay, go): (Vec<&Size>, Vec<&Size>) = sizes
-            .iter()
-            .partition(|size| kept.contains(&size.structure));
-        let mut saved: usize = go.iter().map(|size| size.bytes).sum();
-        if !stay.iter().any(|size| size.uses_leaves) {
-            saved += leaves;
-        }
-        steps.push(format!(
-            "leaving out `--accel {}` saves {} bytes",
-            structure.name(),
-            grouped(saved)
-        ));
-    }
-    steps.push(String::from("a scene with fewer primitives"));
-    steps.join("; ")
 }
