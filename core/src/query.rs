@@ -242,7 +242,13 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                 shapes.cones.get(slots),
                 leaf,
                 count,
-                |search, cone| cone.cross(search.ray, search.recip_norm2),
+                |search, cone| {
+                    // The dearest test of all.
+                    if K::misses(search.ray, search.tmax, &cone.bounds) {
+                        return None;
+                    }
+                    cone.cross(search.ray, search.recip_norm2)
+                },
                 |cone| cone.bounds,
             ),
         }

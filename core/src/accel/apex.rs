@@ -301,8 +301,8 @@ impl<'a> Records<'a> for Held<'a> {
         })
     }
 
-    /// Proves that points and planes lie within reach, that windows follow each other in the table and fill
-    /// it, and the lists; and that the scene holds the hierarchy for all other rays.
+    /// Proves that points and planes lie within reach, that windows follow each other in the table and
+    /// fill it, and the lists; and that the scene holds the hierarchy for all other rays.
     fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
         Structure::Bvh.needed_by(Structure::Apex, scene)?;
         const MOST: u32 = 1 << 29;
