@@ -1,9 +1,13 @@
 //! Fixed point in 32 bits, products in 64: for cores without a floating-point unit.
 
 mod halves;
+mod quotient;
+mod root;
 
 pub(crate) use self::halves::product;
 use self::halves::{product_unsigned, quotient};
+use self::quotient::Quotient;
+use self::root::{root, root_of_full};
 use super::{CullAxis, Format, NARROW_PRODUCTS, Number, Sight};
 use crate::accel::cull::Cull;
 use core::ops::{Add, Mul, Neg, Sub};
@@ -65,16 +69,15 @@ const fn with_sign(magnitude: u64, sign: i64) -> Fixed {
 
 /// Square root to nearest.
 fn nearest_root(square: u64) -> u64 {
-    // Below 2^32, and its square is at most the number.
-    let root = square.isqrt();
+    let root = root(square);
     let rest = square.wrapping_sub(root.wrapping_mul(root));
     root.wrapping_add(u64::from(rest > root))
 }
 
 /// Square root as a mantissa of 32 bits and the power of two it is to be divided by.
 fn scaled_root(square: u64) -> (u64, u32) {
-    let shift = square.leading_zeros() & !1;
-    ((square << (shift & 63)).isqrt(), shift / 2)
+    let shift = square.leading_zeros() & 62;
+    (root_of_full(square << shift), shift / 2)
 }
 
 /// `v >> bits` on the magnitude, so that rounding does not depend on the sign.
@@ -253,6 +256,7 @@ impl Neg for Product {
 
 impl Number for Fixed {
     type Wide = Product;
+    type Quotient = Quotient;
     type Cull = Cull;
     #[cfg(feature = "wide")]
     type WideCull = Cull;
@@ -365,15 +369,14 @@ impl Number for Fixed {
         Fixed(nearest_root((self.0.max(0) as u64) << RATIO_BITS) as i32)
     }
 
-    fn over(self, divisor: Self) -> Self {
-        let sign = self.0 as i64 ^ divisor.0 as i64;
-        let numerator = (self.0.unsigned_abs() as u64) << RATIO_BITS;
-        let denominator = divisor.0.unsigned_abs() as u64;
-        match (numerator + denominator / 2).checked_div(denominator) {
-            Some(quotient) => with_sign(quotient, sign),
-            None if self.0 == 0 => Fixed(0),
-            None => with_sign(u64::MAX, sign),
-        }
+    #[inline(always)]
+    fn quotient(self, divisor: Self) -> Quotient {
+        Quotient::new(self, divisor)
+    }
+
+    #[inline(always)]
+    fn rounded(quotient: Quotient) -> Self {
+        quotient.rounded()
     }
 
     fn exp_neg(self, coefficient_q32: u32) -> Self {

@@ -122,6 +122,7 @@ macro_rules! float_number {
      $compare_products:path, $settle:expr, $direction:expr) => {
         impl Number for $float {
             type Wide = $float;
+            type Quotient = Self;
             type Cull = FloatCulling;
             #[cfg(feature = "wide")]
             type WideCull = crate::accel::wide::cull::WideLanes;
@@ -234,8 +235,13 @@ macro_rules! float_number {
             }
 
             #[inline(always)]
-            fn over(self, divisor: Self) -> Self {
+            fn quotient(self, divisor: Self) -> Self {
                 if self == 0.0 { 0.0 } else { self / divisor }
+            }
+
+            #[inline(always)]
+            fn rounded(quotient: Self) -> Self {
+                quotient
             }
 
             fn exp_neg(self, coefficient_q32: u32) -> Self {

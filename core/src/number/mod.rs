@@ -108,6 +108,9 @@ pub trait Number:
         + Sync
         + 'static + 'static;
 
+    /// A number over another: in integers exactly, since they divide slowly and compare fast.
+    type Quotient: Copy + PartialOrd;
+
     /// The name of this format.
     const FORMAT: Format;
     /// How rays of this format cull boxes on this machine.
@@ -186,7 +189,14 @@ pub trait Number:
     fn sqrt(self) -> Self;
     /// Undoes `*`: length over ratio is a length, and two of one quantity make a ratio. Saturates
     /// at the range's end; anything over 0 saturates, 0 over 0 is 0.
-    fn over(self, divisor: Self) -> Self;
+    #[inline(always)]
+    fn over(self, divisor: Self) -> Self {
+        Self::rounded(self.quotient(divisor))
+    }
+    /// The same before it is rounded, to be compared.
+    fn quotient(self, divisor: Self) -> Self::Quotient;
+    /// What [`over`](Self::over) gives.
+    fn rounded(quotient: Self::Quotient) -> Self;
     /// e to the power of minus the product of a non-negative length and a coefficient in 1/unit,
     /// given with 32 fraction bits: a ratio in \[0, 1\].
     fn exp_neg(self, coefficient_q32: u32) -> Self;

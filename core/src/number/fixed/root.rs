@@ -1,0 +1,89 @@
+//! Square roots without a division.
+
+use super::halves::{product, product_unsigned};
+
+/// (1 / sqrt(x) - 1) * 256 in the middle of x = i / 128 to (i + 1) / 128, from i = 32.
+const GUESSES: [u8; 96] = {
+    let mut guesses = [0; 96];
+    let mut i = 0;
+    while i < 96 {
+        // 256 / sqrt(x) is the root of 2^16 / x, here with 16 bits below the point.
+        let square = (1_u64 << 56) / (2 * (i as u64 + 32) + 1);
+        guesses[i] = ((square.isqrt() + (1 << 15)) >> 16).wrapping_sub(256) as u8;
+        i += 1;
+    }
+    guesses
+};
+
+/// The greatest integer whose square is at most `square`, below 2^32.
+///
+/// Cost: some ten products.
+pub(super) fn root(square: u64) -> u64 {
+    let up = square.leading_zeros() & 62;
+    root_of_full(square << up) >> (up / 2)
+}
+
+/// The same for 0 and squares of at least 2^62.
+pub(super) fn root_of_full(square: u64) -> u64 {
+    let high = (square >> 32) as u32;
+    let guess = GUESSES.get((high >> 25).wrapping_sub(32) as usize);
+    // 1 / sqrt(high / 2^32) with 30 fraction bits, by two steps of Newton's iteration from 7 bits to 26.
+    let mut inverse = 256_u32.wrapping_add((*guess.unwrap_or(&0)).into()) << 22;
+    for _ in 0..2 {
+        let inverse_square = (product_unsigned(inverse, inverse) >> 32) as u32;
+        let near_one = (product_unsigned(high, inverse_square) >> 32) as u32;
+        let factor = (3_u32 << 28).wrapping_sub(near_one);
+        inverse = (product_unsigned(inverse, factor) >> 29) as u32;
+    }
+    let coarse = (product_unsigned(high, inverse) >> 30).min(u32::MAX.into()) as u32;
+    let rest = square.wrapping_sub(product_unsigned(coarse, coarse)) as i64;
+    let fine = product((rest >> 10) as i32, (inverse >> 1) as i32) >> 52;
+    // At most 1 too much or too little.
+    let root = (coarse as u64)
+        .wrapping_add_signed(fine)
+        .min(u32::MAX.into());
+    let rest = square.wrapping_sub(product_unsigned(root as u32, root as u32)) as i64;
+    if rest < 0 {
+        root.wrapping_sub(1)
+    } else {
+        root.wrapping_add((rest as u64 > root << 1).into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(50_000))]
+
+        #[test]
+        fn roots_are_those_of_the_standard_library(square: u64, shrink in 0..64_u32) {
+            let square = square >> shrink;
+            prop_assert_eq!(root(square), square.isqrt(), "{}", square);
+        }
+
+        #[test]
+        fn squares_and_what_lies_beside_them_have_the_right_roots(x: u32, shrink in 0..32_u32) {
+            let x = u64::from(x >> shrink);
+            let square = x * x;
+            for beside in [square.saturating_sub(1), square, square + 1] {
+                prop_assert_eq!(root(beside), beside.isqrt(), "{}", beside);
+            }
+        }
+    }
+
+    #[test]
+    fn roots_at_the_ends_of_guesses() {
+        for i in 0..=96_u64 {
+            for beside in -2..=2_i64 {
+                let square = (32 + i).wrapping_shl(57).wrapping_add_signed(beside);
+                assert_eq!(root(square), square.isqrt(), "{square}");
+            }
+        }
+        for square in (0..70_000).chain([u64::MAX, u64::MAX - 1, u64::MAX << 32]) {
+            assert_eq!(root(square), square.isqrt(), "{square}");
+        }
+    }
+}
