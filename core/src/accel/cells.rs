@@ -140,16 +140,7 @@ impl<'a> Lists<'a> {
 
     /// Whether a list, whose slots ascend, holds a slot.
     pub(super) fn holds(&self, list: usize, slot: u32) -> bool {
-        let mut range = self.range(list);
-        while range.len() > 1 {
-            let middle = range.start.wrapping_add(range.end) / 2;
-            if self.slots.get(middle).is_some_and(|found| found <= slot) {
-                range.start = middle;
-            } else {
-                range.end = middle;
-            }
-        }
-        range.start < range.end && self.slots.get(range.start) == Some(slot)
+        self.slots.hold(self.range(list), slot)
     }
 
     /// Proves that lists follow each other without a gap and fill the array.

@@ -53,6 +53,27 @@ impl<'a> Indices<'a> {
         self.len() == 0
     }
 
+    /// Whether integers that ascend from one place to another hold one; `false` where there are no such
+    /// places.
+    pub(crate) fn hold(&self, places: core::ops::Range<usize>, value: u32) -> bool {
+        fn search<T: Copy>(
+            array: &[T],
+            places: core::ops::Range<usize>,
+            value: u32,
+            read: impl Fn(T) -> u32,
+        ) -> bool {
+            let part = array.get(places).unwrap_or_default();
+            part.binary_search_by(|&it| read(it).cmp(&value)).is_ok()
+        }
+        match self {
+            Indices::Absent => false,
+            Indices::U8(array) => search(array, places, value, u32::from),
+            Indices::U16(array) => search(array, places, value, u32::from),
+            Indices::U24(array) => search(array, places, value, from_three),
+            Indices::U32(array) => search(array, places, value, |it| it),
+        }
+    }
+
     /// The integer at `index`; `None` beyond the end and for an absent array.
     #[inline]
     pub fn get(&self, index: usize) -> Option<u32> {
@@ -60,10 +81,13 @@ impl<'a> Indices<'a> {
             Indices::Absent => None,
             Indices::U8(array) => array.get(index).map(|&value| value.into()),
             Indices::U16(array) => array.get(index).map(|&value| value.into()),
-            Indices::U24(array) => array
-                .get(index)
-                .map(|&[low, middle, high]| u32::from_le_bytes([low, middle, high, 0])),
+            Indices::U24(array) => array.get(index).copied().map(from_three),
             Indices::U32(array) => array.get(index).copied(),
         }
     }
+}
+
+#[inline]
+fn from_three([low, middle, high]: [u8; 3]) -> u32 {
+    u32::from_le_bytes([low, middle, high, 0])
 }
