@@ -88,6 +88,12 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     /// Out of line, because few of the primitives that are tested come this far.
     #[inline(never)]
     fn consider(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: Place) {
+        self.take(crossing, bounds, place);
+    }
+
+    /// The same for code that is out of line itself.
+    #[inline(always)]
+    fn take(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: Place) {
         let Some((t, part)) = accept(self.ray, self.cull, crossing, bounds, self.tmax) else {
             return;
         };
@@ -166,7 +172,11 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         if let Place::Strip(_, number) = place
             && let Some(corners) = strip.triangle(number.into())
         {
-            self.triangle(corners, place, count);
+            let crossing = triangle::cross(self.ray, corners);
+            if let Some(crossing) = crossing {
+                self.take(crossing, triangle::bounds(corners), place);
+            }
+            self.tell(place, crossing.as_ref(), count);
         }
     }
 
@@ -184,14 +194,22 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         while met != 0 {
             let lane = met.trailing_zeros();
             met &= met - 1;
-            if let Some((center, radius)) = pack.sphere(lane) {
-                let place = Place::Pack(number, lane as u8);
-                let crossing = sphere::cross(self.ray, self.recip_norm2, center, radius);
-                if let Some(crossing) = crossing {
-                    self.consider(crossing, sphere::bounds(center, radius), place);
-                }
-                self.tell(place, crossing.as_ref(), count);
+            self.sphere_in_pack(pack, Place::Pack(number, lane as u8), count);
+        }
+    }
+
+    /// Takes a sphere of a pack that the ray may meet somewhere on its line.
+    #[cfg(feature = "wide")]
+    #[inline(never)]
+    fn sphere_in_pack<P: Pack, C: Count>(&mut self, pack: &P, place: Place, count: &mut C) {
+        if let Place::Pack(_, lane) = place
+            && let Some((center, radius)) = pack.sphere(lane.into())
+        {
+            let crossing = sphere::cross(self.ray, self.recip_norm2, center, radius);
+            if let Some(crossing) = crossing {
+                self.take(crossing, sphere::bounds(center, radius), place);
             }
+            self.tell(place, crossing.as_ref(), count);
         }
     }
 

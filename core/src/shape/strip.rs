@@ -23,17 +23,18 @@ use super::triangle::Projection;
 use crate::blob::cluster::{Rows, Strip};
 use crate::blob::record::{Vertex16, Vertex24};
 use crate::eight::Eight;
-use crate::number::{Format, Number, pick};
+use crate::number::{Format, Number};
 use crate::ray::Ray;
 
 /// A ray as strips are tested with it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StripRay<N> {
     projection: Projection<N>,
-    /// The axis of each role: the two minor ones, then the major one.
-    axes: [usize; 3],
-    /// For each role all bits, if the ray runs down that axis, or none.
-    descends: [u32; 3],
+    /// The axis of each role: the two minor ones, then the major one. In bits of one word, because
+    /// what was just stored in parts cannot be loaded at once.
+    axes: u32,
+    /// A bit for each role whose axis the ray runs down.
+    descends: u32,
 }
 
 impl<N: Number> StripRay<N> {
@@ -48,18 +49,24 @@ impl<N: Number> StripRay<N> {
             (Strips::S24(_), 1) => Projection::of::<1, Vertex24>(ray),
             (Strips::S24(_), _) => Projection::of::<2, Vertex24>(ray),
         };
-        let axes = match ray.major {
-            0 => [1, 2, 0],
-            1 => [2, 0, 1],
-            _ => [0, 1, 2],
+        let below = |axis: usize| u32::from(ray.slope[axis] < N::ZERO);
+        let signs = below(0) | below(1) << 1 | below(2) << 2;
+        let (axes, descends) = match ray.major {
+            0 => (0b00_10_01, signs >> 1 | signs << 2),
+            1 => (0b01_00_10, signs >> 2 | signs << 1),
+            _ => (0b10_01_00, signs),
         };
-        let descends =
-            axes.map(|axis| 0_u32.wrapping_sub((pick(ray.slope, axis) < N::ZERO).into()));
         Self {
             projection,
             axes,
             descends,
         }
+    }
+
+    /// All bits if the ray runs down the axis of a role, or none.
+    #[inline(always)]
+    fn descends(&self, role: u32) -> u32 {
+        0_u32.wrapping_sub(self.descends >> role & 1)
     }
 
     /// The places of a strip whose triangles the ray meets: what [`Projection::meets`] says of each,
@@ -83,7 +90,8 @@ impl<N: Number> StripRay<N> {
     fn met_in_lanes<S: Strip>(&self, strip: &S) -> (u32, u32) {
         let Projection { sight, shear } = &self.projection;
         let all = |number: N| Eight::splat(number.to_f32());
-        let [first, second, last] = self.axes.map(|axis| strip.rows().measure(axis));
+        let [first, second, last] =
+            [0, 1, 2].map(|role| strip.rows().measure(axis(self.axes, role)));
         let depth = last - all(sight[2].origin);
         let (right, up) = (first - all(sight[0].origin), second - all(sight[1].origin));
         let (x, y) = (right + depth * all(shear[0]), up + depth * all(shear[1]));
@@ -107,13 +115,14 @@ impl<N: Number> StripRay<N> {
         }
         // Where some vertex lies behind the ray's start on every axis.
         let mut near = met;
-        for (offset, descends) in [right, up, depth].into_iter().zip(self.descends) {
-            let vertices = offset.signs() ^ descends;
+        for (role, offset) in [(2, depth), (0, right), (1, up)] {
+            let vertices = offset.signs() ^ self.descends(role);
             near &= vertices | vertices >> 1 | vertices >> 2;
+            if near == 0 {
+                return (met, doubtful);
+            }
         }
-        if near != 0 {
-            near &= self.behind([x, y, depth], side, across);
-        }
+        near &= self.behind([x, y, depth], side, across);
         (met & !near, doubtful)
     }
 
@@ -129,19 +138,24 @@ impl<N: Number> StripRay<N> {
         let reach = reach.max(reach1).max(reach1.next());
         let area_error = reach * reach * Eight::splat(1.0 / 16_384.0);
         let certain = area_error.at_most(area.abs()) & (area_error * reach).at_most(volume.abs());
-        let [.., down] = self.descends;
-        certain & (volume.signs() ^ area.signs() ^ down)
+        certain & (volume.signs() ^ area.signs() ^ self.descends(2))
     }
 
     /// Tests triangles in a number format's own arithmetic.
     #[inline(never)]
     fn met_one_by_one<S: Strip>(&self, strip: &S, places: u32) -> u32 {
-        match self.axes[2] {
+        match axis(self.axes, 2) {
             0 => met_along::<0, N, S>(&self.projection, strip, places),
             1 => met_along::<1, N, S>(&self.projection, strip, places),
             _ => met_along::<2, N, S>(&self.projection, strip, places),
         }
     }
+}
+
+/// The axis of a role.
+#[inline(always)]
+fn axis(axes: u32, role: u32) -> usize {
+    (axes >> (2 * role) & 3) as usize
 }
 
 fn met_along<const MAJOR: usize, N: Number, S: Strip>(

@@ -34,8 +34,16 @@ pub struct WideLanes {
     near: Vec4,
     /// What the far plane's product lacks to t.
     far: Vec4,
-    /// For each axis whether the ray runs down it: then a node's upper row has the near planes.
-    descends: [bool; 3],
+    /// A bit for each axis that the ray runs down: a node's upper row has the near planes there.
+    descends: u32,
+}
+
+impl WideLanes {
+    /// The row of an axis' near planes.
+    #[inline(always)]
+    fn near_row(&self, axis: usize) -> usize {
+        (self.descends >> axis & 1) as usize
+    }
 }
 
 impl<N: Number> Culling<N> for WideLanes {
@@ -46,7 +54,7 @@ impl<N: Number> Culling<N> for WideLanes {
             inverse,
             near: near.with_w(ray.tmin.to_f32()),
             far,
-            descends: [inverse.x < 0.0, inverse.y < 0.0, inverse.z < 0.0],
+            descends: inverse.is_negative_bitmask(),
         }
     }
 
@@ -74,7 +82,7 @@ impl<N: Number> WideCulling<N> for WideLanes {
     fn span(&self, bounds: &UnitBox, limit: i32) -> [f64; 2] {
         let (mut enters, mut leaves) = (f64::from(self.near.w), Single::units(limit));
         for (axis, sides) in bounds.0.iter().enumerate() {
-            let row = usize::from(self.descends[axis]);
+            let row = self.near_row(axis);
             let t = |plane: i16, rest: f32| f64::from(f32::from(plane) * self.inverse[axis] + rest);
             enters = enters.max(t(sides[row], self.near[axis]));
             leaves = leaves.min(t(sides[row ^ 1], self.far[axis]));
@@ -88,7 +96,7 @@ impl<N: Number> WideCulling<N> for WideLanes {
             inverse, near, far, ..
         } = self;
         let axis = |axis: usize, inverse: f32, to_near: f32, to_far: f32| {
-            let (rows, near) = (&node.planes[axis], usize::from(self.descends[axis]));
+            let (rows, near) = (&node.planes[axis], self.near_row(axis));
             let inverse = Eight::splat(inverse);
             (
                 Eight::from_i16(&rows[near]) * inverse + Eight::splat(to_near),
