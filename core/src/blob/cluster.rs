@@ -249,11 +249,7 @@ impl Rows for Rows24 {
 
     #[inline(always)]
     fn vertex(&self, lane: usize) -> Vertex24 {
-        let axis = |axis: usize| {
-            let [low, middle] = self.low[axis][lane & 7].to_le_bytes();
-            [low, middle, high_byte(&self.high[axis], lane)]
-        };
-        Vertex24([axis(0), axis(1), axis(2)])
+        Vertex24(self.position(lane))
     }
 
     #[inline(always)]

@@ -195,14 +195,11 @@ fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Sect
             section(SectionKind::Spheres, &spheres),
         )
     } else {
-        let vertices: Vec<_> = vertices
-            .iter()
-            .map(|v| Vertex24(v.map(three_bytes)))
-            .collect();
+        let vertices: Vec<_> = vertices.iter().map(|&v| Vertex24(v)).collect();
         let spheres: Vec<_> = spheres
             .iter()
             .map(|s| Sphere24 {
-                center: Vertex24(s.center.map(three_bytes)),
+                center: s.center.map(three_bytes),
                 radius: three_bytes(s.radius),
             })
             .collect();
