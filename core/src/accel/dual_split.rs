@@ -29,9 +29,14 @@ use crate::blob::record::{DualNode, UnitBox};
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
 use crate::count::Count;
 use crate::event::{Event, Place, Sides};
-use crate::number::{CullAxis, Number};
+use crate::number::{CullAxis, NARROW_PRODUCTS, Number};
 use crate::ray::Ray;
+use core::hint::black_box;
 use heapless::Vec;
+
+/// Whether the compiler is kept from knowing a ray's form by heart: cores that load two words at once,
+/// and have too few registers for what it would know, read the form of an axis faster where it lies.
+const FORM_IN_MEMORY: bool = cfg!(target_arch = "arm") && !NARROW_PRODUCTS;
 
 /// A hierarchy of 16 bytes a node, of which a ray tests two to four planes.
 #[derive(Clone, Copy, Debug)]
@@ -100,6 +105,11 @@ impl Accel for DualSplit {
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
+        let cull = if FORM_IN_MEMORY {
+            black_box(cull)
+        } else {
+            cull
+        };
         let nodes = scene.held.dual_split.0;
         let mut limit = <Cull as PairCulling<N>>::limit(ray.tmax);
         let mut interval = PairCulling::<N>::root(cull, scene.bounds(), limit);

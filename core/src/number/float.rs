@@ -351,17 +351,18 @@ macro_rules! float_number {
                 // Rounding is monotone, so the difference of the rounded products has the right
                 // sign unless it is zero.
                 let cross = |a: [Self; 2], b: [Self; 2]| a[0] * b[1] - a[1] * b[0];
-                let differ = |x: $float, y: $float| x.is_sign_negative() != y.is_sign_negative();
+                // Two that differ in sign have a product below zero; one that is zero tells nothing.
                 let (u, v) = (cross(b, c), cross(c, a));
+                let first = u * v;
                 // Few triangles come further.
-                if differ(u, v) && u != 0.0 && v != 0.0 {
+                if first < 0.0 {
                     return false;
                 }
-                let w = cross(a, b);
-                if u == 0.0 || v == 0.0 || w == 0.0 {
-                    return surround_exactly(a, b, c, $compare_products);
+                let second = v * cross(a, b);
+                if second < 0.0 {
+                    return false;
                 }
-                !differ(u, v) && !differ(v, w)
+                first > 0.0 && second > 0.0 || surround_exactly(a, b, c, $compare_products)
             }
 
             #[inline(always)]
