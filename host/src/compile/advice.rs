@@ -1,9 +1,9 @@
 //! What to change where a blob is larger than it may be.
 
 use super::layout::{self, Layout, takes_hierarchy};
-use super::primitives::Primitives;
 use super::{Options, compile, writer};
-use crate::report::grouped;
+use crate::blob::Blob;
+use crate::report::{grouped, narrower_storage};
 use crate::scene::Scene;
 use gridel_core::Structure;
 
@@ -28,25 +28,16 @@ impl Size {
     }
 }
 
-/// What makes a blob smaller, by its own figures: its bytes, and those of the leaves that hierarchies
-/// share.
+/// What makes a blob smaller, by its own figures and the bytes of the leaves that hierarchies share.
 pub fn advice(
     scene: &Scene,
     options: &Options,
-    snapped: &Primitives,
-    (bytes, leaves): (usize, usize),
+    blob: &Blob,
+    leaves: usize,
     sizes: &[Size],
 ) -> String {
     let mut steps = Vec::new();
-    if options.lattice_bits > 16 {
-        let saved = 3 * snapped.vertices.len() + 4 * snapped.spheres.len();
-        if saved > 0 {
-            steps.push(format!(
-                "`--lattice-bits 16` saves {} bytes",
-                grouped(saved)
-            ));
-        }
-    }
+    steps.extend(blob.scene().ok().as_ref().and_then(narrower_storage));
     let mut asked = options.structures.clone();
     asked.sort();
     asked.dedup();
@@ -67,7 +58,7 @@ pub fn advice(
             steps.push(format!(
                 "`--accel list` instead of {} saves {} bytes and costs time",
                 structure.name(),
-                grouped(bytes - list.report.bytes)
+                grouped(blob.bytes().len() - list.report.bytes)
             ));
         }
     }

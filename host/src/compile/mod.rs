@@ -22,6 +22,7 @@ pub use lattice::BITS as LATTICE_BITS;
 pub use layout::{takes_hierarchy, usual_budget};
 pub use primitives::LeftOut;
 pub use wide::Quality;
+pub(crate) use writer::taken;
 
 use crate::scene::{Object, Scene};
 use advice::{Size, advice};
@@ -264,7 +265,7 @@ pub fn compile_telling(
     let bytes = blob.bytes().len();
     if let Some(most) = options.max_bytes.filter(|&most| bytes as u64 > most) {
         let leaves = writer::taken(flat.leaves.len() * size_of::<Leaf>());
-        let advice = advice(scene, options, &snapped, (bytes, leaves), &sizes);
+        let advice = advice(scene, options, &blob, leaves, &sizes);
         return Err(CompileError::TooLarge {
             bytes: bytes as u64,
             over: bytes as u64 - most,

@@ -10,6 +10,8 @@
 use super::{MemoryMap, grouped, working_memory};
 use crate::blob::best_structures;
 use crate::board::Board;
+use crate::compile::taken;
+use gridel_core::blob::record::{Sphere16, Sphere24, Vertex16, Vertex24};
 use gridel_core::{Effects, Format, Kind, Rgb565, Scene, Structure};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -186,17 +188,28 @@ fn ram_advice(scene: &Scene<'_>, format: &str) -> Vec<String> {
     steps
 }
 
+/// What a lattice of 16 bits saves of a blob's vertices and spheres.
+pub fn narrower_storage(scene: &Scene<'_>) -> Option<String> {
+    let saved =
+        |count: usize, wide: usize, narrow: usize| taken(count * wide) - taken(count * narrow);
+    let vertices = saved(
+        scene.vertices(),
+        size_of::<Vertex24>(),
+        size_of::<Vertex16>(),
+    );
+    let spheres = saved(
+        scene.count(Kind::Sphere),
+        size_of::<Sphere24>(),
+        size_of::<Sphere16>(),
+    );
+    let bytes = vertices + spheres;
+    let stored = scene.header().storage_bits > 16 && bytes > 0;
+    stored.then(|| format!("`--lattice-bits 16` saves {} bytes", grouped(bytes)))
+}
+
 fn flash_advice(scene: &Scene<'_>) -> Vec<String> {
     let mut steps = Vec::new();
-    let header = scene.header();
-    if header.storage_bits > 16 {
-        // A coordinate takes 2 bytes in place of 3, and so does a radius.
-        let saved = 3 * scene.vertices() + 4 * scene.count(Kind::Sphere);
-        steps.push(format!(
-            "`--lattice-bits 16` saves {} bytes",
-            grouped(saved)
-        ));
-    }
+    steps.extend(narrower_storage(scene));
     if scene.vertices() > 1 << 16 {
         let saved = 6 * scene.count(Kind::Triangle);
         steps.push(format!(

@@ -298,6 +298,19 @@ fn the_advice_for_a_budget_is_exact() {
         let expected = format!("instead of {accel} saves {} bytes", grouped(saved));
         assert!(said.contains(&expected), "{expected}: {said}");
     }
+    let whole = bytes(&["dual-split"]);
+    folder.done(&[
+        "build",
+        "quick.toml",
+        "-o",
+        "new.gridel",
+        "--lattice-bits",
+        "16",
+    ]);
+    let saved = whole - folder.read("new.gridel").len();
+    let expected = format!("`--lattice-bits 16` saves {} bytes", grouped(saved));
+    let said = advice(&["dual-split"]);
+    assert!(said.contains(&expected), "{expected}: {said}");
     let saved = bytes(&["bvh", "flagged"]) - bytes(&["flagged"]);
     let said = advice(&["bvh", "flagged"]);
     let expected = format!("leaving out `--accel bvh` saves {} bytes", grouped(saved));
