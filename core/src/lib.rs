@@ -85,3 +85,6 @@ pub use ray::{Pencil, Ray, RayError};
 pub use render::{Renderer, Rgb565, Rgb888, Settings, Workspace};
 pub use shade::Effects;
 pub use shape::Kind;
+
+/// Whether code shall be small where that makes it slower; no bit of an answer depends on it.
+pub(crate) const SMALL: bool = cfg!(feature = "small");

@@ -1,5 +1,6 @@
 //! Queries: what does a ray meet first, does it meet anything at all?
 
+use crate::SMALL;
 use crate::accel::cull::Culling;
 use crate::accel::{Accel, Leaf, StackView};
 use crate::blob::Scene;
@@ -305,7 +306,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         self.solids(spheres, leaf, count, cross, bounds);
     }
 
-    /// Chooses the copy of the triangle test for the ray's major axis.
+    /// Chooses the copy of the triangle test for the ray's major axis, where there is one for each.
     #[inline(always)]
     fn triangles<V: Vertex, I: Corners, C: Count>(
         &mut self,
@@ -315,6 +316,9 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         count: &mut C,
     ) {
         match self.ray.major {
+            _ if SMALL => {
+                self.triangles_along::<{ triangle::ANY }, V, I, C>(vertices, triangles, leaf, count)
+            }
             0 => self.triangles_along::<0, V, I, C>(vertices, triangles, leaf, count),
             1 => self.triangles_along::<1, V, I, C>(vertices, triangles, leaf, count),
             _ => self.triangles_along::<2, V, I, C>(vertices, triangles, leaf, count),
@@ -408,14 +412,29 @@ pub fn closest_primitive<N: Number, A: Accel, C: Count>(
     stack: &mut StackView,
     count: &mut C,
 ) -> Option<Found<N>> {
+    search::<N, A, C, false>(scene, ray, stack, count, false)
+}
+
+/// The nearest primitive on a ray, or with `any` the first that is found.
+#[cfg_attr(not(feature = "small"), inline(always))]
+#[cfg_attr(feature = "small", inline(never))]
+fn search<N: Number, A: Accel, C: Count, const ANY: bool>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    stack: &mut StackView,
+    count: &mut C,
+    any: bool,
+) -> Option<Found<N>> {
+    // Known when the code is compiled, unless one copy of it is to serve both.
+    let any = if SMALL { any } else { ANY };
     let cull = A::Cull::<N>::new(ray);
     let mut search = Search::new(scene, ray, &cull);
     if C::TELLS {
-        count.tell(ray.query(false));
+        count.tell(ray.query(any));
     }
     A::walk(scene, ray, &cull, stack, count, |leaf, count| {
         search.leaf::<A, C>(leaf, count);
-        Some(search.tmax)
+        (!any || search.best.is_none()).then_some(search.tmax)
     });
     let best = search.best?;
     Some(Found {
@@ -510,17 +529,9 @@ pub fn any_hit<N: Number, A: Accel, C: Count>(
     stack: &mut StackView,
     count: &mut C,
 ) -> bool {
-    let cull = A::Cull::<N>::new(ray);
-    let mut search = Search::new(scene, ray, &cull);
+    let any = search::<N, A, C, { !SMALL }>(scene, ray, stack, count, true).is_some();
     if C::TELLS {
-        count.tell(ray.query(true));
+        count.tell(Event::Any(any));
     }
-    A::walk(scene, ray, &cull, stack, count, |leaf, count| {
-        search.leaf::<A, C>(leaf, count);
-        search.best.is_none().then_some(search.tmax)
-    });
-    if C::TELLS {
-        count.tell(Event::Any(search.best.is_some()));
-    }
-    search.best.is_some()
+    any
 }

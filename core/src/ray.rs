@@ -1,5 +1,6 @@
 //! Rays, in the one form that every kernel uses.
 
+use crate::SMALL;
 use crate::blob::record::UnitBox;
 use crate::event::Event;
 use crate::number::{Number, pick};
@@ -53,7 +54,7 @@ impl core::error::Error for RayError {}
 
 /// How far rays from a point are moved that run up or down one axis: to the plane in which the scene's
 /// box begins, or towards it for hits behind the point.
-#[inline(always)]
+#[cfg_attr(not(feature = "small"), inline(always))]
 fn way_to_box<N: Number>(
     bounds: &UnitBox,
     origin: [N::Wide; 3],
@@ -117,8 +118,9 @@ fn is_near<N: Number>(origin: [N; 3], major: usize, moved: N) -> bool {
         };
         origin[axis] < reach && -origin[axis] < reach
     };
-    // Twice the reach is a number; more need not be.
-    moved < reach && within(0) && within(1) && within(2)
+    // What is taken for far comes out the same, and needs less code. Twice the reach is a number; more
+    // need not be.
+    !SMALL && moved < reach && within(0) && within(1) && within(2)
 }
 
 /// Where a ray starts that is moved from an origin [near](is_near) the scene.
@@ -130,7 +132,7 @@ fn near_start<N: Number>(origin: [N; 3], moved: N, slope: [N; 3]) -> [N; 3] {
 
 /// Where a ray starts that is moved from an origin anywhere, and whether that lies within [`REACH`]:
 /// else it meets nothing.
-#[inline(always)]
+#[cfg_attr(not(feature = "small"), inline(always))]
 fn far_start<N: Number>(origin: [N::Wide; 3], moved: N::Wide, slope: [N; 3]) -> ([N; 3], bool) {
     let start = |axis: usize| far_coordinate(origin[axis], moved, slope[axis]);
     let start = [start(0), start(1), start(2)];
@@ -364,7 +366,7 @@ impl<N: Number> Ray<N> {
     }
 
     /// The point at a parameter that is counted inside the kernels.
-    #[inline(always)]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     pub(crate) fn at(&self, t: N) -> [N; 3] {
         let along = |axis: usize| self.origin[axis] + t * self.slope[axis];
         [along(0), along(1), along(2)]

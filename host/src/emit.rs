@@ -69,6 +69,9 @@ impl Emitted<'_> {
              // In Cargo.toml, exactly what the scene calls for:\n\
              //\n\
              // gridel-core = {{ default-features = false, features = [{features}] }}\n\
+             //\n\
+             // Where flash is short, the feature \"small\" beside them and opt-level = \"z\" in the profile\n\
+             // halve the code. Rays take longer then, and every bit stays.\n\
              \n\
              /// The scene blob, aligned, in flash.\n\
              pub static BLOB: &[u8] = gridel_core::include_blob!(\"{BLOB}\");\n\

@@ -77,7 +77,7 @@ pub struct Cull {
 
 impl<N: Number> Culling<N> for Cull {
     /// Costs three divisions and some fifty operations.
-    #[inline(always)]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     fn new(ray: &Ray<N>) -> Self {
         let axis = |k: usize| N::cull_axis(ray.slope[k], ray.origin[k]);
         Self {
@@ -138,7 +138,7 @@ impl<N: Number> PairCulling<N> for Cull {
 pub struct Deferred;
 
 impl<N: Number> Culling<N> for Deferred {
-    #[inline(always)]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     fn new(_: &Ray<N>) -> Self {
         Self
     }
@@ -239,7 +239,7 @@ impl CullAxis {
     }
 
     /// The steps at which the ray enters and leaves between the two planes of a word.
-    #[inline(always)]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     pub(crate) fn between(&self, planes: u32) -> Interval {
         let [near, far] = self.ordered(planes);
         Interval {
@@ -303,7 +303,7 @@ impl Cull {
     }
 
     /// The interval of a box, the ray's own aside.
-    #[inline(always)]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     pub(crate) fn interval(&self, bounds: &UnitBox) -> Interval {
         let axis = |k: usize| self.axes[k].between(plane_word(bounds.0[k]));
         axis(0).and(axis(1)).and(axis(2))

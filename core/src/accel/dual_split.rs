@@ -25,6 +25,7 @@
 use super::cull::{Cull, Culling, Interval, PairCulling};
 use super::order::Order;
 use super::{Accel, Entry, Leaf, MAX_LEVELS, Records, StackView, Structure};
+use crate::SMALL;
 use crate::blob::record::{DualNode, UnitBox};
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
 use crate::count::Count;
@@ -77,6 +78,12 @@ impl Way {
     #[inline(always)]
     const fn kind(self) -> u32 {
         self.0 >> 24 & 15
+    }
+
+    /// The axis of the first carve, or 3.
+    #[inline(always)]
+    const fn first_carve(self) -> usize {
+        (self.0 >> 26 & 3) as usize
     }
 
     /// The axis of the second carve, or 3.
@@ -220,7 +227,8 @@ enum Next {
 
 /// Narrows a ray's interval to a node's and then to the child's where the walk goes on.
 ///
-/// Compiled for each pair of a first carve's axis and a split's, so that neither is looked up.
+/// Compiled for each pair of a first carve's axis and a split's, so that neither is looked up, unless
+/// code shall be small.
 #[inline(always)]
 fn visit<C: Count>(
     record: &DualNode,
@@ -230,6 +238,7 @@ fn visit<C: Count>(
     count: &mut C,
 ) -> Next {
     match Way(record.way).kind() {
+        _ if SMALL => visit_kind::<ANY, ANY, C>(record, number, interval, cull, count),
         0 => visit_kind::<0, 0, C>(record, number, interval, cull, count),
         1 => visit_kind::<1, 0, C>(record, number, interval, cull, count),
         2 => visit_kind::<2, 0, C>(record, number, interval, cull, count),
@@ -249,6 +258,9 @@ fn visit<C: Count>(
     }
 }
 
+/// Stands for an axis that is not known when the code is compiled.
+const ANY: usize = 4;
+
 #[inline(always)]
 fn visit_kind<const SPLIT: usize, const CARVE: usize, C: Count>(
     record: &DualNode,
@@ -258,8 +270,13 @@ fn visit_kind<const SPLIT: usize, const CARVE: usize, C: Count>(
     count: &mut C,
 ) -> Next {
     let way = Way(record.way);
-    if let Some(form) = cull.axes.get(CARVE) {
-        carve_ray(form, CARVE, record.carves[0], number, interval, count);
+    let first = if CARVE == ANY {
+        way.first_carve()
+    } else {
+        CARVE
+    };
+    if let Some(form) = cull.axes.get(first) {
+        carve_ray(form, first, record.carves[0], number, interval, count);
         if interval.near > interval.far {
             return Next::Nothing;
         }
@@ -271,7 +288,8 @@ fn visit_kind<const SPLIT: usize, const CARVE: usize, C: Count>(
             }
         }
     }
-    match cull.axes.get(SPLIT) {
+    let axis = if SPLIT == ANY { way.split() } else { SPLIT };
+    match cull.axes.get(axis) {
         Some(form) => split(record, interval, form, count),
         None => Next::Leaf(way.number()),
     }

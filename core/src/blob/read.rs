@@ -20,7 +20,7 @@ pub(super) const RADIANCE: i64 = i32::MAX as i64;
 /// The header of what is a blob of this version and byte order, and as long as it says.
 pub(super) fn header(blob: &[u8]) -> Result<&Header, BlobError> {
     // What it is comes before how long it is, so that a foreign file is called one.
-    if !blob.starts_with(&MAGIC[..MAGIC.len().min(blob.len())]) || blob.is_empty() {
+    if blob.is_empty() || blob.iter().zip(&MAGIC).any(|(found, magic)| found != magic) {
         return Err(BlobError::Magic);
     }
     let needed = size_of::<Header>();

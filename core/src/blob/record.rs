@@ -3,6 +3,7 @@
 //! Little-endian, naturally aligned, without padding. `FORMAT.md` specifies every field; the
 //! assertions at the end of this file hold the layout to it.
 
+use crate::number::pick;
 use bytemuck::{Pod, Zeroable};
 use core::mem::{align_of, offset_of, size_of};
 
@@ -450,7 +451,7 @@ impl Vertex for Vertex16 {
 
     #[inline(always)]
     fn steps(&self, axis: usize) -> i32 {
-        self.0[axis] as i32
+        pick(self.0, axis) as i32
     }
 }
 
@@ -459,7 +460,7 @@ impl Vertex for Vertex24 {
 
     #[inline(always)]
     fn lattice(&self, axis: usize) -> i32 {
-        self.0[axis]
+        pick(self.0, axis)
     }
 
     #[inline(always)]

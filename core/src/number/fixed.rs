@@ -81,7 +81,7 @@ fn scaled_root(square: u64) -> (u64, u32) {
 }
 
 /// `v >> bits` on the magnitude, so that rounding does not depend on the sign.
-#[inline(always)]
+#[cfg_attr(not(feature = "small"), inline(always))]
 const fn shift_magnitude(v: i64, bits: i32) -> i32 {
     let magnitude = v.unsigned_abs();
     let shifted = if bits >= 0 {
@@ -126,7 +126,7 @@ fn excess_bits(v: [i64; 3], bits: i32) -> i32 {
 
 /// 2^61 / `d` for `d` in \[2^30, 2^31), to a part in 2^29: a division in 32 bits, which small cores
 /// have or emulate cheaply, and one step of Newton's iteration.
-#[inline(always)]
+#[cfg_attr(not(feature = "small"), inline(always))]
 fn reciprocal(d: u32) -> u32 {
     let coarse = quotient(d.wrapping_add(1 << 14) >> 15) << 14;
     // d * coarse is 2^61 but for a part in 2^15.
@@ -149,7 +149,7 @@ fn slopes_of_wide(v: [i64; 3]) -> Option<([Fixed; 3], usize)> {
 }
 
 /// [`Number::slopes`] of a vector of at most 31 bits and a sign.
-#[inline(always)]
+#[cfg_attr(not(feature = "small"), inline(always))]
 fn slopes_of_narrow(v: [i32; 3]) -> Option<([Fixed; 3], usize)> {
     let [x, y, z] = v.map(i32::unsigned_abs);
     let (largest, axis) = if x >= y && x >= z {
@@ -451,9 +451,25 @@ impl Number for Fixed {
         Product((low as i64).wrapping_add((high as i64) << 32))
     }
 
-    #[inline(always)]
+    // Only cameras are set up with it.
+    #[inline(never)]
     fn wide_over(wide: Product, divisor: i32) -> Product {
-        Product(wide.0.checked_div(divisor as i64).unwrap_or(0))
+        keep(|| divisor > 0 && divisor < 1 << 24);
+        let divisor = divisor.unsigned_abs();
+        // Byte by byte, in 32 bits: cores without a division in 64 would need a kilobyte for one.
+        let (mut quotient, mut rest) = (0_u64, 0_u32);
+        for byte in wide.0.unsigned_abs().to_be_bytes() {
+            let dividend = rest << 8 | u32::from(byte);
+            let digit = dividend.checked_div(divisor).unwrap_or(0);
+            rest = dividend.wrapping_sub(digit.wrapping_mul(divisor));
+            quotient = quotient << 8 | u64::from(digit);
+        }
+        let quotient = quotient as i64;
+        Product(if wide.0 < 0 {
+            quotient.wrapping_neg()
+        } else {
+            quotient
+        })
     }
 
     #[inline(always)]
@@ -466,12 +482,12 @@ impl Number for Fixed {
         Product(q13)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     fn from_wide(product: Product) -> Self {
         saturate(round_off(product.0, RATIO_BITS))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     fn wide_scale(wide: Product, ratio: Self) -> Product {
         keep(|| i64::try_from((wide.0 as i128 * ratio.0 as i128) >> RATIO_BITS).is_ok());
         let high = (wide.0 >> 32).wrapping_mul(ratio.0 as i64);
@@ -564,7 +580,7 @@ impl Number for Fixed {
         Fixed((product(depth.0.wrapping_shl(1), shear.0) >> 32) as i32)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     fn surround(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool {
         if NARROW_PRODUCTS && let Some(surround) = halves::surround(a, b, c) {
             return surround;
@@ -595,7 +611,7 @@ impl Number for Fixed {
         v.map(|component| Fixed(shift_magnitude(component, bits)))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     fn slopes(v: [Product; 3]) -> Option<([Self; 3], usize)> {
         let v = v.map(|product| product.0);
         let narrow = v.map(|component| component as i32);
@@ -612,7 +628,7 @@ impl Number for Fixed {
         slopes_of_narrow(v.map(|component| component.0))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     fn recip_norm2(d: [Self; 3]) -> Self {
         // d . d has 60 fraction bits: as 29, 1 to 3 lies in [2^29, 2^31).
         let norm2 = (Self::dot(d, d).0 >> 31) as u32;

@@ -221,7 +221,7 @@ pub trait Number:
     fn is_finite(wide: Self::Wide) -> bool;
     /// A wide number times an integer.
     fn wide_times(wide: Self::Wide, factor: i32) -> Self::Wide;
-    /// A wide number over a positive integer, towards zero.
+    /// A wide number over a positive integer below 2^24, towards zero.
     fn wide_over(wide: Self::Wide, divisor: i32) -> Self::Wide;
     /// The upper half of a wide number that fills its bits, in a unit of its own: enough for a
     /// direction. Floats have no halves.
@@ -229,7 +229,7 @@ pub trait Number:
     /// A far coordinate from an integer with 13 fraction bits.
     fn far(q13: i64) -> Self::Wide;
     /// Three products added: `a . b`.
-    #[inline(always)]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     fn dot(a: [Self; 3], b: [Self; 3]) -> Self::Wide {
         a[0].wide(b[0]) + a[1].wide(b[1]) + a[2].wide(b[2])
     }

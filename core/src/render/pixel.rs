@@ -78,7 +78,7 @@ fn bayer(x: u16, y: u16) -> u16 {
 
 /// The linear value of every sRGB code (IEC 61966-2-1), 65535 being white.
 #[rustfmt::skip]
-const LINEAR_OF_SRGB: [u16; 256] = [
+static LINEAR_OF_SRGB: [u16; 256] = [
     0, 20, 40, 60, 80, 99, 119, 139, 159, 179, 199, 219,
     241, 264, 288, 313, 340, 367, 396, 427, 458, 491, 526, 562,
     599, 637, 677, 718, 761, 805, 851, 898, 947, 997, 1048, 1101,

@@ -165,7 +165,7 @@ pub(crate) fn cross_plane<N: Number>(ray: &Ray<N>, normal: [N; 3], relative: [N;
 }
 
 /// The larger of two extents, for error bounds.
-#[inline(always)]
+#[cfg_attr(not(feature = "small"), inline(always))]
 pub(crate) fn extent<N: Number>(coordinates: [N; 3]) -> N {
     coordinates[0]
         .abs()

@@ -88,7 +88,7 @@ impl<N: Number> StripRay<N> {
     /// The places that are met, and those of which lanes cannot say.
     #[inline(always)]
     fn met_in_lanes<S: Strip>(&self, strip: &S) -> (u32, u32) {
-        let Projection { sight, shear } = &self.projection;
+        let Projection { sight, shear, .. } = &self.projection;
         let all = |number: N| Eight::splat(number.to_f32());
         let [first, second, last] =
             [0, 1, 2].map(|role| strip.rows().measure(axis(self.axes, role)));

@@ -10,7 +10,7 @@
 
 use super::{Crossing, Surface, cross_plane, extent};
 use crate::blob::record::{UnitBox, Vertex};
-use crate::number::{Number, Sight, product};
+use crate::number::{Number, Sight, pick, product};
 use crate::ray::Ray;
 
 /// The projection along a ray: how its origin sees coordinates on the axes in the order of their roles
@@ -19,21 +19,37 @@ use crate::ray::Ray;
 pub(crate) struct Projection<N> {
     pub(super) sight: [Sight<N>; 3],
     pub(super) shear: [N; 2],
+    major: usize,
+}
+
+/// Stands for a major axis that is not known when the code is compiled.
+pub(crate) const ANY: usize = 3;
+
+/// The axis of a role, by a major axis as a constant, or else as it is.
+#[inline(always)]
+fn axis<const MAJOR: usize>(major: usize, role: usize) -> usize {
+    let major = if MAJOR == ANY { major } else { MAJOR };
+    match major {
+        0 => pick([1, 2, 0], role),
+        1 => pick([2, 0, 1], role),
+        _ => role,
+    }
 }
 
 impl<N: Number> Projection<N> {
-    /// The projection of vertices `V` along a ray whose major axis is `MAJOR`.
+    /// The projection of vertices `V` along a ray whose major axis is `MAJOR`, or [`ANY`].
     #[inline(always)]
     pub(crate) fn of<const MAJOR: usize, V: Vertex>(ray: &Ray<N>) -> Self {
-        let axis = |role: usize| (MAJOR + 1 + role) % 3;
+        let slope = |role: usize| pick(ray.slope, axis::<MAJOR>(ray.major, role));
         let sight = |role: usize| {
-            let axis = axis(role);
-            N::sight(ray.origin[axis], ray.slope[axis], V::STEP_BITS)
+            let origin = pick(ray.origin, axis::<MAJOR>(ray.major, role));
+            N::sight(origin, slope(role), V::STEP_BITS)
         };
-        let shear = |role: usize| N::shear(ray.slope[axis(role)], ray.slope[MAJOR]);
+        let shear = |role: usize| N::shear(slope(role), slope(2));
         Self {
             sight: [sight(0), sight(1), sight(2)],
             shear: [shear(0), shear(1)],
+            major: ray.major,
         }
     }
 
@@ -41,10 +57,10 @@ impl<N: Number> Projection<N> {
     /// seen edge on.
     ///
     /// Cost: 9 loads and some 30 multiplications and additions.
-    #[inline(always)]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     pub(crate) fn meets<const MAJOR: usize, V: Vertex>(&self, a: &V, b: &V, c: &V) -> bool {
         let seen = |vertex: &V, role: usize| {
-            let coordinate = vertex.steps((MAJOR + 1 + role) % 3);
+            let coordinate = vertex.steps(axis::<MAJOR>(self.major, role));
             N::seen(coordinate, &self.sight[role])
         };
         let depth = [seen(a, 2), seen(b, 2), seen(c, 2)];
@@ -77,7 +93,7 @@ pub(crate) fn cross<N: Number>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> Option<C
 }
 
 /// The normal, of any length: exact but for one rounding a component.
-#[inline(always)]
+#[cfg_attr(not(feature = "small"), inline(always))]
 fn normal<N: Number>([a, b, c]: [[i32; 3]; 3]) -> [N; 3] {
     let edge = |from: [i32; 3], to: [i32; 3]| {
         let axis = |k: usize| to[k].wrapping_sub(from[k]);

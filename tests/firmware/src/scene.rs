@@ -1,6 +1,6 @@
 //! The scene in flash, and the memory, number format and structure to trace it with.
 
-use gridel_core::{Renderer, Workspace};
+use gridel_core::{BlobError, Renderer, Scene, Workspace};
 
 include!(concat!(env!("OUT_DIR"), "/limits.rs"));
 
@@ -30,6 +30,22 @@ pub type Accel = gridel_core::DualSplit;
 pub type Accel = gridel_core::Flagged;
 #[cfg(feature = "grid")]
 pub type Accel = gridel_core::Grid;
+
+/// The scene, proved now.
+#[cfg(not(feature = "vouched"))]
+pub fn load() -> Result<Scene<'static>, BlobError> {
+    Scene::from_bytes(core::hint::black_box(BLOB))
+}
+
+/// The scene, proved while the program was compiled.
+#[cfg(feature = "vouched")]
+pub fn load() -> Result<Scene<'static>, BlobError> {
+    static VOUCHED: gridel_core::Vouched<'static> = match gridel_core::Vouched::of(BLOB) {
+        Ok(vouched) => vouched,
+        Err(_) => panic!("the blob was damaged"),
+    };
+    Scene::vouched(core::hint::black_box(VOUCHED))
+}
 
 /// A workspace that is exactly large enough.
 pub type Space = Workspace<Number, STACK_DEPTH, WORK_DEPTH>;

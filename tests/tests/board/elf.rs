@@ -27,6 +27,13 @@ impl Elf {
         file.segments().map(|segment| segment.file_range().1).sum()
     }
 
+    /// Bytes of them that are the vector table.
+    pub fn vector_bytes(&self) -> u64 {
+        let file = self.file();
+        let table = file.section_by_name(".vector_table");
+        table.map_or(0, |section| section.size())
+    }
+
     /// Bytes in RAM beside the stack.
     pub fn static_bytes(&self) -> u64 {
         let file = self.file();

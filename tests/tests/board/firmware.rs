@@ -106,6 +106,7 @@ pub struct Build<'b> {
     structure: Structure,
     scene: &'b Compiled,
     overflow_checks: bool,
+    small: bool,
 }
 
 impl fmt::Display for Build<'_> {
@@ -113,7 +114,8 @@ impl fmt::Display for Build<'_> {
         let (board, scene) = (self.board.name, self.scene.name);
         let (format, structure) = (self.format.name(), self.structure.name());
         let checked = if self.overflow_checks { " checked" } else { "" };
-        write!(f, "{scene} {board} {format} {structure}{checked}")
+        let small = if self.small { " small" } else { "" };
+        write!(f, "{scene} {board} {format} {structure}{checked}{small}")
     }
 }
 
@@ -148,6 +150,7 @@ impl<'b> Build<'b> {
             structure,
             scene,
             overflow_checks: false,
+            small: false,
         }
     }
 
@@ -157,6 +160,19 @@ impl<'b> Build<'b> {
             overflow_checks: true,
             ..self
         }
+    }
+
+    /// The same for the least flash: small code, and a blob that is vouched for.
+    pub fn small(self) -> Self {
+        Self {
+            small: true,
+            ..self
+        }
+    }
+
+    /// Whether it is built so.
+    pub fn is_small(&self) -> bool {
+        self.small
     }
 
     /// Builds one of the firmware's programs with what the scene calls for, and nothing else.
@@ -180,15 +196,24 @@ impl<'b> Build<'b> {
 
         let target_folder =
             Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("firmware-{number}"));
+        let (profile, small): (_, &[_]) = if self.small {
+            ("small", &["small"])
+        } else {
+            ("release", &[])
+        };
         let mut cargo = Command::new(env!("CARGO"));
         cargo
             .current_dir(repository().join("tests/firmware"))
-            .args(["build", "--release", "--locked", "--target"])
+            .args(["build", "--profile", profile, "--locked", "--target"])
             .args([self.board.target, "--bin", name, "--features"])
             .arg(
-                [&[self.format.name(), self.structure.name()], features]
-                    .concat()
-                    .join(","),
+                [
+                    &[self.format.name(), self.structure.name()],
+                    small,
+                    features,
+                ]
+                .concat()
+                .join(","),
             );
         // What is meant for the host's build would change what is measured.
         for (variable, _) in env::vars_os() {
@@ -230,7 +255,7 @@ impl<'b> Build<'b> {
         };
         let built = target_folder
             .join(self.board.target)
-            .join("release")
+            .join(profile)
             .join(format!("{name}{extension}"));
         fs::copy(built, folder.join("firmware.elf")).expect("the target folder can be written to");
         Ok(Program {

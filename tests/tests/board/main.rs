@@ -196,6 +196,9 @@ fn nothing_panics_with_overflow_checks() {
         ("mps2-an500", Format::F64),
     ]
     .map(|(name, format)| (name, format, Structure::DualSplit));
+    let checked = |name, format, structure| {
+        Build::new(board(name), format, structure, &scene).with_overflow_checks()
+    };
     let others = [
         Structure::Flagged,
         Structure::Bvh,
@@ -203,8 +206,11 @@ fn nothing_panics_with_overflow_checks() {
         Structure::Apex,
     ]
     .map(|structure| ("mps2-an385", Format::Fixed, structure));
-    for (name, format, structure) in everywhere.into_iter().chain(others) {
-        let build = Build::new(board(name), format, structure, &scene).with_overflow_checks();
+    let builds = everywhere.into_iter().chain(others);
+    let builds = builds.map(|(name, format, structure)| checked(name, format, structure));
+    let small = ["microbit", "mps2-an385"]
+        .map(|name| checked(name, Format::Fixed, Structure::DualSplit).small());
+    for build in builds.chain(small) {
         let elf = build.program_with("picture", &["everything"]).elf();
         let panicking = elf.functions(elf::panics);
         assert!(panicking.is_empty(), "{build} can panic: {panicking:#?}");
@@ -268,6 +274,60 @@ fn everything_on_every_board() {
         figures.add(&build.to_string(), &footprint(&build, &elf, &scene));
     }
     figures.check();
+}
+
+/// Flash for all code that a diffuse scene of triangles and spheres with shadows needs, the vector table
+/// included: at most this where it shall be small.
+const SMALL_CODE: u64 = 16 * 1024;
+
+/// What the feature `small` saves, and what rays pay for it: the README's table.
+#[test]
+fn small_code_fits_in_16_kib() {
+    if !firmware::available() {
+        return;
+    }
+    let discovery = board("stm32vldiscovery");
+    let scene = parts::sphere_and_triangle();
+    let fast = || Build::new(discovery, Format::Fixed, Structure::DualSplit, &scene);
+    let mut figures = Figures::new();
+    for build in [fast(), fast().small()] {
+        let elf = build.program("bare").elf();
+        let mut report = footprint(&build, &elf, &scene);
+        report.insert("vector-bytes".into(), elf.vector_bytes());
+        if build.is_small() {
+            let code = report["code-bytes"];
+            assert!(code <= SMALL_CODE, "{build}: {code} bytes of code");
+        }
+        let program = build.program("picture");
+        let mut run = program.run();
+        run.retain(|name, _| name.ends_with("-instructions"));
+        assert!(program.file("picture.rgb") == scene.picture(Format::Fixed));
+        report.extend(run);
+        figures.add(&build.to_string(), &report);
+    }
+    figures.check();
+}
+
+/// Small code gives the same bits, with every shape and effect, and holds no more that panics.
+#[test]
+fn small_pictures_are_the_hosts() {
+    if !firmware::available() {
+        return;
+    }
+    let scene = scenes::quick();
+    for (name, format) in [
+        ("mps2-an386", Format::F32),
+        ("mps2-an385", Format::Fixed),
+        ("microbit", Format::Fixed),
+        ("sifive_e", Format::Fixed),
+    ] {
+        let build = Build::new(board(name), format, Structure::DualSplit, &scene).small();
+        let program = build.program("picture");
+        let mut report = program.run();
+        let picture = program.file("picture.rgb");
+        assert!(picture == scene.picture(format), "{build}: another picture");
+        look_into(&build, &program.elf(), board(name), format, &mut report);
+    }
 }
 
 /// Flash for code, and the deepest call stack.

@@ -12,8 +12,12 @@ pub fn boards() -> serde_json::Value {
 
 /// What they recorded of a scene on a board, through dual-split nodes.
 fn on_board(scene: &str, board: &str, format: &str) -> impl Fn(&str) -> u64 {
+    of_build(format!("{scene} {board} {format} dual-split"))
+}
+
+/// What they recorded of a build.
+fn of_build(build: String) -> impl Fn(&str) -> u64 {
     let recorded = boards();
-    let build = format!("{scene} {board} {format} dual-split");
     move |name| {
         let figure = recorded[&build][name].as_u64();
         figure.unwrap_or_else(|| panic!("no {name} of {build} is recorded"))
@@ -136,4 +140,33 @@ fn the_readme_shows_what_parts_cost() {
         table += &format!("| {name} | {code} | {stack} | {work} |\n");
     }
     holds_table("parts", &table);
+}
+
+/// What the feature `small` saves and costs, as the board tests recorded it. `GRIDEL_BLESS=1` writes it
+/// anew.
+#[test]
+fn the_readme_shows_what_small_code_costs() {
+    let mut table = String::from(
+        "| | code, bytes | the vector table among them | call stack, bytes | instructions to load | \
+         a primary ray | a shadow ray | the picture |\n|---|---|---|---|---|---|---|---|\n",
+    );
+    for (name, suffix) in [
+        ("`opt-level = 3`, all proofs at the start", ""),
+        ("`small`, `opt-level = \"z\"`, vouched for", " small"),
+    ] {
+        let part = "sphere, triangle, shadow stm32vldiscovery fixed dual-split";
+        let figure = of_build(format!("{part}{suffix}"));
+        let cells = [
+            "code-bytes",
+            "vector-bytes",
+            "call-stack-bytes",
+            "load-instructions",
+            "ray-instructions",
+            "shadow-ray-instructions",
+            "picture-instructions",
+        ]
+        .map(|name| grouped(figure(name)));
+        table += &format!("| {name} | {} |\n", cells.join(" | "));
+    }
+    holds_table("small", &table);
 }

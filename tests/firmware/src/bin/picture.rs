@@ -3,12 +3,12 @@
 #![no_std]
 #![no_main]
 
-use gridel_core::{NoCount, Rgb888, Scene, Settings, Stack};
+use gridel_core::{NoCount, Rgb888, Settings, Stack};
 use gridel_firmware::board::File;
 use gridel_firmware::measure::{Cost, Meter};
 use gridel_firmware::rays::Until;
 use gridel_firmware::report::{cost, fail, line};
-use gridel_firmware::scene::{BLOB, STACK_DEPTH, SceneRenderer, Space, WIDTH};
+use gridel_firmware::scene::{BLOB, STACK_DEPTH, SceneRenderer, Space, WIDTH, load};
 use gridel_firmware::{program, rays};
 
 /// Pixels that are measured together.
@@ -36,7 +36,7 @@ program!(run, Memory);
 fn run(memory: &'static mut Memory) {
     let meter = Meter::new();
     let mut scene = None;
-    let load = meter.run(|| scene = Scene::from_bytes(BLOB).ok());
+    let load = meter.run(|| scene = load().ok());
     let Some(scene) = &scene else {
         fail("the blob is refused")
     };

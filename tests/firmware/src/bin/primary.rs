@@ -6,7 +6,7 @@ use gridel_core::{Scene, Settings, Stack};
 use gridel_firmware::measure::Meter;
 use gridel_firmware::rays::Until;
 use gridel_firmware::report::{cost, fail, line};
-use gridel_firmware::scene::{BLOB, STACK_DEPTH, SceneRenderer};
+use gridel_firmware::scene::{BLOB, STACK_DEPTH, SceneRenderer, load};
 use gridel_firmware::{program, rays};
 
 type Memory = Stack<STACK_DEPTH>;
@@ -16,7 +16,7 @@ program!(run, Memory);
 fn run(stack: &'static mut Memory) {
     let meter = Meter::new();
     let mut scene = None;
-    let load = meter.run(|| scene = Scene::from_bytes(BLOB).ok());
+    let load = meter.run(|| scene = load().ok());
     let Some(scene) = &scene else {
         fail("the blob is refused")
     };
