@@ -165,10 +165,14 @@ fn slopes_of_narrow(v: [i32; 3]) -> Option<([Fixed; 3], usize)> {
     let up = largest.leading_zeros().wrapping_sub(1) & 31;
     let inverse = reciprocal(largest << up);
     let minor = |component: i32| {
-        let scaled = component.unsigned_abs() << up;
+        let scaled = component.unsigned_abs().wrapping_shl(up);
         let magnitude = (product_unsigned(scaled, inverse) >> 31) as u32;
         let magnitude = magnitude.min(1 << RATIO_BITS) as i32;
-        Fixed(if component < 0 { -magnitude } else { magnitude })
+        Fixed(if component < 0 {
+            magnitude.wrapping_neg()
+        } else {
+            magnitude
+        })
     };
     let one = |component: i32| {
         if component < 0 {
@@ -458,11 +462,13 @@ impl Number for Fixed {
         let divisor = divisor.unsigned_abs();
         // Byte by byte, in 32 bits: cores without a division in 64 would need a kilobyte for one.
         let (mut quotient, mut rest) = (0_u64, 0_u32);
-        for byte in wide.0.unsigned_abs().to_be_bytes() {
-            let dividend = rest << 8 | u32::from(byte);
+        let mut left = wide.0.unsigned_abs();
+        for _ in 0..8 {
+            let dividend = rest << 8 | (left >> 56) as u32;
             let digit = dividend.checked_div(divisor).unwrap_or(0);
             rest = dividend.wrapping_sub(digit.wrapping_mul(divisor));
             quotient = quotient << 8 | u64::from(digit);
+            left <<= 8;
         }
         let quotient = quotient as i64;
         Product(if wide.0 < 0 {

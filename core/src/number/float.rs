@@ -64,7 +64,13 @@ const SMALLEST_F64: f64 = 1.0 / (1u64 << 50) as f64 / (1u64 << 50) as f64;
 /// One at a time, because one comes back in a register: through memory they would burden all rays.
 #[cold]
 #[inline(never)]
-fn slope_of_extremes<N: Number<Wide = N>>(x: N, y: N, z: N, axis: usize) -> Option<N> {
+fn slope_of_extremes<N: Number<Wide = N>>(
+    x: N,
+    y: N,
+    z: N,
+    axis: usize,
+    major: usize,
+) -> Option<N> {
     let mut scaled = [x, y, z];
     let ordinary = scaled.iter().all(|&component| N::is_finite(component));
     if !ordinary || extent(scaled) == N::ZERO {
@@ -81,7 +87,14 @@ fn slope_of_extremes<N: Number<Wide = N>>(x: N, y: N, z: N, axis: usize) -> Opti
             break;
         }
     }
-    N::slopes(scaled).map(|(slopes, _)| pick(slopes, axis))
+    let component = pick(scaled, axis);
+    Some(if axis != major {
+        (component * N::ONE.over(extent(scaled)) + N::ZERO).settle()
+    } else if component < N::ZERO {
+        -N::ONE
+    } else {
+        N::ONE
+    })
 }
 
 /// All of them. Not a closure, whose captures would lie in memory for all rays.
@@ -92,7 +105,7 @@ fn slopes_of_extremes<N: Number<Wide = N>>(
     z: N,
     major: usize,
 ) -> Option<([N; 3], usize)> {
-    let slope = |axis: usize| slope_of_extremes(x, y, z, axis);
+    let slope = |axis: usize| slope_of_extremes(x, y, z, axis, major);
     Some(([slope(0)?, slope(1)?, slope(2)?], major))
 }
 
@@ -376,7 +389,8 @@ macro_rules! float_number {
                 let magnitude = |x: $float| x.to_bits() << 1;
                 let [x, y, z] = v.map(magnitude);
                 let (low, high) = (magnitude($smallest), magnitude(1.0 / $smallest));
-                let is_ordinary = |x: $float| magnitude(x).wrapping_sub(low) <= high - low;
+                let is_ordinary =
+                    |x: $float| magnitude(x).wrapping_sub(low) <= high.wrapping_sub(low);
                 let one = |x: $float| (1.0 as $float).copysign(x);
                 // Adding zero turns -0.0 into 0.0.
                 let over = |x: $float, largest: $float| $settle(x * (1.0 / largest.abs()) + 0.0);

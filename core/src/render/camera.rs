@@ -6,7 +6,7 @@
 
 use super::sample::SUBPIXELS;
 use crate::blob::record::{UnitBox, View};
-use crate::number::Number;
+use crate::number::{Number, pick};
 use crate::ray::{Pencil, Ray, RayError};
 
 /// Makes directions for the pixels of a picture.
@@ -33,7 +33,7 @@ impl<N: Number> Camera<N> {
         // upper half.
         let aspect = width.div_ceil(height.max(1));
         let reach = |k: usize| {
-            let size = |v: [i32; 3]| u64::from(v[k].unsigned_abs());
+            let size = |v: [i32; 3]| u64::from(pick(v, k).unsigned_abs());
             let right = size(view.right) * u64::from(aspect);
             right
                 .wrapping_add(size(view.forward))

@@ -31,7 +31,8 @@ fn within(index: u16, count: u16) -> [i32; 2] {
         column ^= column >> 1;
     }
     // Half a cell of the finest power of two that holds the samples.
-    let half_cell = (SUBPIXELS / 2) >> count.min(256).next_power_of_two().trailing_zeros();
+    let bits = u16::BITS - count.min(256).saturating_sub(1).leading_zeros();
+    let half_cell = (SUBPIXELS / 2) >> bits;
     [
         i32::from(mirrored) + half_cell,
         i32::from(second) + half_cell,

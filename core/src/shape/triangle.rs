@@ -61,15 +61,19 @@ impl<N: Number> Projection<N> {
     pub(crate) fn meets<const MAJOR: usize, V: Vertex>(&self, a: &V, b: &V, c: &V) -> bool {
         let seen = |vertex: &V, role: usize| {
             let coordinate = vertex.steps(axis::<MAJOR>(self.major, role));
-            N::seen(coordinate, &self.sight[role])
+            N::seen(coordinate, &pick(self.sight, role))
         };
         let depth = [seen(a, 2), seen(b, 2), seen(c, 2)];
         let across = |role: usize| {
-            let stray = |corner: usize| N::stray(depth[corner], self.shear[role]);
+            let shear = if role == 0 {
+                self.shear[0]
+            } else {
+                self.shear[1]
+            };
             [
-                seen(a, role) + stray(0),
-                seen(b, role) + stray(1),
-                seen(c, role) + stray(2),
+                seen(a, role) + N::stray(depth[0], shear),
+                seen(b, role) + N::stray(depth[1], shear),
+                seen(c, role) + N::stray(depth[2], shear),
             ]
         };
         let x = across(0);

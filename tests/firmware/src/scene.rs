@@ -31,15 +31,15 @@ pub type Accel = gridel_core::Flagged;
 #[cfg(feature = "grid")]
 pub type Accel = gridel_core::Grid;
 
-/// The scene, proved now.
+/// The scene of [`BLOB`], proved now.
 #[cfg(not(feature = "vouched"))]
-pub fn load() -> Result<Scene<'static>, BlobError> {
-    Scene::from_bytes(core::hint::black_box(BLOB))
+pub fn load(blob: &'static [u8]) -> Result<Scene<'static>, BlobError> {
+    Scene::from_bytes(blob)
 }
 
-/// The scene, proved while the program was compiled.
+/// The scene of [`BLOB`], proved while the program was compiled.
 #[cfg(feature = "vouched")]
-pub fn load() -> Result<Scene<'static>, BlobError> {
+pub fn load(_: &'static [u8]) -> Result<Scene<'static>, BlobError> {
     static VOUCHED: gridel_core::Vouched<'static> = match gridel_core::Vouched::of(BLOB) {
         Ok(vouched) => vouched,
         Err(_) => panic!("the blob was damaged"),

@@ -208,8 +208,14 @@ fn nothing_panics_with_overflow_checks() {
     .map(|structure| ("mps2-an385", Format::Fixed, structure));
     let builds = everywhere.into_iter().chain(others);
     let builds = builds.map(|(name, format, structure)| checked(name, format, structure));
-    let small = ["microbit", "mps2-an385"]
-        .map(|name| checked(name, Format::Fixed, Structure::DualSplit).small());
+    // In single precision libm's square root holds a sum that small code does not see through.
+    let small = [
+        ("microbit", Format::Fixed),
+        ("mps2-an385", Format::Fixed),
+        ("sifive_e", Format::Fixed),
+        ("mps2-an500", Format::F64),
+    ]
+    .map(|(name, format)| checked(name, format, Structure::DualSplit).small());
     for build in builds.chain(small) {
         let elf = build.program_with("picture", &["everything"]).elf();
         let panicking = elf.functions(elf::panics);

@@ -2,8 +2,10 @@
 //!
 //! Every direct call and jump is decoded (Thumb and RV32); the frame of a function is what the
 //! compiler stated in `.stack_sizes`, or, for the libraries that come compiled, what its prologue
-//! takes. The bound holds because nothing is called through a pointer (relocations would show a
-//! function's address taken) and nothing recurses: both are demanded here.
+//! takes. The bound holds because nothing is called through a pointer that was handed on and nothing
+//! recurses: both are demanded here. Relocations show whose address is taken and where. Only code may
+//! take one, and counts as calling it: small code loads the address of what it calls more than twice,
+//! and calls the register. What calls a register without having taken an address is refused.
 
 use object::elf::{
     R_ARM_ABS32, R_ARM_MOVT_ABS, R_ARM_MOVW_ABS_NC, R_ARM_THM_MOVT_ABS, R_ARM_THM_MOVW_ABS_NC,
@@ -41,7 +43,7 @@ impl CallGraph {
     /// Reads a program that was linked with `--emit-relocs`.
     ///
     /// # Errors
-    /// If a frame cannot be told, or the address of a function is taken.
+    /// If a frame cannot be told, or a function may be called through a pointer that was handed on.
     pub fn read(file: &File<'_>) -> Result<Self, String> {
         let decoder: Decoder = match file.architecture() {
             Architecture::Arm => thumb,
@@ -51,10 +53,7 @@ impl CallGraph {
         let code = Code::of(file);
         let stated = stated_frames(file);
         let ranges = functions(file);
-        let taken = taken_addresses(file, &ranges);
-        if !taken.is_empty() {
-            return Err(format!("functions are called through pointers: {taken:?}"));
-        }
+        let taken = taken_addresses(file, &ranges)?;
         let mut functions = BTreeMap::new();
         let entry = file.entry() & !1;
         let steps: Vec<u64> = ranges
@@ -75,6 +74,13 @@ impl CallGraph {
             };
             let outside = |target: &u64| !range.contains(target);
             let mut calls: Vec<u64> = decoded.targets.into_iter().filter(outside).collect();
+            match taken.get(&range.start) {
+                Some(taken) => calls.extend(taken),
+                None if decoded.calls_register => {
+                    return Err(format!("{name} calls through a pointer that it was handed"));
+                }
+                None => (),
+            }
             if range.start == entry {
                 calls.extend(&steps);
             }
@@ -200,11 +206,17 @@ const TRAPS: [&str; 3] = ["_start_trap", "_default_start_trap", "_default_abort"
 /// The steps of riscv-rt's start-up code, which jumps through registers from one to the next.
 const STEPS: [&str; 2] = ["_abs_start", "_start_rust"];
 
-/// Functions whose address the program takes, so that it might call them through a pointer.
-fn taken_addresses(file: &File<'_>, functions: &[(Range<u64>, String)]) -> Vec<String> {
-    let mut taken = Vec::new();
+/// By function, the functions whose address it takes, so that it might call them through a register.
+///
+/// # Errors
+/// If data holds the address of a function.
+fn taken_addresses(
+    file: &File<'_>,
+    functions: &[(Range<u64>, String)],
+) -> Result<BTreeMap<u64, Vec<u64>>, String> {
+    let mut taken: BTreeMap<u64, Vec<u64>> = BTreeMap::new();
     for section in file.sections() {
-        let name = section.name().unwrap_or_default();
+        let section_name = section.name().unwrap_or_default();
         let kinds = [
             SectionKind::Text,
             SectionKind::ReadOnlyData,
@@ -212,7 +224,7 @@ fn taken_addresses(file: &File<'_>, functions: &[(Range<u64>, String)]) -> Vec<S
         ];
         let allocated = kinds.contains(&section.kind());
         // The hardware calls what the vector table names; nobody unwinds.
-        if !allocated || [".vector_table", ".ARM.exidx"].contains(&name) {
+        if !allocated || [".vector_table", ".ARM.exidx"].contains(&section_name) {
             continue;
         }
         for (place, relocation) in section.relocations() {
@@ -234,15 +246,21 @@ fn taken_addresses(file: &File<'_>, functions: &[(Range<u64>, String)]) -> Vec<S
                 | R_RISCV_PCREL_HI20 => symbol.wrapping_add_signed(relocation.addend()),
                 _ => continue,
             };
-            let function = functions
-                .iter()
-                .find(|(range, _)| range.start == value & !1);
-            let name = function.map(|(_, name)| name);
             let harmless = |name: &str| TRAPS.contains(&name) || STEPS.contains(&name);
-            taken.extend(name.filter(|name| !harmless(name)).cloned());
+            let Some((target, name)) = functions
+                .iter()
+                .find(|(range, name)| range.start == value & !1 && !harmless(name))
+            else {
+                continue;
+            };
+            let taker = functions.iter().find(|(range, _)| range.contains(&place));
+            let Some((taker, _)) = taker else {
+                return Err(format!("{section_name} holds a pointer to {name}"));
+            };
+            taken.entry(taker.start).or_default().push(target.start);
         }
     }
-    taken
+    Ok(taken)
 }
 
 fn word<'d>(section: &impl ObjectSection<'d>, address: u64) -> u64 {
@@ -263,6 +281,8 @@ struct Decoded {
     /// Bytes by which the stack pointer falls; `None` if that cannot be told.
     frame: Option<u64>,
     targets: Vec<u64>,
+    /// Whether it calls an address in a register.
+    calls_register: bool,
     /// A register and an upper part that was put into it (RV32).
     upper: Option<(u32, u32)>,
 }
@@ -334,6 +354,8 @@ fn thumb(address: u32, first: u16, second: u16, decoded: &mut Decoded) -> u64 {
             _ if first >> 9 == 0b1011010 => decoded.takes(4 * (first & 0x1ff).count_ones()),
             _ if first >> 7 == 0b101100001 => decoded.takes(4 * (first & 0x7f)),
             _ if first & 0xff87 == 0x4485 => decoded.frame = None,
+            // BLX Rm.
+            _ if first & 0xff87 == 0x4780 => decoded.calls_register = true,
             // B, with and without a condition.
             _ if first >> 11 == 0b11100 => {
                 decoded.reaches(from.wrapping_add(signed((first & 0x7ff) << 1, 12)));
@@ -398,6 +420,8 @@ fn riscv(address: u32, first: u16, second: u16, decoded: &mut Decoded) -> u64 {
                 let offset = offset | bit(7, 6) | bit(6, 7) | (half >> 3 & 7) << 1 | bit(2, 5);
                 decoded.reaches(address.wrapping_add(signed(offset, 12)));
             }
+            // C.JALR.
+            (0b100, 2) if half & 0x107c == 0x1000 => decoded.calls_register |= half >> 7 & 31 != 0,
             // C.ADDI and C.ADDI16SP on the stack pointer.
             (0b000, 1) if half >> 7 & 31 == SP => {
                 let add = signed(bit(12, 5) | half >> 2 & 31, 6) as i32;
@@ -425,10 +449,11 @@ fn riscv(address: u32, first: u16, second: u16, decoded: &mut Decoded) -> u64 {
         // AUIPC, then JALR.
         0x17 => decoded.upper = Some((to, address.wrapping_add(word & 0xffff_f000))),
         0x67 => {
-            let known = upper.filter(|&(register, _)| register == from);
-            decoded
-                .targets
-                .extend(known.map(|(_, upper)| u64::from(upper.wrapping_add(immediate))));
+            match upper.filter(|&(register, _)| register == from) {
+                Some((_, upper)) => decoded.reaches(upper.wrapping_add(immediate)),
+                // Without a place to return to it is a return, or the start-up code's next step.
+                None => decoded.calls_register |= to != 0,
+            }
         }
         // ADDI SP, SP, n.
         0x13 if to == SP && from == SP && word >> 12 & 7 == 0 => {

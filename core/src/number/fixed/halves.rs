@@ -93,10 +93,10 @@ pub(super) fn surround(a: [Fixed; 2], b: [Fixed; 2], c: [Fixed; 2]) -> Option<bo
         .iter()
         .fold(0, |all, &x| all | magnitude(x));
     // Down to 15 bits and a sign; this core has no instruction that counts bits.
-    let mut shift = 0;
-    for step in [8, 4, 2, 2] {
-        if all >> (shift & 31) >= 1 << (13 + step) {
-            shift += step;
+    let mut shift = 0_i32;
+    for (step, limit) in [(8, 1 << 21), (4, 1 << 17), (2, 1 << 15), (2, 1 << 15)] {
+        if all >> (shift & 31) >= limit {
+            shift = shift.wrapping_add(step);
         }
     }
     let [a, b, c] = [a, b, c].map(|point| point.map(|x| x.0 >> (shift & 31)));

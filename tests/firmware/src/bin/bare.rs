@@ -5,7 +5,7 @@
 use core::hint::black_box;
 use gridel_core::{NoCount, Rgb565, Settings};
 use gridel_firmware::program;
-use gridel_firmware::scene::{SceneRenderer, Space, WIDTH, load};
+use gridel_firmware::scene::{BLOB, SceneRenderer, Space, WIDTH, load};
 
 struct Memory {
     space: Space,
@@ -30,7 +30,7 @@ fn run(memory: &'static mut Memory) {
 }
 
 fn render(space: &mut Space, row: &mut [Rgb565; WIDTH]) {
-    let Ok(scene) = load() else {
+    let Ok(scene) = load(black_box(BLOB)) else {
         return;
     };
     let settings = Settings::of(&scene);

@@ -16,7 +16,7 @@ program!(run, Memory);
 fn run(stack: &'static mut Memory) {
     let meter = Meter::new();
     let mut scene = None;
-    let load = meter.run(|| scene = load().ok());
+    let load = meter.run(|| scene = load(BLOB).ok());
     let Some(scene) = &scene else {
         fail("the blob is refused")
     };
