@@ -374,7 +374,11 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         let crossing = triangle::cross(self.ray, corners);
         if let Some(crossing) = crossing {
             let bounds = triangle::bounds(corners);
-            self.consider(crossing, bounds, place);
+            if SMALL {
+                self.consider(crossing, bounds, place);
+            } else {
+                self.take(crossing, bounds, place);
+            }
         }
         self.tell(place, crossing.as_ref(), count);
     }

@@ -112,14 +112,14 @@ impl Accel for DualSplit {
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
+        let nodes = scene.held.dual_split.0;
+        let mut limit = <Cull as PairCulling<N>>::limit(ray.tmax);
+        let mut interval = PairCulling::<N>::root(cull, scene.bounds(), limit);
         let cull = if FORM_IN_MEMORY {
             black_box(cull)
         } else {
             cull
         };
-        let nodes = scene.held.dual_split.0;
-        let mut limit = <Cull as PairCulling<N>>::limit(ray.tmax);
-        let mut interval = PairCulling::<N>::root(cull, scene.bounds(), limit);
         tested(count, 6, || Event::Tested {
             place: place(0),
             sides: scene.bounds().0.map(|axis| axis.map(Some)),

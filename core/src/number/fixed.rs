@@ -5,7 +5,7 @@ mod quotient;
 mod root;
 
 pub(crate) use self::halves::product;
-use self::halves::{product_unsigned, quotient};
+use self::halves::{leading_zeros, product_unsigned, quotient, wide_leading_zeros};
 use self::quotient::Quotient;
 use self::root::{root, root_of_full};
 use super::{CullAxis, Format, NARROW_PRODUCTS, Number, Sight};
@@ -37,12 +37,13 @@ const RATIO_BITS: u32 = 30;
 /// Fraction bits of a radiance.
 const RADIANCE_BITS: u32 = 20;
 
-/// A product's `bits` lowest bits rounded away: to nearest, ties away from zero, so that a mirrored
-/// scene gives mirrored numbers.
+/// A product's `bits` lowest bits, 1 to 31, rounded away: to nearest, ties away from zero, so that a
+/// mirrored scene gives mirrored numbers.
 #[inline(always)]
 const fn round_off(product: i64, bits: u32) -> i64 {
-    let half = (1_i64 << (bits & 63)) >> 1;
-    product.wrapping_add(half).wrapping_add(product >> 63) >> (bits & 63)
+    // A half, less 1 where that turns a tie down: not negative, so that 64 bits are added up once.
+    let half = (1_u32 << (bits & 31) >> 1).wrapping_add((product >> 63) as u32);
+    product.wrapping_add(half as i64) >> (bits & 31)
 }
 
 #[inline(always)]
@@ -121,7 +122,7 @@ fn norm(v: [i32; 3]) -> u64 {
 #[inline(always)]
 fn excess_bits(v: [i64; 3], bits: i32) -> i32 {
     let all = v[0].unsigned_abs() | v[1].unsigned_abs() | v[2].unsigned_abs();
-    64 - all.leading_zeros() as i32 - bits
+    64 - wide_leading_zeros(all) as i32 - bits
 }
 
 /// 2^61 / `d` for `d` in \[2^30, 2^31), to a part in 2^29: a division in 32 bits, which small cores
@@ -162,7 +163,7 @@ fn slopes_of_narrow(v: [i32; 3]) -> Option<([Fixed; 3], usize)> {
     if largest == 0 {
         return None;
     }
-    let up = largest.leading_zeros().wrapping_sub(1) & 31;
+    let up = leading_zeros(largest).wrapping_sub(1) & 31;
     let inverse = reciprocal(largest << up);
     let minor = |component: i32| {
         let scaled = component.unsigned_abs().wrapping_shl(up);
@@ -516,10 +517,10 @@ impl Number for Fixed {
             };
         }
         // The divisor's upper 32 bits are enough: t is a length of at most 31 bits.
-        let shift = b.leading_zeros();
+        let shift = wide_leading_zeros(b);
         let divisor = (b << shift) >> 32;
         let dividend = match shift.checked_sub(32 - RATIO_BITS) {
-            Some(up) if up > a.leading_zeros() => return with_sign(u64::MAX, sign),
+            Some(up) if up > wide_leading_zeros(a) => return with_sign(u64::MAX, sign),
             Some(up) => a << up,
             None => a >> (32 - RATIO_BITS - shift),
         };
@@ -528,9 +529,10 @@ impl Number for Fixed {
         }
         // By the reciprocal, to a part in 2^29, and then by that of the rest: within one sub-step.
         let inverse = reciprocal((divisor >> 1) as u32) as u64;
-        // Both factors have at most 32 bits.
-        let coarse = (dividend >> 31).wrapping_mul(inverse) >> 31;
-        let rest = dividend.wrapping_sub(coarse.wrapping_mul(divisor)) as i64;
+        // All factors have at most 32 bits.
+        let coarse = product_unsigned((dividend >> 31) as u32, inverse as u32) >> 31;
+        let rest = product_unsigned(coarse as u32, divisor as u32);
+        let rest = dividend.wrapping_sub(rest) as i64;
         keep(|| rest.unsigned_abs() < 1 << 37);
         let fine = (rest >> 8).wrapping_mul(inverse as i64);
         let fine = fine.wrapping_add(1 << 53) >> 54;
@@ -563,14 +565,25 @@ impl Number for Fixed {
         let turned = slope.0 >> 31;
         let turn = |x: i32| (x ^ turned).wrapping_sub(turned);
         Sight {
-            origin: Fixed(turn(origin.0)),
+            offset: Fixed(turn(origin.0.wrapping_neg())),
             scale: turn(1_i32.wrapping_shl(LENGTH_BITS.wrapping_sub(bits))),
+        }
+    }
+
+    // Twice as far: with the 31 fraction bits of a shear, the upper half of a product is a length.
+    #[inline(always)]
+    fn depth_sight(origin: Self, slope: Self, bits: u32) -> Sight<Self> {
+        let Sight { offset, scale } = Self::sight(origin, slope, bits);
+        keep(|| offset.0.unsigned_abs() < 1 << 30);
+        Sight {
+            offset: Fixed(offset.0.wrapping_shl(1)),
+            scale: scale.wrapping_shl(1),
         }
     }
 
     #[inline(always)]
     fn seen(coordinate: i32, sight: &Sight<Self>) -> Self {
-        Fixed(coordinate.wrapping_mul(sight.scale)) - sight.origin
+        Fixed(coordinate.wrapping_mul(sight.scale)) + sight.offset
     }
 
     #[inline(always)]
@@ -581,9 +594,8 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn stray(depth: Self, shear: Self) -> Self {
-        keep(|| depth.0.unsigned_abs() < 1 << 30);
         // The upper half of a product, which costs least.
-        Fixed((product(depth.0.wrapping_shl(1), shear.0) >> 32) as i32)
+        Fixed((product(depth.0, shear.0) >> 32) as i32)
     }
 
     #[cfg_attr(not(feature = "small"), inline(always))]
@@ -679,7 +691,7 @@ impl Number for Fixed {
         if bits == 0 {
             self
         } else {
-            Fixed(round_off(self.0 as i64, bits & 63) as i32)
+            Fixed(round_off(self.0 as i64, bits) as i32)
         }
     }
 
@@ -690,7 +702,7 @@ impl Number for Fixed {
             (1 << 17, 0)
         } else if magnitude > 1 << 18 {
             // 2^47 / magnitude; from 1 to 12 leading zeros, since slopes are at most 1.
-            let up = magnitude.leading_zeros().wrapping_sub(1) & 15;
+            let up = leading_zeros(magnitude).wrapping_sub(1) & 15;
             let inverse = reciprocal(magnitude << up) >> (14_u32.wrapping_sub(up) & 31);
             (inverse as i32, 0)
         } else {

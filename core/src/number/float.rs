@@ -338,14 +338,14 @@ macro_rules! float_number {
             #[inline(always)]
             fn sight(origin: Self, _: Self, bits: u32) -> Sight<Self> {
                 Sight {
-                    origin: origin * (1_u32 << (bits & 31)) as $float,
+                    offset: -(origin * (1_u32 << (bits & 31)) as $float),
                     scale: 1,
                 }
             }
 
             #[inline(always)]
             fn seen(coordinate: i32, sight: &Sight<Self>) -> Self {
-                coordinate as $float - sight.origin
+                coordinate as $float + sight.offset
             }
 
             #[inline(always)]

@@ -252,6 +252,11 @@ pub trait Number:
     /// How vertices whose coordinates count `2^bits` steps a unit are seen along an axis, from a ray's
     /// origin and with its slope there.
     fn sight(origin: Self, slope: Self, bits: u32) -> Sight<Self>;
+    /// The same along the ray's major axis, for depths to [`stray`](Self::stray) over.
+    #[inline(always)]
+    fn depth_sight(origin: Self, slope: Self, bits: u32) -> Sight<Self> {
+        Self::sight(origin, slope, bits)
+    }
     /// Where a coordinate, of at most 24 bits, lies as seen so: in floats in steps, in [`Fixed`] a
     /// length, and in the direction in which the ray runs.
     fn seen(coordinate: i32, sight: &Sight<Self>) -> Self;
@@ -302,8 +307,8 @@ pub trait Number:
 /// How vertices are seen along one axis of a ray: see [`Number::sight`].
 #[derive(Clone, Copy, Debug)]
 pub struct Sight<N> {
-    /// The ray's origin, in the measure of what is seen.
-    pub(crate) origin: N,
+    /// What moves a coordinate, in the measure of what is seen, to where it lies as seen from the origin.
+    pub(crate) offset: N,
     /// What makes a coordinate a length, with the sign of the slope; for integers.
     scale: i32,
 }

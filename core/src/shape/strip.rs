@@ -92,8 +92,8 @@ impl<N: Number> StripRay<N> {
         let all = |number: N| Eight::splat(number.to_f32());
         let [first, second, last] =
             [0, 1, 2].map(|role| strip.rows().measure(axis(self.axes, role)));
-        let depth = last - all(sight[2].origin);
-        let (right, up) = (first - all(sight[0].origin), second - all(sight[1].origin));
+        let depth = last + all(sight[2].offset);
+        let (right, up) = (first + all(sight[0].offset), second + all(sight[1].offset));
         let (x, y) = (right + depth * all(shear[0]), up + depth * all(shear[1]));
         let (x1, y1) = (x.next(), y.next());
         let (x2, y2) = (x1.next(), y1.next());

@@ -41,13 +41,12 @@ impl<N: Number> Projection<N> {
     #[inline(always)]
     pub(crate) fn of<const MAJOR: usize, V: Vertex>(ray: &Ray<N>) -> Self {
         let slope = |role: usize| pick(ray.slope, axis::<MAJOR>(ray.major, role));
-        let sight = |role: usize| {
-            let origin = pick(ray.origin, axis::<MAJOR>(ray.major, role));
-            N::sight(origin, slope(role), V::STEP_BITS)
-        };
+        let origin = |role: usize| pick(ray.origin, axis::<MAJOR>(ray.major, role));
+        let sight = |role: usize| N::sight(origin(role), slope(role), V::STEP_BITS);
+        let depth = N::depth_sight(origin(2), slope(2), V::STEP_BITS);
         let shear = |role: usize| N::shear(slope(role), slope(2));
         Self {
-            sight: [sight(0), sight(1), sight(2)],
+            sight: [sight(0), sight(1), depth],
             shear: [shear(0), shear(1)],
             major: ray.major,
         }

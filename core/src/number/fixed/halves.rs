@@ -1,5 +1,5 @@
 //! Products and quotients by halves, with the same bits: for the Cortex-M0, which multiplies 32 bits to
-//! 32 and does not divide.
+//! 32, does not divide and does not count bits.
 
 use super::Fixed;
 use crate::number::NARROW_PRODUCTS;
@@ -60,8 +60,44 @@ pub(super) fn quotient(d: u32) -> u32 {
     if NARROW_PRODUCTS {
         quotient_by_products(d)
     } else {
-        u32::MAX / d.max(1)
+        u32::MAX.checked_div(d).unwrap_or(0)
     }
+}
+
+/// How many bits are 0 above the highest that is 1. Of 0 all, or all but one.
+#[inline(always)]
+pub(super) const fn leading_zeros(x: u32) -> u32 {
+    if NARROW_PRODUCTS {
+        leading_zeros_by_shifts(x)
+    } else {
+        x.leading_zeros()
+    }
+}
+
+/// The same of 64 bits.
+#[inline(always)]
+pub(super) const fn wide_leading_zeros(x: u64) -> u32 {
+    if NARROW_PRODUCTS {
+        match (x >> 32) as u32 {
+            0 => leading_zeros_by_shifts(x as u32).wrapping_add(32),
+            high => leading_zeros_by_shifts(high),
+        }
+    } else {
+        x.leading_zeros()
+    }
+}
+
+/// Most numbers have few.
+#[inline(always)]
+const fn leading_zeros_by_shifts(x: u32) -> u32 {
+    let (mut rest, mut zeros) = (x | 1, 0_u32);
+    while rest >> 24 == 0 {
+        (rest, zeros) = (rest << 8, zeros.wrapping_add(8));
+    }
+    while rest >> 31 == 0 {
+        (rest, zeros) = (rest << 1, zeros.wrapping_add(1));
+    }
+    zeros
 }
 
 /// By Newton's iteration.
@@ -130,6 +166,12 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn leading_zeros_are_counted(x in 1_u32.., shift in 0_u32..32) {
+            let x = (x >> shift).max(1);
+            prop_assert_eq!(leading_zeros_by_shifts(x), x.leading_zeros());
+        }
+
         #[test]
         fn products_of_halves_are_products(a: i32, b: i32) {
             prop_assert_eq!(product_of_halves(a, b), i64::from(a) * i64::from(b));

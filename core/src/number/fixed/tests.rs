@@ -151,7 +151,7 @@ proptest! {
             let slope = Fixed(turn * slope);
             let major = Fixed(turn_depth * Fixed::ONE.0);
             let across = Fixed::sight(Fixed(turn * origin), slope, 8);
-            let along = Fixed::sight(Fixed(0), major, 8);
+            let along = Fixed::depth_sight(Fixed(0), major, 8);
             let stray = Fixed::stray(
                 Fixed::seen(turn_depth * depth, &along),
                 Fixed::shear(slope, major),
