@@ -87,13 +87,14 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     /// Takes a crossing that beats the best hit: a smaller t, or the same t of an earlier primitive.
     ///
     /// Out of line, because few of the primitives that are tested come this far.
-    #[inline(never)]
+    #[cfg_attr(not(feature = "small"), inline(never))]
     fn consider(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: Place) {
         self.take(crossing, bounds, place);
     }
 
     /// The same for code that is out of line itself.
-    #[inline(always)]
+    #[cfg_attr(not(feature = "small"), inline(always))]
+    #[cfg_attr(feature = "small", inline(never))]
     fn take(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: Place) {
         let Some((t, part)) = accept(self.ray, self.cull, crossing, bounds, self.tmax) else {
             return;
