@@ -437,10 +437,17 @@ fn search<N: Number, A: Accel, C: Count, const ANY: bool>(
     if C::TELLS {
         count.tell(ray.query(any));
     }
-    A::walk(scene, ray, &cull, stack, count, |leaf, count| {
-        search.leaf::<A, C>(leaf, count);
-        (!any || search.best.is_none()).then_some(search.tmax)
-    });
+    if ANY {
+        A::walk_any(scene, ray, &cull, stack, count, |leaf, count| {
+            search.leaf::<A, C>(leaf, count);
+            search.best.is_some()
+        });
+    } else {
+        A::walk(scene, ray, &cull, stack, count, |leaf, count| {
+            search.leaf::<A, C>(leaf, count);
+            (!any || search.best.is_none()).then_some(search.tmax)
+        });
+    }
     let best = search.best?;
     Some(Found {
         t: best.t.widen() + ray.moved,
@@ -528,6 +535,8 @@ pub fn closest_hit<N: Number, A: Accel, C: Count>(
 }
 
 /// Whether a ray meets anything in its interval: whether [`closest_hit`] would find something.
+// Hosts have the room; a ray that goes through memory is waited for.
+#[cfg_attr(feature = "wide", inline(always))]
 pub fn any_hit<N: Number, A: Accel, C: Count>(
     scene: &Scene<'_>,
     ray: &Ray<N>,

@@ -152,6 +152,22 @@ pub trait Accel: Send + Sync {
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     );
+
+    /// The same for any hit: in any order, up to the first leaf of which `hits` is true.
+    #[inline(always)]
+    fn walk_any<N: Number, C: Count>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        cull: &Self::Cull<N>,
+        stack: &mut StackView,
+        count: &mut C,
+        mut hits: impl FnMut(Leaf, &mut C) -> bool,
+    ) {
+        let tmax = ray.tmax;
+        Self::walk(scene, ray, cull, stack, count, |leaf, count| {
+            (!hits(leaf, count)).then_some(tmax)
+        });
+    }
 }
 
 /// A child that waits for its turn: 12 bytes.

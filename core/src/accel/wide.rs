@@ -8,7 +8,8 @@
 //! The answers are the list's, bit for bit: culling is conservative, lane by lane (see
 //! [`cull`]), and what a cluster's lanes do not reject goes through the same scalar
 //! code as everywhere else. Children that are met are pushed in no order, but the nearest is taken
-//! at once: sorting costs more than it saves.
+//! at once: sorting costs more than it saves. Where any hit will do, children are taken as they lie,
+//! and those of a node wait in one entry.
 
 mod check;
 pub mod cull;
@@ -150,6 +151,37 @@ impl Accel for Wide {
             }
         }
     }
+
+    #[inline]
+    fn walk_any<N: Number, C: Count>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        cull: &N::WideCull,
+        stack: &mut StackView,
+        count: &mut C,
+        mut hits: impl FnMut(Leaf, &mut C) -> bool,
+    ) {
+        let nodes = scene.held.wide.nodes;
+        let limit = N::WideCull::limit(ray.tmax);
+        let mut current = Child::node(0);
+        stack.clear();
+        loop {
+            if current.as_node().is_some() {
+                current = descend_any::<N, C>(nodes, cull, limit, current, stack, count);
+            } else if C::TELLS {
+                count.tell(Event::Opened(current.place()));
+            }
+            if current != Child::NONE && Leaf::from_word(current.0).is_none_or(|it| hits(it, count))
+            {
+                return;
+            }
+            let next = stack.pop().and_then(|Entry { node, near, .. }| {
+                take(nodes.get(node as usize)?, node, near as u32, stack)
+            });
+            let Some(child) = next else { return };
+            current = child;
+        }
+    }
 }
 
 /// Goes down from a node, each time to the child that is met first, while the others are left to
@@ -176,13 +208,7 @@ fn descend<N: Number, C: Count>(
         let Some(node) = nodes.get(number as usize) else {
             return Child::NONE;
         };
-        let (mut met, near) = cull.children(node, limit);
-        let children = children(node).count() as u32;
-        count.planes(6 * children);
-        count.boxes(children);
-        if C::TELLS {
-            tell_tested::<N, C>(node, cull, limit, count);
-        }
+        let (mut met, near) = test::<N, C>(node, cull, limit, count);
         if met == 0 {
             return Child::NONE;
         }
@@ -211,6 +237,73 @@ fn descend<N: Number, C: Count>(
         }
         current = node.child(lane(nearest));
     }
+}
+
+/// Goes down from a node, each time to one of the children that are met, to a leaf or to none: what
+/// [`descend`] does where any order will do, for less.
+#[inline(never)]
+fn descend_any<N: Number, C: Count>(
+    nodes: &[WideNode],
+    cull: &N::WideCull,
+    limit: i32,
+    mut current: Child,
+    stack: &mut StackView,
+    count: &mut C,
+) -> Child {
+    loop {
+        if C::TELLS {
+            count.tell(Event::Opened(current.place()));
+        }
+        let Some(number) = current.as_node() else {
+            return current;
+        };
+        let Some(node) = nodes.get(number as usize) else {
+            return Child::NONE;
+        };
+        let (met, _) = test::<N, C>(node, cull, limit, count);
+        if met == 0 {
+            return Child::NONE;
+        }
+        let Some(first) = take(node, number, met, stack) else {
+            // Only a forged blob is deeper than it says: the walk ends.
+            stack.clear();
+            return Child::NONE;
+        };
+        current = first;
+    }
+}
+
+/// One of the children of a node that are met, while the others are left to wait together: the node,
+/// with a bit for each of them. `None` if there is no room.
+#[inline(always)]
+fn take(node: &WideNode, number: u32, mut met: u32, stack: &mut StackView) -> Option<Child> {
+    let first = take_lowest(&mut met);
+    if met != 0 {
+        let rest = Entry {
+            node: number,
+            near: met as i32,
+            far: 0,
+        };
+        stack.push(rest).ok()?;
+    }
+    Some(node.child(first))
+}
+
+/// [Tests](WideCulling::children) a node's children.
+#[inline(always)]
+fn test<N: Number, C: Count>(
+    node: &WideNode,
+    cull: &N::WideCull,
+    limit: i32,
+    count: &mut C,
+) -> (u32, [i32; LANES]) {
+    let children = children(node).count() as u32;
+    count.planes(6 * children);
+    count.boxes(children);
+    if C::TELLS {
+        tell_tested::<N, C>(node, cull, limit, count);
+    }
+    cull.children(node, limit)
 }
 
 /// The lanes of a node that hold children.
