@@ -116,7 +116,7 @@ fn is_near<N: Number>(origin: [N; 3], major: usize, moved: N) -> bool {
         } else {
             reach - moved
         };
-        origin[axis] < reach && -origin[axis] < reach
+        origin[axis].abs() < reach
     };
     // What is taken for far comes out the same, and needs less code. Twice the reach is a number; more
     // need not be.
@@ -137,7 +137,7 @@ fn far_start<N: Number>(origin: [N::Wide; 3], moved: N::Wide, slope: [N; 3]) -> 
     let start = |axis: usize| far_coordinate(origin[axis], moved, slope[axis]);
     let start = [start(0), start(1), start(2)];
     let reach = N::narrow(N::far(REACH));
-    if start.iter().all(|&x| x <= reach && -x <= reach) {
+    if start.iter().all(|x| x.abs() <= reach) {
         (start, true)
     } else {
         ([N::ZERO; 3], false)
