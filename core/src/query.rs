@@ -17,7 +17,8 @@ use crate::shape::{
 };
 #[cfg(feature = "wide")]
 use crate::{
-    blob::cluster::{Pack, Strip},
+    blob::cluster::{LANES, Pack, Strip},
+    number::Format,
     shape::{Packs, Strips, pack, strip::StripRay},
 };
 
@@ -132,17 +133,21 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         }
     }
 
-    /// Tests the primitives of a leaf.
+    /// Tests the primitives of a leaf, or, where `ANY` hit will do, of a pack only until one is hit.
     #[inline(always)]
-    fn leaf<A: Accel, C: Count>(&mut self, leaf: Leaf, count: &mut C) {
+    fn leaf<A: Accel, C: Count, const ANY: bool>(&mut self, leaf: Leaf, count: &mut C) {
         #[cfg(feature = "wide")]
         if A::HAS_CLUSTERS && leaf.count == 0 {
             let clusters = &self.scene.shapes.clusters;
             return match (leaf.kind, clusters.strips, clusters.packs) {
                 (Kind::Triangle, Strips::S16(strips), _) => self.strip(strips, leaf.first, count),
                 (Kind::Triangle, Strips::S24(strips), _) => self.strip(strips, leaf.first, count),
-                (_, _, Packs::P16(packs)) => self.pack(packs, leaf.first, count),
-                (_, _, Packs::P24(packs)) => self.pack(packs, leaf.first, count),
+                (_, _, Packs::P16(packs)) => {
+                    self.pack::<_, _, ANY>(packs.get(leaf.first as usize), leaf.first, count)
+                }
+                (_, _, Packs::P24(packs)) => {
+                    self.pack::<_, _, ANY>(packs.get(leaf.first).as_ref(), leaf.first, count)
+                }
             };
         }
         count.objects(leaf.count);
@@ -185,34 +190,66 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     /// Tests the spheres of a pack.
     #[cfg(feature = "wide")]
     #[inline(always)]
-    fn pack<P: Pack, C: Count>(&mut self, packs: &[P], number: u32, count: &mut C) {
-        let Some(pack) = packs.get(number as usize) else {
+    fn pack<P: Pack, C: Count, const ANY: bool>(
+        &mut self,
+        pack: Option<&P>,
+        number: u32,
+        count: &mut C,
+    ) {
+        let Some(pack) = pack else { return };
+        let place = |lane: u32| Place::Pack(number, lane as u8);
+        count.objects(pack.lanes().count_ones());
+        if N::FORMAT != Format::F32 {
+            for lane in 0..LANES as u32 {
+                self.sphere_in_pack(pack, lane, place(lane), count);
+            }
             return;
-        };
-        count.objects(pack.members().count());
-        let mut met = pack::met(self.ray, self.recip_norm2, pack);
-        let missed = ((1 << pack.members().count()) - 1) & !met;
-        self.tell_missed(missed, |lane| Place::Pack(number, lane), count);
-        while met != 0 {
-            let lane = met.trailing_zeros();
-            met &= met - 1;
-            self.sphere_in_pack(pack, Place::Pack(number, lane as u8), count);
+        }
+        let met = pack::met(self.ray, self.recip_norm2, pack);
+        let missed = pack.lanes() & !met.lanes;
+        self.tell_missed(missed, |lane| place(lane.into()), count);
+        let mut lanes = met.lanes;
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros();
+            lanes &= lanes - 1;
+            let crossing = met.crossing(self.recip_norm2, lane as usize);
+            if crossing.enter.0 <= self.tmax && crossing.leave.0 >= self.ray.tmin {
+                self.sphere_met(pack, lane, crossing, place(lane));
+            }
+            self.tell(place(lane), Some(&crossing), count);
+            if ANY && self.best.is_some() {
+                return;
+            }
         }
     }
 
-    /// Takes a sphere of a pack that the ray may meet somewhere on its line.
+    /// Takes a sphere of a pack that the ray may meet.
     #[cfg(feature = "wide")]
     #[inline(never)]
-    fn sphere_in_pack<P: Pack, C: Count>(&mut self, pack: &P, place: Place, count: &mut C) {
-        if let Place::Pack(_, lane) = place
-            && let Some((center, radius)) = pack.sphere(lane.into())
-        {
-            let crossing = sphere::cross(self.ray, self.recip_norm2, center, radius);
-            if let Some(crossing) = crossing {
-                self.take(crossing, sphere::bounds(center, radius), place);
-            }
-            self.tell(place, crossing.as_ref(), count);
+    fn sphere_met<P: Pack>(&mut self, pack: &P, lane: u32, crossing: Crossing<N>, place: Place) {
+        if let Some((center, radius)) = pack.sphere(lane) {
+            self.take(crossing, sphere::bounds(center, radius), place);
         }
+    }
+
+    /// Tests a sphere of a pack, in formats without lanes.
+    #[cfg(feature = "wide")]
+    #[inline(never)]
+    fn sphere_in_pack<P: Pack, C: Count>(
+        &mut self,
+        pack: &P,
+        lane: u32,
+        place: Place,
+        count: &mut C,
+    ) {
+        let Some((center, radius)) = pack.sphere(lane) else {
+            return;
+        };
+        let crossing = sphere::cross(self.ray, self.recip_norm2, center, radius);
+        if let Some(crossing) = crossing {
+            self.take(crossing, sphere::bounds(center, radius), place);
+        }
+        self.tell(place, crossing.as_ref(), count);
     }
 
     /// Tests the primitives of a range of slots.
@@ -439,12 +476,12 @@ fn search<N: Number, A: Accel, C: Count, const ANY: bool>(
     }
     if ANY {
         A::walk_any(scene, ray, &cull, stack, count, |leaf, count| {
-            search.leaf::<A, C>(leaf, count);
+            search.leaf::<A, C, ANY>(leaf, count);
             search.best.is_some()
         });
     } else {
         A::walk(scene, ray, &cull, stack, count, |leaf, count| {
-            search.leaf::<A, C>(leaf, count);
+            search.leaf::<A, C, ANY>(leaf, count);
             (!any || search.best.is_none()).then_some(search.tmax)
         });
     }

@@ -1,10 +1,12 @@
 //! The eight-wide hierarchy alone in a blob, where triangles and spheres lie in its clusters only.
 
+use glam::DVec3;
 use gridel_core::{Kind, List, NoCount, Number, Structure, Wide};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, Quality, compile};
-use gridel_host::scene::Scene;
+use gridel_host::scene::{Scene, Shape};
 use gridel_tests::query::{HitBits, any, closest};
+use gridel_tests::random::Random;
 use gridel_tests::{every_format, rays, scenes};
 
 fn alone(scene: &Scene, lattice_bits: u8, quality: Quality) -> Blob {
@@ -112,6 +114,40 @@ fn slots_of_clusters_are_all_primitives() {
             all
         };
         assert_eq!(all(&ordinary), all(&own), "{}", kind.name());
+    }
+}
+
+/// Spheres of so many different radii: packs share a window of radii or have windows of their own, and
+/// the last may not be full.
+#[test]
+fn packs_hold_any_radii() {
+    for (count, different) in [
+        (1, 1),
+        (8, 8),
+        (40, 16),
+        (41, 15),
+        (41, 16),
+        (40, 17),
+        (203, 203),
+    ] {
+        let mut random = Random(15 + count);
+        let scene = scenes::of((0..count).map(|number| Shape::Sphere {
+            center: DVec3::from_array([0; 3].map(|_| random.signed())),
+            radius: 0.05 + 0.2 * ((number % different) as f64 / different as f64),
+        }));
+        for bits in [24, 16] {
+            let (ordinary, own) = (
+                scenes::blob(&scene, bits),
+                alone(&scene, bits, Quality::Good),
+            );
+            let (ordinary, own) = (
+                ordinary.scene().expect("sound"),
+                own.scene().expect("sound"),
+            );
+            assert_eq!(own.count(Kind::Sphere), count as usize);
+            let name = format!("{count} spheres of {different} radii");
+            every_format!(agrees(&name, &ordinary, &own));
+        }
     }
 }
 

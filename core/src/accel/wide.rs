@@ -91,6 +91,7 @@ impl<'a> Records<'a> for Held<'a> {
         SectionKind::Packs,
         SectionKind::Members,
         SectionKind::Homes,
+        SectionKind::Radii,
     ];
     const USES_LEAVES: bool = false;
 

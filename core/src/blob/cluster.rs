@@ -7,14 +7,22 @@
 //!
 //! **Members.** The triangles of all strips, and after them the spheres of all packs, are counted
 //! from 0 in the order in which they lie there; the section of that name has the primitive of each.
+//! All packs but the last are full, so the sphere in lane `l` of pack `p` is number `8 p + l`.
+//!
+//! **Radii.** Few scenes have more than a handful of them, so a pack on the 24-bit lattice has four
+//! bits for each: its number in a window of [`RADII`] among those of the section of that name. Where
+//! the section is one window, all packs share it; else the one of pack `p` begins at `8 p`.
 
 use super::record::{Vertex, Vertex16, Vertex24};
 use crate::eight::Eight;
 use bytemuck::{Pod, Zeroable};
+use core::array;
 use core::mem::size_of;
 
 /// Lanes of a row: vertices of a strip, spheres of a pack, children of a node.
 pub const LANES: usize = 8;
+/// Radii of a window.
+pub const RADII: usize = 2 * LANES;
 /// Most triangles of a strip.
 pub const STRIP_TRIANGLES: usize = LANES - 2;
 
@@ -45,14 +53,6 @@ pub struct StripMembers {
     corners: [u8; 3],
 }
 
-/// Which primitives a pack holds: 4 bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct PackMembers {
-    first: [u8; 3],
-    count: u8,
-}
-
 /// A generalised strip on the 16-bit lattice: up to 6 triangles on 8 vertices, triangle `k` on the
 /// vertices `k`, `k + 1` and `k + 2`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -80,10 +80,8 @@ pub struct Strip24 {
 pub struct Pack16 {
     /// The centres.
     pub rows: Rows16,
-    /// The radii in units.
+    /// The radii in units; 0 in the lanes behind the last sphere.
     pub radii: [u16; LANES],
-    /// Which spheres there are.
-    pub members: PackMembers,
 }
 
 /// A pack of up to 8 spheres on the 24-bit lattice.
@@ -92,12 +90,17 @@ pub struct Pack16 {
 pub struct Pack24 {
     /// The centres.
     pub rows: Rows24,
-    /// The low 16 bits of the radii in 1/256 unit.
-    pub radii_low: [u16; LANES],
-    /// Their high 8 bits, likewise.
-    pub radii_high: [u16; LANES / 2],
-    /// Which spheres there are.
-    pub members: PackMembers,
+    /// For each lane the number of its radius in the pack's window: of lane 0 in the low half of the
+    /// first byte, of lane 1 in its high half. The radius is 0 in the lanes behind the last sphere.
+    pub radii: [u8; LANES / 2],
+}
+
+/// A pack on the 24-bit lattice with its window of radii.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Windowed24<'a> {
+    pub(crate) pack: &'a Pack24,
+    /// In 1/256 unit.
+    pub(crate) radii: &'a [i32; RADII],
 }
 
 impl StripMembers {
@@ -160,28 +163,6 @@ impl StripMembers {
     pub(crate) fn member(&self, place: u32) -> u32 {
         let before = self.places() & !(u32::MAX << (place & 31));
         self.first() + before.count_ones()
-    }
-}
-
-impl PackMembers {
-    /// `count` spheres from number `first` on among the spheres of all packs.
-    pub fn new(first: u32, count: u8) -> Self {
-        Self {
-            first: to_24(first),
-            count,
-        }
-    }
-
-    /// The number of the first sphere among those of all packs.
-    #[inline(always)]
-    pub fn first(&self) -> u32 {
-        from_24(self.first)
-    }
-
-    /// Number of spheres.
-    #[inline(always)]
-    pub fn count(&self) -> u32 {
-        self.count.into()
     }
 }
 
@@ -311,11 +292,10 @@ pub(crate) trait Strip: Pod {
 }
 
 /// A pack in either storage.
-pub(crate) trait Pack: Pod {
+pub(crate) trait Pack {
     /// Its centres' storage.
     type Rows: Rows;
     fn rows(&self) -> &Self::Rows;
-    fn members(&self) -> &PackMembers;
     /// All radii in units; exact.
     fn radii(&self) -> Eight;
     /// The radius in a lane, in 1/256 unit.
@@ -324,8 +304,16 @@ pub(crate) trait Pack: Pod {
     /// Centre and radius of a sphere, in 1/256 unit; `None` in an empty lane.
     #[inline(always)]
     fn sphere(&self, lane: u32) -> Option<([i32; 3], i32)> {
-        let lane = (lane < self.members().count()).then_some(lane as usize)?;
-        Some((self.rows().position(lane), self.radius(lane)))
+        let radius = self.radius(lane as usize);
+        (radius > 0).then(|| (self.rows().position(lane as usize), radius))
+    }
+
+    /// A bit for each lane that holds a sphere.
+    fn lanes(&self) -> u32 {
+        let holds = |lane: &usize| self.radius(*lane) > 0;
+        (0..LANES)
+            .filter(holds)
+            .fold(0, |lanes, lane| lanes | 1 << lane)
     }
 }
 
@@ -359,11 +347,6 @@ impl Pack for Pack16 {
     }
 
     #[inline(always)]
-    fn members(&self) -> &PackMembers {
-        &self.members
-    }
-
-    #[inline(always)]
     fn radii(&self) -> Eight {
         Eight::from_u16(&self.radii)
     }
@@ -374,32 +357,28 @@ impl Pack for Pack16 {
     }
 }
 
-impl Pack for Pack24 {
+impl Pack for Windowed24<'_> {
     type Rows = Rows24;
 
     #[inline(always)]
     fn rows(&self) -> &Rows24 {
-        &self.rows
-    }
-
-    #[inline(always)]
-    fn members(&self) -> &PackMembers {
-        &self.members
+        &self.pack.rows
     }
 
     #[inline(always)]
     fn radii(&self) -> Eight {
-        let low = Eight::from_u16(&self.radii_low) * Eight::splat(1.0 / 256.0);
-        low + Eight::from_bytes(&self.radii_high) * Eight::splat(256.0)
+        let radii = array::from_fn(|lane| self.radius(lane));
+        Eight::from_i32(&radii) * Eight::splat(1.0 / 256.0)
     }
 
     #[inline(always)]
     fn radius(&self, lane: usize) -> i32 {
-        i32::from(self.radii_low[lane & 7]) | i32::from(high_byte(&self.radii_high, lane)) << 16
+        let numbers = u32::from_le_bytes(self.pack.radii);
+        self.radii[(numbers >> (4 * (lane & 7)) & 15) as usize]
     }
 }
 
 const _: () = {
     assert!(size_of::<Strip16>() == 54 && size_of::<Strip24>() == 78);
-    assert!(size_of::<Pack16>() == 68 && size_of::<Pack24>() == 100);
+    assert!(size_of::<Pack16>() == 64 && size_of::<Pack24>() == 76);
 };

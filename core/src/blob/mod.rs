@@ -195,9 +195,8 @@ impl<'a> Scene<'a> {
             }
             #[cfg(feature = "wide")]
             Place::Pack(pack, lane) => {
-                let clusters = &self.shapes.clusters;
-                let first = clusters.packs.members(pack).map_or(0, |it| it.first());
-                self.member(Kind::Sphere, first + u32::from(lane), clusters.triangles())
+                let number = pack << 3 | u32::from(lane);
+                self.member(Kind::Sphere, number, self.shapes.clusters.triangles())
             }
         }
     }

@@ -8,7 +8,7 @@ use crate::accel::{Entry, Held, MAX_STACK_DEPTH, Structure};
 use crate::render::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use crate::shade::Effects;
 #[cfg(feature = "wide")]
-use crate::shape::{Clusters, Packs, Strips};
+use crate::shape::{Clusters, Packs, Packs24, Strips};
 use crate::shape::{Kind, Shapes, Spheres, Triangles, Vertices, WIDE_INDICES, WIDE_LATTICE};
 use core::mem::size_of;
 
@@ -230,7 +230,10 @@ fn read_shapes<'a>(sections: &Sections<'a>, header: &Header) -> Result<Shapes<'a
             packs: if short {
                 Packs::P16(sections.records(SectionKind::Packs)?)
             } else {
-                Packs::P24(sections.records(SectionKind::Packs)?)
+                Packs::P24(Packs24 {
+                    packs: sections.records(SectionKind::Packs)?,
+                    radii: sections.records(SectionKind::Radii)?,
+                })
             },
             members: Indices::read(sections, SectionKind::Members)?,
             homes: sections.records(SectionKind::Homes)?,

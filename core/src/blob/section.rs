@@ -147,6 +147,8 @@ kinds! {
     OctreeSlots = 57, "octree-slots";
     /// [`ApexDirection`](super::record::ApexDirection)s.
     ApexDirections = 58, "apex-directions";
+    /// Windows of [radii](super::cluster) in 1/256 unit, `i32` each. Only for packs of 24 bits.
+    Radii = 59, "radii";
 }
 
 /// A section's place, proved to lie in the blob.

@@ -64,7 +64,8 @@ mod tests {
         assert_eq!(Eight::from_u16(&words).to_array(), words.map(f32::from));
         let bytes: [u8; 8] = [0, 1, 0x7f, 0x80, 0xff, 0xfe, 3, 200];
         let words = [[0, 0xff], [1, 0xfe], [0x7f, 3], [0x80, 200]].map(u16::from_le_bytes);
-        assert_eq!(Eight::from_bytes(&words).to_array(), bytes.map(f32::from));
+        let long = [0, 1, -1, 0xff_ffff, 1 << 24, -(1 << 24), 77, 65_536];
+        assert_eq!(Eight::from_i32(&long).to_array(), long.map(|x| x as f32));
         let low: [u16; 8] = [0, 1, 0xffff, 0x8000, 0x7fff, 2, 3, 0xfffe];
         let expected: [f32; 8] = core::array::from_fn(|lane| {
             (i32::from(low[lane]) | i32::from(bytes[lane] as i8) << 16) as f32

@@ -36,6 +36,12 @@ impl Eight {
         Self(f32x8::from_i32x8(i32x8::from_u16x8(u16x8::new(*lanes))))
     }
 
+    /// Integers as numbers; exact below 2^24.
+    #[inline(always)]
+    pub(crate) fn from_i32(lanes: &[i32; 8]) -> Self {
+        Self(f32x8::from_i32x8(i32x8::new(*lanes)))
+    }
+
     /// Integers of 24 bits as numbers, given by their low 16 bits, and by their high 8 as the bytes of
     /// words, the low ones in the first four lanes; exact.
     #[inline(always)]
@@ -48,21 +54,6 @@ impl Eight {
         Self(f32x8::from_i32x8(
             high | i32x8::from_u16x8(u16x8::new(*low)),
         ))
-    }
-
-    /// The bytes of words as numbers, the low ones in the first four lanes; exact.
-    #[inline(always)]
-    pub(crate) fn from_bytes(&[a, b, c, d]: &[u16; 4]) -> Self {
-        let words = i32x8::from_u16x8(u16x8::new([a, b, c, d, a, b, c, d]));
-        let low = words & i32x8::splat(0xff);
-        Self::from_halves(low, words.unbounded_shr_scalar(8))
-    }
-
-    /// The first four lanes of one and the last four of the other as numbers.
-    #[inline(always)]
-    fn from_halves(first: i32x8, last: i32x8) -> Self {
-        let mask = i32x8::new([-1, -1, -1, -1, 0, 0, 0, 0]);
-        Self(f32x8::from_i32x8((first & mask) | (last & !mask)))
     }
 
     /// The smaller in every lane; which zero and which NaN is not said.

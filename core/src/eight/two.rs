@@ -38,6 +38,12 @@ impl Eight {
         Self::new(lanes.map(f32::from))
     }
 
+    /// Integers as numbers; exact below 2^24.
+    #[inline(always)]
+    pub(crate) fn from_i32(lanes: &[i32; 8]) -> Self {
+        Self::new(lanes.map(|lane| lane as f32))
+    }
+
     /// Integers of 24 bits as numbers, given by their low 16 bits, and by their high 8 as the bytes of
     /// words, the low ones in the first four lanes; exact.
     #[inline(always)]
@@ -55,15 +61,6 @@ impl Eight {
             Vec4::from_array(low) - Vec4::splat(128.0),
             Vec4::from_array(high),
         ])
-    }
-
-    /// The bytes of words as numbers, the low ones in the first four lanes; exact.
-    #[inline(always)]
-    pub(crate) fn from_bytes(words: &[u16; 4]) -> Self {
-        let low = words.map(|word| f32::from(word & 0xff));
-        let low = Vec4::from_array(low);
-        let all = Vec4::from_array(words.map(f32::from));
-        Self([low, (all - low) * (1.0 / 256.0)])
     }
 
     #[inline(always)]

@@ -3,7 +3,7 @@
 use super::{sphere, triangle};
 use crate::blob::Indices;
 use crate::blob::cluster::{
-    Pack, Pack16, Pack24, PackMembers, Strip, Strip16, Strip24, StripMembers,
+    LANES, Pack, Pack16, Pack24, RADII, Strip, Strip16, Strip24, StripMembers, Windowed24,
 };
 use crate::blob::record::UnitBox;
 
@@ -18,7 +18,31 @@ pub(crate) enum Strips<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Packs<'a> {
     P16(&'a [Pack16]),
-    P24(&'a [Pack24]),
+    P24(Packs24<'a>),
+}
+
+/// All packs on the 24-bit lattice, and all radii in 1/256 unit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Packs24<'a> {
+    pub(crate) packs: &'a [Pack24],
+    pub(crate) radii: &'a [i32],
+}
+
+impl<'a> Packs24<'a> {
+    /// A pack with its window of radii.
+    #[inline(always)]
+    pub(crate) fn get(&self, pack: u32) -> Option<Windowed24<'a>> {
+        let number = pack as usize;
+        let start = if self.radii.len() == RADII {
+            0
+        } else {
+            number.wrapping_mul(LANES)
+        };
+        Some(Windowed24 {
+            pack: self.packs.get(number)?,
+            radii: self.radii.get(start..)?.first_chunk()?,
+        })
+    }
 }
 
 impl Strips<'_> {
@@ -68,14 +92,15 @@ impl Packs<'_> {
     pub(crate) fn len(&self) -> usize {
         match self {
             Packs::P16(packs) => packs.len(),
-            Packs::P24(packs) => packs.len(),
+            Packs::P24(all) => all.packs.len(),
         }
     }
 
-    pub(crate) fn members(&self, pack: u32) -> Option<&PackMembers> {
+    /// A bit for each lane of a pack that holds a sphere.
+    pub(crate) fn lanes(&self, pack: u32) -> u32 {
         match self {
-            Packs::P16(packs) => packs.get(pack as usize).map(Pack::members),
-            Packs::P24(packs) => packs.get(pack as usize).map(Pack::members),
+            Packs::P16(packs) => packs.get(pack as usize).map_or(0, Pack::lanes),
+            Packs::P24(packs) => packs.get(pack).map_or(0, |pack| pack.lanes()),
         }
     }
 
@@ -83,25 +108,24 @@ impl Packs<'_> {
     pub(crate) fn sphere(&self, pack: u32, lane: u32) -> Option<([i32; 3], i32)> {
         match self {
             Packs::P16(packs) => packs.get(pack as usize)?.sphere(lane),
-            Packs::P24(packs) => packs.get(pack as usize)?.sphere(lane),
+            Packs::P24(packs) => packs.get(pack)?.sphere(lane),
         }
     }
 
     /// Number of spheres in all packs.
     fn spheres(&self) -> usize {
-        let last = (self.len() as u32).checked_sub(1);
-        let members = last.and_then(|last| self.members(last));
-        members.map_or(0, |last| (last.first() + last.count()) as usize)
+        let Some(full) = self.len().checked_sub(1) else {
+            return 0;
+        };
+        full * LANES + self.lanes(full as u32).count_ones() as usize
     }
 
     /// The box around a pack's spheres.
     pub(crate) fn bounds(&self, pack: u32) -> Option<UnitBox> {
-        let count = self.members(pack)?.count();
-        (0..count).try_fold(None, |bounds: Option<UnitBox>, lane| {
-            let (center, radius) = self.sphere(pack, lane)?;
-            let next = sphere::bounds(center, radius);
-            Some(Some(bounds.map_or(next, |bounds| bounds.union(&next))))
-        })?
+        (0..LANES as u32)
+            .filter_map(|lane| self.sphere(pack, lane))
+            .map(|(center, radius)| sphere::bounds(center, radius))
+            .reduce(|bounds, next| bounds.union(&next))
     }
 }
 
@@ -138,14 +162,6 @@ impl Clusters<'_> {
         Some((strip, place))
     }
 
-    /// The pack and the lane of a sphere by its number among the spheres of all packs.
-    pub(crate) fn find_sphere(&self, member: usize) -> Option<(u32, u32)> {
-        let first = |pack| Some(self.packs.members(pack)?.first() as usize);
-        let pack = last_at_or_before(self.packs.len(), member, first)?;
-        let lane = member.checked_sub(first(pack)?)? as u32;
-        Some((pack, lane))
-    }
-
     /// The member that is a triangle: its primitive, or its slot.
     #[inline]
     pub(crate) fn triangle_member(&self, strip: u32, place: u32) -> Option<u32> {
@@ -156,8 +172,8 @@ impl Clusters<'_> {
     /// The member that is a sphere: its primitive, or its slot.
     #[inline]
     pub(crate) fn sphere_member(&self, pack: u32, lane: u32) -> Option<u32> {
-        let member = self.packs.members(pack)?.first() + lane;
-        self.members.get(self.triangles() + member as usize)
+        let member = pack as usize * LANES + lane as usize;
+        self.members.get(self.triangles() + member)
     }
 }
 

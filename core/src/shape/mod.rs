@@ -18,7 +18,7 @@ pub(crate) mod strip;
 pub(crate) mod triangle;
 
 #[cfg(feature = "wide")]
-pub(crate) use cluster::{Clusters, Packs, Strips};
+pub(crate) use cluster::{Clusters, Packs, Packs24, Strips};
 pub use kind::Kind;
 pub(crate) use kind::{WIDE_INDICES, WIDE_LATTICE};
 
@@ -313,10 +313,8 @@ impl Shapes<'_> {
                     let found = self.clusters.find_triangle(index);
                     found.map(|(strip, place)| Place::Strip(strip, place as u8))
                 }
-                Kind::Sphere => {
-                    let found = self.clusters.find_sphere(index);
-                    found.map(|(pack, lane)| Place::Pack(pack, lane as u8))
-                }
+                // All packs but the last are full.
+                Kind::Sphere => Some(Place::Pack(slot >> 3, (slot & 7) as u8)),
                 _ => None,
             };
             return found.unwrap_or(Place::Slot(kind, slot));

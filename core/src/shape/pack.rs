@@ -1,21 +1,47 @@
-//! Packs of spheres: the test of [`sphere`](super::sphere) on eight at once, up to where it rejects.
+//! Packs of spheres: the test of [`sphere`](super::sphere) on eight at once.
+//!
+//! In `f32` every operation of that test is done in lanes, up to the square root.
+//!
+//! **Before and behind.** Most spheres whom the line of a ray meets lie behind its start or beyond
+//! the best hit. A crossing that leaves before the ray starts or enters beyond that hit is none once
+//! it is clamped to the interval of the sphere's box either (see [`accept`](super::accept)). The
+//! point in its middle lies in that box to within the 1/8 unit of
+//! [`Culling::holds`](crate::accel::cull::Culling::holds), because the test has just held it against
+//! the radius on every axis. So where the middle is not negative it lies in the interval: clamping
+//! moves neither end past it, and an end that is beyond the middle only towards it. Where it is
+//! negative, the interval begins below 0, and nothing that is below the ray's start is moved up to it.
 
-use crate::blob::cluster::{Pack, Rows};
+use super::{Crossing, sphere};
+use crate::blob::cluster::{LANES, Pack, Rows};
 use crate::eight::Eight;
-use crate::number::{Format, Number};
+use crate::number::Number;
 use crate::ray::Ray;
 
-/// The lanes of a pack whose spheres the line of a ray may meet: all that
-/// [`sphere::cross`](super::sphere::cross) does not reject, and perhaps others.
-///
-/// In `f32` the operations are those of that kernel, and only what it accepts is left; other
-/// formats have every sphere tested there.
-#[inline(always)]
-pub(crate) fn met<N: Number, P: Pack>(ray: &Ray<N>, recip_norm2: N, pack: &P) -> u32 {
-    let lanes = !(u32::MAX << (pack.members().count() & 31));
-    if N::FORMAT != Format::F32 {
-        return lanes;
+/// The spheres of a pack that the line of a ray meets, a bit each, and what makes a crossing of them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Met {
+    pub(crate) lanes: u32,
+    /// In units.
+    closest: [f32; LANES],
+    /// The radius squared less the line's distance squared, in units squared.
+    square: [f32; LANES],
+}
+
+impl Met {
+    /// The crossing with the sphere in a lane: that of [`sphere::cross`].
+    #[inline(always)]
+    pub(crate) fn crossing<N: Number>(&self, recip_norm2: N, lane: usize) -> Crossing<N> {
+        let closest = N::length_from_f64(self.closest[lane & 7].into());
+        let square = N::length_from_f64(self.square[lane & 7].into());
+        sphere::beside(closest, square.widen(), recip_norm2)
     }
+}
+
+/// Tests all spheres of a pack, in `f32`.
+///
+/// Cost: some 40 operations in eight lanes.
+#[inline(always)]
+pub(crate) fn met<N: Number, P: Pack>(ray: &Ray<N>, recip_norm2: N, pack: &P) -> Met {
     let all = |number: N| Eight::splat(number.to_f32());
     let slope = ray.slope.map(all);
     let relative = |axis: usize| pack.rows().units(axis) - all(ray.origin[axis]);
@@ -28,6 +54,11 @@ pub(crate) fn met<N: Number, P: Pack>(ray: &Ray<N>, recip_norm2: N, pack: &P) ->
     ];
     let radii = pack.radii();
     let farthest = apart[0].abs().max(apart[1].abs()).max(apart[2].abs());
-    let square = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
-    lanes & farthest.at_most(radii) & Eight::splat(0.0).at_most(radii * radii - square)
+    let square = radii * radii - (apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]);
+    Met {
+        // Lanes without a sphere have no radius.
+        lanes: farthest.at_most(radii) & Eight::splat(0.0).at_most(square) & !radii.zero(),
+        closest: closest.to_array(),
+        square: square.to_array(),
+    }
 }

@@ -33,11 +33,18 @@ pub(crate) fn cross<N: Number>(
     if square < N::Wide::default() {
         return None;
     }
+    Some(beside(closest, square, recip_norm2))
+}
+
+/// The crossing whose middle lies at `closest`, with `square` the radius squared less the square of
+/// the line's distance from the centre.
+#[inline(always)]
+pub(crate) fn beside<N: Number>(closest: N, square: N::Wide, recip_norm2: N) -> Crossing<N> {
     let half = N::root(N::wide_scale(square, recip_norm2));
-    Some(Crossing {
+    Crossing {
         enter: (closest - half, 0),
         leave: (closest + half, 0),
-    })
+    }
 }
 
 /// The box of a sphere.

@@ -5,8 +5,10 @@ use glam::DVec3;
 use gridel_core::accel::Link;
 use gridel_core::accel::dual_split::Way;
 use gridel_core::blob::SectionKind;
+use gridel_core::blob::cluster::Pack24;
 use gridel_core::blob::record::{DualNode, FlaggedPair, Header, Pair, SectionEntry, WideNode};
 use gridel_core::{Number, Scene, Structure};
+use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;
 use gridel_tests::query::{UnitRay, held, through};
 use gridel_tests::scenes;
@@ -251,6 +253,60 @@ fn cycles_and_orphans_are_refused() {
     eprintln!("forged links: {fate:?}");
     // A leaf's pair may count no pairs before it and mean the same.
     assert!(fate.refused > 20 * fate.accepted);
+}
+
+/// Packs with holes, packs that are not full before the last, and radii that no sphere has.
+#[test]
+fn forged_packs_are_refused() {
+    let spheres = (0..21).map(|number| Shape::Sphere {
+        center: DVec3::new(f64::from(number % 5), f64::from(number / 5), 0.0),
+        radius: 0.3,
+    });
+    let options = Options {
+        structures: vec![Structure::Wide],
+        ..Options::default()
+    };
+    let blob = compile(&scenes::of(spheres), &options).expect("compiles");
+    let bytes = blob.blob.bytes().to_vec();
+    let (place, radii) = section(&bytes, SectionKind::Radii);
+    let start = radii.offset as usize;
+    let words = || bytes[start..].chunks_exact(4);
+    let radius = words().position(|word| word != [0; 4]).expect("a radius") as u8;
+    let none = words().position(|word| word == [0; 4]).expect("no radius") as u8;
+    let refuses = |what: &str, at: usize, forged: &[u8]| {
+        let mut changed = bytes.clone();
+        changed[at..at + forged.len()].copy_from_slice(forged);
+        assert_ne!(changed, bytes, "{what}");
+        let error = sealed(&changed).scene().err();
+        speaks(&error.unwrap_or_else(|| panic!("{what} was accepted")));
+    };
+    let of_pack = |pack: usize| {
+        let (_, packs) = section(&bytes, SectionKind::Packs);
+        packs.offset as usize + (pack + 1) * size_of::<Pack24>() - 4
+    };
+    let two = |first: u8, second: u8| [first | second << 4];
+    refuses("a pack with a hole", of_pack(0) + 1, &two(none, radius));
+    refuses(
+        "a first pack that ends early",
+        of_pack(0) + 3,
+        &two(radius, none),
+    );
+    refuses("a pack without spheres", of_pack(2), &[none * 17; 4]);
+    refuses(
+        "a sphere behind the last",
+        of_pack(2) + 3,
+        &two(none, radius),
+    );
+    refuses("a sphere too many", of_pack(2) + 2, &two(radius, radius));
+    for forged in [-1, i32::MIN, i32::MAX, 16_776_705] {
+        refuses("a radius out of range", start + 60, &forged.to_le_bytes());
+    }
+    let fewer = SectionEntry {
+        stride: 8,
+        count: radii.count / 2,
+        ..radii
+    };
+    refuses("half the radii", place, bytemuck::bytes_of(&fewer));
 }
 
 /// A roof of many gables. All its triangles claim to be primitive 0; rays along the edges that two

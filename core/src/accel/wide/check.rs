@@ -2,10 +2,10 @@
 
 use super::Child;
 use crate::accel::{Leaf, MAX_STACK_DEPTH};
-use crate::blob::cluster::LANES;
+use crate::blob::cluster::{LANES, RADII};
 use crate::blob::record::{UnitBox, WideNode};
 use crate::blob::{BlobError, Scene, SectionKind};
-use crate::shape::{Clusters, Kind};
+use crate::shape::{Clusters, Kind, Packs, Packs24};
 use heapless::Vec;
 
 /// Proves that nodes and clusters are numbered breadth first, so that every one is reached once
@@ -59,28 +59,21 @@ fn check_members(scene: &Scene<'_>) -> Result<(), BlobError> {
     }
     let triangles = next;
     next = 0;
+    check_radii(&clusters.packs)?;
     for pack in 0..clusters.packs.len() {
-        let section = SectionKind::Packs;
-        let Some(members) = clusters.packs.members(pack as u32) else {
-            continue;
-        };
-        let (what, found) = ("number of the first member", members.first() as usize);
-        if found != next {
-            return Err(wrong(section, pack, what, found, next));
+        let lanes = clusters.packs.lanes(pack as u32);
+        let count = lanes.trailing_ones() as usize;
+        let is_last = pack + 1 == clusters.packs.len();
+        if count == 0 || !is_last && count < LANES {
+            let (section, what) = (SectionKind::Packs, "number of spheres, of which lane");
+            return Err(wrong(section, pack, what, count, LANES));
         }
-        let count = members.count() as usize;
-        if count > LANES {
-            return Err(wrong(section, pack, "number of spheres", count, LANES));
-        }
-        for lane in 0..members.count() {
-            let radius = clusters
-                .packs
-                .sphere(pack as u32, lane)
-                .map_or(0, |it| it.1);
-            if !(1..=i32::from(i16::MAX) << 9).contains(&radius) {
-                let section = SectionKind::Packs;
-                return Err(wrong(section, pack, "radius", radius as usize, 1));
-            }
+        if lanes >> count != 0 {
+            let (section, what) = (
+                SectionKind::Packs,
+                "radius behind the last sphere, of lanes",
+            );
+            return Err(wrong(section, pack, what, lanes as usize, 0));
         }
         next += count;
     }
@@ -110,11 +103,60 @@ fn check_members(scene: &Scene<'_>) -> Result<(), BlobError> {
     Ok(())
 }
 
+/// Proves that every pack has a window of radii, and that these are in range or 0.
+fn check_radii(packs: &Packs<'_>) -> Result<(), BlobError> {
+    let within = |section, index, radius: i32, most: i32| {
+        if (0..=most).contains(&radius) {
+            return Ok(());
+        }
+        Err(BlobError::Record {
+            section,
+            index,
+            what: "radius",
+            found: radius.into(),
+            expected: most.into(),
+        })
+    };
+    const MOST: i32 = (i16::MAX as i32) << 1;
+    match packs {
+        Packs::P16(packs) => {
+            for (index, pack) in packs.iter().enumerate() {
+                for radius in pack.radii {
+                    within(SectionKind::Packs, index, radius.into(), MOST)?;
+                }
+            }
+        }
+        Packs::P24(Packs24 { packs, radii }) => {
+            let section = SectionKind::Radii;
+            let expected = match packs.len() {
+                0 => 0,
+                _ if radii.len() == RADII => RADII,
+                count => (count + 1) * LANES,
+            };
+            if radii.len() != expected {
+                return Err(BlobError::Count {
+                    section,
+                    found: radii.len(),
+                    expected,
+                });
+            }
+            for (index, &radius) in radii.iter().enumerate() {
+                within(section, index, radius, MOST << 8)?;
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Proves breadth-first order.
 fn check_order(nodes: &[WideNode], scene: &Scene<'_>) -> Result<(), BlobError> {
     let section = SectionKind::WideNodes;
     let Clusters { strips, packs, .. } = &scene.shapes.clusters;
     let (mut next_node, mut next_strip, mut next_pack) = (1, 0, 0);
+    // A pack that is not full comes last, wherever the hierarchy leads to it.
+    let full = (0..packs.len()).rposition(|pack| packs.lanes(pack as u32).count_ones() == 8);
+    let full_packs = full.map_or(0, |last| last + 1);
+    let mut next_sparse = full_packs;
     let mut others = [0; Kind::ALL.len()];
     // Where other structures share the slots, these are in the order of theirs.
     let own_order = scene.shapes.clusters.homes.is_empty();
@@ -139,6 +181,9 @@ fn check_order(nodes: &[WideNode], scene: &Scene<'_>) -> Result<(), BlobError> {
                 (Some(number), _) => (number as usize, &mut next_node),
                 (None, Some(leaf)) => match (leaf.kind, leaf.count) {
                     (Kind::Triangle, 0) => (leaf.first as usize, &mut next_strip),
+                    (Kind::Sphere, 0) if leaf.first as usize >= full_packs => {
+                        (leaf.first as usize, &mut next_sparse)
+                    }
                     (Kind::Sphere, 0) => (leaf.first as usize, &mut next_pack),
                     (Kind::Box | Kind::Disc | Kind::Cone, 1) => {
                         let next = &mut others[leaf.kind as usize];
@@ -175,7 +220,8 @@ fn check_order(nodes: &[WideNode], scene: &Scene<'_>) -> Result<(), BlobError> {
     let all = |kind: Kind| (others[kind as usize], scene.shapes.count(kind));
     let reached = [
         (next_strip, strips.len()),
-        (next_pack, packs.len()),
+        (next_pack, full_packs),
+        (next_sparse, packs.len()),
         all(Kind::Box),
         all(Kind::Disc),
         all(Kind::Cone),

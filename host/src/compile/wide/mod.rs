@@ -24,7 +24,7 @@ use gridel_core::accel::wide::Child;
 use gridel_core::accel::{Leaf, MAX_STACK_DEPTH};
 use gridel_core::blob::SectionKind;
 use gridel_core::blob::cluster::{
-    LANES, Pack16, Pack24, PackMembers, Rows16, Rows24, Strip16, Strip24, StripMembers, high_bytes,
+    LANES, Pack16, Pack24, RADII, Rows16, Rows24, Strip16, Strip24, StripMembers, high_bytes,
 };
 use gridel_core::blob::record::WideNode;
 use hull::Hull;
@@ -167,6 +167,8 @@ impl Wide {
             }
             wide.nodes.push(record);
         }
+        wide.packs
+            .extend(packs.iter().find(|it| !it.is_full()).cloned());
         wide
     }
 
@@ -188,11 +190,18 @@ impl Wide {
                 cluster(Kind::Triangle, self.strips.len() - 1)
             }
             Item::Pack(number) => {
-                for (lane, &sphere) in packs[number].spheres.iter().enumerate() {
-                    self.set_home(Kind::Sphere, sphere, self.packs.len() << 3 | lane);
+                let pack = &packs[number];
+                // The one that is not full comes last.
+                let number = if pack.is_full() {
+                    self.packs.push(pack.clone());
+                    self.packs.len() - 1
+                } else {
+                    packs.len() - 1
+                };
+                for (lane, &sphere) in pack.spheres.iter().enumerate() {
+                    self.set_home(Kind::Sphere, sphere, number << 3 | lane);
                 }
-                self.packs.push(packs[number].clone());
-                cluster(Kind::Sphere, self.packs.len() - 1)
+                cluster(Kind::Sphere, number)
             }
             Item::Single(kind, index) => {
                 let slots = &mut self.slots[kind as usize];
@@ -240,7 +249,7 @@ impl Wide {
     /// The hierarchy's sections in a blob.
     pub fn sections(&self, primitives: &Primitives, lattice_bits: u8) -> Vec<Section> {
         let (strips, packs) = (self.strip_rows(primitives), self.pack_rows(primitives));
-        let (strips, packs) = if lattice_bits <= 16 {
+        let (strips, packs, radii) = if lattice_bits <= 16 {
             let strips: Vec<_> = strips
                 .map(|(points, members)| Strip16 {
                     rows: rows_16(&points),
@@ -248,15 +257,15 @@ impl Wide {
                 })
                 .collect();
             let packs: Vec<_> = packs
-                .map(|(points, radii, members)| Pack16 {
+                .map(|(points, radii)| Pack16 {
                     rows: rows_16(&points),
                     radii: radii.map(|radius| (radius >> 8) as u16),
-                    members,
                 })
                 .collect();
             (
                 section(SectionKind::Strips, &strips),
                 section(SectionKind::Packs, &packs),
+                Vec::new(),
             )
         } else {
             let strips: Vec<_> = strips
@@ -265,17 +274,20 @@ impl Wide {
                     members,
                 })
                 .collect();
-            let packs: Vec<_> = packs
-                .map(|(points, radii, members)| Pack24 {
-                    rows: rows_24(&points),
-                    radii_low: radii.map(|radius| radius as u16),
-                    radii_high: high_bytes(radii.map(|radius| (radius >> 16) as u8)),
-                    members,
+            let (points, radii): (Vec<_>, Vec<_>) = packs.unzip();
+            let (numbers, radii) = windows(&radii);
+            let packs: Vec<_> = points
+                .iter()
+                .zip(numbers)
+                .map(|(points, radii)| Pack24 {
+                    rows: rows_24(points),
+                    radii,
                 })
                 .collect();
             (
                 section(SectionKind::Strips, &strips),
                 section(SectionKind::Packs, &packs),
+                radii,
             )
         };
         let number = |kind: Kind, index: u32| {
@@ -298,6 +310,7 @@ impl Wide {
             packs,
             indices(SectionKind::Members, &members, 2),
             section(SectionKind::Homes, &self.homes),
+            section(SectionKind::Radii, &radii),
         ]
     }
 
@@ -314,20 +327,49 @@ impl Wide {
         })
     }
 
-    /// Centres, radii and members of every pack; lanes that are not needed repeat the last sphere.
+    /// Centres and radii of every pack; lanes that are not needed repeat the last centre, with no
+    /// radius.
     fn pack_rows(
         &self,
         primitives: &Primitives,
-    ) -> impl Iterator<Item = ([[i32; 3]; LANES], [i32; LANES], PackMembers)> {
-        self.packs.iter().scan(0, |first, pack| {
-            let count = pack.spheres.len() as u8;
-            let members = PackMembers::new(*first, count);
-            *first += u32::from(count);
+    ) -> impl Iterator<Item = ([[i32; 3]; LANES], [i32; LANES])> {
+        self.packs.iter().map(|pack| {
             let spheres = lanes(&pack.spheres).map(|it| primitives.spheres[it as usize]);
-            let (points, radii) = (spheres.map(|it| it.center), spheres.map(|it| it.radius));
-            Some((points, radii, members))
+            let mut radii = spheres.map(|it| it.radius);
+            radii[pack.spheres.len()..].fill(0);
+            (spheres.map(|it| it.center), radii)
         })
     }
+}
+
+/// The numbers of the radii of every pack, four bits each, and the windows that they count in: one
+/// for all packs if that holds all radii, else one for each pack, which overlaps the next.
+fn windows(packs: &[[i32; LANES]]) -> (Vec<[u8; LANES / 2]>, Vec<i32>) {
+    let mut distinct: Vec<i32> = packs.iter().flatten().copied().collect();
+    distinct.sort_unstable();
+    distinct.dedup();
+    let is_shared = distinct.len() <= RADII;
+    let radii = match packs.len() {
+        0 => Vec::new(),
+        _ if is_shared => {
+            distinct.resize(RADII, 0);
+            distinct.clone()
+        }
+        _ => packs
+            .iter()
+            .chain([&[0; LANES]])
+            .flatten()
+            .copied()
+            .collect(),
+    };
+    let numbers = |pack: &[i32; LANES]| {
+        let number = |lane: usize| {
+            let shared = || distinct.iter().position(|&it| it == pack[lane]);
+            is_shared.then(shared).flatten().unwrap_or(lane) as u8
+        };
+        std::array::from_fn(|pair| number(2 * pair) | number(2 * pair + 1) << 4)
+    };
+    (packs.iter().map(numbers).collect(), radii)
 }
 
 /// Where each value lies.

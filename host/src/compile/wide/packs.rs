@@ -12,6 +12,13 @@ pub struct Pack {
     pub bounds: Hull,
 }
 
+impl Pack {
+    /// Whether every lane has a sphere: all packs but one.
+    pub fn is_full(&self) -> bool {
+        self.spheres.len() == LANES
+    }
+}
+
 /// Below this depth spheres are halved, so that no scene makes the builder recurse without end.
 const DEEP: usize = 96;
 
