@@ -217,7 +217,8 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                 self.sphere_met(pack, lane, crossing, place(lane));
             }
             self.tell(place(lane), Some(&crossing), count);
-            if ANY && self.best.is_some() {
+            // Lanes have tested the others, too, so all of them are told.
+            if ANY && !C::TELLS && self.best.is_some() {
                 return;
             }
         }
