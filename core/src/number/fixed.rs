@@ -122,7 +122,7 @@ fn norm(v: [i32; 3]) -> u64 {
 #[inline(always)]
 fn excess_bits(v: [i64; 3], bits: i32) -> i32 {
     let all = v[0].unsigned_abs() | v[1].unsigned_abs() | v[2].unsigned_abs();
-    64 - wide_leading_zeros(all) as i32 - bits
+    (64 - bits).wrapping_sub(wide_leading_zeros(all) as i32)
 }
 
 /// 2^61 / `d` for `d` in \[2^30, 2^31), to a part in 2^29: a division in 32 bits, which small cores
@@ -518,11 +518,11 @@ impl Number for Fixed {
         }
         // The divisor's upper 32 bits are enough: t is a length of at most 31 bits.
         let shift = wide_leading_zeros(b);
-        let divisor = (b << shift) >> 32;
+        let divisor = b.wrapping_shl(shift) >> 32;
         let dividend = match shift.checked_sub(32 - RATIO_BITS) {
             Some(up) if up > wide_leading_zeros(a) => return with_sign(u64::MAX, sign),
-            Some(up) => a << up,
-            None => a >> (32 - RATIO_BITS - shift),
+            Some(up) => a.wrapping_shl(up),
+            None => a >> ((32 - RATIO_BITS).wrapping_sub(shift) & 63),
         };
         if dividend >> 31 >= divisor {
             return with_sign(u64::MAX, sign);
