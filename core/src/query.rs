@@ -459,7 +459,8 @@ pub fn closest_primitive<N: Number, A: Accel, C: Count>(
 }
 
 /// The nearest primitive on a ray, or with `any` the first that is found.
-#[cfg_attr(not(feature = "small"), inline(always))]
+// For boards the compiler chooses by itself: less stack, and fewer instructions.
+#[cfg_attr(all(feature = "wide", not(feature = "small")), inline(always))]
 #[cfg_attr(feature = "small", inline(never))]
 fn search<N: Number, A: Accel, C: Count, const ANY: bool>(
     scene: &Scene<'_>,
@@ -480,10 +481,15 @@ fn search<N: Number, A: Accel, C: Count, const ANY: bool>(
             search.leaf::<A, C, ANY>(leaf, count);
             search.best.is_some()
         });
-    } else {
+    } else if SMALL {
         A::walk(scene, ray, &cull, stack, count, |leaf, count| {
             search.leaf::<A, C, ANY>(leaf, count);
             (!any || search.best.is_none()).then_some(search.tmax)
+        });
+    } else {
+        A::walk(scene, ray, &cull, stack, count, |leaf, count| {
+            search.leaf::<A, C, ANY>(leaf, count);
+            Some(search.tmax)
         });
     }
     let best = search.best?;
