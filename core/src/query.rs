@@ -100,6 +100,12 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         let Some((t, part)) = accept(self.ray, self.cull, crossing, bounds, self.tmax) else {
             return;
         };
+        self.keep(t, part, place);
+    }
+
+    /// Takes a hit in the interval that is left, unless an earlier primitive is met at the same t.
+    #[inline(always)]
+    fn keep(&mut self, t: N, part: Part, place: Place) {
         // No hit lies beyond the best one, so this one is nearer, or as near.
         let tie = self.best.filter(|best| t >= best.t);
         if tie.is_some_and(|best| self.scene.key(best.place) <= self.scene.key(place)) {
@@ -179,11 +185,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         if let Place::Strip(_, number) = place
             && let Some(corners) = strip.triangle(number.into())
         {
-            let crossing = triangle::cross(self.ray, corners);
-            if let Some(crossing) = crossing {
-                self.take(crossing, triangle::bounds(corners), place);
-            }
-            self.tell(place, crossing.as_ref(), count);
+            self.triangle(corners, place, count);
         }
     }
 
@@ -411,14 +413,18 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     #[inline(always)]
     fn triangle<C: Count>(&mut self, corners: [[i32; 3]; 3], place: Place, count: &mut C) {
         let crossing = triangle::cross(self.ray, corners);
-        if let Some(crossing) = crossing {
-            let bounds = triangle::bounds(corners);
-            if SMALL {
-                self.consider(crossing, bounds, place);
+        if let Some((t, steeply)) = crossing {
+            if steeply {
+                if t >= self.ray.tmin && t <= self.tmax {
+                    self.keep(t, 0, place);
+                }
+            } else if SMALL {
+                self.consider(Crossing::flat(t), triangle::bounds(corners), place);
             } else {
-                self.take(crossing, bounds, place);
+                self.take(Crossing::flat(t), triangle::bounds(corners), place);
             }
         }
+        let crossing = crossing.map(|(t, _)| Crossing::flat(t));
         self.tell(place, crossing.as_ref(), count);
     }
 }

@@ -9,6 +9,7 @@ use self::halves::{leading_zeros, product_unsigned, quotient, wide_leading_zeros
 use self::quotient::Quotient;
 use self::root::{root, root_of_full};
 use super::{CullAxis, Format, NARROW_PRODUCTS, Number, Sight};
+use crate::SMALL;
 use crate::accel::cull::Cull;
 use core::ops::{Add, Mul, Neg, Sub};
 
@@ -621,6 +622,14 @@ impl Number for Fixed {
     fn beside(v: [Self; 3]) -> bool {
         let zero = Self::ZERO;
         v[0] < zero && v[1] < zero && v[2] < zero || v[0] > zero && v[1] > zero && v[2] > zero
+    }
+
+    #[inline(always)]
+    fn is_steep(approach: Product) -> bool {
+        // 2^-8 with 60 fraction bits; the upper half tells. Small code has one way for all.
+        const LEAST: i32 = 1 << (2 * RATIO_BITS - 8 - 32);
+        let upper = (approach.0 >> 32) as i32;
+        !SMALL && !(-LEAST..LEAST).contains(&upper)
     }
 
     #[inline(always)]

@@ -278,6 +278,13 @@ pub trait Number:
     fn beside(_: [Self; 3]) -> bool {
         false
     }
+    /// Whether the product of such a [`direction`](Self::direction) with a slope says that a ray comes at
+    /// a surface of this normal steeply, where that is known to bound the error of t: at least 2^-8 in
+    /// [`Fixed`], see `shape/triangle.rs`.
+    #[inline(always)]
+    fn is_steep(_: Self::Wide) -> bool {
+        false
+    }
     /// A vector of integers (below 2^52) as ratios: exact up to one common factor and two roundings
     /// each; the largest magnitude in \[1/4, 1\] in [`Fixed`], unscaled in floats.
     fn direction(v: [i64; 3]) -> [Self; 3];

@@ -15,7 +15,8 @@ impl Disc {
     pub(crate) fn cross<N: Number>(&self, ray: &Ray<N>) -> Option<Crossing<N>> {
         let axis = |k: usize| N::from_lattice(self.center[k]) - ray.origin[k];
         let relative = [axis(0), axis(1), axis(2)];
-        let t = cross_plane(ray, self.normal(), relative)?;
+        let normal = self.normal();
+        let t = cross_plane(normal, relative, N::dot(normal, ray.slope))?;
         // A ray passes through the scene within 2^16 units; more would leave the range of `fixed`
         // below, where the point may be as far again from the centre.
         let within_scene = t.abs() <= N::FAR.half();

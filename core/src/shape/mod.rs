@@ -153,11 +153,15 @@ pub(crate) fn accept<N: Number, K: Culling<N>>(
     (leave.0 >= ray.tmin && leave.0 <= tmax).then_some((leave.0, leave.1 | LEAVING))
 }
 
-/// The crossing of a plane through `relative` (a point as seen from the ray's origin) with a normal
-/// of any length. `None` where the ray runs along the plane.
+/// Where a ray crosses a plane through `relative` (a point as seen from the ray's origin) with a normal of
+/// any length, of which `approach` is the product with the ray's slope. `None` where the ray runs along
+/// the plane.
 #[inline(always)]
-pub(crate) fn cross_plane<N: Number>(ray: &Ray<N>, normal: [N; 3], relative: [N; 3]) -> Option<N> {
-    let approach = N::dot(normal, ray.slope);
+pub(crate) fn cross_plane<N: Number>(
+    normal: [N; 3],
+    relative: [N; 3],
+    approach: N::Wide,
+) -> Option<N> {
     if approach == N::Wide::default() {
         return None;
     }

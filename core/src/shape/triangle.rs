@@ -8,7 +8,7 @@
 //! interpolated, which goes wrong on stretched triangles, but taken from the plane, whose normal is
 //! computed in integers without any rounding and is the same in every number format.
 
-use super::{Crossing, Surface, cross_plane, extent};
+use super::{Surface, cross_plane, extent};
 use crate::blob::record::{UnitBox, Vertex};
 use crate::number::{Number, Sight, pick, product};
 use crate::ray::Ray;
@@ -87,12 +87,26 @@ impl<N: Number> Projection<N> {
     }
 }
 
-/// The crossing of a ray with the plane of a triangle that it meets.
+/// Where a ray meets the plane of a triangle that it [meets](Projection::meets), and whether it does so
+/// steeply; `None` where it runs along the plane.
+///
+/// Met steeply, t needs no clamping to the interval of the triangle's box: there it is anyway. Let `q` be
+/// the point of the triangle that is seen where the ray is, and `t'` its depth. Beside the ray it lies by
+/// what the projection rounded ([`Number::stray`]), and `n . q` differs from what it is for the plane
+/// through the first corner by what the normal `n` lacks, less than a step a component, over the
+/// triangle's extent of less than 2^16 units. So in [`Fixed`](crate::number::Fixed), where `n` has 30
+/// fraction bits and a projected coordinate is off by less than 2^-13 unit, `|n . d| |t - t'|` is below
+/// `(3 * 2^16 + 2 * 2^30 * 2^-13) / 2^30 < 2^-11` units. Where `|n . d|` is at least 2^-8, the hit lies
+/// within 1/8 unit of `q`, and a point within 1/4 unit of a box has a t in its interval (see
+/// [`cull`](crate::accel)).
 #[inline(always)]
-pub(crate) fn cross<N: Number>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> Option<Crossing<N>> {
+pub(crate) fn cross<N: Number>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> Option<(N, bool)> {
     let relative = |axis: usize| N::from_lattice(corners[0][axis]) - ray.origin[axis];
     let relative = [relative(0), relative(1), relative(2)];
-    cross_plane(ray, normal(corners), relative).map(Crossing::flat)
+    let normal = normal(corners);
+    let approach = N::dot(normal, ray.slope);
+    let t = cross_plane(normal, relative, approach)?;
+    Some((t, N::is_steep(approach)))
 }
 
 /// The normal, of any length: exact but for one rounding a component.
