@@ -19,7 +19,9 @@
 //! Lateral errors: coordinates are below 2^17 units. `f32` rounds a projected coordinate by less
 //! than 2^-4 unit and `o / s` by 2^-5; `fixed` by 2^-12 and 2^-13; `f64` by less than either.
 //!
-//! Values are monotone in `p`, so a child's interval lies in its parent's, whatever was rounded.
+//! Values are monotone in `p`, so a child's interval lies in its parent's, whatever was rounded. Some
+//! cores walk with wider intervals than these, to which hits are clamped: no plane is wider by less than
+//! nothing, so no hit is lost.
 
 use crate::blob::record::{Gridels, Pair, UnitBox, plane_word};
 use crate::number::{CullAxis, NARROW_PRODUCTS, Number, pick};
@@ -196,6 +198,9 @@ const UPPER_HALF: bool = cfg!(any(
     target_arch = "riscv32"
 ));
 
+/// Whether there is an instruction that rotates.
+const ROTATES: bool = !cfg!(target_arch = "riscv32");
+
 impl CullAxis {
     /// The step at which the ray enters through a plane.
     #[inline(always)]
@@ -215,6 +220,12 @@ impl CullAxis {
         self.rotation != 0
     }
 
+    /// The upper half of a plane's product, the plane being the upper half of a word.
+    #[inline(always)]
+    fn upper_half(&self, word: u32) -> i32 {
+        ((self.inverse as i64 * word as i32 as i64) >> 32) as i32
+    }
+
     /// A plane's product: the upper bits of 48.
     #[inline(always)]
     fn step(&self, plane: i16) -> i32 {
@@ -225,7 +236,7 @@ impl CullAxis {
             high.wrapping_mul(plane)
                 .wrapping_add(low.wrapping_mul(plane) >> 16)
         } else if UPPER_HALF {
-            ((self.inverse as i64 * ((plane as i32) << 16) as i64) >> 32) as i32
+            self.upper_half((plane as u32) << 16)
         } else {
             ((self.inverse as i64 * plane as i64) >> 16) as i32
         }
@@ -240,11 +251,35 @@ impl CullAxis {
 
     /// The steps at which the ray enters and leaves between the two planes of a word.
     #[cfg_attr(not(feature = "small"), inline(always))]
-    pub(crate) fn between(&self, planes: u32) -> Interval {
+    fn between(&self, planes: u32) -> Interval {
         let [near, far] = self.ordered(planes);
         Interval {
             near: self.entry(near),
             far: self.exit(far),
+        }
+    }
+
+    /// The same to cull with: up to a unit wider, where that is cheaper.
+    #[inline(always)]
+    pub(crate) fn around(&self, planes: u32) -> Interval {
+        if ROTATES {
+            self.between(planes)
+        } else {
+            self.around_by_shifts(planes)
+        }
+    }
+
+    /// Each plane is shifted into the upper half of a word. Below it lies the other one or nothing, so that
+    /// it counts as up to a unit higher. Below another lies the lower half of the given word alone: its
+    /// upper half is where the ray leaves if it runs up the axis, and where it enters if it runs down.
+    /// Either way the interval grows.
+    #[cfg_attr(not(feature = "small"), inline(always))]
+    fn around_by_shifts(&self, planes: u32) -> Interval {
+        let near = planes.wrapping_shl(self.rotation ^ 16);
+        let far = planes.wrapping_shl(self.rotation);
+        Interval {
+            near: self.upper_half(near).wrapping_add(self.near),
+            far: self.upper_half(far).wrapping_add(self.far),
         }
     }
 }

@@ -5,8 +5,8 @@
 //! that the planes on the way down have left of the scene's box. A node narrows the region:
 //!
 //! - up to two *carves* cut it, on one axis each, down to two planes;
-//! - a *split* gives one child all below its first plane and the other all above its second, on
-//!   one axis. The two may overlap, or leave a gap.
+//! - a *split* gives one child all below one plane and the other all above another, on one axis. The
+//!   two may overlap, or leave a gap.
 //!
 //! The builder walks the hierarchy with the regions and chooses axes by what they save. What the
 //! children do not touch is cut off by the split, so most sides of a box are never tested at all.
@@ -16,7 +16,7 @@
 //! **Culling is conservative and monotone.** Where a ray crosses a plane is monotone in the plane's
 //! place ([`cull`](super::cull)), so the interval of a region is the intersection of those of the
 //! planes that made it, whatever was rounded, and a box in a region has its interval in the
-//! region's. [`Scene::from_bytes`](crate::Scene::from_bytes) proves that the box of each primitive
+//! region's; all the more where a core culls with wider ones. [`Scene::from_bytes`](crate::Scene::from_bytes) proves that the box of each primitive
 //! lies in the region of its leaf. A hit's `t` is clamped to the interval of the primitive's own
 //! box and lies between the ray's tmin and the best hit so far, both of which the walk's interval
 //! holds: so no node on the way to a hit is left out. A side that no plane bounds costs visits, not
@@ -305,7 +305,7 @@ fn carve_ray<C: Count>(
     interval: &mut Interval,
     count: &mut C,
 ) {
-    *interval = interval.and(form.between(planes));
+    *interval = interval.and(form.around(planes));
     tested(count, 2, || Event::Tested {
         place: place(number),
         sides: sides(axis, [Some(planes as i16), Some((planes >> 16) as i16)]),
@@ -323,8 +323,10 @@ fn split<C: Count>(
 ) -> Next {
     let (planes, way) = (record.split, Way(record.way));
     let first = way.number();
-    let [leave, enter] = form.ordered(planes);
-    let (leave, enter) = (form.exit(leave), form.entry(enter));
+    let Interval {
+        near: enter,
+        far: leave,
+    } = form.around(planes);
     // The rotation is 0 or 16.
     let near = first + (form.rotation >> 4);
     let far = first + (16_u32.wrapping_sub(form.rotation) >> 4);
@@ -337,9 +339,9 @@ fn split<C: Count>(
         for (child, [near, far]) in [(near, to_near), (far, to_far)] {
             let planes = [planes as i16, (planes >> 16) as i16].map(Some);
             let planes = if child == first {
-                [None, planes[0]]
+                [None, planes[1]]
             } else {
-                [planes[1], None]
+                [planes[0], None]
             };
             count.tell(Event::Tested {
                 place: place(child),
@@ -441,9 +443,9 @@ impl Held<'_> {
             carve(&mut region, record);
             if let Some(sides) = region.0.get_mut(Way(record.way).split()) {
                 if step & 1 == 0 {
-                    sides[1] = sides[1].min(record.split as i16);
+                    sides[1] = sides[1].min((record.split >> 16) as i16);
                 } else {
-                    sides[0] = sides[0].max((record.split >> 16) as i16);
+                    sides[0] = sides[0].max(record.split as i16);
                 }
             }
         }

@@ -103,7 +103,7 @@ const JUMPS: bool = cfg!(any(target_arch = "arm", target_arch = "riscv32"));
 fn select(pair: &FlaggedPair, pattern: u32, parent: Interval, cull: &Cull) -> [Interval; 2] {
     let mut intervals = [parent; 2];
     for (axis, form) in cull.axes.iter().enumerate() {
-        let Interval { near, far } = form.between(pair.planes[axis]);
+        let Interval { near, far } = form.around(pair.planes[axis]);
         let right_near = pattern >> axis & 1 != 0;
         let right_far = pattern >> (axis + 3) & 1 != 0;
         let [left, right] = &mut intervals;
@@ -142,7 +142,7 @@ fn narrow_by<const PATTERN: u32>(
 ) -> [Interval; 2] {
     let mut intervals = [parent; 2];
     for (axis, form) in cull.axes.iter().enumerate() {
-        let Interval { near, far } = form.between(pair.planes[axis]);
+        let Interval { near, far } = form.around(pair.planes[axis]);
         let near_owner = &mut intervals[(PATTERN >> axis & 1) as usize];
         near_owner.near = near_owner.near.max(near);
         let far_owner = &mut intervals[(PATTERN >> (axis + 3) & 1) as usize];

@@ -281,8 +281,9 @@ pub struct FlaggedPair {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct DualNode {
-    /// On the split's axis: the first child's upper side in the low half, the second child's lower
-    /// side in the high half. Zero in a leaf.
+    /// On the split's axis: the second child's lower side in the low half, the first child's upper
+    /// side in the high half, in the order in which a ray up the axis enters the one and leaves the
+    /// other if they overlap. Zero in a leaf.
     pub split: u32,
     /// The node's lower side in the low half and its upper side in the high half, on each carve's
     /// axis; zero where there is no carve.

@@ -68,7 +68,7 @@ pub fn lay_out(root: &mut Node) -> Vec<DualNode> {
                     below.extend(regions.into_iter().zip(&mut **children));
                     next_node += 2;
                     DualNode {
-                        split: plane_word([boxes[0].0[axis][1], boxes[1].0[axis][0]]),
+                        split: plane_word([boxes[1].0[axis][0], boxes[0].0[axis][1]]),
                         carves,
                         way: Way::new(next_node - 2, axis as u32, axes).0,
                     }

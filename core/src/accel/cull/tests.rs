@@ -146,6 +146,20 @@ proptest! {
         holds_the_true_interval::<f64>(axes, major, down, place)?;
     }
 
+    /// Where planes are shifted rather than rotated, no more is culled, and hardly less.
+    #[test]
+    fn shifted_planes_are_around_rotated_ones(
+        word: u32,
+        slope in slope(),
+        origin in -8_388_352..=8_388_352_i32,
+    ) {
+        let axis = Fixed::cull_axis(Fixed(slope << (30 - SLOPE_BITS)), Fixed(origin << 5));
+        let (narrow, wide) = (axis.between(word), axis.around_by_shifts(word));
+        let unit = (axis.inverse.abs() >> 16) + 1;
+        prop_assert!(wide.near <= narrow.near && narrow.near - wide.near <= unit);
+        prop_assert!(narrow.far <= wide.far && wide.far - narrow.far <= unit);
+    }
+
     /// A box inside another is culled no later: what makes all structures agree.
     #[test]
     fn culling_is_monotone(
