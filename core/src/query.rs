@@ -4,7 +4,7 @@ use crate::SMALL;
 use crate::accel::cull::Culling;
 use crate::accel::{Accel, Leaf, StackView};
 use crate::blob::Scene;
-use crate::blob::record::{Corners, Cuboid, Sphere, UnitBox, Vertex};
+use crate::blob::record::{Corners, Sphere, UnitBox, Vertex};
 use crate::count::Count;
 use crate::event::{Event, Met};
 use crate::number::Number;
@@ -13,7 +13,7 @@ use crate::shape::sphere;
 use crate::shape::triangle::{self, Projection};
 use crate::shape::{
     Crossing, Kind, Part, Place, Spheres, Triangles, Vertices, WIDE_INDICES, WIDE_LATTICE, accept,
-    extent,
+    accept_in_box, extent,
 };
 #[cfg(feature = "wide")]
 use crate::{
@@ -86,26 +86,31 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     }
 
     /// Takes a crossing that beats the best hit: a smaller t, or the same t of an earlier primitive.
-    ///
-    /// Out of line, because few of the primitives that are tested come this far.
-    #[cfg_attr(not(feature = "small"), inline(never))]
-    fn consider(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: Place) {
-        self.take(crossing, bounds, place);
+    #[inline(always)]
+    fn take(&mut self, crossing: Crossing<N>, place: Place) {
+        if let Some(hit) = accept(self.ray, crossing, self.tmax) {
+            self.keep(hit, place);
+        }
     }
 
-    /// The same for code that is out of line itself.
+    /// The same of a primitive whose crossing may have been rounded out of its box.
     #[cfg_attr(not(feature = "small"), inline(always))]
     #[cfg_attr(feature = "small", inline(never))]
-    fn take(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: Place) {
-        let Some((t, part)) = accept(self.ray, self.cull, crossing, bounds, self.tmax) else {
-            return;
-        };
-        self.keep(t, part, place);
+    fn take_in_box(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: Place) {
+        if let Some(hit) = accept_in_box(self.ray, self.cull, crossing, bounds, self.tmax) {
+            self.keep(hit, place);
+        }
+    }
+
+    /// The same, out of line, because few of the primitives that are tested come this far.
+    #[inline(never)]
+    fn met(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: Place) {
+        self.take_in_box(crossing, bounds, place);
     }
 
     /// Takes a hit in the interval that is left, unless an earlier primitive is met at the same t.
     #[inline(always)]
-    fn keep(&mut self, t: N, part: Part, place: Place) {
+    fn keep(&mut self, (t, part): (N, Part), place: Place) {
         // No hit lies beyond the best one, so this one is nearer, or as near.
         let tie = self.best.filter(|best| t >= best.t);
         if tie.is_some_and(|best| self.scene.key(best.place) <= self.scene.key(place)) {
@@ -215,23 +220,12 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             let lane = lanes.trailing_zeros();
             lanes &= lanes - 1;
             let crossing = met.crossing(self.recip_norm2, lane as usize);
-            if crossing.enter.0 <= self.tmax && crossing.leave.0 >= self.ray.tmin {
-                self.sphere_met(pack, lane, crossing, place(lane));
-            }
+            self.take(crossing, place(lane));
             self.tell(place(lane), Some(&crossing), count);
             // Lanes have tested the others, too, so all of them are told.
             if ANY && !C::TELLS && self.best.is_some() {
                 return;
             }
-        }
-    }
-
-    /// Takes a sphere of a pack that the ray may meet.
-    #[cfg(feature = "wide")]
-    #[inline(never)]
-    fn sphere_met<P: Pack>(&mut self, pack: &P, lane: u32, crossing: Crossing<N>, place: Place) {
-        if let Some((center, radius)) = pack.sphere(lane) {
-            self.take(crossing, sphere::bounds(center, radius), place);
         }
     }
 
@@ -250,7 +244,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         };
         let crossing = sphere::cross(self.ray, self.recip_norm2, center, radius);
         if let Some(crossing) = crossing {
-            self.take(crossing, sphere::bounds(center, radius), place);
+            self.take(crossing, place);
         }
         self.tell(place, crossing.as_ref(), count);
     }
@@ -289,14 +283,14 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                 leaf,
                 count,
                 |search, cuboid| cuboid.cross(search.ray),
-                Cuboid::bounds,
+                |search, crossing, cuboid, place| search.met(crossing, cuboid.bounds(), place),
             ),
             Kind::Disc => self.solids(
                 shapes.discs.get(slots),
                 leaf,
                 count,
                 |search, disc| disc.cross(search.ray),
-                |disc| disc.bounds,
+                |search, crossing, disc, place| search.met(crossing, disc.bounds, place),
             ),
             Kind::Cone => self.solids(
                 shapes.cones.get(slots),
@@ -309,12 +303,12 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                     }
                     cone.cross(search.ray, search.recip_norm2)
                 },
-                |cone| cone.bounds,
+                |search, crossing, cone, place| search.met(crossing, cone.bounds, place),
             ),
         }
     }
 
-    /// Tests records one after the other; `bounds` is asked for the boxes of those that are met.
+    /// Tests records one after the other, and takes those that are met.
     #[inline(always)]
     fn solids<T, C: Count>(
         &mut self,
@@ -322,13 +316,13 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         leaf: Leaf,
         count: &mut C,
         cross: impl Fn(&Self, &T) -> Option<Crossing<N>>,
-        bounds: impl Fn(&T) -> UnitBox,
+        take: impl Fn(&mut Self, Crossing<N>, &T, Place),
     ) {
         for (index, record) in numbered(leaf, records) {
             let crossing = cross(self, record);
             let place = Place::Slot(leaf.kind, index);
             if let Some(crossing) = crossing {
-                self.consider(crossing, bounds(record), place);
+                take(self, crossing, record, place);
             }
             self.tell(place, crossing.as_ref(), count);
         }
@@ -340,11 +334,8 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             let (center, radius) = record.lattice();
             sphere::cross(search.ray, search.recip_norm2, center, radius)
         };
-        let bounds = |record: &S| {
-            let (center, radius) = record.lattice();
-            sphere::bounds(center, radius)
-        };
-        self.solids(spheres, leaf, count, cross, bounds);
+        let take = |search: &mut Self, crossing, _: &S, place| search.take(crossing, place);
+        self.solids(spheres, leaf, count, cross, take);
     }
 
     /// Chooses the copy of the triangle test for the ray's major axis, where there is one for each.
@@ -414,14 +405,11 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     fn triangle<C: Count>(&mut self, corners: [[i32; 3]; 3], place: Place, count: &mut C) {
         let crossing = triangle::cross(self.ray, corners);
         if let Some((t, steeply)) = crossing {
+            let crossing = Crossing::flat(t);
             if steeply {
-                if t >= self.ray.tmin && t <= self.tmax {
-                    self.keep(t, 0, place);
-                }
-            } else if SMALL {
-                self.consider(Crossing::flat(t), triangle::bounds(corners), place);
+                self.take(crossing, place);
             } else {
-                self.take(Crossing::flat(t), triangle::bounds(corners), place);
+                self.take_in_box(crossing, triangle::bounds(corners), place);
             }
         }
         let crossing = crossing.map(|(t, _)| Crossing::flat(t));

@@ -106,12 +106,22 @@ impl<N: Number> Surface<N> {
     }
 }
 
-/// The hit of a crossing in `tmin <= t <= tmax`, if there is one.
+/// The hit of a crossing in `tmin <= t <= tmax`, if there is one. A NaN is no hit.
+#[inline(always)]
+pub(crate) fn accept<N: Number>(ray: &Ray<N>, crossing: Crossing<N>, tmax: N) -> Option<(N, Part)> {
+    let Crossing { enter, leave } = crossing;
+    if enter.0 >= ray.tmin && enter.0 <= tmax {
+        return Some(enter);
+    }
+    (leave.0 >= ray.tmin && leave.0 <= tmax).then_some((leave.0, leave.1 | LEAVING))
+}
+
+/// The same of a crossing that a kernel may have rounded out of the primitive's box.
 ///
 /// `t` is clamped to the interval of the primitive's own box, which holds the true one: that never
-/// adds to an error, and makes culling conservative whatever a kernel rounded. A NaN is no hit.
+/// adds to an error, and makes culling conservative whatever a kernel rounded.
 #[inline(always)]
-pub(crate) fn accept<N: Number, K: Culling<N>>(
+pub(crate) fn accept_in_box<N: Number, K: Culling<N>>(
     ray: &Ray<N>,
     cull: &K,
     crossing: Crossing<N>,
@@ -146,11 +156,11 @@ pub(crate) fn accept<N: Number, K: Culling<N>>(
             t
         }
     };
-    let (enter, leave) = ((clamp(enter.0), enter.1), (clamp(leave.0), leave.1));
-    if enter.0 >= ray.tmin && enter.0 <= tmax {
-        return Some(enter);
-    }
-    (leave.0 >= ray.tmin && leave.0 <= tmax).then_some((leave.0, leave.1 | LEAVING))
+    let clamped = Crossing {
+        enter: (clamp(enter.0), enter.1),
+        leave: (clamp(leave.0), leave.1),
+    };
+    accept(ray, clamped, tmax)
 }
 
 /// Where a ray crosses a plane through `relative` (a point as seen from the ray's origin) with a normal of
@@ -493,3 +503,6 @@ impl Shapes<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
