@@ -20,11 +20,12 @@ fn run(stack: &'static mut Memory) {
     let Some(scene) = &scene else {
         fail("the blob is refused")
     };
-    let mut rays = rays::Rays::default();
-    let trace = meter.run(|| trace(scene, stack, &mut rays));
     line("blob-bytes", BLOB.len() as u64);
     line("workspace-bytes", size_of::<Memory>() as u64);
+    // Told at once, so that it takes up no stack while rays are traced.
     cost("load-instructions", "load-stack-bytes", load);
+    let mut rays = rays::Rays::default();
+    let trace = meter.run(|| trace(scene, stack, &mut rays));
     line("rays", rays.rays.into());
     line("hits", rays.hits.into());
     cost("ray-instructions", "ray-stack-bytes", trace.each(rays.rays));
