@@ -127,10 +127,11 @@ impl Accel for Wide {
         loop {
             if current.as_node().is_some() {
                 current = descend::<N, C>(nodes, cull, limit, current, stack, count);
-            } else if C::TELLS {
-                count.tell(Event::Opened(current.place()));
             }
             if current != Child::NONE {
+                if C::TELLS {
+                    count.tell(Event::Opened(current.place()));
+                }
                 let Some(tmax) = Leaf::from_word(current.0).and_then(|it| leaf(it, count)) else {
                     return;
                 };
@@ -169,12 +170,14 @@ impl Accel for Wide {
         loop {
             if current.as_node().is_some() {
                 current = descend_any::<N, C>(nodes, cull, limit, current, stack, count);
-            } else if C::TELLS {
-                count.tell(Event::Opened(current.place()));
             }
-            if current != Child::NONE && Leaf::from_word(current.0).is_none_or(|it| hits(it, count))
-            {
-                return;
+            if current != Child::NONE {
+                if C::TELLS {
+                    count.tell(Event::Opened(current.place()));
+                }
+                if Leaf::from_word(current.0).is_none_or(|it| hits(it, count)) {
+                    return;
+                }
             }
             let next = stack.pop().and_then(|Entry { node, near, .. }| {
                 take(nodes.get(node as usize)?, node, near as u32, stack)
@@ -199,20 +202,10 @@ fn descend<N: Number, C: Count>(
     stack: &mut StackView,
     count: &mut C,
 ) -> Child {
-    loop {
-        if C::TELLS {
-            count.tell(Event::Opened(current.place()));
-        }
-        let Some(number) = current.as_node() else {
-            return current;
-        };
-        let Some(node) = nodes.get(number as usize) else {
+    while let Some(number) = current.as_node() {
+        let Some((node, mut met, near)) = open::<N, C>(nodes, number, cull, limit, count) else {
             return Child::NONE;
         };
-        let (mut met, near) = test::<N, C>(node, cull, limit, count);
-        if met == 0 {
-            return Child::NONE;
-        }
         let first = take_lowest(&mut met);
         if met == 0 {
             // Every other node: no need to wait for where it is entered.
@@ -238,6 +231,7 @@ fn descend<N: Number, C: Count>(
         }
         current = node.child(lane(nearest));
     }
+    current
 }
 
 /// Goes down from a node, each time to one of the children that are met, to a leaf or to none: what
@@ -251,20 +245,10 @@ fn descend_any<N: Number, C: Count>(
     stack: &mut StackView,
     count: &mut C,
 ) -> Child {
-    loop {
-        if C::TELLS {
-            count.tell(Event::Opened(current.place()));
-        }
-        let Some(number) = current.as_node() else {
-            return current;
-        };
-        let Some(node) = nodes.get(number as usize) else {
+    while let Some(number) = current.as_node() {
+        let Some((node, met, _)) = open::<N, C>(nodes, number, cull, limit, count) else {
             return Child::NONE;
         };
-        let (met, _) = test::<N, C>(node, cull, limit, count);
-        if met == 0 {
-            return Child::NONE;
-        }
         let Some(first) = take(node, number, met, stack) else {
             // Only a forged blob is deeper than it says: the walk ends.
             stack.clear();
@@ -272,6 +256,29 @@ fn descend_any<N: Number, C: Count>(
         };
         current = first;
     }
+    current
+}
+
+/// Opens a node and [tests](WideCulling::children) its children: the node, which of them are met and
+/// where they are entered. `None` where none is met.
+#[inline(always)]
+fn open<'n, N: Number, C: Count>(
+    nodes: &'n [WideNode],
+    number: u32,
+    cull: &N::WideCull,
+    limit: i32,
+    count: &mut C,
+) -> Option<(&'n WideNode, u32, [i32; LANES])> {
+    let node = nodes.get(number as usize)?;
+    let children = children(node).count() as u32;
+    count.planes(6 * children);
+    count.boxes(children);
+    if C::TELLS {
+        count.tell(Event::Opened(Child::node(number).place()));
+        tell_tested::<N, C>(node, cull, limit, count);
+    }
+    let (met, near) = cull.children(node, limit);
+    (met != 0).then_some((node, met, near))
 }
 
 /// One of the children of a node that are met, while the others are left to wait together: the node,
@@ -288,23 +295,6 @@ fn take(node: &WideNode, number: u32, mut met: u32, stack: &mut StackView) -> Op
         stack.push(rest).ok()?;
     }
     Some(node.child(first))
-}
-
-/// [Tests](WideCulling::children) a node's children.
-#[inline(always)]
-fn test<N: Number, C: Count>(
-    node: &WideNode,
-    cull: &N::WideCull,
-    limit: i32,
-    count: &mut C,
-) -> (u32, [i32; LANES]) {
-    let children = children(node).count() as u32;
-    count.planes(6 * children);
-    count.boxes(children);
-    if C::TELLS {
-        tell_tested::<N, C>(node, cull, limit, count);
-    }
-    cull.children(node, limit)
 }
 
 /// The lanes of a node that hold children.

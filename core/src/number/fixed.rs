@@ -1,13 +1,18 @@
 //! Fixed point in 32 bits, products in 64: for cores without a floating-point unit.
 
+mod exponential;
 mod halves;
 mod quotient;
 mod root;
+mod vector;
+mod wide;
 
+use self::exponential::exp_neg;
 pub(crate) use self::halves::product;
-use self::halves::{leading_zeros, product_unsigned, quotient, wide_leading_zeros};
+use self::halves::{leading_zeros, product_unsigned, quotient};
 use self::quotient::Quotient;
-use self::root::{root, root_of_full};
+use self::root::{nearest_root, scaled_root};
+use self::wide::Product;
 use super::{CullAxis, Format, NARROW_PRODUCTS, Number, Sight};
 use crate::SMALL;
 use crate::accel::cull::Cull;
@@ -69,63 +74,6 @@ const fn with_sign(magnitude: u64, sign: i64) -> Fixed {
     Fixed(if sign < 0 { -magnitude } else { magnitude })
 }
 
-/// Square root to nearest.
-fn nearest_root(square: u64) -> u64 {
-    let root = root(square);
-    let rest = square.wrapping_sub(root.wrapping_mul(root));
-    root.wrapping_add(u64::from(rest > root))
-}
-
-/// Square root as a mantissa of 32 bits and the power of two it is to be divided by.
-fn scaled_root(square: u64) -> (u64, u32) {
-    let shift = square.leading_zeros() & 62;
-    (root_of_full(square << shift), shift / 2)
-}
-
-/// `v >> bits` on the magnitude, so that rounding does not depend on the sign.
-#[cfg_attr(not(feature = "small"), inline(always))]
-const fn shift_magnitude(v: i64, bits: i32) -> i32 {
-    let magnitude = v.unsigned_abs();
-    let shifted = if bits >= 0 {
-        magnitude >> (bits & 63)
-    } else {
-        magnitude << (bits.wrapping_neg() & 63)
-    } as i32;
-    if v < 0 {
-        shifted.wrapping_neg()
-    } else {
-        shifted
-    }
-}
-
-/// Undoes the shift of [`shift_magnitude`], rounded down.
-#[inline(always)]
-const fn shift_back(magnitude: u64, bits: i32) -> u64 {
-    if bits >= 0 {
-        magnitude << (bits & 63)
-    } else {
-        magnitude >> (bits.wrapping_neg() & 63)
-    }
-}
-
-/// Length of a vector of at most 31 bits and a sign, to nearest.
-#[inline(always)]
-fn norm(v: [i32; 3]) -> u64 {
-    // Three squares of at most 2^62.
-    let square = v.iter().fold(0_u64, |sum, &component| {
-        let square = (component as i64).wrapping_mul(component as i64);
-        sum.wrapping_add(square as u64)
-    });
-    nearest_root(square)
-}
-
-/// How far to shift down so that the largest magnitude keeps `bits` bits.
-#[inline(always)]
-fn excess_bits(v: [i64; 3], bits: i32) -> i32 {
-    let all = v[0].unsigned_abs() | v[1].unsigned_abs() | v[2].unsigned_abs();
-    (64 - bits).wrapping_sub(wide_leading_zeros(all) as i32)
-}
-
 /// 2^61 / `d` for `d` in \[2^30, 2^31), to a part in 2^29: a division in 32 bits, which small cores
 /// have or emulate cheaply, and one step of Newton's iteration.
 #[cfg_attr(not(feature = "small"), inline(always))]
@@ -142,53 +90,6 @@ fn surround_by_sides(sides: [i64; 3]) -> bool {
     let negative = sides.iter().any(|&side| side < 0);
     let positive = sides.iter().any(|&side| side > 0);
     negative != positive
-}
-
-/// [`Number::slopes`] of a vector beyond 31 bits.
-fn slopes_of_wide(v: [i64; 3]) -> Option<([Fixed; 3], usize)> {
-    let bits = excess_bits(v, 31);
-    slopes_of_narrow(v.map(|component| shift_magnitude(component, bits)))
-}
-
-/// [`Number::slopes`] of a vector of at most 31 bits and a sign.
-#[cfg_attr(not(feature = "small"), inline(always))]
-fn slopes_of_narrow(v: [i32; 3]) -> Option<([Fixed; 3], usize)> {
-    let [x, y, z] = v.map(i32::unsigned_abs);
-    let (largest, axis) = if x >= y && x >= z {
-        (x, 0)
-    } else if y >= z {
-        (y, 1)
-    } else {
-        (z, 2)
-    };
-    if largest == 0 {
-        return None;
-    }
-    let up = leading_zeros(largest).wrapping_sub(1) & 31;
-    let inverse = reciprocal(largest << up);
-    let minor = |component: i32| {
-        let scaled = component.unsigned_abs().wrapping_shl(up);
-        let magnitude = (product_unsigned(scaled, inverse) >> 31) as u32;
-        let magnitude = magnitude.min(1 << RATIO_BITS) as i32;
-        Fixed(if component < 0 {
-            magnitude.wrapping_neg()
-        } else {
-            magnitude
-        })
-    };
-    let one = |component: i32| {
-        if component < 0 {
-            -Fixed::ONE
-        } else {
-            Fixed::ONE
-        }
-    };
-    let slopes = match axis {
-        0 => [one(v[0]), minor(v[1]), minor(v[2])],
-        1 => [minor(v[0]), one(v[1]), minor(v[2])],
-        _ => [minor(v[0]), minor(v[1]), one(v[2])],
-    };
-    Some((slopes, axis))
 }
 
 impl Add for Fixed {
@@ -225,38 +126,6 @@ impl Mul for Fixed {
         let product = round_off(product(self.0, ratio.0), RATIO_BITS);
         keep(|| i32::try_from(product).is_ok());
         Self(product as i32)
-    }
-}
-
-/// A product in 64 bits; its operators wrap like those of [`Fixed`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[repr(transparent)]
-pub struct Product(pub i64);
-
-impl Add for Product {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        keep(|| self.0.checked_add(other.0).is_some());
-        Self(self.0.wrapping_add(other.0))
-    }
-}
-
-impl Sub for Product {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        keep(|| self.0.checked_sub(other.0).is_some());
-        Self(self.0.wrapping_sub(other.0))
-    }
-}
-
-impl Neg for Product {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        keep(|| self.0.checked_neg().is_some());
-        Self(self.0.wrapping_neg())
     }
 }
 
@@ -385,38 +254,9 @@ impl Number for Fixed {
         quotient.rounded()
     }
 
+    #[inline(always)]
     fn exp_neg(self, coefficient_q32: u32) -> Self {
-        // The exponent in powers of two, with 30 fraction bits.
-        const LOG2_E: u64 = 1_549_082_005;
-        let exponent = (self.0.max(0) as u64 * coefficient_q32 as u64) >> 15;
-        if exponent >= 22 << RATIO_BITS {
-            return Fixed(0);
-        }
-        let fraction = exponent & ((1 << RATIO_BITS) - 1);
-        let binary = (exponent >> RATIO_BITS) * LOG2_E + ((fraction * LOG2_E) >> RATIO_BITS);
-        let (whole, part) = (
-            (binary >> RATIO_BITS) as u32,
-            Fixed((binary & ((1 << RATIO_BITS) - 1)) as i32),
-        );
-        // 2^-x on [0, 1] by Horner's rule over the Taylor series of e^(-x ln 2) up to the tenth
-        // power, whose remainder is below 2^-30.
-        const TAYLOR: [i32; 10] = [
-            1_073_741_824,
-            -744_261_118,
-            257_941_248,
-            -59_597_083,
-            10_327_387,
-            -1_431_680,
-            165_394,
-            -16_377,
-            1_419,
-            -109,
-        ];
-        let mut power = Fixed(8);
-        for &coefficient in TAYLOR.iter().rev() {
-            power = power * part + Fixed(coefficient);
-        }
-        Fixed(power.0 >> (whole & 31))
+        exp_neg(self, coefficient_q32)
     }
 
     fn cell(self, size: Self) -> i32 {
@@ -445,39 +285,12 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn wide_times(wide: Product, factor: i32) -> Product {
-        if !NARROW_PRODUCTS {
-            return Product(wide.0.wrapping_mul(factor as i64));
-        }
-        let low = product_unsigned(wide.0 as u32, factor as u32);
-        // As a number with a sign, a negative factor is 2^32 less.
-        let correction = wide.0 as i32 & factor >> 31;
-        let high = ((wide.0 >> 32) as i32)
-            .wrapping_mul(factor)
-            .wrapping_sub(correction);
-        Product((low as i64).wrapping_add((high as i64) << 32))
+        wide.times(factor)
     }
 
-    // Only cameras are set up with it.
-    #[inline(never)]
+    #[inline(always)]
     fn wide_over(wide: Product, divisor: i32) -> Product {
-        keep(|| divisor > 0 && divisor < 1 << 24);
-        let divisor = divisor.unsigned_abs();
-        // Byte by byte, in 32 bits: cores without a division in 64 would need a kilobyte for one.
-        let (mut quotient, mut rest) = (0_u64, 0_u32);
-        let mut left = wide.0.unsigned_abs();
-        for _ in 0..8 {
-            let dividend = rest << 8 | (left >> 56) as u32;
-            let digit = dividend.checked_div(divisor).unwrap_or(0);
-            rest = dividend.wrapping_sub(digit.wrapping_mul(divisor));
-            quotient = quotient << 8 | u64::from(digit);
-            left <<= 8;
-        }
-        let quotient = quotient as i64;
-        Product(if wide.0 < 0 {
-            quotient.wrapping_neg()
-        } else {
-            quotient
-        })
+        wide.over(divisor)
     }
 
     #[inline(always)]
@@ -495,60 +308,23 @@ impl Number for Fixed {
         saturate(round_off(product.0, RATIO_BITS))
     }
 
-    #[cfg_attr(not(feature = "small"), inline(always))]
+    #[inline(always)]
     fn wide_scale(wide: Product, ratio: Self) -> Product {
-        keep(|| i64::try_from((wide.0 as i128 * ratio.0 as i128) >> RATIO_BITS).is_ok());
-        let high = (wide.0 >> 32).wrapping_mul(ratio.0 as i64);
-        let low = (wide.0 & 0xffff_ffff).wrapping_mul(ratio.0 as i64);
-        // Rounded as a product of two numbers is.
-        let half = (1 << (RATIO_BITS - 1)) + ((wide.0 ^ ratio.0 as i64) >> 63);
-        let low = low.wrapping_add(half) >> RATIO_BITS;
-        Product((high << (32 - RATIO_BITS)).wrapping_add(low))
+        wide.scaled(ratio)
     }
 
+    #[inline(always)]
     fn divide(numerator: Product, denominator: Product) -> Self {
-        let sign = numerator.0 ^ denominator.0;
-        let a = numerator.0.unsigned_abs();
-        let b = denominator.0.unsigned_abs();
-        if b == 0 {
-            return if a == 0 {
-                Fixed(0)
-            } else {
-                with_sign(u64::MAX, sign)
-            };
-        }
-        // The divisor's upper 32 bits are enough: t is a length of at most 31 bits.
-        let shift = wide_leading_zeros(b);
-        let divisor = b.wrapping_shl(shift) >> 32;
-        let dividend = match shift.checked_sub(32 - RATIO_BITS) {
-            Some(up) if up > wide_leading_zeros(a) => return with_sign(u64::MAX, sign),
-            Some(up) => a.wrapping_shl(up),
-            None => a >> ((32 - RATIO_BITS).wrapping_sub(shift) & 63),
-        };
-        if dividend >> 31 >= divisor {
-            return with_sign(u64::MAX, sign);
-        }
-        // By the reciprocal, to a part in 2^29, and then by that of the rest: within one sub-step.
-        let inverse = reciprocal((divisor >> 1) as u32) as u64;
-        // All factors have at most 32 bits.
-        let coarse = product_unsigned((dividend >> 31) as u32, inverse as u32) >> 31;
-        let rest = product_unsigned(coarse as u32, divisor as u32);
-        let rest = dividend.wrapping_sub(rest) as i64;
-        keep(|| rest.unsigned_abs() < 1 << 37);
-        let fine = (rest >> 8).wrapping_mul(inverse as i64);
-        let fine = fine.wrapping_add(1 << 53) >> 54;
-        with_sign(coarse.wrapping_add(fine as u64), sign)
+        numerator.divided_by(denominator)
     }
 
     fn root(square: Product) -> Self {
         with_sign(nearest_root(square.0.max(0) as u64), 0)
     }
 
+    #[inline(always)]
     fn wide_norm(v: [Product; 3]) -> Product {
-        let v = v.map(|product| product.0);
-        let bits = excess_bits(v, 31);
-        let norm = norm(v.map(|component| shift_magnitude(component, bits)));
-        Product(shift_back(norm, bits) as i64)
+        vector::wide_norm(v)
     }
 
     fn geometric_mean(a: Product, b: Product) -> Product {
@@ -634,54 +410,27 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn direction(v: [i64; 3]) -> [Self; 3] {
-        let bits = excess_bits(v, 30);
-        v.map(|component| Fixed(shift_magnitude(component, bits)))
+        vector::direction(v)
     }
 
-    #[cfg_attr(not(feature = "small"), inline(always))]
+    #[inline(always)]
     fn slopes(v: [Product; 3]) -> Option<([Self; 3], usize)> {
-        let v = v.map(|product| product.0);
-        let narrow = v.map(|component| component as i32);
-        let same = |k: usize| i64::from(narrow[k]) == v[k] && narrow[k] != i32::MIN;
-        if same(0) && same(1) && same(2) {
-            slopes_of_narrow(narrow)
-        } else {
-            slopes_of_wide(v)
-        }
+        vector::slopes(v)
     }
 
     #[inline(always)]
     fn slopes_of(v: [Self; 3]) -> Option<([Self; 3], usize)> {
-        slopes_of_narrow(v.map(|component| component.0))
+        vector::slopes_of(v)
     }
 
-    #[cfg_attr(not(feature = "small"), inline(always))]
+    #[inline(always)]
     fn recip_norm2(d: [Self; 3]) -> Self {
-        // d . d has 60 fraction bits: as 29, 1 to 3 lies in [2^29, 2^31).
-        let norm2 = (Self::dot(d, d).0 >> 31) as u32;
-        let up = norm2.leading_zeros().saturating_sub(1);
-        // 2^61 over 2^29 to 2^31 is 2^32 to 2^30; a ratio has 30 bits.
-        Fixed((reciprocal(norm2 << (up & 1)) >> (2 - (up & 1))) as i32)
+        vector::recip_norm2(d)
     }
 
+    #[inline(always)]
     fn normalize(v: [Self; 3]) -> ([Self; 3], Self) {
-        let wide = v.map(|component| component.0 as i64);
-        let bits = excess_bits(wide, 31);
-        let scaled = wide.map(|component| shift_magnitude(component, bits));
-        let norm = norm(scaled);
-        if norm == 0 {
-            return ([Fixed(0); 3], Fixed(0));
-        }
-        // The norm lies in [2^30, 2^32).
-        let down = (norm >> 31) as u32 & 1;
-        let inverse = reciprocal((norm >> down) as u32) as u64;
-        let unit = scaled.map(|component| {
-            let component = component as i64;
-            let magnitude = component.unsigned_abs().wrapping_mul(inverse) >> (31 + down);
-            with_sign(magnitude, component)
-        });
-        // The vector has at most 32 bits, so it was shifted up, or down by one.
-        (unit, with_sign(shift_back(norm, bits), 0))
+        vector::normalize(v)
     }
 
     #[inline(always)]

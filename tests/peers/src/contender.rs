@@ -23,13 +23,14 @@ pub struct Contender<'c> {
     pub trace: Box<Trace<'c>>,
 }
 
-/// A blob with one structure, and what building took, from the scene in memory on.
+/// A blob with one structure, and what building took, from the scene in memory on. Fails if the
+/// scene cannot be compiled.
 pub fn built(
     workload: &Workload,
     structure: Structure,
     lattice_bits: u8,
     quality: Quality,
-) -> (Blob, f64) {
+) -> Result<(Blob, f64), String> {
     let options = Options {
         structures: vec![structure],
         lattice_bits,
@@ -37,8 +38,9 @@ pub fn built(
         ..Options::default()
     };
     let started = Instant::now();
-    let blob = compile(&workload.scene, &options).expect("a blob").blob;
-    (blob, started.elapsed().as_secs_f64())
+    let compiled = compile(&workload.scene, &options)
+        .map_err(|error| format!("{}: {error}", workload.name))?;
+    Ok((compiled.blob, started.elapsed().as_secs_f64()))
 }
 
 /// Gridel through one structure. A rate counts everything from a ray's origin and direction in

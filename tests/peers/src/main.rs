@@ -2,10 +2,8 @@
 //! it is installed, on identical rays, interleaved in one run, on one thread.
 //!
 //! `cargo run --release --manifest-path tests/peers/Cargo.toml [-- OPTION...]`; `--features simd` and
-//! `RUSTFLAGS='-C target-cpu=native'` for what this machine can do. Options: `--only NAME` for one
-//! scene, `--repeats N`, `--side N` for the pictures of primary rays, `--json FILE`. Scenes come from
-//! `GRIDEL_SCENES` or `../shared/scenes`; what is absent is left out, loudly. What is recorded in
-//! `fixtures/recorded/peers.json` makes the README's table.
+//! `RUSTFLAGS='-C target-cpu=native'` for what this machine can do. `--help` tells of the options, and
+//! where scenes come from. What is recorded in `fixtures/recorded/peers.json` makes the README's table.
 //!
 //! Only ratios within one run mean anything. A rate is the median over the repeats, in which the
 //! contenders take turns. An answer is wrong where it is a miss and Gridel's in double precision is
@@ -21,12 +19,17 @@ mod obvhs;
 mod parry;
 mod workload;
 
+use clap::Parser;
+use clap::builder::PossibleValuesParser;
 use contender::{Contender, built, gridel};
 use glam::Vec3;
 use gridel_core::{Bvh, Flagged, Structure, Wide};
 use gridel_host::compile::Quality;
+use gridel_host::output::{Files, write_whole};
 use gridel_host::report::{Align, Table, grouped};
 use serde::Serialize;
+use std::path::PathBuf;
+use std::process::ExitCode;
 use std::time::Instant;
 use workload::{Answer, Geometry, Query, Rays, Workload};
 
@@ -47,7 +50,7 @@ struct Line {
 #[derive(Serialize)]
 struct Run {
     build: &'static str,
-    repeats: usize,
+    repeats: u32,
     scenes: Vec<Figures>,
 }
 
@@ -61,15 +64,56 @@ struct Figures {
     lines: Vec<Line>,
 }
 
+/// Traces identical rays through Gridel's structures and through other libraries, and compares them
+#[derive(Parser)]
+#[command(after_help = NOTES)]
 struct Settings {
+    /// Measure this scene alone
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(workload::NAMES))]
     only: Option<String>,
-    repeats: usize,
-    side: usize,
-    json: Option<String>,
+
+    /// How often every contender traces all rays; the median counts
+    #[arg(long, value_name = "N", default_value_t = 9,
+        value_parser = clap::value_parser!(u32).range(1..))]
+    repeats: u32,
+
+    /// Pixels a side of the picture whose rays are the primary ones
+    #[arg(long, value_name = "N", default_value_t = 512,
+        value_parser = clap::value_parser!(u16).range(1..))]
+    side: u16,
+
+    /// Write the figures to this file, too
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
 }
 
-fn main() {
-    let settings = settings();
+const NOTES: &str = "\
+Scenes come from the folder that GRIDEL_SCENES names, or else from ../shared/scenes beside the
+repository. What is absent is left out, and said to be.
+
+Exit codes:
+  0  done
+  1  failed: a scene cannot be used, or the file cannot be written
+  2  the command line is wrong";
+
+fn main() -> ExitCode {
+    match run(&Settings::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Measures and reports; or says what failed.
+fn run(settings: &Settings) -> Result<(), String> {
+    if let Some(path) = &settings.json {
+        // Before minutes go into what is to be in it.
+        Files::default()
+            .add(path, |_| Ok(()))
+            .map_err(|error| format!("{} cannot be written: {error}", path.display()))?;
+    }
     let repeats = settings.repeats;
     let build = match (cfg!(target_feature = "avx2"), cfg!(feature = "simd")) {
         (false, false) => "baseline x86-64",
@@ -79,16 +123,23 @@ fn main() {
     };
     println!("built for {build}; median of {repeats} repeats, one thread");
     let mut scenes = Vec::new();
-    for workload in workload::workloads() {
+    for workload in workload::workloads()? {
         let wanted = settings
             .only
             .as_ref()
             .is_none_or(|only| workload.name == *only);
         if wanted {
-            let figures = compare(&workload, &settings);
+            let figures = compare(&workload, settings)?;
             println!("\n{}", figures.table());
             scenes.push(figures);
         }
+    }
+    if let Some(only) = &settings.only
+        && scenes.is_empty()
+    {
+        return Err(format!(
+            "the scene \"{only}\" is absent: GRIDEL_SCENES names the folder that scenes are in"
+        ));
     }
     if let Some(path) = &settings.json {
         let run = Run {
@@ -97,34 +148,13 @@ fn main() {
             scenes,
         };
         let text = serde_json::to_string_pretty(&run).expect("figures are plain");
-        std::fs::write(path, text + "\n").expect("the JSON file can be written");
+        write_whole(path, |file| writeln!(file, "{text}"))
+            .map_err(|error| format!("{} cannot be written: {error}", path.display()))?;
     }
+    Ok(())
 }
 
-fn settings() -> Settings {
-    let mut settings = Settings {
-        only: None,
-        repeats: 9,
-        side: 512,
-        json: None,
-    };
-    let mut arguments = std::env::args().skip(1);
-    while let Some(option) = arguments.next() {
-        let value = arguments.next();
-        let value = value.unwrap_or_else(|| panic!("{option} needs a value"));
-        let number = || value.parse().unwrap_or_else(|_| panic!("{option} {value}"));
-        match option.as_str() {
-            "--only" => settings.only = Some(value),
-            "--repeats" => settings.repeats = number(),
-            "--side" => settings.side = number(),
-            "--json" => settings.json = Some(value),
-            _ => panic!("{option} is no option"),
-        }
-    }
-    settings
-}
-
-fn compare(workload: &Workload, settings: &Settings) -> Figures {
+fn compare(workload: &Workload, settings: &Settings) -> Result<Figures, String> {
     let blobs = [
         (Structure::Bvh, 24, Quality::Good),
         (Structure::Flagged, 24, Quality::Good),
@@ -133,14 +163,16 @@ fn compare(workload: &Workload, settings: &Settings) -> Figures {
         (Structure::Wide, 24, Quality::Good),
         (Structure::Wide, 24, Quality::Best),
     ]
+    .into_iter()
     .map(|(structure, bits, quality)| {
-        let (blob, seconds) = built(workload, structure, bits, quality);
+        let (blob, seconds) = built(workload, structure, bits, quality)?;
         let mut name = format!("gridel {}", structure.name());
         if structure == Structure::Wide {
             name = format!("{name}, {bits} bits, {quality:?}").to_lowercase();
         }
-        (name, structure, blob, seconds)
-    });
+        Ok((name, structure, blob, seconds))
+    })
+    .collect::<Result<Vec<_>, String>>()?;
     let scenes: Vec<_> = blobs
         .iter()
         .map(|(_, _, blob, _)| blob.scene().expect("a sound blob"))
@@ -158,7 +190,7 @@ fn compare(workload: &Workload, settings: &Settings) -> Figures {
     }
     let reference = gridel::<f64, Wide>(String::new(), scenes[double], 0, 0.0);
 
-    let primary = workload.primary(settings.side);
+    let primary = workload.primary(settings.side.into());
     let hits = hits_of(&reference, &workload.geometry, &primary);
     let bounces = workload.bounces(&primary, &hits);
     let kinds = [
@@ -187,7 +219,7 @@ fn compare(workload: &Workload, settings: &Settings) -> Figures {
             build_seconds: contender.seconds,
             rates: Vec::new(),
             wrong: Vec::new(),
-            leaks: (workload.name == "ball").then(|| leaks(contender, workload)),
+            leaks: (workload.name == workload::BALL).then(|| leaks(contender, workload)),
         })
         .collect();
     for rays in &kinds {
@@ -208,13 +240,13 @@ fn compare(workload: &Workload, settings: &Settings) -> Figures {
             line.wrong.push(wrong(&expected, found, size));
         }
     }
-    Figures {
+    Ok(Figures {
         scene: workload.name.clone(),
         primitives: workload.primitives(),
         kinds: kinds.iter().map(|rays| rays.kind).collect(),
         rays: kinds.iter().map(|rays| rays.queries.len()).collect(),
         lines,
-    }
+    })
 }
 
 /// The peers, built.

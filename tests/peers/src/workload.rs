@@ -53,17 +53,32 @@ pub fn folder() -> PathBuf {
     )
 }
 
-/// The scenes that are there; a scene that is not is named.
-pub fn workloads() -> Vec<Workload> {
+/// Scenes from files, by their names.
+const FILES: [(&str, &str); 4] = [
+    ("suzanne", "meshes/suzanne.obj"),
+    ("bunny", "meshes/stanford-bunny.obj"),
+    ("3dqb", "molecules/3dqb.pdb"),
+    ("4YVS", "molecules/4YVS.cif"),
+];
+const FINER_BUNNY: &str = "bunny, each triangle in four";
+pub const BALL: &str = "ball";
+
+/// All scenes.
+pub const NAMES: [&str; 6] = [
+    FILES[0].0,
+    FILES[1].0,
+    FILES[2].0,
+    FILES[3].0,
+    FINER_BUNNY,
+    BALL,
+];
+
+/// The scenes that are there; a scene that is not is named. Fails if one cannot be used.
+pub fn workloads() -> Result<Vec<Workload>, String> {
     let mut all = Vec::new();
-    for (name, file) in [
-        ("suzanne", "meshes/suzanne.obj"),
-        ("bunny", "meshes/stanford-bunny.obj"),
-        ("3dqb", "molecules/3dqb.pdb"),
-        ("4YVS", "molecules/4YVS.cif"),
-    ] {
+    for (name, file) in FILES {
         let path = folder().join(file);
-        match load(name, &path) {
+        match load(name, &path)? {
             Some(workload) => all.push(workload),
             None => println!("SKIPPED: {} is absent", path.display()),
         }
@@ -74,18 +89,16 @@ pub fn workloads() -> Vec<Workload> {
         .map(subdivided);
     all.extend(finer);
     all.push(ball());
-    all
+    Ok(all)
 }
 
-fn load(name: &str, path: &Path) -> Option<Workload> {
+fn load(name: &str, path: &Path) -> Result<Option<Workload>, String> {
     if !path.exists() {
-        return None;
+        return Ok(None);
     }
-    let scene = match scene::load(path, &MoleculeOptions::default()) {
-        Ok(imported) => imported.scene,
-        Err(error) => panic!("{}: {error}", path.display()),
-    };
-    Some(Workload::of(name, scene))
+    let imported =
+        scene::load(path, &MoleculeOptions::default()).map_err(|error| error.to_string())?;
+    Ok(Some(Workload::of(name, imported.scene)))
 }
 
 impl Workload {
@@ -252,7 +265,7 @@ fn subdivided(coarse: &Workload) -> Workload {
         }
         *triangles = finer;
     }
-    Workload::of("bunny, each triangle in four", scene)
+    Workload::of(FINER_BUNNY, scene)
 }
 
 /// A closed ball of 20,480 triangles, for leaks.
@@ -269,7 +282,7 @@ fn ball() -> Workload {
         },
         place: scene::Place::default(),
     });
-    Workload::of("ball", scene)
+    Workload::of(BALL, scene)
 }
 
 /// An icosahedron, each triangle cut in four again and again, on the unit sphere.

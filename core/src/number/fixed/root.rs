@@ -19,13 +19,13 @@ const GUESSES: [u8; 96] = {
 /// The greatest integer whose square is at most `square`, below 2^32.
 ///
 /// Cost: some ten products.
-pub(super) fn root(square: u64) -> u64 {
+fn root(square: u64) -> u64 {
     let up = square.leading_zeros() & 62;
     root_of_full(square << up) >> (up / 2)
 }
 
 /// The same for 0 and squares of at least 2^62.
-pub(super) fn root_of_full(square: u64) -> u64 {
+fn root_of_full(square: u64) -> u64 {
     let high = (square >> 32) as u32;
     // 1 / sqrt(high / 2^32) with 30 fraction bits, by two steps of Newton's iteration from 7 bits to 26,
     // or without a table by three from the line 2.13 - 1.216 x, which is off by a part in 11, to 24.
@@ -55,6 +55,19 @@ pub(super) fn root_of_full(square: u64) -> u64 {
     } else {
         root.wrapping_add((rest as u64 > root << 1).into())
     }
+}
+
+/// Square root to nearest.
+pub(super) fn nearest_root(square: u64) -> u64 {
+    let root = root(square);
+    let rest = square.wrapping_sub(root.wrapping_mul(root));
+    root.wrapping_add(u64::from(rest > root))
+}
+
+/// Square root as a mantissa of 32 bits and the power of two it is to be divided by.
+pub(super) fn scaled_root(square: u64) -> (u64, u32) {
+    let shift = square.leading_zeros() & 62;
+    (root_of_full(square << shift), shift / 2)
 }
 
 #[cfg(test)]

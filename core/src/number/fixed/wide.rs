@@ -1,0 +1,126 @@
+//! Wide numbers: products in 64 bits, and what they are multiplied with and divided by.
+
+use super::halves::{product_unsigned, wide_leading_zeros};
+use super::{Fixed, RATIO_BITS, keep, reciprocal, with_sign};
+use crate::number::NARROW_PRODUCTS;
+use core::ops::{Add, Neg, Sub};
+
+/// A product in 64 bits; its operators wrap like those of [`Fixed`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(transparent)]
+pub struct Product(pub i64);
+
+impl Add for Product {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        keep(|| self.0.checked_add(other.0).is_some());
+        Self(self.0.wrapping_add(other.0))
+    }
+}
+
+impl Sub for Product {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        keep(|| self.0.checked_sub(other.0).is_some());
+        Self(self.0.wrapping_sub(other.0))
+    }
+}
+
+impl Neg for Product {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        keep(|| self.0.checked_neg().is_some());
+        Self(self.0.wrapping_neg())
+    }
+}
+
+impl Product {
+    /// [`Number::wide_times`](crate::number::Number::wide_times).
+    #[inline(always)]
+    pub(super) fn times(self, factor: i32) -> Self {
+        if !NARROW_PRODUCTS {
+            return Self(self.0.wrapping_mul(factor as i64));
+        }
+        let low = product_unsigned(self.0 as u32, factor as u32);
+        // As a number with a sign, a negative factor is 2^32 less.
+        let correction = self.0 as i32 & factor >> 31;
+        let high = ((self.0 >> 32) as i32)
+            .wrapping_mul(factor)
+            .wrapping_sub(correction);
+        Self((low as i64).wrapping_add((high as i64) << 32))
+    }
+
+    /// [`Number::wide_over`](crate::number::Number::wide_over).
+    // Only cameras are set up with it.
+    #[inline(never)]
+    pub(super) fn over(self, divisor: i32) -> Self {
+        keep(|| divisor > 0 && divisor < 1 << 24);
+        let divisor = divisor.unsigned_abs();
+        // Byte by byte, in 32 bits: cores without a division in 64 would need a kilobyte for one.
+        let (mut quotient, mut rest) = (0_u64, 0_u32);
+        let mut left = self.0.unsigned_abs();
+        for _ in 0..8 {
+            let dividend = rest << 8 | (left >> 56) as u32;
+            let digit = dividend.checked_div(divisor).unwrap_or(0);
+            rest = dividend.wrapping_sub(digit.wrapping_mul(divisor));
+            quotient = quotient << 8 | u64::from(digit);
+            left <<= 8;
+        }
+        let quotient = quotient as i64;
+        Self(if self.0 < 0 {
+            quotient.wrapping_neg()
+        } else {
+            quotient
+        })
+    }
+
+    /// [`Number::wide_scale`](crate::number::Number::wide_scale).
+    #[cfg_attr(not(feature = "small"), inline(always))]
+    pub(super) fn scaled(self, ratio: Fixed) -> Self {
+        keep(|| i64::try_from((self.0 as i128 * ratio.0 as i128) >> RATIO_BITS).is_ok());
+        let high = (self.0 >> 32).wrapping_mul(ratio.0 as i64);
+        let low = (self.0 & 0xffff_ffff).wrapping_mul(ratio.0 as i64);
+        // Rounded as a product of two numbers is.
+        let half = (1 << (RATIO_BITS - 1)) + ((self.0 ^ ratio.0 as i64) >> 63);
+        let low = low.wrapping_add(half) >> RATIO_BITS;
+        Self((high << (32 - RATIO_BITS)).wrapping_add(low))
+    }
+
+    /// [`Number::divide`](crate::number::Number::divide).
+    pub(super) fn divided_by(self, denominator: Self) -> Fixed {
+        let sign = self.0 ^ denominator.0;
+        let a = self.0.unsigned_abs();
+        let b = denominator.0.unsigned_abs();
+        if b == 0 {
+            return if a == 0 {
+                Fixed(0)
+            } else {
+                with_sign(u64::MAX, sign)
+            };
+        }
+        // The divisor's upper 32 bits are enough: t is a length of at most 31 bits.
+        let shift = wide_leading_zeros(b);
+        let divisor = b.wrapping_shl(shift) >> 32;
+        let dividend = match shift.checked_sub(32 - RATIO_BITS) {
+            Some(up) if up > wide_leading_zeros(a) => return with_sign(u64::MAX, sign),
+            Some(up) => a.wrapping_shl(up),
+            None => a >> ((32 - RATIO_BITS).wrapping_sub(shift) & 63),
+        };
+        if dividend >> 31 >= divisor {
+            return with_sign(u64::MAX, sign);
+        }
+        // By the reciprocal, to a part in 2^29, and then by that of the rest: within one sub-step.
+        let inverse = reciprocal((divisor >> 1) as u32) as u64;
+        // All factors have at most 32 bits.
+        let coarse = product_unsigned((dividend >> 31) as u32, inverse as u32) >> 31;
+        let rest = product_unsigned(coarse as u32, divisor as u32);
+        let rest = dividend.wrapping_sub(rest) as i64;
+        keep(|| rest.unsigned_abs() < 1 << 37);
+        let fine = (rest >> 8).wrapping_mul(inverse as i64);
+        let fine = fine.wrapping_add(1 << 53) >> 54;
+        with_sign(coarse.wrapping_add(fine as u64), sign)
+    }
+}
