@@ -257,7 +257,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         match leaf.kind {
             // Code that was left out, and that no blob here leads to.
             kind if !kind.is_available() => (),
-            Kind::Triangle => match (shapes.vertices, shapes.triangles) {
+            Kind::Triangle => match (&shapes.vertices, &shapes.triangles) {
                 (Vertices::V16(v), Triangles::U16(t)) => {
                     self.triangles(v, t.get(slots), leaf, count)
                 }
@@ -342,32 +342,40 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     #[inline(always)]
     fn triangles<V: Vertex, I: Corners, C: Count>(
         &mut self,
-        vertices: &[V],
+        vertices: &&[V],
         triangles: Option<&[I]>,
         leaf: Leaf,
         count: &mut C,
     ) {
+        let Some(triangles) = triangles else { return };
+        let end = leaf.first.wrapping_add(leaf.count);
         match self.ray.major {
             _ if SMALL => {
-                self.triangles_along::<{ triangle::ANY }, V, I, C>(vertices, triangles, leaf, count)
+                self.triangles_along::<{ triangle::ANY }, V, I, C>(vertices, triangles, end, count)
             }
-            0 => self.triangles_along::<0, V, I, C>(vertices, triangles, leaf, count),
-            1 => self.triangles_along::<1, V, I, C>(vertices, triangles, leaf, count),
-            _ => self.triangles_along::<2, V, I, C>(vertices, triangles, leaf, count),
+            0 => self.triangles_along::<0, V, I, C>(vertices, triangles, end, count),
+            1 => self.triangles_along::<1, V, I, C>(vertices, triangles, end, count),
+            _ => self.triangles_along::<2, V, I, C>(vertices, triangles, end, count),
         }
     }
 
+    /// Tests the triangles of the slots before `end`.
+    ///
+    /// A slot is counted only where it is asked for, and the vertices lie where they are borrowed
+    /// from: what is handed on and kept is little.
     // Apart from the walk both keep more of what they need in the few registers of small cores.
     #[cfg_attr(not(feature = "wide"), inline(never))]
     fn triangles_along<const MAJOR: usize, V: Vertex, I: Corners, C: Count>(
         &mut self,
-        vertices: &[V],
-        triangles: Option<&[I]>,
-        leaf: Leaf,
+        vertices: &&[V],
+        mut triangles: &[I],
+        end: u32,
         count: &mut C,
     ) {
         let projection = Projection::of::<MAJOR, V>(self.ray);
-        for (index, record) in numbered(leaf, triangles) {
+        while let [record, rest @ ..] = triangles {
+            let index = end.wrapping_sub(triangles.len() as u32);
+            triangles = rest;
             let [a, b, c] = record.corners();
             let corners = (vertices.get(a), vertices.get(b), vertices.get(c));
             let (Some(a), Some(b), Some(c)) = corners else {
@@ -387,7 +395,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     #[inline(never)]
     fn triangle_in_slot<V: Vertex, I: Corners, C: Count>(
         &mut self,
-        vertices: &[V],
+        vertices: &&[V],
         record: &I,
         index: u32,
         count: &mut C,
