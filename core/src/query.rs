@@ -283,7 +283,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                 leaf,
                 count,
                 |search, cuboid| cuboid.cross(search.ray),
-                |search, crossing, cuboid, place| search.met(crossing, cuboid.bounds(), place),
+                |search, crossing, _, place| search.take(crossing, place),
             ),
             Kind::Disc => self.solids(
                 shapes.discs.get(slots),

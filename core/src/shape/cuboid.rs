@@ -2,6 +2,11 @@
 //!
 //! Closed: a ray that lies in a face meets it. An axis along which the ray does not move is a
 //! containment test, so nothing is divided by zero.
+//!
+//! Crossings need no clamping to the box on the box lattice, which holds this one: a t is where one face
+//! is crossed and lies between those of the others, so the point there is beside the box by no more than
+//! a coordinate and a t of less than 2^18 units are rounded, 2^-5 unit in `f32`, and culling widens boxes
+//! by more (see [`cull`](crate::accel)).
 
 use super::{Crossing, Part, Surface, extent};
 use crate::blob::record::{Cuboid, UnitBox};

@@ -1,7 +1,7 @@
 use super::triangle::Projection;
 use super::{Crossing, accept, accept_in_box, sphere, triangle};
 use crate::accel::cull::{Cull, Culling};
-use crate::blob::record::{UnitBox, Vertex24};
+use crate::blob::record::{Cuboid, UnitBox, Vertex24};
 use crate::number::{Fixed, Number};
 use crate::ray::Ray;
 use proptest::prelude::*;
@@ -38,6 +38,15 @@ fn sphere_is_in_its_box<N: Number>(center: [i32; 3], radius: i32, origin: [f64; 
     }
 }
 
+fn box_is_in_its_box<N: Number>(cuboid: &Cuboid, origin: [f64; 3], aim: [f64; 3]) {
+    let Some(ray) = ray::<N>(origin, aim) else {
+        return;
+    };
+    if let Some(crossing) = cuboid.cross(&ray) {
+        is_in_its_box(&ray, crossing, cuboid.bounds());
+    }
+}
+
 fn triangle_is_in_its_box<N: Number>(corners: [[i32; 3]; 3], origin: [f64; 3], aim: [f64; 3]) {
     let Some(ray) = ray::<N>(origin, aim) else {
         return;
@@ -55,6 +64,17 @@ fn triangle_is_in_its_box<N: Number>(corners: [[i32; 3]; 3], origin: [f64; 3], a
 /// A coordinate in 1/256 unit.
 fn coordinate() -> impl Strategy<Value = i32> {
     -8_388_352..=8_388_352_i32
+}
+
+/// A place between two sides: on one of them, beside one, or anywhere.
+fn share() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        Just(0.0),
+        Just(1.0),
+        -0.000_001..0.000_001_f64,
+        0.999_999..1.000_001_f64,
+        0.0..1.0_f64,
+    ]
 }
 
 /// An origin in units: near, or so far that it is moved.
@@ -91,6 +111,37 @@ proptest! {
         sphere_is_in_its_box::<Fixed>(center, radius, origin, aim);
         sphere_is_in_its_box::<f32>(center, radius, origin, aim);
         sphere_is_in_its_box::<f64>(center, radius, origin, aim);
+    }
+
+    /// Edges and corners above all, and faces that are seen from the side.
+    #[test]
+    fn boxes_are_met_in_their_boxes(
+        corners in [[coordinate(), coordinate()], [coordinate(), coordinate()], [coordinate(), coordinate()]],
+        shrink in [0..24_u32, 0..24, 0..24],
+        origin in origin(),
+        place in [share(), share(), share()],
+        level in 0..4_usize,
+    ) {
+        let sides: [[i32; 2]; 3] = core::array::from_fn(|axis| {
+            let [a, b] = corners[axis];
+            let b = a + ((b - a) >> shrink[axis]);
+            [a.min(b), a.max(b)]
+        });
+        let cuboid = Cuboid {
+            lowest: sides.map(|side| side[0]),
+            highest: sides.map(|side| side[1]),
+        };
+        let aim = [0, 1, 2].map(|axis| {
+            let [low, high] = sides[axis].map(f64::from);
+            low + (high - low) * place[axis]
+        });
+        let mut origin = origin;
+        if let Some(x) = origin.get_mut(level) {
+            *x = aim[level] / 256.0 + *x / 1e4;
+        }
+        box_is_in_its_box::<Fixed>(&cuboid, origin, aim);
+        box_is_in_its_box::<f32>(&cuboid, origin, aim);
+        box_is_in_its_box::<f64>(&cuboid, origin, aim);
     }
 
     /// Thin triangles, and triangles that are seen from the side.
