@@ -109,7 +109,9 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     }
 
     /// Takes a hit in the interval that is left, unless an earlier primitive is met at the same t.
-    #[inline(always)]
+    // Out of line on hosts, where many places come here and few rays.
+    #[cfg_attr(feature = "wide", inline(never))]
+    #[cfg_attr(not(feature = "wide"), inline(always))]
     fn keep(&mut self, (t, part): (N, Part), place: Place) {
         // No hit lies beyond the best one, so this one is nearer, or as near.
         let tie = self.best.filter(|best| t >= best.t);
