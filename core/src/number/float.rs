@@ -130,27 +130,6 @@ fn parallel_axis(offset: i32, descending: bool) -> CullAxis {
     )
 }
 
-/// A square root, which is the nearest number either way.
-///
-/// With the standard library it is the compiler's own: on x86-64 libm has an instruction of SSE, for which
-/// a core waits while its wide registers are in use.
-#[inline(always)]
-fn root_f32(square: f32) -> f32 {
-    #[cfg(feature = "std")]
-    return square.sqrt();
-    #[cfg(not(feature = "std"))]
-    libm::sqrtf(square)
-}
-
-/// The same in double precision.
-#[inline(always)]
-fn root_f64(square: f64) -> f64 {
-    #[cfg(feature = "std")]
-    return square.sqrt();
-    #[cfg(not(feature = "std"))]
-    libm::sqrt(square)
-}
-
 macro_rules! float_number {
     ($float:ident, $format:expr, $precision:expr, $smallest:expr, $sqrt:path, $exp:path,
      $compare_products:path, $settle:expr, $direction:expr) => {
@@ -265,7 +244,13 @@ macro_rules! float_number {
 
             #[inline(always)]
             fn sqrt(self) -> Self {
-                if self > 0.0 { $sqrt(self) } else { 0.0 }
+                // The nearest number either way. On x86-64 libm has an instruction of SSE, for which a core
+                // waits while its wide registers are in use.
+                #[cfg(feature = "std")]
+                let root = $float::sqrt;
+                #[cfg(not(feature = "std"))]
+                let root = $sqrt;
+                if self > 0.0 { root(self) } else { 0.0 }
             }
 
             #[inline(always)]
@@ -499,7 +484,7 @@ float_number!(
     Format::F32,
     1.0 / 16_777_216.0,
     SMALLEST_F32,
-    root_f32,
+    libm::sqrtf,
     libm::expf,
     compare_products_f32,
     // No product of two coordinates in single precision underflows in double precision.
@@ -519,7 +504,7 @@ float_number!(
     Format::F64,
     1.0 / 9_007_199_254_740_992.0,
     SMALLEST_F64,
-    root_f64,
+    libm::sqrt,
     libm::exp,
     compare_products_f64,
     |x: f64| if x.abs() < SMALLEST_F64 { 0.0 } else { x },

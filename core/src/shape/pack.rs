@@ -1,15 +1,6 @@
 //! Packs of spheres: the test of [`sphere`](super::sphere) on eight at once.
 //!
 //! In `f32` every operation of that test is done in lanes, up to the square root.
-//!
-//! **Before and behind.** Most spheres whom the line of a ray meets lie behind its start or beyond
-//! the best hit. A crossing that leaves before the ray starts or enters beyond that hit is none once
-//! it is clamped to the interval of the sphere's box either (see [`accept`](super::accept)). The
-//! point in its middle lies in that box to within the 1/8 unit of
-//! [`Culling::holds`](crate::accel::cull::Culling::holds), because the test has just held it against
-//! the radius on every axis. So where the middle is not negative it lies in the interval: clamping
-//! moves neither end past it, and an end that is beyond the middle only towards it. Where it is
-//! negative, the interval begins below 0, and nothing that is below the ray's start is moved up to it.
 
 use super::{Crossing, sphere};
 use crate::blob::cluster::{LANES, Pack, Rows};
