@@ -103,7 +103,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     }
 
     /// The same, out of line, because few of the primitives that are tested come this far.
-    #[inline(never)]
+    #[cfg_attr(not(feature = "small"), inline(never))]
     fn met(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: Place) {
         self.take_in_box(crossing, bounds, place);
     }

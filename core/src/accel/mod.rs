@@ -4,9 +4,9 @@
 //! primitive, a tie going to the primitive that comes first in the scene file. A structure only
 //! leaves primitives out that cannot be met, so it cannot change a bit of the answer. What makes
 //! this certain, and not only likely: a primitive's `t` lies in the culling interval of the
-//! primitive's own box, or is clamped to it, [`Scene::from_bytes`](crate::Scene::from_bytes) proves that this box lies
-//! in the leaf's and every box in its parent's, and culling is monotone (see [`cull`]). Whatever
-//! was rounded on the way, a primitive that is met lies in boxes that are met.
+//! primitive's own box, or is clamped to it, [`Scene::from_bytes`](crate::Scene::from_bytes) proves
+//! that this box lies in the leaf's and every box in its parent's, and culling is monotone (see
+//! [`cull`]). Whatever was rounded on the way, a primitive that is met lies in boxes that are met.
 
 #[cfg(feature = "apex")]
 pub mod apex;

@@ -92,32 +92,39 @@ fn surround_by_sides(sides: [i64; 3]) -> bool {
     negative != positive
 }
 
-impl Add for Fixed {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        keep(|| self.0.checked_add(other.0).is_some());
-        Self(self.0.wrapping_add(other.0))
-    }
-}
+/// Sums and differences that wrap, of numbers and of their products.
+macro_rules! wrapping_sums {
+    ($number:ident) => {
+        impl Add for $number {
+            type Output = Self;
+            #[inline(always)]
+            fn add(self, other: Self) -> Self {
+                keep(|| self.0.checked_add(other.0).is_some());
+                Self(self.0.wrapping_add(other.0))
+            }
+        }
 
-impl Sub for Fixed {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        keep(|| self.0.checked_sub(other.0).is_some());
-        Self(self.0.wrapping_sub(other.0))
-    }
-}
+        impl Sub for $number {
+            type Output = Self;
+            #[inline(always)]
+            fn sub(self, other: Self) -> Self {
+                keep(|| self.0.checked_sub(other.0).is_some());
+                Self(self.0.wrapping_sub(other.0))
+            }
+        }
 
-impl Neg for Fixed {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        keep(|| self.0.checked_neg().is_some());
-        Self(self.0.wrapping_neg())
-    }
+        impl Neg for $number {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                keep(|| self.0.checked_neg().is_some());
+                Self(self.0.wrapping_neg())
+            }
+        }
+    };
 }
+wrapping_sums!(Fixed);
+wrapping_sums!(Product);
 
 impl Mul for Fixed {
     type Output = Self;

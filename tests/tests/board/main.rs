@@ -505,6 +505,34 @@ fn primary_rays_of_suzanne_in_16_bits() {
     figures.check();
 }
 
+/// Instructions that a primary ray through a molecule of some 2,800 spheres takes at most, where there
+/// are floats.
+const A_RAY_AMONG_SPHERES: u64 = 620;
+
+/// Molecules of that size, a computed one and a protein, on a lattice of 16 bits.
+#[test]
+fn primary_rays_of_molecules() {
+    if !firmware::available() {
+        return;
+    }
+    let mut figures = Figures::new();
+    for molecule in [scenes::molecule()].into_iter().chain(scenes::protein()) {
+        for name in ["mps2-an386", "mps2-an385"] {
+            let board = board(name);
+            let build = Build::new(board, board.format(), Structure::DualSplit, &molecule);
+            let report = build.program("primary").run();
+            assert_eq!(report["rays"], 64 * 64, "{build}");
+            assert!(report["hits"] > 200, "{build}");
+            let a_ray = report["ray-instructions"];
+            if board.format() == Format::F32 {
+                assert!(a_ray <= A_RAY_AMONG_SPHERES, "{build}: {a_ray} a ray");
+            }
+            figures.add(&build.to_string(), &report);
+        }
+    }
+    figures.check();
+}
+
 /// The smallest layout, and what rays pay for it.
 #[test]
 fn primary_rays_of_suzanne_in_16_kib() {

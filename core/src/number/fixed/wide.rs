@@ -3,39 +3,11 @@
 use super::halves::{product_unsigned, wide_leading_zeros};
 use super::{Fixed, RATIO_BITS, keep, reciprocal, with_sign};
 use crate::number::NARROW_PRODUCTS;
-use core::ops::{Add, Neg, Sub};
 
 /// A product in 64 bits; its operators wrap like those of [`Fixed`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Product(pub i64);
-
-impl Add for Product {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        keep(|| self.0.checked_add(other.0).is_some());
-        Self(self.0.wrapping_add(other.0))
-    }
-}
-
-impl Sub for Product {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        keep(|| self.0.checked_sub(other.0).is_some());
-        Self(self.0.wrapping_sub(other.0))
-    }
-}
-
-impl Neg for Product {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        keep(|| self.0.checked_neg().is_some());
-        Self(self.0.wrapping_neg())
-    }
-}
 
 impl Product {
     /// [`Number::wide_times`](crate::number::Number::wide_times).
