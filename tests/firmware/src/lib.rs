@@ -4,13 +4,14 @@
 //! |---|---|
 //! | `picture` | renders the scene's picture into a file of the host, and counts what it and single rays cost |
 //! | `primary` | traces one ray a pixel and counts the hits |
+//! | `casts` | casts rays of its own, without a camera, and counts the hits |
 //! | `everywhere` | renders in every number format through every structure |
 //! | `emitted` | renders from what `gridel build --emit-rust` wrote |
 //! | `selftest` | runs the core's own tests |
 //! | `bare` | renders and talks to nobody: what it links is what a product would flash |
 //! | `example` | the README's example |
 //!
-//! The first four run in QEMU, or in Node, and print what they measured, a line each: a name and
+//! The first five run in QEMU, or in Node, and print what they measured, a line each: a name and
 //! a number. Blob, board, number format and structure are chosen when they are built:
 //!
 //! ```text
@@ -20,6 +21,7 @@
 #![no_std]
 
 pub mod board;
+pub mod casts;
 pub mod measure;
 pub mod rays;
 pub mod report;

@@ -5,6 +5,8 @@
 //! is 1. `fixtures/recorded/board.json` holds what was measured last: nothing may grow by more than 2 %.
 //! `GRIDEL_RECORD_BOARDS=1` records anew; read the difference before it is committed.
 
+#[path = "../../firmware/src/casts.rs"]
+mod casts;
 mod elf;
 mod figures;
 mod firmware;
@@ -12,9 +14,10 @@ mod parts;
 mod scenes;
 mod stack;
 
+use casts::Casts;
 use figures::Figures;
 use firmware::{AARCH64, Build, S390X, WASM, board};
-use gridel_core::{Effects, Format, Structure};
+use gridel_core::{Effects, Fixed, Format, List, Stack, Structure};
 use gridel_host::board::{BOARDS, Board};
 use gridel_host::emit::{self, Emitted};
 use scenes::Compiled;
@@ -531,6 +534,49 @@ fn primary_rays_of_molecules() {
         }
     }
     figures.check();
+}
+
+/// Stack and workspace of a closest hit at most where there is no camera, in integers and in floats.
+const CAST_RAM: u64 = 1024;
+
+/// What a range finder or a collision needs: hits alone, those of the host's list.
+#[test]
+fn rays_without_a_camera() {
+    if !firmware::available() {
+        return;
+    }
+    let mut figures = Figures::new();
+    for scene in [scenes::torus()].into_iter().chain(scenes::suzanne()) {
+        for (board, format) in boards_for_primary_rays() {
+            let build = Build::new(board, format, Structure::DualSplit, &scene);
+            let mut report = build.program("casts").run();
+            let hosts = casts_through_the_list(&scene, format);
+            let found = ["hits", "sum"].map(|name| report.remove(name));
+            assert_eq!(
+                found,
+                [hosts.hits, hosts.sum].map(|x| Some(x.into())),
+                "{build}"
+            );
+            let ram = report["cast-stack-bytes"] + report["cast-workspace-bytes"];
+            // With half of the registers, a Cortex-M0 puts down more.
+            let is_bound = board.core != "Cortex-M0";
+            assert!(!is_bound || ram <= CAST_RAM, "{build}: {ram} bytes of RAM");
+            figures.add(&build.to_string(), &report);
+        }
+    }
+    figures.check();
+}
+
+/// What the rays of `casts` meet on the host, each primitive tested.
+fn casts_through_the_list(scene: &Compiled, format: Format) -> Casts {
+    let scene = scene.blob.scene().expect("the compiler's own blob");
+    let (mut casts, mut stack) = (Casts::default(), Stack::<0>::new());
+    match format {
+        Format::F32 => casts.run::<f32, List>(&scene, stack.as_view()),
+        Format::F64 => casts.run::<f64, List>(&scene, stack.as_view()),
+        Format::Fixed => casts.run::<Fixed, List>(&scene, stack.as_view()),
+    }
+    casts
 }
 
 /// The smallest layout, and what rays pay for it.

@@ -71,8 +71,8 @@ fn the_readme_shows_what_boards_take() {
     holds_table("boards", &pictures);
 
     let mut rays = String::from(
-        "| board, format | call stack | stack of the traversal | instructions to load | a ray | \
-         a ray, 16 bits |\n|---|---|---|---|---|---|\n",
+        "| board, format | call stack | of casts | stack of the traversal | instructions to load | \
+         a cast | a ray | a ray, 16 bits |\n|---|---|---|---|---|---|---|---|\n",
     );
     for (board, format) in [
         ("mps2-an386", "f32"),
@@ -83,8 +83,10 @@ fn the_readme_shows_what_boards_take() {
     ] {
         let figures = [
             "ray-stack-bytes",
+            "cast-stack-bytes",
             "workspace-bytes",
             "load-instructions",
+            "cast-instructions",
             "ray-instructions",
         ];
         let wide = cells(&on_board("suzanne", board, format), &figures);
