@@ -92,6 +92,7 @@ fn parts_add_up(name: &str, scene: &Scene<'_>, samples: u16) {
             structure.name()
         );
         assert!(hits > 0);
+        assert!(opened > 0 || structure == Structure::List);
     }
 }
 

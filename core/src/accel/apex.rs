@@ -40,7 +40,7 @@
 //! cell, and one to four primitives.
 
 use super::bvh::Bvh;
-use super::candidates::{Candidates, ListSections};
+use super::candidates::{Candidates, ListSections, look_up};
 use super::cull::{Culling, Deferred};
 use super::line::Line;
 use super::{Accel, Leaf, Records, StackView, Structure};
@@ -88,7 +88,7 @@ impl Accel for Apex {
         let held = &scene.held.apex;
         let mut tmax = ray.tmax;
         if let Some(way) = held.way(ray) {
-            count.cells(1);
+            look_up(way.cell, count);
             let mut end = if way.outward {
                 way.level(tmax.to_cull())
             } else {

@@ -7,6 +7,8 @@
 //! neighbours lie: see [`Levels`].
 
 use crate::blob::{BlobError, Indices, SectionKind, Sections};
+use crate::count::Count;
+use crate::event::{Event, Place};
 use core::ops::Range;
 
 /// The sections of one table of lists.
@@ -19,6 +21,18 @@ pub(super) struct ListSections {
     pub(super) entries: SectionKind,
     /// A key for each entry.
     pub(super) keys: Option<SectionKind>,
+}
+
+/// Counts a cell whose list a ray goes through, and tells of it.
+#[inline(always)]
+pub(super) fn look_up<C: Count>(cell: u32, count: &mut C) {
+    count.cells(1);
+    if C::TELLS {
+        count.tell(Event::Opened(Place {
+            what: "cell",
+            number: cell,
+        }));
+    }
 }
 
 /// The lists of one table.

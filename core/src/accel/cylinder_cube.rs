@@ -10,7 +10,7 @@
 //! against a grid; [`CylinderCubeTight`](super::CylinderCubeTight) and
 //! [`CylinderCubeEntry`](super::CylinderCubeEntry) are what can be made of it.
 
-use super::candidates::ListSections;
+use super::candidates::{ListSections, look_up};
 use super::cull::Deferred;
 use super::gridel_table::Table;
 use super::{Accel, Leaf, Records, StackView, Structure};
@@ -41,7 +41,7 @@ impl Accel for CylinderCube {
         let Some(passage) = table.gridels.and_then(|gridels| gridels.passage(ray)) else {
             return;
         };
-        count.cells(1);
+        look_up(passage.cell, count);
         for index in table.lists.list(passage.cell) {
             let Some(slot) = table.lists.entry(index) else {
                 return;

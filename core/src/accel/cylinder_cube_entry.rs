@@ -7,7 +7,7 @@
 //! Nodes are sorted along the way from one gridel to the other, as the primitives of the
 //! [tight cube](super::cylinder_cube_tight) are.
 
-use super::candidates::ListSections;
+use super::candidates::{ListSections, look_up};
 use super::cull::PairCulling;
 use super::gridel_table::{Table, along};
 use super::link::Node;
@@ -46,7 +46,7 @@ impl Accel for CylinderCubeEntry {
         let Some(passage) = table.gridels.and_then(|gridels| gridels.passage(ray)) else {
             return;
         };
-        count.cells(1);
+        look_up(passage.cell, count);
         let pairs = scene.held.bvh;
         let walk = Walk {
             scene,

@@ -9,7 +9,7 @@
 //! Memory: 15 n^4 cells, a list for each that differs from all others, and a byte more an entry
 //! than in the paper's form.
 
-use super::candidates::ListSections;
+use super::candidates::{ListSections, look_up};
 use super::cull::Deferred;
 use super::gridel_table::{Table, along};
 use super::{Accel, Leaf, Records, StackView, Structure};
@@ -38,7 +38,7 @@ impl Accel for CylinderCubeTight {
     ) {
         let Held(table) = scene.held.cylinder_cube_tight;
         if let Some(passage) = table.gridels.and_then(|gridels| gridels.passage(ray)) {
-            count.cells(1);
+            look_up(passage.cell, count);
             along(&table.lists, &passage, ray, |slot| {
                 leaf(scene.shapes.single(slot), count)
             });

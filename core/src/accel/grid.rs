@@ -18,6 +18,7 @@
 //! [`MARGIN`], so it is tested at the latest in the cell that the ray is in at the hit; the walk
 //! ends only where the next cell begins beyond the best hit.
 
+use super::candidates::look_up;
 use super::cells::{Divisions, Lists, Tester, check_complete, divide, reach, record};
 use super::cull::{Cull, PairCulling};
 use super::{Accel, Leaf, Records, StackView, Structure};
@@ -77,14 +78,8 @@ impl Accel for Grid {
         let mut tester = Tester::new(scene, held.lists, leaf);
         let mut steps = Steps::new(cull, divide(scene.bounds(), shape.counts()), root.near);
         loop {
-            count.cells(1);
             let cell = steps.cell();
-            if C::TELLS {
-                count.tell(Event::Opened(Place {
-                    what: "cell",
-                    number: cell,
-                }));
-            }
+            look_up(cell, count);
             match tester.list::<N, C>(cell as usize, count) {
                 Ok(None) => {}
                 Ok(Some(tmax)) => end = end.min(limit(tmax)),

@@ -16,7 +16,7 @@
 //! Memory: four bytes a node, and the lists. Cost: a comparison a level, then the list.
 
 use super::bvh::Bvh;
-use super::candidates::{Candidates, ListSections};
+use super::candidates::{Candidates, ListSections, look_up};
 use super::cull::{Culling, Deferred};
 use super::line::Line;
 use super::{Accel, Leaf, Records, StackView, Structure};
@@ -184,7 +184,7 @@ impl Accel for RayClasses {
             let cull = Culling::new(ray);
             return Bvh::walk(scene, ray, &cull, stack, count, leaf);
         };
-        count.cells(1);
+        look_up(cell, count);
         let a_step = ClassRange::levels_a_step(scene.bounds(), point.face / 2);
         let level = |t: N| {
             let step = t.to_cull().saturating_sub(point.start);
