@@ -76,7 +76,7 @@ pub use accel::Spheres;
 #[cfg(feature = "wide")]
 pub use accel::Wide;
 pub use accel::{Accel, List, Stack, StackView, Structure, StructureVisitor};
-pub use blob::{Aligned, BlobError, Scene, Vouched};
+pub use blob::{Aligned, BlobError, Demand, Scene, Vouched};
 pub use count::{Count, Counters, NoCount, RayKind};
 pub use event::Event;
 pub use number::{Fixed, Format, Number};

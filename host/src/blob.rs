@@ -71,7 +71,7 @@ pub fn is_blob(path: &Path) -> io::Result<bool> {
 
 /// The structures that a scene holds, the one that a verb takes unless it is told first.
 pub fn best_structures(scene: &Scene<'_>) -> impl Iterator<Item = Structure> {
-    const BEST_FIRST: [Structure; 10] = [
+    const BEST_FIRST: [Structure; Structure::ALL.len()] = [
         Structure::Wide,
         Structure::Apex,
         Structure::RayClasses,
@@ -79,6 +79,11 @@ pub fn best_structures(scene: &Scene<'_>) -> impl Iterator<Item = Structure> {
         Structure::DualSplit,
         Structure::Flagged,
         Structure::Bvh,
+        Structure::FlaggedSlabs,
+        Structure::Slabs,
+        Structure::Grid,
+        Structure::Octree,
+        Structure::Spheres,
         Structure::CylinderCubeTight,
         Structure::CylinderCube,
         Structure::List,

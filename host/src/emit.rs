@@ -2,13 +2,28 @@
 //! that have exactly the memory that it needs.
 
 use crate::board::Board;
-use gridel_core::render::work_depth;
-use gridel_core::{Effects, Format, Kind, Scene, Structure, Vouched};
-use std::fmt::Write;
+use gridel_core::{Format, Scene, Structure, Vouched};
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
 
 /// The names of the module's two files.
 pub const MODULE: &str = "scene.rs";
 pub const BLOB: &str = "scene.gridel";
+
+/// How every module begins.
+const FIRST: &str = "// Written by `gridel build --emit-rust`";
+
+/// Whether a file is such a module.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn is_module(path: &Path) -> io::Result<bool> {
+    let mut start = Vec::new();
+    let file = File::open(path)?;
+    file.take(FIRST.len() as u64).read_to_end(&mut start)?;
+    Ok(start == FIRST.as_bytes())
+}
 
 /// What a module is written for.
 #[derive(Clone, Copy, Debug)]
@@ -32,26 +47,9 @@ impl Emitted<'_> {
         let scene = self.scene;
         let view = scene.view();
         let (number, structure) = (number(self.format), format!("{:?}", self.structure));
-        let secondary = Effects::MIRROR.with(Effects::GLASS);
-        // Where no ray causes another none has to wait.
-        let waiting = if scene.effects().0 & secondary.0 == 0 {
-            0
-        } else {
-            work_depth(view.depth)
-        };
-        let mut kinds = String::new();
-        for kind in Kind::ALL.into_iter().filter(|&kind| scene.count(kind) > 0) {
-            let name = kind.name();
-            // Writing to a string cannot fail.
-            let _ = write!(
-                kinds,
-                "    assert!(\n        gridel_core::Kind::{kind:?}.is_available(),\n        \
-                 \"the scene holds primitives of the kind {name}: enable that feature of gridel-core\"\n    );\n"
-            );
-        }
+        let mut budget = String::new();
         if let Some((bytes, board)) = self.budget {
-            let _ = write!(
-                kinds,
+            budget = format!(
                 "    assert!(\n        BLOB_BYTES <= {bytes},\n        \
                  \"the blob outgrew the flash of {}, of which {bytes} bytes are left for it\"\n    );\n",
                 board.name
@@ -64,18 +62,22 @@ impl Emitted<'_> {
         let load = if vouched { LOAD_VOUCHED } else { LOAD_CHECKED };
         let features: Vec<_> = self.features().iter().map(|it| format!("{it:?}")).collect();
         format!(
-            "// Written by `gridel build --emit-rust`; the scene is in `{BLOB}` beside this file.\n\
+            "{FIRST}; the scene is in `{BLOB}` beside this file.\n\
+             // In `src`, `mod scene;` takes both in; elsewhere, `#[path = \"...\"]` before it leads here.\n\
              //\n\
              // In Cargo.toml, exactly what the scene calls for:\n\
              //\n\
              // gridel-core = {{ default-features = false, features = [{features}] }}\n\
              //\n\
-             // Where flash is short, the feature \"small\" beside them and opt-level = \"z\" in the profile\n\
-             // halve the code. Rays take longer then, and every bit stays.\n\
+             // What `gridel inspect --target` tells of flash and RAM holds with lto = \"fat\" and\n\
+             // codegen-units = 1 in the profile. Where flash is short, the feature \"small\" beside those above\n\
+             // and opt-level = \"z\" halve the code. Rays take longer then, the call stack grows, and every\n\
+             // bit stays.\n\
              \n\
              /// The scene blob, aligned, in flash.\n\
              pub static BLOB: &[u8] = gridel_core::include_blob!(\"{BLOB}\");\n\
              /// Bytes of the blob.\n\
+             #[allow(dead_code)]\n\
              pub const BLOB_BYTES: usize = BYTES.len();\n\
              /// Entries of the traversal stack.\n\
              pub const STACK_DEPTH: usize = {stack};\n\
@@ -93,34 +95,40 @@ impl Emitted<'_> {
              /// The acceleration structure.\n\
              pub type Accel = gridel_core::{structure};\n\
              /// A traversal stack for rays of one's own, exactly deep enough.\n\
+             #[allow(dead_code)]\n\
              pub type Stack = gridel_core::Stack<STACK_DEPTH>;\n\
              /// All that pictures write to beside their pixels, exactly large enough.\n\
+             #[allow(dead_code)]\n\
              pub type Space = gridel_core::Workspace<Number, STACK_DEPTH, WORK_DEPTH>;\n\
              /// The renderer, with the code of the scene's effects.\n\
+             #[allow(dead_code)]\n\
              pub type Picture<'s> = gridel_core::Renderer<'s, 'static, Number, Accel, EFFECTS>;\n\
              \n\
              {load}\
              \n\
              const BYTES: &[u8] = include_bytes!(\"{BLOB}\");\n\
              \n\
-             // A blob that is not the one that this was written for does not compile.\n\
+             // A blob that asks for more than this was written for does not compile.\n\
              const _: () = {{\n    \
-             use gridel_core::Effects;\n    \
-             use gridel_core::blob::record::Header;\n    \
-             const fn half(at: usize) -> usize {{\n        \
-             BYTES[at] as usize | (BYTES[at + 1] as usize) << 8\n    }}\n    \
-             let depth = half(core::mem::offset_of!(Header, stack_depth));\n    \
-             assert!(\n        depth <= STACK_DEPTH,\n        \
-             \"the blob outgrew STACK_DEPTH: write this module again\"\n    );\n    \
-             let called = half(core::mem::offset_of!(Header, effects));\n    \
-             assert!(\n        Effects(EFFECTS).contains(Effects(called as u32)),\n        \
+             let Ok(demand) = gridel_core::Demand::of(BYTES) else {{\n        \
+             panic!(\"the blob was cut off: write it and this module again\")\n    }};\n    \
+             assert!(\n        gridel_core::Effects(EFFECTS).contains(demand.effects),\n        \
              \"the blob calls for effects beyond EFFECTS: write this module again\"\n    );\n    \
-             assert!(\n        Effects::AVAILABLE.contains(Effects(EFFECTS)),\n        \
-             \"the scene calls for effects whose features of gridel-core are not enabled\"\n    );\n\
-             {kinds}\
+             assert!(\n        demand.stack_depth <= STACK_DEPTH,\n        \
+             \"the blob outgrew STACK_DEPTH: write this module again\"\n    );\n    \
+             assert!(\n        demand.work_depth <= WORK_DEPTH,\n        \
+             \"the blob outgrew WORK_DEPTH: write this module again\"\n    );\n    \
+             assert!(\n        demand.width == WIDTH && demand.height == HEIGHT,\n        \
+             \"the blob's picture has another size: write this module again\"\n    );\n    \
+             assert!(\n        demand.holds(gridel_core::Structure::{structure}),\n        \
+             \"the blob does not hold the structure of Accel: write this module again\"\n    );\n    \
+             if let Some(missing) = demand.missing() {{\n        \
+             panic!(\"{{}}\", missing)\n    }}\n\
+             {budget}\
              }};\n",
             features = features.join(", "),
             stack = scene.stack_depth(),
+            waiting = scene.effects().work_depth(view.depth),
             effects = scene.effects(),
             bits = scene.effects().0,
             width = view.width,
@@ -132,11 +140,12 @@ impl Emitted<'_> {
 /// Loading that was prepared while the module was compiled.
 const LOAD_VOUCHED: &str = "\
 /// The scene, in constant time: what makes every walk end was proved while this was compiled.
+#[allow(dead_code)]
 pub fn load() -> Result<gridel_core::Scene<'static>, gridel_core::BlobError> {
     #[allow(long_running_const_eval)]
     static VOUCHED: gridel_core::Vouched<'static> = match gridel_core::Vouched::of(BLOB) {
         Ok(vouched) => vouched,
-        Err(_) => panic!(\"the blob was damaged: write it and this module again\"),
+        Err(_) => panic!(\"the blob was damaged, or has other structures: write it and this module again\"),
     };
     gridel_core::Scene::vouched(VOUCHED)
 }
@@ -145,6 +154,7 @@ pub fn load() -> Result<gridel_core::Scene<'static>, gridel_core::BlobError> {
 /// Loading that proves everything.
 const LOAD_CHECKED: &str = "\
 /// The scene, checked: of a blob with this structure everything is proved when it is loaded.
+#[allow(dead_code)]
 pub fn load() -> Result<gridel_core::Scene<'static>, gridel_core::BlobError> {
     gridel_core::Scene::from_bytes(BLOB)
 }

@@ -2,7 +2,6 @@
 //! of the board that `GRIDEL_BOARD` names before the linker.
 
 use gridel_core::Scene;
-use gridel_core::render::work_depth;
 use std::path::PathBuf;
 use std::{env, fs};
 
@@ -30,7 +29,7 @@ fn main() {
          /// Pixels of a row.\n\
          pub const WIDTH: usize = {};\n",
         scene.stack_depth(),
-        work_depth(scene.view().depth),
+        scene.effects().work_depth(scene.view().depth),
         scene.effects().0,
         scene.view().width,
     );

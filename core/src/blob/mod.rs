@@ -5,6 +5,7 @@
 mod check;
 #[cfg(feature = "wide")]
 pub mod cluster;
+mod demand;
 mod error;
 mod index;
 mod range;
@@ -13,6 +14,7 @@ pub mod record;
 mod section;
 mod vouch;
 
+pub use demand::Demand;
 pub use error::BlobError;
 pub use index::Indices;
 pub use section::SectionKind;

@@ -50,6 +50,8 @@ macro_rules! proved {
     };
 }
 
+pub(super) use proved;
+
 impl<'a> Vouched<'a> {
     /// The structures that can be vouched for.
     pub const STRUCTURES: [Structure; 4] = [
@@ -128,7 +130,7 @@ const fn levels(blob: &[u8], entry: usize, kind: u16) -> Result<usize, BlobError
 }
 
 /// The word at a place of a blob.
-const fn word(blob: &[u8], place: usize) -> Result<u32, BlobError> {
+pub(super) const fn word(blob: &[u8], place: usize) -> Result<u32, BlobError> {
     if let Some((_, rest)) = blob.split_at_checked(place)
         && let Some(bytes) = rest.first_chunk()
     {
@@ -141,6 +143,6 @@ const fn word(blob: &[u8], place: usize) -> Result<u32, BlobError> {
 }
 
 /// The half word at a place of a blob, which another half follows.
-const fn half(blob: &[u8], place: usize) -> Result<u16, BlobError> {
+pub(super) const fn half(blob: &[u8], place: usize) -> Result<u16, BlobError> {
     Ok(proved!(word(blob, place)) as u16)
 }

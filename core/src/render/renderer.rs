@@ -4,7 +4,7 @@ use super::camera::Camera;
 use super::cursor::{Cursor, Samples};
 use super::pixel::Pixel;
 use super::sample::SUBPIXELS;
-use super::trace::{Loop, WorkspaceView, work_depth};
+use super::trace::{Loop, WorkspaceView};
 use super::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use crate::accel::{Accel, Structure};
 use crate::blob::Scene;
@@ -182,17 +182,12 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     /// If it is not, with what it lacks. Rendering in it all the same is safe, but rays that find
     /// no room see nothing.
     pub fn check_workspace(&self, space: &WorkspaceView<'_, N>) -> Result<(), RenderError> {
-        let depth = if self.casts_rays() {
-            self.settings.depth
-        } else {
-            0
-        };
         let rooms = [
             ("stack", space.stack.capacity(), self.scene.stack_depth()),
             (
                 "work list",
                 space.work.capacity(),
-                work_depth(depth) - usize::from(depth == 0),
+                Effects(EFFECTS).work_depth(self.settings.depth),
             ),
         ];
         for (what, found, needed) in rooms {
@@ -205,10 +200,6 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
             }
         }
         Ok(())
-    }
-
-    fn casts_rays(&self) -> bool {
-        EFFECTS & Effects::MIRROR.with(Effects::GLASS).0 != 0
     }
 
     /// The ray from the eye through the middle of a pixel, for queries of the caller's own.

@@ -1,5 +1,6 @@
 //! What light does in a scene, as a set: the scene pays for these and for nothing else.
 
+use crate::render::work_depth;
 use core::fmt;
 
 /// A set of effects.
@@ -75,6 +76,20 @@ impl Effects {
     /// This set and that of `other`.
     pub const fn with(self, other: Effects) -> Effects {
         Effects(self.0 | other.0)
+    }
+
+    /// Whether rays cause others that have to wait.
+    pub(crate) const fn cast_rays(self) -> bool {
+        self.0 & Effects::MIRROR.with(Effects::GLASS).0 != 0
+    }
+
+    /// Places for waiting rays that pictures with these effects need at a ray depth: see [`work_depth`].
+    pub const fn work_depth(self, depth: u8) -> usize {
+        if depth > 0 && self.cast_rays() {
+            work_depth(depth)
+        } else {
+            0
+        }
     }
 
     /// The names of the effects in this set.

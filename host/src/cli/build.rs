@@ -7,12 +7,14 @@ use super::output::{Content, check_extension, print, print_json, refuse_same, wa
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Format, Scene, Structure};
+use gridel_host::blob::is_blob;
 use gridel_host::board::Board;
 use gridel_host::compile::{self, Builder, Figures, LeftOut, Report, Tabled};
 use gridel_host::emit::{self, Emitted};
 use gridel_host::report::{Account, Align, Ledger, Table, counted, grouped, power_of_two};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 /// Compile a scene file into a blob
 ///
@@ -55,7 +57,8 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = arguments::bytes)]
     max_bytes: Option<u64>,
 
-    /// Write the scene as a Rust module, scene.rs and scene.gridel, into this folder as well
+    /// Write the scene as a Rust module, scene.rs and scene.gridel, into this folder as well, over those
+    /// that were written there before; into src, `mod scene;` takes it in
     #[arg(long, value_name = "DIR")]
     emit_rust: Option<PathBuf>,
 
@@ -114,6 +117,21 @@ const NAMED: usize = 5;
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     refuse_same(&arguments.scene, &arguments.output)?;
     check_extension(&arguments.output, &["gridel", "bin"], "a blob")?;
+    refuse_foreign(&arguments.output, "blob", is_blob)?;
+    if let Some(folder) = &arguments.emit_rust {
+        if folder.exists() && !folder.is_dir() {
+            return Err(Failure::usage(
+                format!("{} is not a folder", folder.display()),
+                "give the folder that the module and its blob shall lie in; it need not exist",
+            ));
+        }
+        refuse_foreign(&folder.join(emit::BLOB), "blob", is_blob)?;
+        refuse_foreign(
+            &folder.join(emit::MODULE),
+            "module of gridel's",
+            emit::is_module,
+        )?;
+    }
     let accel = &arguments.accel;
     check_hierarchy("--leaf-size", arguments.leaf_size.is_some(), accel)?;
     check_hierarchy("--builder", arguments.builder.is_some(), accel)?;
@@ -167,15 +185,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             format,
             budget: room,
         };
-        std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
+        let is_new = !folder.exists();
+        fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
         let text = emitted.module();
-        write_files(&[
+        let written = write_files(&[
             (&arguments.output, write_blob),
             (&folder.join(emit::BLOB), write_blob),
             (&folder.join(emit::MODULE), &|out| {
                 out.write_all(text.as_bytes())
             }),
-        ])?;
+        ]);
+        if written.is_err() && is_new {
+            // Nothing of what failed stays; a folder that somebody else uses by now does.
+            let _ = fs::remove_dir(folder);
+        }
+        written?;
     } else {
         write_files(&[(&arguments.output, write_blob)])?;
     }
@@ -193,6 +217,31 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         print(built.text())
     }
+}
+
+/// Refuses to write over a file of another sort, such as the buffer of a glTF scene, or a program's own.
+fn refuse_foreign(
+    path: &Path,
+    sort: &str,
+    is_one: impl Fn(&Path) -> io::Result<bool>,
+) -> Result<(), Failure> {
+    let is_foreign = match fs::metadata(path) {
+        Ok(there) if there.is_file() && there.len() > 0 => {
+            !is_one(path).map_err(|error| Failure::reading(path, &error))?
+        }
+        // What is written to devices and pipes replaces nothing.
+        _ => false,
+    };
+    if is_foreign {
+        return Err(Failure::usage(
+            format!(
+                "{} is there and is no {sort}: it would be lost",
+                path.display()
+            ),
+            "write to another name or folder, or move that file away",
+        ));
+    }
+    Ok(())
 }
 
 impl<'r> Built<'r> {

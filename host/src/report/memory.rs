@@ -3,8 +3,7 @@
 use gridel_core::accel::Entry;
 use gridel_core::blob::SectionKind;
 use gridel_core::blob::record::{Header, SectionEntry};
-use gridel_core::render::work_depth;
-use gridel_core::{Effects, Fixed, Format, Number, Scene, Workspace};
+use gridel_core::{Fixed, Format, Number, Scene, Workspace};
 use serde::Serialize;
 
 /// What the bytes of a blob hold; the parts add up to the blob.
@@ -108,13 +107,7 @@ pub fn working_memory_at(scene: &Scene<'_>, depth: u8) -> Vec<WorkingMemory> {
     } else {
         &bits[..]
     };
-    let secondary = Effects::MIRROR.with(Effects::GLASS);
-    // Where no ray causes another none has to wait.
-    let places = if scene.effects().0 & secondary.0 == 0 || depth == 0 {
-        0
-    } else {
-        work_depth(depth)
-    };
+    let places = scene.effects().work_depth(depth);
     let depth = scene.stack_depth();
     words
         .iter()

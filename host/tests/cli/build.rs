@@ -358,6 +358,91 @@ fn names_that_mean_something_else_are_refused() {
     folder.fails(2, &trace, &["h.txt", ".npy"]);
 }
 
+/// The module walks what the blob was built for, whatever that is, and names its feature.
+#[test]
+fn a_module_is_emitted_for_every_structure() {
+    let folder = Folder::new();
+    folder.write("quick.toml", &fixture("quick"));
+    for structure in Structure::ALL {
+        let name = structure.name();
+        let build = ["build", "quick.toml", "-o", "b.gridel", "--accel", name];
+        // Small tables.
+        let options: &[_] = match name.starts_with("cylinder") {
+            true => &["--gridels", "2"],
+            false => &[],
+        };
+        folder.done(&[&build[..], options, &["--emit-rust", "src"]].concat());
+        let module = String::from_utf8(folder.read("src/scene.rs")).unwrap();
+        let accel = format!("pub type Accel = gridel_core::{structure:?};");
+        assert!(module.contains(&accel), "{name}: {module}");
+        let feature = format!("features = [\"{name}\", ");
+        assert_eq!(
+            module.contains(&feature),
+            structure != Structure::List,
+            "{name}: {module}"
+        );
+    }
+}
+
+/// A file of another sort stays what it is.
+#[test]
+fn nothing_of_the_users_own_is_written_over() {
+    let folder = Folder::with_quick();
+    let own = b"a buffer, or a program";
+    for (path, said) in [
+        ("scene.bin", "scene.bin is there and is no blob"),
+        (
+            "src/scene.rs",
+            "scene.rs is there and is no module of gridel's",
+        ),
+    ] {
+        std::fs::create_dir_all(folder.path("src")).unwrap();
+        folder.write(path, own);
+        let build = [
+            "build",
+            "quick.toml",
+            "-o",
+            "scene.bin",
+            "--emit-rust",
+            "src",
+        ];
+        folder.fails(2, &build, &[said, "move that file away"]);
+        assert_eq!(folder.read(path), own);
+        std::fs::remove_file(folder.path(path)).unwrap();
+    }
+    // What was written before is written anew.
+    let build = [
+        "build",
+        "quick.toml",
+        "-o",
+        "scene.bin",
+        "--emit-rust",
+        "src",
+    ];
+    folder.done(&build);
+    folder.done(&build);
+    // Neither is a file taken for a folder, nor does a folder stay that nothing came into.
+    let build = [
+        "build",
+        "quick.toml",
+        "-o",
+        "b.gridel",
+        "--emit-rust",
+        "quick.toml",
+    ];
+    folder.fails(2, &build, &["quick.toml is not a folder"]);
+    let build = [
+        "build",
+        "quick.toml",
+        "-o",
+        "none/b.gridel",
+        "--emit-rust",
+        "new",
+    ];
+    folder.fails(1, &build, &["none/b.gridel cannot be written"]);
+    assert!(!folder.path("new").exists());
+}
+
 /// The blob and the module's two files come together or not at all.
 #[test]
 fn what_belongs_together_is_written_together() {

@@ -384,7 +384,7 @@ fn emitted_modules_run_or_do_not_compile() {
 
     outgrown(
         &features[..features.len() - 1],
-        "whose features of gridel-core are not enabled",
+        "the scene calls for `shadow`: enable that feature",
     );
     emitted.budget = Some((scene.blob.bytes().len() as u64 - 1, discovery));
     write(&emitted.module(), &scene);
@@ -395,13 +395,18 @@ fn emitted_modules_run_or_do_not_compile() {
     damaged[200] ^= 1;
     write_module(&folder, &module, &damaged);
     outgrown(&features, "the blob was damaged");
-    write(&module, &scenes::torus());
-    outgrown(&features, "the blob outgrew STACK_DEPTH");
-    let glass = parts::scenes()
-        .into_iter()
-        .find(|scene| scene.name == "glass");
-    write(&module, &glass.expect("a scene of glass"));
-    outgrown(&features, "the blob calls for effects beyond EFFECTS");
+    write_module(&folder, &module, &scene.blob.bytes()[..10]);
+    outgrown(&features, "the blob was cut off");
+    for (why, other) in parts::outgrown() {
+        write(&module, &other);
+        outgrown(&features, why);
+    }
+    let [shallow, deep] = parts::deeper();
+    let view = shallow.blob.scene().expect("the compiler's own blob");
+    emitted.scene = &view;
+    write(&emitted.module(), &deep);
+    let features = [&["emitted"], &deep.features()[..]].concat();
+    outgrown(&features, "the blob outgrew WORK_DEPTH");
 }
 
 /// One of each core that tracers for boards are compared on, and the one with floats without them.

@@ -3,6 +3,8 @@
 
 use crate::scenes::{Compiled, compile_with, small};
 use glam::DVec3;
+use gridel_core::Structure;
+use gridel_host::compile::Options;
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Place, Scene, Shape};
 
 /// The scene that all others add to: a triangle and a diffuse light that throws no shadows.
@@ -78,6 +80,43 @@ pub fn sphere_and_triangle() -> Compiled {
         radius: 0.8,
     }));
     compile("sphere, triangle, shadow", scene)
+}
+
+/// Scenes that each ask for one thing that [`sphere_and_triangle`] does not, with what is said of it.
+pub fn outgrown() -> [(&'static str, Compiled); 6] {
+    let [mirrors, _] = deeper();
+    let mut cuboid = base();
+    let (min, max) = (DVec3::splat(-0.7), DVec3::splat(0.7));
+    cuboid.objects.push(object(Shape::Box { min, max }));
+    let through = |structure: Structure| {
+        let options = Options {
+            structures: vec![structure],
+            ..small()
+        };
+        compile_with(structure.name(), base(), [32, 32], options)
+    };
+    let wider = compile_with("wider", base(), [33, 32], small());
+    [
+        ("the blob calls for effects beyond EFFECTS", mirrors),
+        ("the blob's picture has another size", wider),
+        ("the scene calls for `box`", compile("box", cuboid)),
+        (
+            "the blob does not hold the structure of Accel",
+            through(Structure::Flagged),
+        ),
+        ("or has other structures", through(Structure::Grid)),
+        ("the blob outgrew STACK_DEPTH", super::scenes::torus()),
+    ]
+}
+
+/// A mirror scene and the same with more reflections.
+pub fn deeper() -> [Compiled; 2] {
+    [2, 3].map(|depth| {
+        let mut scene = base();
+        scene.render.depth = depth;
+        scene.materials[0].mirror = [0.5; 3];
+        compile("deeper", scene)
+    })
 }
 
 fn base() -> Scene {
