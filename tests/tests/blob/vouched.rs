@@ -4,15 +4,16 @@ use super::forged::section;
 use super::{render_small, sealed, small_scene, speaks};
 use gridel_core::accel::{Chosen, Leaf, MAX_STACK_DEPTH};
 use gridel_core::blob::SectionKind;
-use gridel_core::blob::record::{DualNode, FlaggedPair, Header, Pair};
+use gridel_core::blob::record::{DualNode, FlaggedPair, Header, Pair, SectionEntry, View};
 use gridel_core::{
-    BlobError, Counters, Number, Scene, Settings, Stack, Structure, Vouched, any_hit, closest_hit,
+    BlobError, Counters, Demand, Number, Scene, Settings, Stack, Structure, Vouched, any_hit,
+    closest_hit,
 };
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_tests::query::{held, through};
 use gridel_tests::random::Random;
-use gridel_tests::{every_format, rays};
+use gridel_tests::{every_format, rays, scenes};
 use std::mem::offset_of;
 
 /// Sections that are proved, with the size of a record and of the words in it that lead to others.
@@ -241,5 +242,59 @@ fn walks_end<N: Number>(scene: &Scene<'_>, leaves: u32, rays_each: usize) {
                 );
             }
         }
+    }
+}
+
+/// What is read of a blob while a program is compiled is what is read of its scene.
+#[test]
+fn demands_are_those_of_the_scene() {
+    for (name, scene) in scenes::fixtures() {
+        for structure in Vouched::STRUCTURES {
+            let options = Options {
+                structures: vec![structure],
+                ..Options::default()
+            };
+            let blob = compile(&scene, &options).expect("compiles").blob;
+            let scene = blob.scene().expect("a scene");
+            let (demand, view) = (
+                Demand::of(blob.bytes()).expect("a whole blob"),
+                scene.view(),
+            );
+            assert_eq!(demand.stack_depth, scene.stack_depth(), "{name}");
+            assert_eq!(demand.effects, scene.effects(), "{name}");
+            let work_depth = scene.effects().work_depth(view.depth);
+            assert_eq!(demand.work_depth, work_depth, "{name}");
+            let size = [view.width, view.height].map(usize::from);
+            assert_eq!([demand.width, demand.height], size, "{name}");
+            for structure in Structure::ALL {
+                assert_eq!(demand.holds(structure), scene.holds(structure), "{name}");
+            }
+            // This build has every feature.
+            assert_eq!(demand.missing(), None, "{name}");
+        }
+    }
+}
+
+/// Whatever a blob was made of, reading its demand ends.
+#[test]
+fn demands_of_broken_blobs_are_read_or_refused() {
+    let whole = blob_for_boards(24);
+    let sections = usize::from(whole[offset_of!(Header, section_count)]);
+    let table = size_of::<Header>() + sections * size_of::<SectionEntry>();
+    for length in 0..whole.len() {
+        let cut_off = Demand::of(&whole[..length]).is_err();
+        assert!(
+            cut_off || length >= table + size_of::<View>() / 2,
+            "{length}"
+        );
+    }
+    let mut random = Random(9);
+    for _ in 0..20_000 {
+        let mut broken = whole.clone();
+        for _ in 0..4 {
+            let place = random.below(600) as usize;
+            broken[place] = random.below(256) as u8;
+        }
+        let _ = Demand::of(&broken);
     }
 }
