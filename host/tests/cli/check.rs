@@ -197,3 +197,17 @@ budget = {{ picture-instructions = 40_000_000, load-instructions = 1 }}
     assert!(broken[0]["found"].as_u64().unwrap() > 1000);
     assert_eq!(output.status.code(), Some(1));
 }
+
+/// The exit code says what was found, whoever reads.
+#[test]
+fn broken_checks_fail_without_a_reader() {
+    let folder = folder();
+    for json in [&[][..], &["--json"]] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let mut command = folder.command(&[&["check", "check.toml"], json].concat());
+        let output = command.stdout(writer).output().unwrap();
+        assert_eq!(output.status.code(), Some(1));
+        assert!(output.stderr.is_empty(), "{output:?}");
+    }
+}
