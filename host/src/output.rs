@@ -27,6 +27,30 @@ pub fn write_whole(
     files.keep().map_err(|(_, error)| error)
 }
 
+/// Proves that a file can be written, before the work whose result it is to hold.
+///
+/// # Errors
+/// As [`Files::add`]. The file stays as it is, and one that is not there is not made.
+pub fn prove(path: &Path) -> io::Result<()> {
+    match fs::metadata(path) {
+        // Who reads a pipe would take this for the end.
+        Ok(old) if !old.is_file() && !old.is_dir() => Ok(()),
+        _ => Files::default().add(path, |_| Ok(())),
+    }
+}
+
+/// Where a file is, or would be if it were there: the same for all paths that lead to it.
+pub fn place(path: &Path) -> PathBuf {
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let real = path.ancestors().find_map(|ancestor| {
+        let rest = path.strip_prefix(ancestor).ok()?;
+        let real = ancestor.canonicalize().ok()?;
+        // An empty rest would end the path with a separator.
+        Some(real.components().chain(rest.components()).collect())
+    });
+    real.unwrap_or(path)
+}
+
 /// Files that belong together: none of them takes its name before all are complete.
 ///
 /// The content of each goes to a new file in its folder. A symbolic link stays one, and what it
@@ -189,6 +213,39 @@ mod tests {
         files.keep().unwrap();
         assert_eq!(fs::read(path("a")).unwrap(), b"new");
         assert_eq!(names(folder.path()), ["a", "b", "folder"]);
+    }
+
+    #[test]
+    fn proving_leaves_everything_as_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::write(path("old"), "old").unwrap();
+        prove(&path("old")).unwrap();
+        prove(&path("new")).unwrap();
+        assert!(prove(folder.path()).is_err());
+        assert!(prove(&path("old/new")).is_err());
+        let lost = prove(&path("lost/new")).unwrap_err();
+        assert_eq!(lost.kind(), io::ErrorKind::NotFound);
+        assert_eq!(names(folder.path()), ["old"]);
+        assert_eq!(fs::read(path("old")).unwrap(), b"old");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn paths_to_one_place_are_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::create_dir(path("folder")).unwrap();
+        fs::write(path("a"), "").unwrap();
+        std::os::unix::fs::symlink(path("a"), path("folder/link")).unwrap();
+        std::os::unix::fs::symlink(path("folder"), path("other")).unwrap();
+        assert_eq!(place(&path("other/link")), place(&path("folder/../a")));
+        // And of what is not there yet.
+        assert_eq!(
+            place(&path("other/lost/b")),
+            place(&path("folder/./lost/b"))
+        );
+        assert_ne!(place(&path("folder/b")), place(&path("b")));
     }
 
     #[cfg(unix)]

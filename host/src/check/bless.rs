@@ -2,7 +2,7 @@
 
 use super::manifest::Manifest;
 use super::report::{Figure, Key, Record, Report};
-use crate::output::write_whole;
+use crate::output::Files;
 use std::collections::BTreeSet;
 use std::io;
 use std::path::PathBuf;
@@ -55,9 +55,11 @@ pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
                 blessed.references.push((path.clone(), image.clone()));
             }
             None if matches!(finding.outcome, super::Outcome::Broken(_)) => {
-                blessed
-                    .left
-                    .push(format!("{}: {}", finding.check, finding.what));
+                let what = format!("{}: {}", finding.check, finding.what);
+                // In several formats it is still one thing.
+                if !blessed.left.contains(&what) {
+                    blessed.left.push(what);
+                }
             }
             Some(Record::Picture(..)) | None => {}
         }
@@ -92,19 +94,21 @@ impl Blessed {
         text
     }
 
-    /// Writes the references and the manifest, each whole or not at all.
+    /// The references and the manifest, complete: [`Files::keep`] gives them their names.
     ///
     /// # Errors
     /// If a file cannot be written, with its path.
-    pub fn write(&self) -> Result<(), (PathBuf, io::Error)> {
+    pub fn files(&self) -> Result<Files, (PathBuf, io::Error)> {
+        let mut files = Files::default();
         for (path, image) in &self.references {
-            write_whole(path, |out| image.write(out)).map_err(|error| (path.clone(), error))?;
+            let added = files.add(path, |out| image.write(out));
+            added.map_err(|error| (path.clone(), error))?;
         }
         if self.old != self.new {
-            write_whole(&self.path, |out| out.write_all(self.new.as_bytes()))
-                .map_err(|error| (self.path.clone(), error))?;
+            let added = files.add(&self.path, |out| out.write_all(self.new.as_bytes()));
+            added.map_err(|error| (self.path.clone(), error))?;
         }
-        Ok(())
+        Ok(files)
     }
 }
 

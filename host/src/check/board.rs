@@ -1,10 +1,11 @@
 //! Programs on emulated boards.
 
-use super::manifest::{Board, Program};
+use super::manifest::{Board, Manifest, Named, Program};
+use super::measure::explained;
 use crate::blob::Blob;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
@@ -28,19 +29,22 @@ enum Obstacle {
     Failure(String),
 }
 
+/// How an ELF file begins.
+const ELF: [u8; 4] = *b"\x7fELF";
+
 /// Longest text of a failing program that is shown: its end.
 const SHOWN: usize = 2000;
 
 /// Builds a program if it must be built, and runs it.
-pub(super) fn run(board: &Board, blob: &Blob) -> Ran {
-    match try_run(board, blob) {
+pub(super) fn run(manifest: &Manifest, board: &Board, blob: &Blob) -> Ran {
+    match try_run(manifest, board, blob) {
         Ok((figures, picture)) => Ran::Printed(figures, picture),
         Err(Obstacle::Missing(why)) => Ran::NotRun(why),
         Err(Obstacle::Failure(why)) => Ran::Failed(why),
     }
 }
 
-fn try_run(board: &Board, blob: &Blob) -> Result<Output, Obstacle> {
+fn try_run(manifest: &Manifest, board: &Board, blob: &Blob) -> Result<Output, Obstacle> {
     let version = Command::new(&board.emulator).arg("--version").output();
     if version.is_err() {
         return Err(Obstacle::Missing(format!(
@@ -50,23 +54,31 @@ fn try_run(board: &Board, blob: &Blob) -> Result<Output, Obstacle> {
     }
     let folder = tempfile::tempdir().map_err(failed("a temporary folder cannot be made"))?;
     let program = match &board.program {
-        Program::Elf(path) => path
-            .canonicalize()
-            .map_err(|error| Obstacle::Missing(format!("{}: {error}", path.display())))?,
+        Program::Elf(file) => built_before(manifest, file)?,
         Program::Firmware {
             folder: package,
             program,
             target,
             features,
-        } => build(
-            board,
-            package,
-            program,
-            target,
-            features,
-            blob,
-            folder.path(),
-        )?,
+        } => {
+            if !package.path.is_dir() {
+                let error = manifest.error(
+                    package,
+                    "is no folder",
+                    "write the path of a Cargo package's folder, relative to the manifest",
+                );
+                return Err(Obstacle::Failure(explained(&error)));
+            }
+            build(
+                board,
+                &package.path,
+                program,
+                target,
+                features,
+                blob,
+                folder.path(),
+            )?
+        }
     };
     let printed = emulate(board, &program, folder.path())?;
     let pairs = printed.lines().filter_map(|line| line.split_once(' '));
@@ -77,6 +89,30 @@ fn try_run(board: &Board, blob: &Blob) -> Result<Output, Obstacle> {
         None => Ok(Vec::new()),
     };
     Ok((figures.collect(), picture))
+}
+
+/// A program that was built before, if it is one.
+fn built_before(manifest: &Manifest, file: &Named) -> Result<PathBuf, Obstacle> {
+    let cannot_be_read = |error: io::Error| {
+        let cause = format!("cannot be read: {error}");
+        let remedy = "build the program first, or write the path where it is";
+        let why = explained(&manifest.error(file, cause, remedy));
+        match error.kind() {
+            io::ErrorKind::NotFound => Obstacle::Missing(why),
+            _ => Obstacle::Failure(why),
+        }
+    };
+    let path = file.path.canonicalize().map_err(cannot_be_read)?;
+    let start = File::open(&path).map_err(cannot_be_read)?;
+    let mut magic = Vec::new();
+    let read = start.take(ELF.len() as u64).read_to_end(&mut magic);
+    read.map_err(cannot_be_read)?;
+    if magic != ELF {
+        let remedy = "write the path of the program as the linker made it";
+        let error = manifest.error(file, "is no ELF file: it does not begin like one", remedy);
+        return Err(Obstacle::Failure(explained(&error)));
+    }
+    Ok(path)
 }
 
 /// Builds the program of a Cargo package for a blob.

@@ -37,32 +37,27 @@ impl Image {
     }
 
     /// Reads a PNG of three or four channels of 8 bits; transparency is left out.
-    pub(super) fn read(path: &Path) -> Result<Self, String> {
-        let refused = |cause: String| format!("{} cannot be read: {cause}", path.display());
-        let file = File::open(path).map_err(|error| refused(error.to_string()))?;
+    pub(super) fn read(path: &Path) -> io::Result<Self> {
+        let file = File::open(path)?;
         // A picture in memory may take this much, however small its file is.
         let limits = png::Limits { bytes: 1 << 29 };
         let decoder = png::Decoder::new_with_limits(BufReader::new(file), limits);
-        let mut reader = decoder
-            .read_info()
-            .map_err(|error| refused(error.to_string()))?;
+        let mut reader = decoder.read_info()?;
         let channels = match reader.output_color_type() {
             (png::ColorType::Rgb, png::BitDepth::Eight) => 3,
             (png::ColorType::Rgba, png::BitDepth::Eight) => 4,
             (color, depth) => {
-                return Err(refused(format!(
-                    "it has {color:?} pixels of {depth:?} bits; only RGB of 8 bits a channel is \
-                     compared"
+                return Err(io::Error::other(format!(
+                    "it has {color:?} pixels of {depth:?} bits, and only RGB of 8 bits a channel \
+                     is compared"
                 )));
             }
         };
         let bytes = reader
             .output_buffer_size()
             .filter(|&bytes| bytes <= limits.bytes);
-        let mut pixels = vec![0; bytes.ok_or_else(|| refused(String::from("it is too large")))?];
-        let frame = reader
-            .next_frame(&mut pixels)
-            .map_err(|error| refused(error.to_string()))?;
+        let mut pixels = vec![0; bytes.ok_or_else(|| io::Error::other("it is too large"))?];
+        let frame = reader.next_frame(&mut pixels)?;
         let pixels = pixels
             .chunks_exact(channels)
             .flat_map(|pixel| &pixel[..3])

@@ -1,11 +1,13 @@
 //! The manifest, read: every key is known, every value in its range.
 
+use crate::output::place;
 use crate::scene::SceneError;
-use crate::scene::toml::source::{Source, nearest};
+use crate::scene::toml::source::{Source, Span, nearest};
 use crate::scene::toml::value::{Fields, Value};
 use gridel_core::render::MAX_SAMPLES;
 use gridel_core::{Format, Structure};
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 /// A manifest, and the text that it was read from.
@@ -16,11 +18,18 @@ pub struct Manifest {
     pub checks: Vec<Check>,
 }
 
+/// A file or folder that a manifest names, and where in its text it does.
+#[derive(Clone, Debug)]
+pub struct Named {
+    pub path: PathBuf,
+    span: Span,
+}
+
 /// One scene, and what is expected of it.
 #[derive(Clone, Debug)]
 pub struct Check {
     pub name: String,
-    pub scene: PathBuf,
+    pub scene: Named,
     pub accel: Option<Structure>,
     pub lattice_bits: Option<u8>,
     pub formats: Vec<Format>,
@@ -31,12 +40,14 @@ pub struct Check {
     pub reference: Option<Reference>,
     pub budget: Budget,
     pub boards: Vec<Board>,
+    /// Names for pictures of what is broken: of each format, and behind them of each board.
+    pub(super) evidence: Vec<String>,
 }
 
 /// A picture that others must look like.
 #[derive(Clone, Debug)]
 pub struct Reference {
-    pub path: PathBuf,
+    pub picture: Named,
     /// Codes of 255 that a channel may differ.
     pub channel: u8,
     /// Pixels that may differ by more.
@@ -72,10 +83,10 @@ pub struct Board {
 #[derive(Clone, Debug)]
 pub enum Program {
     /// It was built before.
-    Elf(PathBuf),
+    Elf(Named),
     /// It is built from a Cargo package.
     Firmware {
-        folder: PathBuf,
+        folder: Named,
         program: String,
         target: String,
         features: Vec<String>,
@@ -86,21 +97,26 @@ impl Manifest {
     /// Reads a manifest.
     ///
     /// # Errors
-    /// If it cannot be read, is not TOML, or holds a key or a value that means nothing; the error
-    /// shows file, line and remedy.
+    /// If it cannot be read, is not TOML, holds a key or a value that means nothing, or has a
+    /// reference that would be recorded over another file that is read; the error shows file, line
+    /// and remedy.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let source = Source::read(path)?;
         let document = source.parse()?;
         let (span, table) = (document.span(), document.get_ref());
         let root = Fields::new(&source, span, table, "manifest", &[&["check"]])?;
-        let list = root.get("check").ok_or_else(|| {
+        let idle = || {
             let (cause, remedy) = (
                 "this manifest has no `[[check]]`",
                 "add a line `[[check]]`, and below it `scene = \"...\"` and what is expected of it",
             );
             source.error(&root.span, cause, remedy)
-        })?;
+        };
+        let list = root.get("check").ok_or_else(idle)?;
         let tables = list.items("`[[check]]` above the keys of each")?;
+        if tables.len() == 0 {
+            return Err(idle());
+        }
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut names = BTreeSet::new();
         let checks = tables.map(|table| {
@@ -113,18 +129,81 @@ impl Manifest {
             }
             Ok(check)
         });
-        let checks = checks.collect::<Result<_, _>>()?;
-        Ok(Self {
+        let mut checks = checks.collect::<Result<Vec<_>, _>>()?;
+        name_evidence(&mut checks);
+        let manifest = Self {
             path: path.to_owned(),
             text: source.text().to_owned(),
             checks,
-        })
+        };
+        manifest.refuse_lost_files()?;
+        Ok(manifest)
+    }
+
+    /// Refuses references that are also something else, which recording a picture would destroy.
+    fn refuse_lost_files(&self) -> Result<(), SceneError> {
+        let others: BTreeSet<_> = self.sources().map(place).collect();
+        let mut pictures = self.references();
+        match pictures.find(|picture| others.contains(&place(&picture.path))) {
+            None => Ok(()),
+            Some(picture) => Err(self.error(
+                picture,
+                "is a scene or a program of this manifest, or the manifest itself: a reference \
+                 that is recorded would be written over it",
+                "give the reference another name",
+            )),
+        }
+    }
+
+    fn references(&self) -> impl Iterator<Item = &Named> {
+        let references = self.checks.iter().flat_map(|check| &check.reference);
+        references.map(|reference| &reference.picture)
+    }
+
+    /// The files that are read and never recorded, and the manifest.
+    fn sources(&self) -> impl Iterator<Item = &Path> {
+        let scenes = self.checks.iter().map(|check| &check.scene);
+        let boards = self.checks.iter().flat_map(|check| &check.boards);
+        let programs = boards.filter_map(|board| match &board.program {
+            Program::Elf(file) => Some(file),
+            Program::Firmware { .. } => None,
+        });
+        let named = scenes.chain(programs).map(|named| named.path.as_path());
+        std::iter::once(self.path.as_path()).chain(named)
+    }
+
+    /// All files that are read: the manifest, and those that it names.
+    pub fn inputs(&self) -> impl Iterator<Item = &Path> {
+        let references = self.references().map(|picture| picture.path.as_path());
+        self.sources().chain(references)
+    }
+
+    /// The names of all [evidence](super::Evidence) that a run may find; no two are equal.
+    pub fn evidence(&self) -> impl Iterator<Item = &str> {
+        let names = self.checks.iter().flat_map(|check| &check.evidence);
+        names.map(String::as_str)
+    }
+
+    /// What is wrong with a file, where the manifest names it.
+    pub(super) fn error(&self, named: &Named, cause: impl Display, remedy: &str) -> SceneError {
+        let Span { start, end } = named.span;
+        let cause = format!("{} {cause}", named.path.display());
+        SceneError::new(&self.path, cause, remedy).at_span(&self.text, start, end - start)
     }
 
     /// How many steps [`run`](super::run) takes: pictures, and programs on boards.
     pub fn steps(&self) -> usize {
         let steps = |check: &Check| check.formats.len() + check.boards.len();
         self.checks.iter().map(steps).sum()
+    }
+}
+
+impl Named {
+    fn read(value: Value<'_>, folder: &Path) -> Result<Self, SceneError> {
+        Ok(Self {
+            path: folder.join(value.filled()?),
+            span: value.span(),
+        })
     }
 }
 
@@ -145,8 +224,17 @@ impl Check {
             "board",
         ];
         let fields = table.fields("check", &[&keys])?;
-        let scene = folder.join(fields.require("scene")?.filled()?);
-        let stem = || scene.file_stem().unwrap_or_default().display().to_string();
+        let value = fields.require("scene")?;
+        let scene = Named::read(value, folder)?;
+        let stem = match scene.path.file_stem() {
+            Some(stem) if !scene.path.is_dir() => stem.display().to_string(),
+            _ => {
+                return Err(value.error(
+                    format!("{} is a folder, and no scene", scene.path.display()),
+                    "write the path of a scene file or of a blob",
+                ));
+            }
+        };
         let formats = fields.or("formats", vec![Format::F32], formats)?;
         let tolerance = fields.get("tolerance");
         let reference = match fields.get("reference") {
@@ -164,7 +252,7 @@ impl Check {
         let check = Self {
             name: match fields.get("name") {
                 Some(name) => name.filled()?.to_owned(),
-                None => stem(),
+                None => stem,
             },
             accel: fields.or("accel", None, |value| structure(value).map(Some))?,
             lattice_bits: fields.or("lattice_bits", None, |value| {
@@ -184,6 +272,7 @@ impl Check {
             })?,
             formats,
             scene,
+            evidence: Vec::new(),
         };
         if check.expects_nothing() {
             return Err(table.error(
@@ -220,7 +309,7 @@ impl Reference {
         folder: &Path,
     ) -> Result<Self, SceneError> {
         let mut reference = Self {
-            path: folder.join(path.filled()?),
+            picture: Named::read(path, folder)?,
             channel: 0,
             pixels: 0,
         };
@@ -272,10 +361,10 @@ impl Board {
                         "remove the key, or give a `firmware` folder in place of `elf`",
                     ));
                 }
-                Program::Elf(folder.join(path.filled()?))
+                Program::Elf(Named::read(path, folder)?)
             }
             (None, Some(path)) => Program::Firmware {
-                folder: folder.join(path.filled()?),
+                folder: Named::read(path, folder)?,
                 program: text(fields.require("program")?)?,
                 target: text(fields.require("target")?)?,
                 features: fields.or("features", Vec::new(), |list| {
@@ -311,6 +400,31 @@ impl Board {
                     .collect()
             })?,
         })
+    }
+}
+
+/// Names the pictures that show what is broken, as the checks are named and what they run on; with
+/// a number where that makes two names equal.
+fn name_evidence(checks: &mut [Check]) {
+    let mut taken = BTreeSet::new();
+    let plain = |c: char| match c {
+        '-' | '_' => c,
+        _ if c.is_alphanumeric() => c,
+        _ => '-',
+    };
+    for check in checks {
+        let formats = check.formats.iter().map(|format| format.name());
+        let boards = check.boards.iter().map(|board| board.machine.as_str());
+        let names = formats.chain(boards).map(|on| {
+            let name: String = format!("{}-{on}", check.name).chars().map(plain).collect();
+            let numbered = (2..).map(|number| format!("{name}-{number}"));
+            std::iter::once(name.clone())
+                .chain(numbered)
+                // There are folders in which `A` and `a` are one file.
+                .find(|name| taken.insert(name.to_lowercase()))
+                .unwrap_or_default()
+        });
+        check.evidence = names.collect();
     }
 }
 

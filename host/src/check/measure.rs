@@ -12,12 +12,14 @@ use crate::report::working_memory;
 use crate::scene::{self, MoleculeOptions};
 use gridel_core::{Format, Scene, Settings, Structure};
 use miette::Diagnostic;
+use std::io;
 
 /// Measures everything. `progress` is told of each of the [steps](Manifest::steps).
 pub fn run(manifest: &Manifest, progress: &dyn Fn()) -> Report {
     let mut report = Report::default();
     for (index, check) in manifest.checks.iter().enumerate() {
         let mut run = Run {
+            manifest,
             index,
             check,
             findings: &mut report.findings,
@@ -32,6 +34,7 @@ pub fn run(manifest: &Manifest, progress: &dyn Fn()) -> Report {
 
 /// One check that is being run.
 struct Run<'r> {
+    manifest: &'r Manifest,
     index: usize,
     check: &'r Check,
     findings: &'r mut Vec<Finding>,
@@ -45,7 +48,7 @@ impl Run<'_> {
         let blob = self.blob()?;
         let scene = blob
             .scene()
-            .map_err(|error| format!("{}: {error}", check.scene.display()))?;
+            .map_err(|error| format!("{}: {error}", check.scene.path.display()))?;
         let structure = structure(check, &scene)?;
         let budget = check.budget;
         let bytes = Figure::Count(blob.bytes().len() as u64);
@@ -62,12 +65,13 @@ impl Run<'_> {
             entries,
             budget.stack_entries.map(Figure::Count),
         );
-        for &format in &check.formats {
-            self.format(&scene, structure, format)?;
+        let mut names = check.evidence.iter();
+        for (&format, name) in check.formats.iter().zip(&mut names) {
+            self.format(&scene, structure, format, name)?;
             progress();
         }
-        for (number, board) in check.boards.iter().enumerate() {
-            self.board(number, board, &blob, &scene, structure)?;
+        for ((number, board), name) in check.boards.iter().enumerate().zip(names) {
+            self.board(number, board, &blob, &scene, structure, name)?;
             progress();
         }
         Ok(())
@@ -76,8 +80,12 @@ impl Run<'_> {
     /// Reads the blob, or compiles the scene for it.
     fn blob(&mut self) -> Result<Blob, String> {
         let check = self.check;
-        let path = &check.scene;
-        let unreadable = |error| format!("{} cannot be read: {error}", path.display());
+        let path = &check.scene.path;
+        let unreadable = |error| {
+            let cause = format!("cannot be read: {error}");
+            let remedy = "write the path of a scene file or of a blob, relative to the manifest";
+            explained(&self.manifest.error(&check.scene, cause, remedy))
+        };
         if is_blob(path).map_err(unreadable)? {
             if check.lattice_bits.is_some() {
                 return Err(format!(
@@ -116,6 +124,7 @@ impl Run<'_> {
         scene: &Scene<'_>,
         structure: Structure,
         format: Format,
+        name: &str,
     ) -> Result<(), String> {
         let check = self.check;
         let on = Some(format.name().to_owned());
@@ -142,16 +151,18 @@ impl Run<'_> {
         let reference = check
             .reference
             .as_ref()
-            .map(|reference| (reference, Image::read(&reference.path)));
+            .map(|reference| (reference, Image::read(&reference.picture.path)));
         if let Some(hashes) = &check.hash {
             let expected = reference
                 .as_ref()
                 .and_then(|(_, image)| image.as_ref().ok().cloned());
             let recorded = hashes.get(format.name()).cloned().map(Figure::Hash);
-            self.hash(format, &picture, recorded, &image, expected);
+            let found = Figure::Hash(hash(&picture.pixels));
+            let evidence = evidence(name, &image, expected);
+            self.hash(format, found, recorded, evidence);
         }
         if let Some((reference, expected)) = reference {
-            self.reference(format, reference, expected, image);
+            self.reference(format, reference, expected, image, name);
         }
         Ok(())
     }
@@ -178,18 +189,16 @@ impl Run<'_> {
             ..Job::whole(format, structure, settings)
         };
         render(scene, &job, &|| ())
-            .map_err(|error| format!("{}: {error}", self.check.scene.display()))
+            .map_err(|error| format!("{}: {error}", self.check.scene.path.display()))
     }
 
     fn hash(
         &mut self,
         format: Format,
-        picture: &Picture,
+        found: Figure,
         recorded: Option<Figure>,
-        image: &Image,
-        expected: Option<Image>,
+        evidence: Evidence,
     ) {
-        let found = Figure::Hash(hash(&picture.pixels));
         let outcome = match &recorded {
             Some(recorded) if found.within(recorded) => Outcome::Held,
             Some(_) => Outcome::Broken(String::from("the picture is not the recorded one")),
@@ -197,10 +206,7 @@ impl Run<'_> {
         };
         let keys = vec![Key::Name("hash".into()), Key::Name(format.name().into())];
         let broken = outcome != Outcome::Held;
-        let (record, evidence) = (
-            self.value(keys, &found),
-            self.evidence(format.name(), image, expected),
-        );
+        let record = self.value(keys, &found);
         let on = Some(format.name().to_owned());
         let finding = self.push(on, "hash", Some(found), recorded, outcome);
         if broken {
@@ -213,14 +219,29 @@ impl Run<'_> {
         &mut self,
         format: Format,
         reference: &Reference,
-        expected: Result<Image, String>,
+        expected: io::Result<Image>,
         image: Image,
+        name: &str,
     ) {
+        // What is there and no picture was not meant to become one.
+        let may_be_recorded = match &expected {
+            Ok(_) => true,
+            Err(error) => error.kind() == io::ErrorKind::NotFound,
+        };
         let difference = expected
             .as_ref()
             .map(|expected| image.difference(expected, reference.channel));
         let (found, outcome) = match difference {
-            Err(why) => (None, Outcome::Broken(why.clone())),
+            Err(error) => {
+                let remedy = if may_be_recorded {
+                    "check the path, or let `gridel check --bless` record the picture there"
+                } else {
+                    "write the path of a PNG with 8 bits a channel; `--bless` overwrites no others"
+                };
+                let cause = format!("cannot be read: {error}");
+                let error = self.manifest.error(&reference.picture, cause, remedy);
+                (None, Outcome::Broken(explained(&error)))
+            }
             Ok(None) => {
                 let [width, height] = image.size;
                 let why = format!("the reference is not {width} by {height} pixels large");
@@ -239,14 +260,15 @@ impl Run<'_> {
             }
         };
         let broken = outcome != Outcome::Held;
-        let evidence = self.evidence(format.name(), &image, expected.ok());
+        let evidence = evidence(name, &image, expected.ok());
         let (on, allowed) = (
             Some(format.name().to_owned()),
             Some(Figure::Count(reference.pixels)),
         );
         let finding = self.push(on, "reference", found, allowed, outcome);
         if broken {
-            finding.record = Some(Record::Picture(reference.path.clone(), image));
+            finding.record =
+                may_be_recorded.then(|| Record::Picture(reference.picture.path.clone(), image));
             finding.evidence = Some(evidence);
         }
     }
@@ -259,9 +281,10 @@ impl Run<'_> {
         blob: &Blob,
         scene: &Scene<'_>,
         structure: Structure,
+        name: &str,
     ) -> Result<(), String> {
         let on = || Some(board.machine.clone());
-        let ran = board::run(board, blob);
+        let ran = board::run(self.manifest, board, blob);
         let figures = board.budget.iter();
         let broken = match &ran {
             Ran::Printed(..) => None,
@@ -319,7 +342,7 @@ impl Run<'_> {
                 let size = expected.size;
                 let rendered = Image { size, pixels };
                 let why = "the board's picture is not the host's";
-                let evidence = self.evidence(&board.machine, &rendered, Some(expected));
+                let evidence = evidence(name, &rendered, Some(expected));
                 (String::from(why), Some(evidence))
             }
             Ok(pixels) => {
@@ -371,22 +394,6 @@ impl Run<'_> {
         }
     }
 
-    fn evidence(&self, on: &str, rendered: &Image, expected: Option<Image>) -> Evidence {
-        let name = format!("{}-{on}", self.check.name);
-        let plain = |c: char| {
-            if c.is_alphanumeric() || c == '-' || c == '_' {
-                c
-            } else {
-                '-'
-            }
-        };
-        Evidence {
-            name: name.chars().map(plain).collect(),
-            rendered: rendered.clone(),
-            expected,
-        }
-    }
-
     fn push(
         &mut self,
         on: Option<String>,
@@ -415,14 +422,22 @@ fn structure(check: &Check, scene: &Scene<'_>) -> Result<Structure, String> {
         Some(structure) if scene.holds(structure) => Ok(structure),
         Some(structure) => Err(format!(
             "{} holds no structure {name}: build it with `--accel {name}`",
-            check.scene.display(),
+            check.scene.path.display(),
             name = structure.name()
         )),
     }
 }
 
+fn evidence(name: &str, rendered: &Image, expected: Option<Image>) -> Evidence {
+    Evidence {
+        name: name.to_owned(),
+        rendered: rendered.clone(),
+        expected,
+    }
+}
+
 /// An error and its remedy in one sentence.
-fn explained(error: &(impl Diagnostic + std::fmt::Display)) -> String {
+pub(super) fn explained(error: &(impl Diagnostic + std::fmt::Display)) -> String {
     match error.help() {
         Some(help) => format!("{error}; {help}"),
         None => error.to_string(),

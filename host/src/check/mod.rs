@@ -16,7 +16,7 @@
 //! | `size` | `[width, height]` of the pictures | what the scene states |
 //! | `samples` | samples a pixel, 1 to 256 | what the scene states |
 //! | `hash` | `{ FORMAT = "...", ... }`: the [hash](crate::picture::hash) of each picture, for all `formats` or none | pictures are not hashed |
-//! | `reference` | path of a PNG with 8 bits a channel that pictures must look like | none |
+//! | `reference` | path of a PNG with 8 bits a channel that pictures must look like; where there is none yet, [`bless()`] makes it | none |
 //! | `tolerance` | `{ channel, pixels }`: how many codes of 255 a channel may differ from the reference, and how many pixels may differ by more | 0, 0 |
 //! | `budget` | table, below | no budget |
 //! | `board` | array of tables, below | none |
@@ -85,6 +85,6 @@ mod tests;
 
 pub use bless::{Blessed, bless};
 pub use image::Image;
-pub use manifest::{Board, Budget, Check, Manifest, Program, Reference};
+pub use manifest::{Board, Budget, Check, Manifest, Named, Program, Reference};
 pub use measure::run;
 pub use report::{Evidence, Figure, Finding, Outcome, Report};

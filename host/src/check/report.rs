@@ -82,7 +82,7 @@ pub(super) enum Key {
 /// Pictures that show what is wrong.
 #[derive(Clone, Debug)]
 pub struct Evidence {
-    /// A name for the file, without extension.
+    /// A name for the file, without extension; no other picture of the manifest has it.
     pub name: String,
     pub rendered: Image,
     pub expected: Option<Image>,

@@ -52,6 +52,10 @@ fn why(finding: &Finding) -> &str {
     }
 }
 
+fn record(blessed: &Blessed) {
+    blessed.files().unwrap().keep().unwrap();
+}
+
 #[test]
 fn mistakes_name_line_cause_and_remedy() {
     let folder = Folder::new();
@@ -61,6 +65,31 @@ fn mistakes_name_line_cause_and_remedy() {
             1,
             "this manifest has no `[[check]]`",
             "add a line `[[check]]`",
+        ),
+        (
+            "check = []",
+            1,
+            "this manifest has no `[[check]]`",
+            "add a line `[[check]]`",
+        ),
+        (
+            "[[check]]\nscene = \".\"\nhash = {}",
+            2,
+            "is a folder, and no scene",
+            "path of a scene file",
+        ),
+        (
+            "[[check]]\nname = \"a\"\nscene = \"lost/..\"\nhash = {}",
+            3,
+            "is a folder, and no scene",
+            "",
+        ),
+        (
+            "[[check]]\nscene = \"ball.toml\"\nhash = {}\n[[check]]\nscene = \"b.toml\"\n\
+             reference = \"./ball.toml\"",
+            6,
+            "ball.toml is a scene",
+            "another name",
         ),
         (
             "[[check]]\nscene = \"a\"\nbudget = {}\nformats = [\"f64\"]",
@@ -208,7 +237,7 @@ tests_per_ray = 0.25
     let blessed = bless(&manifest, &report);
     assert!(blessed.left.is_empty());
     assert_eq!(folder.text(), text);
-    blessed.write().unwrap();
+    record(&blessed);
     let new = folder.text();
     let diff = blessed.diff();
     assert!(diff.contains("-working_bytes = 1 # too small\n"), "{diff}");
@@ -254,7 +283,7 @@ fn another_picture_is_broken_and_shown() {
     let (manifest, report) = folder.run(text);
     assert_eq!(report.broken(), 2);
     assert!(why(&report.findings[1]).contains("ball.png cannot be read"));
-    bless(&manifest, &report).write().unwrap();
+    record(&bless(&manifest, &report));
     let (_, report) = folder.run(&folder.text());
     assert_eq!((report.held(), report.broken()), (2, 0));
 
@@ -321,6 +350,24 @@ fn what_cannot_be_read_is_broken_and_the_rest_goes_on() {
     assert_eq!((blessed.left.len(), blessed.diff().as_str()), (4, ""));
 }
 
+/// Broken pictures of all checks and boards lie in one folder.
+#[test]
+fn evidence_has_names_of_its_own() {
+    let folder = Folder::new();
+    let check =
+        |name: &str| format!("[[check]]\nscene = \"ball.toml\"\nname = \"{name}\"\nhash = {{}}\n");
+    let board = "[[check.board]]\nmachine = \"c\"\nelf = \"e\"\n";
+    let text = ["a/b", "a b", "A:B"].map(check).concat() + board + board;
+    let manifest = folder.manifest(&text).unwrap();
+    let names: Vec<_> = manifest.evidence().collect();
+    let expected = ["a-b-f32", "a-b-f32-2", "A-B-f32-3", "A-B-c", "A-B-c-2"];
+    assert_eq!(names, expected);
+    let (_, report) = folder.run(&text);
+    let found = report.findings.iter().filter_map(|it| it.evidence.as_ref());
+    let found: Vec<_> = found.map(|evidence| evidence.name.as_str()).collect();
+    assert_eq!(found, expected[..3]);
+}
+
 #[cfg(unix)]
 mod boards {
     use super::*;
@@ -345,7 +392,7 @@ mod boards {
     #[test]
     fn figures_are_held_and_recorded() {
         let folder = Folder::new();
-        fs::write(folder.path("program.elf"), "").unwrap();
+        fs::write(folder.path("program.elf"), "\x7fELF").unwrap();
         let toy = emulator(
             &folder,
             "echo noise; echo loops 12; echo bytes 500; printf abc >p",
@@ -371,7 +418,7 @@ mod boards {
         );
         let blessed = bless(&manifest, &report);
         assert_eq!(blessed.left, ["ball: lost", "ball: picture"]);
-        blessed.write().unwrap();
+        record(&blessed);
         let recorded = "budget = { loops = 12, bytes = 500, lost = 1 } # all";
         assert!(folder.text().contains(recorded), "{}", folder.text());
     }
@@ -384,9 +431,13 @@ mod boards {
         let toy = emulator(&folder, "echo no luck >&2; exit 3");
         let missing = first(&board(&toy, budget));
         assert!(matches!(&missing.outcome, Outcome::NotRun(why) if why.contains("program.elf")));
-        fs::write(folder.path("program.elf"), "").unwrap();
+        fs::write(folder.path("program.elf"), "\x7fELF").unwrap();
         let missing = first(&board("no-such-emulator", budget));
         assert!(matches!(&missing.outcome, Outcome::NotRun(why) if why.contains("not installed")));
+        fs::write(folder.path("program.elf"), BALL).unwrap();
+        let text = first(&board(&toy, budget));
+        assert!(matches!(&text.outcome, Outcome::Broken(why) if why.contains("is no ELF file")));
+        fs::write(folder.path("program.elf"), "\x7fELF").unwrap();
         let failed = first(&board(&toy, budget));
         assert!(matches!(&failed.outcome, Outcome::Broken(why) if why.contains("no luck")));
         let toy = emulator(&folder, "exec sleep 60");

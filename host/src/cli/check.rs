@@ -1,10 +1,11 @@
 //! `gridel check`: scenes and their memory, held to what is recorded.
 
 use super::failure::Failure;
-use super::output::{print, print_json, refuse_same, warn, write_file};
+use super::output::{print, print_json, refuse_inputs, warn, write_file};
 use super::progress::Progress;
 use clap::Args;
 use gridel_host::check::{self, Blessed, Manifest, Outcome, Report};
+use gridel_host::output::{Files, prove};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -29,8 +30,8 @@ pub struct Arguments {
     #[arg(long)]
     bless: bool,
 
-    /// Write a picture for each that is broken: expected, rendered, and their difference, side by
-    /// side, as far as there are
+    /// Write a picture for each that is broken into this folder: expected, rendered, and their
+    /// difference, side by side, as far as there are
     #[arg(long, value_name = "DIR")]
     diff: Option<PathBuf>,
 
@@ -61,11 +62,9 @@ struct Checked<'r> {
 
 /// Runs the checks of a manifest.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if let Some(junit) = &arguments.junit {
-        refuse_same(&arguments.manifest, junit)?;
-    }
     let manifest = Manifest::read(&arguments.manifest)
         .map_err(|error| Failure::Failed(miette::Report::new(error)))?;
+    prove_outputs(arguments, &manifest)?;
     let progress = Progress::steps("checking", manifest.steps() as u64);
     let mut report = check::run(&manifest, &|| progress.step());
     drop(progress);
@@ -79,51 +78,85 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warning in &report.warnings {
         warn(warning);
     }
-    if let Some(folder) = &arguments.diff {
-        write_evidence(folder, &report)?;
-    }
     let blessed = arguments.bless.then(|| check::bless(&manifest, &report));
-    if let Some(blessed) = &blessed {
-        let written = blessed.write();
-        written.map_err(|(path, error)| Failure::writing(&path, &error))?;
+    let staged = match &blessed {
+        Some(blessed) => blessed.files(),
+        None => Ok(Files::default()),
+    };
+    if blessed.is_some() && staged.is_ok() {
         report.take_as_recorded();
     }
-    if let Some(path) = &arguments.junit {
-        write_file(path, |out| report.write_junit(out))?;
+    // All of it is done, whatever fails: findings are not lost for a report that cannot be written,
+    // and they make the exit code, whoever reads them. What is recorded was told before.
+    let told = tell(arguments, &report, blessed.as_ref());
+    let shown = match &arguments.diff {
+        Some(folder) => write_evidence(folder, &report),
+        None => Ok(()),
+    };
+    let reported = match &arguments.junit {
+        Some(path) => write_file(path, |out| report.write_junit(out)),
+        None => Ok(()),
+    };
+    let recorded = staged
+        .and_then(Files::keep)
+        .map_err(|(path, error)| Failure::writing(&path, &error));
+    let held = match report.broken() {
+        0 => Ok(()),
+        _ => Err(Failure::Broken),
+    };
+    recorded.and(reported).and(shown).and(told).and(held)
+}
+
+/// Refuses outputs that would destroy what is read or cannot be written, before any work.
+fn prove_outputs(arguments: &Arguments, manifest: &Manifest) -> Result<(), Failure> {
+    let (folder, junit) = (&arguments.diff, &arguments.junit);
+    let pictures = folder.iter().flat_map(|folder| {
+        let names = manifest.evidence();
+        names.map(move |name| picture(folder, name))
+    });
+    let outputs = junit.iter().cloned().chain(pictures);
+    refuse_inputs(manifest.inputs(), outputs, "a file that the checks read")?;
+    if let Some(folder) = folder {
+        std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
     }
+    if let Some(path) = junit {
+        prove(path).map_err(|error| Failure::writing(path, &error))?;
+    }
+    Ok(())
+}
+
+/// Prints the findings, and what is recorded of them.
+fn tell(arguments: &Arguments, report: &Report, blessed: Option<&Blessed>) -> Result<(), Failure> {
     let (held, broken, recorded) = (report.held(), report.broken(), report.recorded());
     let not_run = report.not_run();
-    if arguments.json {
+    let printed = if arguments.json {
         print_json(&Checked {
             manifest: arguments.manifest.display().to_string(),
             held,
             broken,
             recorded,
             not_run,
-            report: &report,
-        })?;
+            report,
+        })
     } else {
-        let recorded = match &blessed {
+        let recorded = match blessed {
             Some(_) => format!("{recorded} recorded, "),
             None => String::new(),
         };
         let summary = format!("{held} held, {recorded}{broken} broken, {not_run} not run\n");
-        let diff = blessed.as_ref().map(Blessed::diff).unwrap_or_default();
-        let reasons = reasons(&report);
-        print(format!("{}{reasons}{summary}{diff}", report.table()))?;
-    }
+        let diff = blessed.map(Blessed::diff).unwrap_or_default();
+        let reasons = reasons(report);
+        print(format!("{}{reasons}{summary}{diff}", report.table()))
+    };
     if not_run > 0 {
         warn(format!(
             "NOT RUN: {not_run} of the figures on boards; --require-boards makes that a failure"
         ));
     }
-    for what in blessed.iter().flat_map(|blessed| &blessed.left) {
+    for what in blessed.into_iter().flat_map(|blessed| &blessed.left) {
         warn(format!("{what} cannot be recorded"));
     }
-    if broken > 0 {
-        return Err(Failure::Broken);
-    }
-    Ok(())
+    printed
 }
 
 /// Why things are as they are, where they are not held, each reason once.
@@ -142,17 +175,21 @@ fn reasons(report: &Report) -> String {
     format!("\n{}", lines.concat())
 }
 
+fn picture(folder: &Path, name: &str) -> PathBuf {
+    folder.join(name).with_extension("png")
+}
+
 fn write_evidence(folder: &Path, report: &Report) -> Result<(), Failure> {
     let evidence = report
         .findings
         .iter()
         .filter_map(|finding| finding.evidence.as_ref());
     for evidence in evidence {
-        std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
-        let path = folder.join(&evidence.name).with_extension("png");
-        write_file(&path, |out| match &evidence.expected {
-            Some(expected) => evidence.rendered.write_beside(expected, out),
-            None => evidence.rendered.write(out),
+        write_file(&picture(folder, &evidence.name), |out| {
+            match &evidence.expected {
+                Some(expected) => evidence.rendered.write_beside(expected, out),
+                None => evidence.rendered.write(out),
+            }
         })?;
     }
     Ok(())

@@ -17,8 +17,6 @@ pub enum Failure {
     Refused(Report),
     /// A check does not hold, as the report says that was printed.
     Broken,
-    /// Nobody reads standard output any more, which is nobody's fault.
-    ClosedPipe,
 }
 
 /// What went wrong and what to do about it.
@@ -66,6 +64,9 @@ impl Failure {
                 "make room, or write to another device"
             }
             io::ErrorKind::NotFound => "create the folder first",
+            io::ErrorKind::AlreadyExists | io::ErrorKind::NotADirectory => {
+                "name a folder: there is a file where one must be"
+            }
             _ => "check that the path names a file in a folder you may write to",
         };
         Self::failed(
@@ -99,7 +100,6 @@ impl Failure {
     /// Prints what happened on standard error and returns the exit code.
     pub fn report(self) -> ExitCode {
         let (report, code) = match self {
-            Self::ClosedPipe => return ExitCode::SUCCESS,
             Self::Broken => return ExitCode::from(1),
             Self::Failed(report) => (report, 1),
             Self::Usage(report) => (report, 2),

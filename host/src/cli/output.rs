@@ -1,8 +1,9 @@
 //! Where results go: files, and standard output.
 
 use super::failure::Failure;
-use gridel_host::output::{Files, write_whole};
+use gridel_host::output::{Files, place, write_whole};
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::path::Path;
@@ -49,19 +50,27 @@ fn keep(files: Files) -> Result<(), Failure> {
 
 /// Refuses to write over a file that is read.
 pub fn refuse_same(input: &Path, output: &Path) -> Result<(), Failure> {
-    let same = match (input.canonicalize(), output.canonicalize()) {
-        (Ok(input), Ok(output)) => input == output,
-        // A file that does not exist is no input.
-        _ => false,
-    };
-    if same {
-        return Err(Failure::usage(
-            format!(
-                "the output {} is the input, which would be lost",
-                output.display()
-            ),
-            "give the output another name",
-        ));
+    refuse_inputs([input], [output], "the input")
+}
+
+/// Refuses to write over files that are read; `role` says what they are.
+pub fn refuse_inputs<'i>(
+    inputs: impl IntoIterator<Item = &'i Path>,
+    outputs: impl IntoIterator<Item = impl AsRef<Path>>,
+    role: &str,
+) -> Result<(), Failure> {
+    let inputs: BTreeSet<_> = inputs.into_iter().map(place).collect();
+    for output in outputs {
+        let output = output.as_ref();
+        if inputs.contains(&place(output)) {
+            return Err(Failure::usage(
+                format!(
+                    "the output {} is {role}, which would be lost",
+                    output.display()
+                ),
+                "give the output another name",
+            ));
+        }
     }
     Ok(())
 }
@@ -96,13 +105,14 @@ pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
 fn to_standard_output(text: &[u8]) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     let written = out.write_all(text).and_then(|()| out.flush());
-    written.map_err(|error| match error.kind() {
-        io::ErrorKind::BrokenPipe => Failure::ClosedPipe,
-        _ => Failure::failed(
+    match written {
+        // A reader that has seen enough is nobody's fault, and changes nothing of what was found.
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::failed(
             format!("the report cannot be written: {error}"),
             "check where standard output leads; the files that were asked for are written",
-        ),
-    })
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// Prints a warning on standard error.

@@ -197,3 +197,216 @@ budget = {{ picture-instructions = 40_000_000, load-instructions = 1 }}
     assert!(broken[0]["found"].as_u64().unwrap() > 1000);
     assert_eq!(output.status.code(), Some(1));
 }
+
+/// What the manifest reads is never written over, by whatever path it is reached.
+#[test]
+fn files_that_are_read_stay() {
+    let folder = folder();
+    folder.write("program.elf", b"\x7fELF");
+    folder.write("quick-f32.png", b"a picture");
+    std::fs::create_dir(folder.path("sub")).unwrap();
+    let manifest = "[[check]]\nscene = \"quick.toml\"\nreference = \"quick-f32.png\"\n\
+                    [[check]]\nname = \"blob\"\nscene = \"quick.gridel\"\n\
+                    reference = \"sub/blob-f32.png\"\n\
+                    [[check.board]]\nmachine = \"m\"\nelf = \"program.elf\"\n";
+    folder.write("check.toml", manifest.as_bytes());
+    let read = [
+        "check.toml",
+        "quick.toml",
+        "quick.gridel",
+        "program.elf",
+        "quick-f32.png",
+        // To be recorded.
+        "blob-f32.png",
+    ];
+    for name in read {
+        let path = match name {
+            "blob-f32.png" => format!("./sub/{name}"),
+            _ => format!("sub/../{name}"),
+        };
+        let words = ["is a file that the checks read", "another name"];
+        folder.fails(2, &["check", "check.toml", "--junit", &path], &words);
+    }
+    for shown in [".", "sub"] {
+        let words = ["-f32.png is a file that the checks read", "another name"];
+        folder.fails(2, &["check", "check.toml", "--diff", shown], &words);
+    }
+    assert!(!folder.path("sub/blob-f32.png").exists());
+}
+
+/// Recording makes a reference or replaces a picture, and destroys nothing else.
+#[test]
+fn only_pictures_become_references() {
+    let folder = folder();
+    let check = |reference: &str| {
+        format!(
+            "[[check]]\nscene = \"quick.toml\"\nsize = [4, 4]\nreference = \"{reference}\"\n\
+             [[check]]\nname = \"blob\"\nscene = \"quick.gridel\"\nbudget = {{ blob_bytes = 1_000_000 }}\n"
+        )
+    };
+    for name in ["check.toml", "quick.toml", "quick.gridel"] {
+        folder.write("check.toml", check(name).as_bytes());
+        folder.fails(
+            1,
+            &["check", "check.toml", "--bless"],
+            &["check.toml:4", "would be written over it", "another name"],
+        );
+    }
+    folder.write("notes.txt", b"to be kept");
+    folder.write("check.toml", check("notes.txt").as_bytes());
+    let run = folder.run(&["check", "check.toml", "--bless"]);
+    assert_eq!(run.code, Some(1), "{}", run.stderr);
+    for word in [
+        "check.toml:4: notes.txt cannot be read",
+        "write the path of a PNG",
+        "0 recorded, 1 broken",
+    ] {
+        assert!(run.stdout.contains(word), "{}", run.stdout);
+    }
+    assert!(run.stderr.contains("quick: reference cannot be recorded"));
+    assert_eq!(folder.read("notes.txt"), b"to be kept");
+
+    folder.write("check.toml", check("new.png").as_bytes());
+    let run = folder.run(&["check", "check.toml"]);
+    for word in ["check.toml:4: new.png cannot be read", "check --bless"] {
+        assert!(run.stdout.contains(word), "{}", run.stdout);
+    }
+    folder.done(&["check", "check.toml", "--bless"]);
+    // A picture of another size is one, too.
+    folder.write(
+        "check.toml",
+        check("new.png").replace("[4, 4]", "[5, 4]").as_bytes(),
+    );
+    folder.run(&["check", "check.toml", "--bless"]);
+    folder.done(&["check", "check.toml"]);
+}
+
+/// Names that would be equal as those of files get a number.
+#[test]
+fn every_broken_picture_is_shown() {
+    let folder = folder();
+    let check = |name: &str, size: &str| {
+        format!(
+            "[[check]]\nname = \"{name}\"\nscene = \"quick.toml\"\nsize = {size}\nhash = {{}}\n"
+        )
+    };
+    let manifest = check("a/b", "[4, 4]") + &check("a b", "[5, 4]");
+    folder.write("check.toml", manifest.as_bytes());
+    let run = folder.run(&["check", "check.toml", "--diff", "shown"]);
+    assert_eq!(run.code, Some(1), "{}", run.stderr);
+    let [first, second] = ["shown/a-b-f32.png", "shown/a-b-f32-2.png"].map(|it| folder.read(it));
+    assert_ne!(first, second);
+}
+
+/// The exit code says what was found, whoever reads.
+#[test]
+fn broken_checks_fail_without_a_reader() {
+    let folder = folder();
+    for json in [&[][..], &["--json"]] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let mut command = folder.command(&[&["check", "check.toml"], json].concat());
+        let output = command.stdout(writer).output().unwrap();
+        assert_eq!(output.status.code(), Some(1));
+        assert!(output.stderr.is_empty(), "{output:?}");
+    }
+}
+
+/// Outputs that cannot be written are told before any work, or else after the findings.
+#[test]
+fn findings_are_not_lost_with_a_report() {
+    let folder = folder();
+    let bless = ["check", "check.toml", "--bless"];
+    folder.fails(
+        1,
+        &[&bless[..], &["--junit", "nodir/x.xml"]].concat(),
+        &["nodir/x.xml cannot be written", "create the folder first"],
+    );
+    folder.fails(
+        1,
+        &[&bless[..], &["--diff", "quick.toml"]].concat(),
+        &["quick.toml cannot be written", "name a folder"],
+    );
+    // A folder where the picture belongs.
+    std::fs::create_dir_all(folder.path("shown/quick-f32.png")).unwrap();
+    let run = folder.run(&[&bless[..], &["--diff", "shown", "--junit", "x.xml"]].concat());
+    assert_eq!(run.code, Some(1), "{}", run.stderr);
+    assert!(run.stderr.contains("quick-f32.png"), "{}", run.stderr);
+    for word in ["2 held, 3 recorded, 0 broken", "\n+hash = { fixed = \""] {
+        assert!(run.stdout.contains(word), "{}", run.stdout);
+    }
+    assert!(folder.path("x.xml").is_file());
+    folder.done(&["check", "check.toml"]);
+}
+
+/// What cannot be recorded is broken still, and nothing of it is recorded.
+#[test]
+fn all_is_recorded_or_nothing() {
+    let folder = folder();
+    let manifest = format!("{MANIFEST}reference = \"nodir/quick.png\"\n");
+    folder.write("check.toml", manifest.as_bytes());
+    let run = folder.run(&["check", "check.toml", "--bless"]);
+    assert_eq!(run.code, Some(1));
+    assert!(
+        run.stderr.contains("create the folder first"),
+        "{}",
+        run.stderr
+    );
+    assert!(
+        run.stdout.contains("2 held, 0 recorded, 5 broken"),
+        "{}",
+        run.stdout
+    );
+    assert_eq!(folder.read("check.toml"), manifest.as_bytes());
+}
+
+/// What is wrong with a file is told where the manifest names it.
+#[test]
+fn files_that_are_missing_have_a_place_and_a_remedy() {
+    let folder = folder();
+    // A program that is everywhere, in place of the emulator.
+    let manifest = r#"
+[[check]]
+scene = "nope.toml"
+hash = {}
+[[check]]
+scene = "quick.gridel"
+[[check.board]]
+machine = "m"
+emulator = "cargo"
+elf = "quick.toml"
+budget = { loops = 1 }
+[[check.board]]
+machine = "n"
+emulator = "cargo"
+firmware = "firmwarex"
+program = "p"
+target = "t"
+budget = { loops = 1 }
+"#;
+    folder.write("check.toml", manifest.as_bytes());
+    let run = folder.run(&["check", "check.toml"]);
+    assert_eq!(run.code, Some(1), "{}", run.stderr);
+    for word in [
+        "nope: check.toml:3: nope.toml cannot be read: ",
+        "; write the path of a scene file or of a blob",
+        "quick on m: check.toml:10: quick.toml is no ELF file",
+        "; write the path of the program",
+        "quick on n: check.toml:15: firmwarex is no folder",
+        "; write the path of a Cargo package's folder",
+    ] {
+        assert!(run.stdout.contains(word), "no {word:?} in {}", run.stdout);
+    }
+    folder.write("none.toml", b"check = []");
+    folder.fails(
+        1,
+        &["check", "none.toml"],
+        &["has no `[[check]]`", "add a line"],
+    );
+    folder.write("folder.toml", b"[[check]]\nscene = '.'\nhash = {}");
+    folder.fails(
+        1,
+        &["check", "folder.toml"],
+        &["folder.toml:2", "is a folder, and no scene"],
+    );
+}
