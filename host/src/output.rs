@@ -78,7 +78,13 @@ impl Files {
                 path.canonicalize()?
             }
             Ok(_) => return fill(&OpenOptions::new().write(true).open(path)?, write),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => path.to_owned(),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
+                Ok(missing) => {
+                    let folder = path.parent().unwrap_or(Path::new(""));
+                    return self.add(&folder.join(missing), write);
+                }
+                Err(_) => path.to_owned(),
+            },
             Err(error) => return Err(error),
         };
         let file = create_beside(&target)?;
@@ -262,6 +268,13 @@ mod tests {
         assert_eq!(fs::read(&target).unwrap(), b"new");
         let mode = fs::metadata(&target).unwrap().permissions().mode();
         assert_eq!(mode & 0o777, 0o640);
+        // What a link leads to need not be there.
+        fs::remove_file(&target).unwrap();
+        let second = folder.path().join("second");
+        symlink("link", &second).unwrap();
+        write_whole(&second, |out| out.write_all(b"newer")).unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read(&target).unwrap(), b"newer");
     }
 
     #[cfg(target_os = "linux")]
