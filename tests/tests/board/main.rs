@@ -20,6 +20,7 @@ use firmware::{AARCH64, Build, S390X, WASM, board};
 use gridel_core::{Effects, Fixed, Format, List, Stack, Structure, Vouched};
 use gridel_host::board::{BOARDS, Board};
 use gridel_host::emit::{self, Emitted};
+use gridel_host::report::{Ledger, Target};
 use scenes::Compiled;
 use std::collections::BTreeMap;
 use std::fs;
@@ -251,6 +252,23 @@ fn every_core_pays_for_parts_one_by_one() {
     figures.check();
 }
 
+/// What some parts take on the other boards, by which the ledgers stretch what was measured for their kin.
+#[test]
+fn every_board_pays_for_few_parts() {
+    if !firmware::available() {
+        return;
+    }
+    let scene = parts::sphere_and_triangle();
+    let mut figures = Figures::new();
+    let others = boards().filter(|&(board, _)| board != &WASM);
+    for (board, format) in others.filter(|&(board, format)| board.kin(format) != (board, format)) {
+        let build = Build::new(board, format, Structure::DualSplit, &scene);
+        let elf = build.program("bare").elf();
+        figures.add(&build.to_string(), &footprint(&build, &elf, &scene));
+    }
+    figures.check();
+}
+
 /// Boards on whose cores all is measured that others are told by.
 fn measured_in_full() -> impl Iterator<Item = (&'static Board, Format)> {
     boards().filter(|&(board, format)| board.kin(format) == (board, format))
@@ -319,6 +337,29 @@ fn everything_on_every_board() {
         }
     }
     figures.check();
+}
+
+/// What parts add up to is enough for a program that holds some of them.
+#[test]
+fn ledgers_are_enough_for_what_was_measured() {
+    let scene = parts::sphere_and_triangle();
+    let view = scene.blob.scene().expect("the compiler's own blob");
+    for (board, format) in boards().filter(|&(board, _)| board != &WASM) {
+        let target = Target {
+            board,
+            flash: board.flash,
+            ram: board.ram,
+        };
+        let ledger = Ledger::of(&view, scene.blob.bytes(), &target, format);
+        let ledger = ledger.expect("it was measured");
+        let build = Build::new(board, format, Structure::DualSplit, &scene).to_string();
+        let code = ledger.flash.used - scene.blob.bytes().len() as u64;
+        let measured = figures::recorded(&build, "code-bytes");
+        assert!(
+            code >= measured,
+            "{build}: {code} bytes of code, {measured}"
+        );
+    }
 }
 
 /// Flash for all code that a diffuse scene of triangles and spheres with shadows needs, the vector table
