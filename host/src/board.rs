@@ -87,6 +87,18 @@ impl Board {
         BOARDS.iter().find(|board| board.name == name)
     }
 
+    /// The board and number format that parts and structures were measured on, each alone: these, or
+    /// those that come nearest.
+    pub fn kin(&self, format: Format) -> (&'static Self, Format) {
+        let [m3, m0, risc_v, _, m4f, _, _] = &BOARDS;
+        match (self.target, format) {
+            (_, Format::F32 | Format::F64) => (m4f, Format::F32),
+            ("thumbv6m-none-eabi", Format::Fixed) => (m0, Format::Fixed),
+            ("riscv32imac-unknown-none-elf", Format::Fixed) => (risc_v, Format::Fixed),
+            (_, Format::Fixed) => (m3, Format::Fixed),
+        }
+    }
+
     /// The number format to use where none is asked for.
     pub fn format(&self) -> Format {
         self.formats[0]

@@ -8,7 +8,7 @@ use gridel_core::render::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use gridel_core::{Format, Scene as CoreScene, Settings, Structure};
 use gridel_host::board::{BOARDS, Board};
 use gridel_host::compile::{self, Builder, Quality, takes_hierarchy};
-use gridel_host::report::Target;
+use gridel_host::report::{Ledger, NotMeasured, Target};
 use gridel_host::scene::{self, MoleculeStyle};
 use std::num::NonZeroUsize;
 use std::ops::Range;
@@ -17,8 +17,8 @@ use std::ops::Range;
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Options for boards")]
 pub struct TargetOptions {
-    /// The board; its code and call stack were measured [default: stm32vldiscovery, if memory is
-    /// given]
+    /// The board, on which code and call stack were measured, of a fast build and of one with the
+    /// feature `small`: `gridel inspect` tells more [default: stm32vldiscovery, if memory is given]
     #[arg(long, value_name = "BOARD", value_parser = board())]
     target: Option<&'static Board>,
 
@@ -42,6 +42,34 @@ impl TargetOptions {
             board,
             flash: self.flash.unwrap_or(board.flash),
             ram: self.ram.unwrap_or(board.ram),
+        })
+    }
+
+    /// What a scene takes of it, in a number format of the board's.
+    ///
+    /// # Errors
+    /// If the best structure that the blob holds was not measured on boards.
+    pub fn ledger(
+        &self,
+        scene: &CoreScene<'_>,
+        blob: &[u8],
+        format: Format,
+    ) -> Result<Option<Ledger>, Failure> {
+        let Some(target) = self.target() else {
+            return Ok(None);
+        };
+        let ledger = Ledger::of(scene, blob, &target, format);
+        ledger.map(Some).map_err(|NotMeasured(structure)| {
+            Failure::usage(
+                format!(
+                    "{} was not measured on boards: nothing is known of its code and call stack",
+                    structure.name()
+                ),
+                format!(
+                    "build a blob without it, for {}",
+                    Ledger::STRUCTURES.map(Structure::name).join(", ")
+                ),
+            )
         })
     }
 }

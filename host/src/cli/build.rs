@@ -3,7 +3,7 @@
 use super::arguments::{self, SceneOptions, StructureOptions, TargetOptions, check_hierarchy};
 use super::effects::CalledFor;
 use super::failure::Failure;
-use super::output::{Content, check_extension, print, print_json, refuse_same, warn, write_files};
+use super::output::{Content, check_extension, print, print_json, refuse_same, write_files};
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Format, Scene, Structure};
@@ -160,17 +160,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             format!("use {}", formats.collect::<Vec<_>>().join(" or ")),
         ));
     }
-    let ledger = target.map(|target| Ledger::of(&scene, source.blob.bytes(), &target, format));
-    if let Some(ledger) = &ledger
-        && let Some(shortage) = ledger.shortage()
-    {
-        return Err(Failure::refused(shortage, ledger.advice(&scene)));
-    }
-    if let Some(ledger) = ledger.as_ref().filter(|ledger| ledger.estimated) {
-        warn(format!(
-            "code and call stack were measured on boards through dual-split nodes; {} may take more",
-            ledger.structure
-        ));
+    let ledger = arguments
+        .target
+        .ledger(&scene, source.blob.bytes(), format)?;
+    if let Some(ledger) = &ledger {
+        source.check_fits(&scene, ledger)?;
     }
     let blob = source.blob.bytes();
     let write_blob: Content<'_> = &|out| out.write_all(blob);
@@ -364,7 +358,7 @@ impl<'r> Built<'r> {
                 ledger.board,
                 format!(
                     "{} bytes of flash remain, and {} of RAM; `gridel inspect` shows what takes the \
-                     others",
+                     others, and for which builds of the program that holds",
                     remains(&ledger.flash),
                     remains(&ledger.ram)
                 ),

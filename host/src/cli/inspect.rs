@@ -7,7 +7,7 @@ use super::output::{print, print_json};
 use super::source::Source;
 use clap::Args;
 use glam::DVec3;
-use gridel_core::{Kind, Scene, Structure};
+use gridel_core::{Format, Kind, Scene, Structure};
 use gridel_host::compile;
 use gridel_host::report::{
     Account, Align, Ledger, MemoryMap, Table, WorkingMemory, grouped, power_of_two, working_memory,
@@ -20,7 +20,8 @@ use std::path::PathBuf;
 ///
 /// A scene file is compiled first, as `gridel build` would by default, and not written anywhere.
 /// Working memory is what the caller provides beside the call stack; it is exact for 32-bit boards,
-/// on which an f64 is aligned to 8 bytes, and for this machine.
+/// on which an f64 is aligned to 8 bytes, and for this machine. A scene that does not fit the board that
+/// is given is shown as well, and refused.
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
@@ -83,6 +84,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let compiling = compile::Options::default();
     let source = Source::open(&arguments.input, &arguments.scene_options, None, compiling)?;
     let scene = source.scene()?;
+    let target = arguments.target.target();
+    let format = target.map_or(Format::Fixed, |target| target.board.format());
     let inspection = Inspection {
         memory_map: MemoryMap::of(&scene, source.blob.bytes()),
         limits: limits(&scene),
@@ -94,14 +97,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         },
         ledger: arguments
             .target
-            .target()
-            .map(|target| Ledger::of(&scene, source.blob.bytes(), &target, target.board.format())),
+            .ledger(&scene, source.blob.bytes(), format)?,
     };
     if arguments.json {
-        print_json(&inspection)
+        print_json(&inspection)?;
     } else {
-        print(inspection.text())
+        print(inspection.text())?;
     }
+    let ledger = inspection.ledger.as_ref();
+    ledger.map_or(Ok(()), |ledger| source.check_fits(&scene, ledger))
 }
 
 fn limits(scene: &Scene<'_>) -> Limits {
@@ -256,13 +260,7 @@ fn ledger_table(ledger: &Ledger) -> String {
     };
     account("flash", &ledger.flash);
     account("RAM", &ledger.ram);
-    let estimated = match ledger.estimated {
-        true => {
-            "Code and call stack were measured through dual-split nodes; other structures may take more.\n"
-        }
-        false => "",
-    };
-    format!("\n{table}{estimated}")
+    format!("\n{table}{}\n", ledger.holds_for())
 }
 
 fn working_memory_table(needs: &[WorkingMemory]) -> Table {

@@ -7,9 +7,9 @@ use super::output::warn;
 use super::progress::Progress;
 use gridel_core::{BlobError, Scene, Structure};
 use gridel_host::blob::{self, Blob};
-use gridel_host::compile::{self, Compiled};
+use gridel_host::compile::{self, CompileError, Compiled};
 use gridel_host::explain::Names;
-use gridel_host::report::{counted, grouped};
+use gridel_host::report::{Ledger, counted, grouped};
 use gridel_host::scene::{self, Imported};
 use std::path::{Path, PathBuf};
 
@@ -23,6 +23,8 @@ pub struct Source {
     pub warnings: Vec<String>,
     /// What a scene file calls its objects.
     pub names: Names,
+    /// How a scene file was read and compiled.
+    made_by: Option<(scene::MoleculeOptions, compile::Options)>,
 }
 
 impl Source {
@@ -72,6 +74,7 @@ impl Source {
             report: None,
             warnings: Vec::new(),
             names: Names::default(),
+            made_by: None,
         })
     }
 
@@ -102,7 +105,32 @@ impl Source {
             report: Some(report),
             warnings: imported.warnings,
             names: names(&imported.scene),
+            made_by: Some((options.geometry.molecule.for_import(), compiling)),
         })
+    }
+
+    /// Refuses a scene that does not fit a board's memory, with what would help.
+    pub fn check_fits(&self, scene: &Scene<'_>, ledger: &Ledger) -> Result<(), Failure> {
+        ledger.shortage().map_or(Ok(()), |shortage| {
+            Err(Failure::refused(
+                shortage,
+                ledger.advice(scene, || self.smaller()),
+            ))
+        })
+    }
+
+    /// What makes the blob of a scene file smaller: what is said where no byte is allowed.
+    fn smaller(&self) -> Option<String> {
+        let (molecules, compiling) = self.made_by.as_ref()?;
+        let imported = scene::load(&self.path, molecules).ok()?;
+        let nothing = compile::Options {
+            max_bytes: Some(0),
+            ..compiling.clone()
+        };
+        match compile::compile(&imported.scene, &nothing) {
+            Err(CompileError::TooLarge { advice, .. }) => Some(advice),
+            _ => None,
+        }
     }
 
     /// The checked view of the blob.

@@ -1,11 +1,11 @@
 //! What to change where a blob is larger than it may be.
 
-use super::layout::{self, Layout, takes_hierarchy};
+use super::layout::{self, Layout};
 use super::{Options, compile, writer};
 use crate::blob::Blob;
-use crate::report::{grouped, narrower_storage};
+use crate::report::grouped;
 use crate::scene::Scene;
-use gridel_core::Structure;
+use gridel_core::{Structure, Vouched};
 
 /// What a structure takes of a blob.
 pub struct Size {
@@ -36,30 +36,51 @@ pub fn advice(
     leaves: usize,
     sizes: &[Size],
 ) -> String {
-    let mut steps = Vec::new();
-    steps.extend(blob.scene().ok().as_ref().and_then(narrower_storage));
     let mut asked = options.structures.clone();
     asked.sort();
     asked.dedup();
     asked.retain(|&structure| structure != Structure::List);
-    if options.leaf_size == 0 && asked.iter().copied().any(takes_hierarchy) {
-        steps.push(String::from(
-            "`--leaf-size 8` makes fewer nodes and costs time",
-        ));
-    }
-    if let [structure] = asked[..] {
-        // Without a hierarchy primitives keep the file's order as well, so all of it is built.
-        let list = Options {
-            structures: vec![Structure::List],
+    // Leaves and the order of primitives change as well, so all of it is built.
+    let saves = |what: String, other: Options| {
+        let other = Options {
             max_bytes: None,
+            ..other
+        };
+        let bytes = compile(scene, &other).ok()?.report.bytes;
+        let saved = blob.bytes().len().checked_sub(bytes);
+        let saved = saved.filter(|&saved| saved > 0)?;
+        Some(format!("{what} saves {} bytes", grouped(saved)))
+    };
+    let and_costs_time = |step| format!("{step} and costs time");
+    let mut steps = Vec::new();
+    // Tables take long to make: with them nothing is tried.
+    if asked.iter().all(|it| Vouched::STRUCTURES.contains(it)) {
+        let narrow = Options {
+            lattice_bits: options.lattice_bits.min(16),
             ..options.clone()
         };
-        if let Ok(list) = compile(scene, &list) {
-            steps.push(format!(
-                "`--accel list` instead of {} saves {} bytes and costs time",
-                structure.name(),
-                grouped(blob.bytes().len() - list.report.bytes)
-            ));
+        steps.extend(saves(String::from("`--lattice-bits 16`"), narrow));
+        if options.leaf_size == 0 {
+            let fewer_nodes = Options {
+                leaf_size: 8,
+                ..options.clone()
+            };
+            let step = saves(String::from("`--leaf-size 8`"), fewer_nodes);
+            steps.extend(step.map(and_costs_time));
+        }
+    }
+    if let [structure] = asked[..] {
+        for other in [Structure::Flagged, Structure::List] {
+            let what = format!("`--accel {}` instead of {}", other.name(), structure.name());
+            let structures = vec![other];
+            let step = saves(
+                what,
+                Options {
+                    structures,
+                    ..options.clone()
+                },
+            );
+            steps.extend(step.map(and_costs_time));
         }
     }
     for &structure in asked.iter().filter(|_| asked.len() > 1) {

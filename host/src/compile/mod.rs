@@ -22,7 +22,6 @@ pub use lattice::BITS as LATTICE_BITS;
 pub use layout::{takes_hierarchy, usual_budget};
 pub use primitives::LeftOut;
 pub use wide::Quality;
-pub(crate) use writer::taken;
 
 use crate::scene::{Object, Scene};
 use advice::{Size, advice};

@@ -1,28 +1,39 @@
 //! What a scene takes on a board, in flash and in RAM: a line an item, and what remains.
 //!
 //! Sizes of the blob and of working memory are exact. Code and call stack were measured on the
-//! boards by the project's tests (`fixtures/recorded/board.json`), for a program that holds every
-//! shape and every effect and walks dual-split nodes: bounds for one that holds what the scene calls
-//! for and walks them, too, and estimates for other structures. On cores where each part was measured
-//! alone, code is listed by shape and effect; what all of them take together beyond the sum of each
-//! is shared out among them.
+//! boards by the project's tests (`fixtures/recorded/board.json`), for two builds: a fast one, and one
+//! with the feature `small`, both linked with `lto = "fat"` and `codegen-units = 1`. The call stack is
+//! the larger of both, with every shape and effect: a bound for a scene that calls for fewer. Code is
+//! that of the fast build, by shape and effect; what they take together beyond the sum of each is shared
+//! out among them.
+//!
+//! On one board of each kind of core every part and structure was measured alone. What was measured
+//! there stands for its kin, stretched by what everything, or a few parts, take here and there.
 
 use super::{MemoryMap, grouped, working_memory};
 use crate::blob::best_structures;
 use crate::board::Board;
-use crate::compile::taken;
-use gridel_core::blob::record::{Sphere16, Sphere24, Vertex16, Vertex24};
-use gridel_core::{Effects, Format, Kind, Rgb565, Scene, Structure};
+use gridel_core::accel::Entry;
+use gridel_core::{Effects, Format, Kind, Rgb565, Scene, Structure, Vouched};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// What the tests measured, by the name of a build.
 const RECORDED: &str = include_str!("../../../fixtures/recorded/board.json");
-/// The scene of every shape and effect, and the board on which each was measured alone.
+/// The scene of every shape and effect.
 const EVERYTHING: &str = "quick";
-const BY_PART: &str = "stm32vldiscovery";
 /// What each part is added to: triangles in diffuse light without shadows.
 const BASE: &str = "base";
+/// A program of two parts beside it.
+const FEW: &str = "sphere, triangle, shadow";
+/// Forms of storage that are parts as well.
+const WIDER: [&str; 2] = ["wide-lattice", "wide-indices"];
+
+/// How the names of builds end.
+const FAST: &str = "";
+const SMALL: &str = " small";
+/// How items of code begin.
+const CODE: &str = "code: ";
 
 /// Memory of a board that a scene is to fit into.
 #[derive(Clone, Copy, Debug)]
@@ -42,11 +53,26 @@ pub struct Ledger {
     pub format: &'static str,
     /// What walks the rays.
     pub structure: &'static str,
-    /// Whether code and call stack were measured with another structure, and are estimates.
-    pub estimated: bool,
+    /// The core and number format on which parts and structures were measured.
+    pub measured_on: String,
     pub flash: Account,
     pub ram: Account,
+    /// A program of every shape and effect, built for speed.
+    pub fast: Footprint,
+    /// The same with the feature `small`.
+    pub small: Footprint,
 }
+
+/// Bytes of a program that holds every shape and every effect.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Footprint {
+    pub code: u64,
+    pub call_stack: u64,
+}
+
+/// A structure of which nothing was measured on boards.
+#[derive(Clone, Copy, Debug)]
+pub struct NotMeasured(pub Structure);
 
 /// One kind of memory: what there is, and what takes it.
 #[derive(Clone, Debug, Serialize)]
@@ -83,12 +109,23 @@ impl Account {
 }
 
 impl Ledger {
+    /// The structures that were measured: those that firmware can vouch for.
+    pub const STRUCTURES: [Structure; 4] = Vouched::STRUCTURES;
+
     /// The ledger of a scene that `blob` holds, in one of the board's number formats, through the
     /// best structure that the blob holds.
-    pub fn of(scene: &Scene<'_>, blob: &[u8], target: &Target, format: Format) -> Self {
+    ///
+    /// # Errors
+    /// If that is none of [`Self::STRUCTURES`].
+    pub fn of(
+        scene: &Scene<'_>,
+        blob: &[u8],
+        target: &Target,
+        format: Format,
+    ) -> Result<Self, NotMeasured> {
         let board = target.board;
         let structure = best_structures(scene).next().unwrap_or(Structure::List);
-        let estimated = structure != Structure::DualSplit;
+        let measured = Measured::of(board, format, structure).ok_or(NotMeasured(structure))?;
         let empty = |available| Account {
             available,
             used: 0,
@@ -100,8 +137,7 @@ impl Ledger {
                 flash.add(format!("blob: {}", part.kind), part.bytes as u64);
             }
         }
-        let recorded = Recorded::read();
-        recorded.code(scene, board, format, &mut flash);
+        measured.code(scene, &mut flash);
 
         let words = working_memory(scene);
         let need = words
@@ -117,18 +153,46 @@ impl Ledger {
         let width = scene.view().width;
         let row = u64::from(width) * size_of::<Rgb565>() as u64;
         ram.add(format!("row of {width} pixels, RGB565"), row);
-        let stack = recorded.figure(EVERYTHING, board, format, "call-stack-bytes");
-        let how = if estimated { "about" } else { "at most" };
-        ram.add(format!("call stack, {how}"), stack);
-        Self {
+        let [fast, small] = [FAST, SMALL].map(|build| measured.everything(build));
+        let is_bound = structure == Structure::DualSplit || measured.kin.0.core == board.core;
+        let how = if is_bound { "at most" } else { "about" };
+        ram.add(
+            format!("call stack, {how}"),
+            fast.call_stack.max(small.call_stack),
+        );
+        let (kin, kins_format) = measured.kin;
+        Ok(Self {
             board: board.name,
             core: board.core,
             format: format.name(),
             structure: structure.name(),
-            estimated,
+            measured_on: format!("{} in {}", kin.core, kins_format.name()),
             flash,
             ram,
-        }
+            fast,
+            small,
+        })
+    }
+
+    /// The builds that the figures hold for.
+    pub fn holds_for(&self) -> String {
+        let Self { fast, small, .. } = self;
+        let own = format!("{} in {}", self.core, self.format);
+        let stretched = match &self.measured_on {
+            there if *there != own => {
+                format!("\nParts were measured on a {there}, and stretched to what all take here.")
+            }
+            _ => String::new(),
+        };
+        format!(
+            "For programs linked with lto = \"fat\" and codegen-units = 1. Code is that of opt-level = 3. The \
+             call stack\nis enough for that, which takes {} bytes, and for the feature `small` with \
+             opt-level = \"z\", which takes\n{}, and {} bytes of code at most. Other profiles were not \
+             measured and may take more.{stretched}",
+            grouped(fast.call_stack),
+            grouped(small.call_stack),
+            grouped(small.code)
+        )
     }
 
     /// Why the scene does not fit: what is short, and by how much. `None` where it fits.
@@ -149,134 +213,188 @@ impl Ledger {
         (!short.is_empty()).then(|| format!("the scene takes {}", short.join(", and ")))
     }
 
-    /// What would save memory of the kind that is short, by the scene's own figures.
-    pub fn advice(&self, scene: &Scene<'_>) -> String {
+    /// What would save memory of the kind that is short, by the scene's own figures; `smaller` tells
+    /// what makes the blob smaller, which takes time.
+    pub fn advice(&self, scene: &Scene<'_>, smaller: impl FnOnce() -> Option<String>) -> String {
         let mut steps = Vec::new();
         if self.ram.missing() > 0 {
-            steps.extend(ram_advice(scene, self.format));
+            steps.extend(self.ram_advice(scene));
         }
         if self.flash.missing() > 0 {
-            steps.extend(flash_advice(scene));
+            steps.extend(self.flash_advice(scene));
+            steps.push(match smaller() {
+                // Code is another matter: flagged sides take more of it.
+                Some(smaller) => format!("of the blob itself, {smaller}"),
+                None => {
+                    String::from("the scene file in place of the blob tells what makes it smaller")
+                }
+            });
         }
         steps.join("; ")
     }
+
+    fn ram_advice(&self, scene: &Scene<'_>) -> Vec<String> {
+        let view = scene.view();
+        let place = if self.format == Format::F64.name() {
+            80
+        } else {
+            40
+        };
+        let mut steps = Vec::new();
+        let secondary = Effects::MIRROR.with(Effects::GLASS);
+        if scene.effects().0 & secondary.0 != 0 && view.depth > 0 {
+            steps.push(format!(
+                "a ray depth of {} in place of {} saves {place} bytes, and a scene without mirrors and \
+                 glass {}",
+                view.depth - 1,
+                view.depth,
+                place * (u64::from(view.depth) + 1)
+            ));
+        }
+        let [fast, small] = [self.fast, self.small].map(|build| build.call_stack);
+        if fast < small {
+            steps.push(format!(
+                "without the feature `small` the call stack takes {} bytes less",
+                grouped(small - fast)
+            ));
+        }
+        // Where flash is short, too, it is named there.
+        if scene.stack_depth() > 0 && self.flash.missing() == 0 {
+            steps.push(format!(
+                "`--accel list` saves {} bytes of traversal stack and costs time",
+                scene.stack_depth() * size_of::<Entry>()
+            ));
+        }
+        steps.push(String::from("a narrower picture"));
+        steps
+    }
+
+    fn flash_advice(&self, scene: &Scene<'_>) -> Vec<String> {
+        let mut steps = Vec::new();
+        let items = self.flash.items.iter();
+        let code: u64 = items
+            .filter(|item| item.what.starts_with(CODE))
+            .map(|item| item.bytes)
+            .sum();
+        if self.small.code < code {
+            steps.push(format!(
+                "with the feature `small` and opt-level = \"z\" code takes at most {} bytes in place of {}, \
+                 and rays take longer",
+                grouped(self.small.code),
+                grouped(code)
+            ));
+        }
+        if scene.vertices() > 1 << 16 {
+            let saved = 6 * scene.count(Kind::Triangle);
+            steps.push(format!(
+                "at most 65,536 vertices would make indices narrower and save {} bytes",
+                grouped(saved)
+            ));
+        }
+        if scene.effects() != Effects::NONE {
+            steps.push(format!(
+                "a scene that does without some of its effects ({})",
+                scene.effects()
+            ));
+        }
+        steps
+    }
 }
 
-fn ram_advice(scene: &Scene<'_>, format: &str) -> Vec<String> {
-    let view = scene.view();
-    let place = if format == Format::F64.name() { 80 } else { 40 };
-    let mut steps = Vec::new();
-    let secondary = Effects::MIRROR.with(Effects::GLASS);
-    if scene.effects().0 & secondary.0 != 0 && view.depth > 0 {
-        steps.push(format!(
-            "a ray depth of {} in place of {} saves {place} bytes, and a scene without mirrors and \
-             glass {}",
-            view.depth - 1,
-            view.depth,
-            place * (u64::from(view.depth) + 1)
-        ));
-    }
-    steps.push(format!(
-        "parts of rows in place of whole ones save up to {} bytes",
-        2 * (u64::from(view.width) - 1)
-    ));
-    if scene.stack_depth() > 0 {
-        steps.push(String::from(
-            "`--accel list` does without a traversal stack and costs time",
-        ));
-    }
-    steps
+/// What was measured for programs that walk a structure on a board.
+struct Measured {
+    recorded: BTreeMap<String, BTreeMap<String, u64>>,
+    here: (&'static Board, Format),
+    /// Where parts and structures were measured.
+    kin: (&'static Board, Format),
+    structure: Structure,
 }
 
-/// What a lattice of 16 bits saves of a blob's vertices and spheres.
-pub fn narrower_storage(scene: &Scene<'_>) -> Option<String> {
-    let saved =
-        |count: usize, wide: usize, narrow: usize| taken(count * wide) - taken(count * narrow);
-    let vertices = saved(
-        scene.vertices(),
-        size_of::<Vertex24>(),
-        size_of::<Vertex16>(),
-    );
-    let spheres = saved(
-        scene.count(Kind::Sphere),
-        size_of::<Sphere24>(),
-        size_of::<Sphere16>(),
-    );
-    let bytes = vertices + spheres;
-    let stored = scene.header().storage_bits > 16 && bytes > 0;
-    stored.then(|| format!("`--lattice-bits 16` saves {} bytes", grouped(bytes)))
-}
-
-fn flash_advice(scene: &Scene<'_>) -> Vec<String> {
-    let mut steps = Vec::new();
-    steps.extend(narrower_storage(scene));
-    if scene.vertices() > 1 << 16 {
-        let saved = 6 * scene.count(Kind::Triangle);
-        steps.push(format!(
-            "at most 65,536 vertices would make indices narrower and save {} bytes",
-            grouped(saved)
-        ));
-    }
-    let held = Structure::ALL.into_iter().filter(|&it| scene.holds(it));
-    if held.filter(|&it| it != Structure::List).count() > 1 {
-        steps.push(String::from(
-            "a blob with one structure in place of several",
-        ));
-    } else if scene.stack_depth() > 0 {
-        steps.push(String::from(
-            "`--accel list` does without a hierarchy and costs time",
-        ));
-    }
-    if scene.effects() != Effects::NONE {
-        steps.push(format!(
-            "a scene that does without some of its effects ({})",
-            scene.effects()
-        ));
-    }
-    steps.push(String::from("a scene with fewer primitives"));
-    steps
-}
-
-struct Recorded(BTreeMap<String, BTreeMap<String, u64>>);
-
-impl Recorded {
-    fn read() -> Self {
-        Self(serde_json::from_str(RECORDED).unwrap_or_default())
+impl Measured {
+    /// `None` for a structure that was not measured.
+    fn of(board: &'static Board, format: Format, structure: Structure) -> Option<Self> {
+        Ledger::STRUCTURES.contains(&structure).then(|| Self {
+            recorded: serde_json::from_str(RECORDED).unwrap_or_default(),
+            here: (board, format),
+            kin: board.kin(format),
+            structure,
+        })
     }
 
     /// A figure of a scene's program; 0 where it was not measured.
-    fn figure(&self, scene: &str, board: &Board, format: Format, figure: &str) -> u64 {
-        let key = format!("{scene} {} {} dual-split", board.name, format.name());
-        let figures = self.0.get(&key);
+    fn figure(
+        &self,
+        scene: &str,
+        (board, format): (&Board, Format),
+        structure: Structure,
+        build: &str,
+        figure: &str,
+    ) -> u64 {
+        let (format, structure) = (format.name(), structure.name());
+        let key = format!("{scene} {} {format} {structure}{build}", board.name);
+        let figures = self.recorded.get(&key);
         figures
             .and_then(|figures| figures.get(figure))
             .copied()
             .unwrap_or(0)
     }
 
-    /// Lists the code that a scene calls for.
-    fn code(&self, scene: &Scene<'_>, board: &Board, format: Format, flash: &mut Account) {
-        let everything = self.figure(EVERYTHING, board, format, "code-bytes");
-        let by_part = Board::named(BY_PART).filter(|it| it.target == board.target);
-        let Some(by_part) = by_part else {
-            flash.add("code: every shape and effect, at most", everything);
-            return;
+    /// What a program of every shape and effect takes here.
+    fn everything(&self, build: &str) -> Footprint {
+        let stretched = |figure| {
+            let everything =
+                |place, structure| self.figure(EVERYTHING, place, structure, build, figure);
+            let [here, there] =
+                [self.here, self.kin].map(|it| everything(it, Structure::DualSplit));
+            (everything(self.kin, self.structure) * here).div_ceil(there.max(1))
         };
-        let code = |part: &str| self.figure(part, by_part, format, "code-bytes");
-        let (base, glass) = (code(BASE), code("glass"));
+        Footprint {
+            code: stretched("code-bytes"),
+            call_stack: stretched("call-stack-bytes"),
+        }
+    }
+
+    /// Lists the code that a scene calls for.
+    fn code(&self, scene: &Scene<'_>, flash: &mut Account) {
+        let code = |scene: &str, place, structure| {
+            self.figure(scene, place, structure, FAST, "code-bytes")
+        };
+        let of_part = |part: &str| code(part, self.kin, Structure::DualSplit);
+        let (base, glass) = (of_part(BASE), of_part("glass"));
         let alone = |part: &str| match part {
             // It comes with glass.
-            "absorption" => code(part).saturating_sub(glass),
-            _ => code(part).saturating_sub(base),
+            "absorption" => of_part(part).saturating_sub(glass),
+            _ => of_part(part).saturating_sub(base),
         };
-        let parts = Kind::ALL.map(Kind::name).into_iter();
+        let [here, there] =
+            [self.here, self.kin].map(|it| code(EVERYTHING, it, Structure::DualSplit));
+        let parts = Kind::ALL.map(Kind::name).into_iter().chain(WIDER);
         let sum: u64 = parts.chain(Effects::ALL.names()).map(alone).sum();
-        let together = everything.saturating_sub(base).max(sum);
-        flash.add("code: loading, triangles, diffuse light", base);
+        // Together parts may take more than each alone: as much as they do where it was measured.
+        let few = alone("sphere") + alone("shadow");
+        let whole = |whole: u64, sum: u64| (whole.saturating_sub(base).max(sum), sum.max(1));
+        let (all, few) = (whole(there, sum), whole(of_part(FEW), few));
+        let (whole, sum) = if all.0 * few.1 > few.0 * all.1 {
+            all
+        } else {
+            few
+        };
+        let few_here = code(FEW, self.here, Structure::DualSplit);
+        let stretched = |bytes: u64| {
+            let most = [(here, there), (few_here, of_part(FEW))]
+                .map(|(here, there)| (bytes * here.max(there)).div_ceil(there.max(1)));
+            most[0].max(most[1])
+        };
+        // Whatever a dearer walk takes, every scene needs.
+        let walk = code(EVERYTHING, self.kin, self.structure).saturating_sub(there);
+        flash.add(
+            format!("{CODE}loading, triangles, diffuse light"),
+            stretched(base + walk),
+        );
         for part in scene.features() {
-            let bytes = (alone(part) * together).div_ceil(sum.max(1));
+            let bytes = stretched((alone(part) * whole).div_ceil(sum));
             if bytes > 0 {
-                flash.add(format!("code: {part}"), bytes);
+                flash.add(format!("{CODE}{part}"), bytes);
             }
         }
     }

@@ -16,6 +16,14 @@ pub struct Run {
     pub stderr: String,
 }
 
+impl Run {
+    /// What standard error says, in one line: messages are wrapped at the terminal's width.
+    pub fn said(&self) -> String {
+        let said = self.stderr.split_whitespace().collect::<Vec<_>>();
+        said.join(" ").replace("│ ", "")
+    }
+}
+
 impl Folder {
     /// An empty folder.
     pub fn new() -> Self {
@@ -89,9 +97,7 @@ impl Folder {
         let run = self.run(arguments);
         assert_eq!(run.code, Some(code), "{arguments:?}: {}", run.stderr);
         assert_eq!(run.stdout, "", "{arguments:?}");
-        // Messages are wrapped at the terminal's width.
-        let said = run.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
-        let said = said.replace("│ ", "");
+        let said = run.said();
         for word in words {
             assert!(said.contains(word), "{arguments:?}: no {word:?} in {said}");
         }

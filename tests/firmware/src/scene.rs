@@ -30,6 +30,8 @@ pub type Accel = gridel_core::DualSplit;
 pub type Accel = gridel_core::Flagged;
 #[cfg(feature = "grid")]
 pub type Accel = gridel_core::Grid;
+#[cfg(feature = "list")]
+pub type Accel = gridel_core::List;
 
 /// The scene of [`BLOB`], proved now.
 #[cfg(not(feature = "vouched"))]

@@ -292,7 +292,7 @@ fn demands_of_broken_blobs_are_read_or_refused() {
     for _ in 0..20_000 {
         let mut broken = whole.clone();
         for _ in 0..4 {
-            let place = random.below(600) as usize;
+            let place = random.below(600);
             broken[place] = random.below(256) as u8;
         }
         let _ = Demand::of(&broken);

@@ -17,9 +17,10 @@ mod stack;
 use casts::Casts;
 use figures::Figures;
 use firmware::{AARCH64, Build, S390X, WASM, board};
-use gridel_core::{Effects, Fixed, Format, List, Stack, Structure};
+use gridel_core::{Effects, Fixed, Format, List, Stack, Structure, Vouched};
 use gridel_host::board::{BOARDS, Board};
 use gridel_host::emit::{self, Emitted};
+use gridel_host::report::{Ledger, Target};
 use scenes::Compiled;
 use std::collections::BTreeMap;
 use std::fs;
@@ -226,7 +227,54 @@ fn nothing_panics_with_overflow_checks() {
     }
 }
 
-/// What every shape and effect takes on the smallest board: the README's table.
+/// What every shape and effect takes where all cores of its kind are measured: the README's table is
+/// that of the smallest board, and ledgers are added up from it.
+#[test]
+fn every_core_pays_for_parts_one_by_one() {
+    if !firmware::available() {
+        return;
+    }
+    let mut figures = Figures::new();
+    let scenes = parts::scenes();
+    for (board, format) in measured_in_full() {
+        for scene in scenes.iter().chain([&parts::sphere_and_triangle()]) {
+            let build = Build::new(board, format, Structure::DualSplit, scene);
+            let elf = build.program("bare").elf();
+            figures.add(&build.to_string(), &footprint(&build, &elf, scene));
+        }
+        for scene in &parts::wider_storage() {
+            let build = Build::new(board, format, Structure::DualSplit, scene);
+            let features = [&scene.features()[..], &[scene.name]].concat();
+            let elf = build.program_with("bare", &features).elf();
+            figures.add(&build.to_string(), &footprint(&build, &elf, scene));
+        }
+    }
+    figures.check();
+}
+
+/// What some parts take on the other boards, by which the ledgers stretch what was measured for their kin.
+#[test]
+fn every_board_pays_for_few_parts() {
+    if !firmware::available() {
+        return;
+    }
+    let scene = parts::sphere_and_triangle();
+    let mut figures = Figures::new();
+    let others = boards().filter(|&(board, _)| board != &WASM);
+    for (board, format) in others.filter(|&(board, format)| board.kin(format) != (board, format)) {
+        let build = Build::new(board, format, Structure::DualSplit, &scene);
+        let elf = build.program("bare").elf();
+        figures.add(&build.to_string(), &footprint(&build, &elf, &scene));
+    }
+    figures.check();
+}
+
+/// Boards on whose cores all is measured that others are told by.
+fn measured_in_full() -> impl Iterator<Item = (&'static Board, Format)> {
+    boards().filter(|&(board, format)| board.kin(format) == (board, format))
+}
+
+/// What every shape and effect costs rays on the smallest board: the README's table.
 #[test]
 fn shapes_and_effects_are_paid_for_one_by_one() {
     if !firmware::available() {
@@ -238,11 +286,10 @@ fn shapes_and_effects_are_paid_for_one_by_one() {
     let scenes = parts::scenes();
     for scene in scenes.iter().chain([&parts::sphere_and_triangle()]) {
         let build = Build::new(discovery, Format::Fixed, Structure::DualSplit, scene);
-        let mut report = footprint(&build, &build.program("bare").elf(), scene);
         let run = build.program("picture").run();
         let spent = run["picture-instructions"];
         instructions.insert(scene.name, spent);
-        report.insert("picture-instructions".into(), spent);
+        let report = [("picture-instructions".into(), spent)].into();
         figures.add(&build.to_string(), &report);
     }
     figures.check();
@@ -269,7 +316,8 @@ fn shapes_and_effects_are_paid_for_one_by_one() {
     );
 }
 
-/// What a product with every shape and effect takes on every board.
+/// What a product with every shape and effect takes on every board, fast or small, and one on each kind
+/// of core through every structure that boards vouch for: the ledgers' bounds.
 #[test]
 fn everything_on_every_board() {
     if !firmware::available() {
@@ -278,11 +326,40 @@ fn everything_on_every_board() {
     let scene = scenes::quick();
     let mut figures = Figures::new();
     for (board, format) in boards().filter(|&(board, _)| board != &WASM) {
-        let build = Build::new(board, format, Structure::DualSplit, &scene);
-        let elf = build.program_with("bare", &["everything"]).elf();
-        figures.add(&build.to_string(), &footprint(&build, &elf, &scene));
+        let in_full = board.kin(format) == (board, format);
+        let measured = |&it: &Structure| in_full || it == Structure::DualSplit;
+        for structure in Vouched::STRUCTURES.into_iter().filter(measured) {
+            let fast = || Build::new(board, format, structure, &scene);
+            for build in [fast(), fast().small()] {
+                let elf = build.program_with("bare", &["everything"]).elf();
+                figures.add(&build.to_string(), &footprint(&build, &elf, &scene));
+            }
+        }
     }
     figures.check();
+}
+
+/// What parts add up to is enough for a program that holds some of them.
+#[test]
+fn ledgers_are_enough_for_what_was_measured() {
+    let scene = parts::sphere_and_triangle();
+    let view = scene.blob.scene().expect("the compiler's own blob");
+    for (board, format) in boards().filter(|&(board, _)| board != &WASM) {
+        let target = Target {
+            board,
+            flash: board.flash,
+            ram: board.ram,
+        };
+        let ledger = Ledger::of(&view, scene.blob.bytes(), &target, format);
+        let ledger = ledger.expect("it was measured");
+        let build = Build::new(board, format, Structure::DualSplit, &scene).to_string();
+        let code = ledger.flash.used - scene.blob.bytes().len() as u64;
+        let measured = figures::recorded(&build, "code-bytes");
+        assert!(
+            code >= measured,
+            "{build}: {code} bytes of code, {measured}"
+        );
+    }
 }
 
 /// Flash for all code that a diffuse scene of triangles and spheres with shadows needs, the vector table

@@ -119,6 +119,11 @@ pub fn deeper() -> [Compiled; 2] {
     })
 }
 
+/// The base again, for each wider form of storage, which the code for it makes dearer.
+pub fn wider_storage() -> [Compiled; 2] {
+    ["wide-lattice", "wide-indices"].map(|name| compile(name, base()))
+}
+
 fn base() -> Scene {
     let mut scene = Scene {
         camera: Some(Camera {
