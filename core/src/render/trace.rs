@@ -101,7 +101,7 @@ impl Loop<'_, '_> {
         space: &mut WorkspaceView<'_, N>,
         count: &mut C,
     ) -> bool {
-        let causes_rays = Effects(EFFECTS).cast_rays();
+        let causes_rays = const { Effects(EFFECTS).cast_rays() };
         let waiting = if causes_rays { space.work.pop() } else { None };
         let (ray, weight, depth, kind) = match waiting {
             Some(next) => {

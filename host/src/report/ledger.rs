@@ -241,14 +241,14 @@ impl Ledger {
             40
         };
         let mut steps = Vec::new();
-        let secondary = Effects::MIRROR.with(Effects::GLASS);
-        if scene.effects().0 & secondary.0 != 0 && view.depth > 0 {
+        let places = scene.effects().work_depth(view.depth) as u64;
+        if places > 0 {
             steps.push(format!(
                 "a ray depth of {} in place of {} saves {place} bytes, and a scene without mirrors and \
                  glass {}",
                 view.depth - 1,
                 view.depth,
-                place * (u64::from(view.depth) + 1)
+                place * places
             ));
         }
         let [fast, small] = [self.fast, self.small].map(|build| build.call_stack);
