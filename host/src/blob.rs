@@ -2,7 +2,7 @@
 
 use gridel_core::blob::record::{ALIGNMENT, MAGIC};
 use gridel_core::{Scene, Structure};
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
@@ -57,10 +57,11 @@ impl Blob {
 /// # Errors
 /// If the file cannot be read.
 pub fn is_blob(path: &Path) -> io::Result<bool> {
-    let file = File::open(path)?;
-    if !file.metadata()?.is_file() {
+    // Opening a pipe waits for whoever writes to it.
+    if !fs::metadata(path)?.is_file() {
         return Err(io::Error::other("it is not a file"));
     }
+    let file = File::open(path)?;
     let mut start = Vec::new();
     file.take(6).read_to_end(&mut start)?;
     let named = path

@@ -1,12 +1,14 @@
 //! `gridel accuracy`: what accuracy costs in time.
 
-use super::arguments::{self, GeometryOptions, MoleculeOptions, SceneOptions, check_quality};
+use super::arguments::{
+    self, GeometryOptions, MoleculeOptions, SceneOptions, check_quality, quoted,
+};
 use super::failure::Failure;
-use super::output::{print, print_json, write_file, write_texts};
+use super::output::{print, print_json, prove, write_file, write_texts};
 use super::progress::Progress;
 use super::source::import;
-use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueEnum};
 use gridel_core::{Rgb888, Structure, render::Pixel};
 use gridel_host::accuracy::{
     Bench, Exhibit, MeasureError, Point, Results, Setting, boards, cheapest, difference_picture,
@@ -19,6 +21,13 @@ use serde::Serialize;
 use std::fmt::Write;
 use std::io;
 use std::path::{Path, PathBuf};
+
+/// Files of the output folder.
+const RESULTS: &str = "results.json";
+const PAGE: &str = "page.html";
+const CSV: &str = "results.csv";
+/// Most pixels that are measured.
+const MOST_PIXELS: usize = 1 << 22;
 
 /// Show what accuracy costs in time
 ///
@@ -155,6 +164,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let size = arguments
         .size
         .unwrap_or_else(|| smaller([stated.width, stated.height]));
+    let pixels = usize::from(size[0]) * usize::from(size[1]);
+    if pixels > MOST_PIXELS {
+        return Err(Failure::usage(
+            format!(
+                "{} pixels are more than the {} that are measured",
+                grouped(pixels),
+                grouped(MOST_PIXELS)
+            ),
+            "ask for a smaller `--size`: errors and times a ray hardly depend on it",
+        ));
+    }
     let failed = |error: MeasureError| Failure::in_file(path, error);
     let mut bench = Bench::new(&imported.scene, arguments.accel, size);
     bench.quality = arguments.quality.unwrap_or_default();
@@ -178,12 +198,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         arguments.accel.name(),
         arguments.reference_samples
     );
+    for name in [PAGE, CSV] {
+        prove(&folder.join(name))?;
+    }
     let results = measure(arguments, &mut bench, &folder, key, &settings)?;
     let exhibits = exhibits(&folder, size, &results)?;
     let page = page(&stem, size, &results, &exhibits)
         .map_err(|error| Failure::failed(error.to_string(), "report this as a fault of gridel"))?;
     let csv = csv(&results.points);
-    write_texts(&folder, &[("page.html", page), ("results.csv", csv)])?;
+    write_texts(&folder, &[(PAGE, page), (CSV, csv)])?;
 
     let choice = choice(arguments, &stem, &results);
     if arguments.json {
@@ -245,14 +268,10 @@ fn measure(
     settings: &[Setting],
 ) -> Result<Results, Failure> {
     let failed = |error: MeasureError| Failure::in_file(&arguments.scene, error);
-    let file = folder.join("results.json");
+    let file = folder.join(RESULTS);
     let repeats = usize::from(arguments.repeat);
     let progress = Progress::steps("measuring", (settings.len() * (repeats + 1)) as u64 + 1);
-    let kept = std::fs::read(&file)
-        .ok()
-        .and_then(|bytes| serde_json::from_slice::<Results>(&bytes).ok())
-        .filter(|results| results.key == key);
-    let mut results = match kept {
+    let mut results = match kept(folder, &file, &key)? {
         Some(results) => results,
         None => Results {
             key,
@@ -314,11 +333,47 @@ fn encoded(pixels: &[[u16; 3]]) -> Vec<u8> {
     pixels.collect()
 }
 
+/// What an earlier run measured of the same. Another's results, or files of other sorts, are not replaced.
+fn kept(folder: &Path, file: &Path, key: &str) -> Result<Option<Results>, Failure> {
+    let foreign = |path: &Path| {
+        Err(Failure::usage(
+            format!(
+                "{} is not of a run with this scene and these options: it would be lost",
+                path.display()
+            ),
+            "give another folder with `-o`, or remove that one",
+        ))
+    };
+    if !file.exists() {
+        let mut others = [PAGE, CSV].map(|name| folder.join(name)).into_iter();
+        return match others.find(|path| path.exists()) {
+            Some(path) => foreign(&path),
+            None => Ok(None),
+        };
+    }
+    let bytes = std::fs::read(file).map_err(|error| Failure::reading(file, &error))?;
+    match serde_json::from_slice::<Results>(&bytes) {
+        Ok(mut results) if results.key == key => {
+            // What has lost its pictures is measured again.
+            results.points.retain(|point| {
+                let difference = format!("{}-difference", point.name);
+                let mut pictures = [&point.name, &difference].into_iter();
+                pictures.all(|name| picture(folder, name).exists())
+            });
+            Ok(Some(results))
+        }
+        _ => foreign(file),
+    }
+}
+
+/// The path of a picture.
+fn picture(folder: &Path, name: &str) -> PathBuf {
+    let pictures = folder.join("pictures");
+    pictures.join(name).with_added_extension("png")
+}
+
 fn write_picture(folder: &Path, size: [u16; 2], name: &str, pixels: &[u8]) -> Result<(), Failure> {
-    let path = folder
-        .join("pictures")
-        .join(name)
-        .with_added_extension("png");
+    let path = picture(folder, name);
     write_file(&path, |out| {
         write_png(out, size.map(u32::from), pixels, None)
     })
@@ -327,10 +382,7 @@ fn write_picture(folder: &Path, size: [u16; 2], name: &str, pixels: &[u8]) -> Re
 /// The reference, and the pictures of levers that were turned alone.
 fn exhibits(folder: &Path, size: [u16; 2], results: &Results) -> Result<Vec<Exhibit>, Failure> {
     let read = |name: &str| -> Result<Vec<u8>, Failure> {
-        let path = folder
-            .join("pictures")
-            .join(name)
-            .with_added_extension("png");
+        let path = picture(folder, name);
         let pixels = || -> io::Result<Vec<u8>> {
             let file = io::BufReader::new(std::fs::File::open(&path)?);
             let mut reader = png::Decoder::new(file).read_info()?;
@@ -362,22 +414,26 @@ fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Option<Choice
     let most = arguments.max_error?;
     let point = cheapest(&results.points, most, arguments.board.as_deref())?;
     let setting = &point.setting;
-    let cutoff = if setting.cutoff == results.base.cutoff {
-        String::new()
-    } else {
-        format!(" --cutoff {}", setting.cutoff)
+    let stated = setting.cutoff == results.base.cutoff && arguments.cutoff.is_none();
+    let cutoff = match stated {
+        true => String::new(),
+        false => format!(" --cutoff {}", setting.cutoff),
     };
+    let quality = arguments.quality.and_then(|it| it.to_possible_value());
+    let quality = quality.map_or(String::new(), |it| format!(" --quality {}", it.get_name()));
+    let [blob, picture] = ["gridel", "png"].map(|end| quoted(&format!("{stem}.{end}")));
     Some(Choice {
         name: point.name.clone(),
         rmse: point.errors.rmse,
         build: format!(
-            "gridel build {} -o {stem}.gridel --accel {} --lattice-bits {}{cutoff}",
-            arguments.scene.display(),
+            "gridel build {}{} -o {blob} --accel {}{quality} --lattice-bits {}{cutoff}",
+            quoted(&arguments.scene.to_string_lossy()),
+            arguments.molecule.written(),
             arguments.accel.name(),
             setting.lattice_bits
         ),
         render: format!(
-            "gridel render {stem}.gridel -o {stem}.png --format {} --samples {} --depth {}",
+            "gridel render {blob} -o {picture} --format {} --samples {} --depth {}",
             setting.format.name(),
             setting.samples,
             setting.depth

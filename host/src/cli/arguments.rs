@@ -121,6 +121,14 @@ pub struct PictureOptions {
 }
 
 impl PictureOptions {
+    /// The name of an option that a ray of one's own has nothing to do with, if one was given.
+    pub fn of_pixels(&self) -> Option<&'static str> {
+        first_given([
+            (self.size.is_some(), "--size"),
+            (self.samples.is_some(), "--samples"),
+        ])
+    }
+
     /// The settings for a scene's picture, without dither.
     pub fn settings(&self, scene: &CoreScene<'_>) -> Settings {
         let stated = Settings::of(scene);
@@ -209,6 +217,18 @@ impl MoleculeOptions {
         ])
     }
 
+    /// What was given, as it is written behind a file's name.
+    pub fn written(&self) -> String {
+        let style = self.style.map(|style| match style {
+            MoleculeStyle::SpaceFilling => format!(" --style {SPACE_FILLING}"),
+            MoleculeStyle::BallAndStick => format!(" --style {BALL_AND_STICK}"),
+        });
+        let model = self.model.map(|model| format!(" --model {model}"));
+        let altloc = self.altloc.map(String::from);
+        let altloc = altloc.map(|place| format!(" --altloc {}", quoted(&place)));
+        [style, model, altloc].into_iter().flatten().collect()
+    }
+
     /// The options for importers of molecules.
     pub fn for_import(&self) -> scene::MoleculeOptions {
         let default = scene::MoleculeOptions::default();
@@ -227,10 +247,23 @@ fn first_given<const N: usize>(options: [(bool, &'static str); N]) -> Option<&'s
 }
 
 fn style() -> impl TypedValueParser<Value = MoleculeStyle> {
-    PossibleValuesParser::new(["space-filling", "ball-and-stick"]).map(|name| match name.as_str() {
-        "ball-and-stick" => MoleculeStyle::BallAndStick,
+    PossibleValuesParser::new([SPACE_FILLING, BALL_AND_STICK]).map(|name| match name.as_str() {
+        BALL_AND_STICK => MoleculeStyle::BallAndStick,
         _ => MoleculeStyle::SpaceFilling,
     })
+}
+
+const SPACE_FILLING: &str = "space-filling";
+const BALL_AND_STICK: &str = "ball-and-stick";
+
+/// A word as shells take it for one.
+pub fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "/._-+,:=@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
 }
 
 /// Reads a cutoff.

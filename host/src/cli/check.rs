@@ -1,11 +1,11 @@
 //! `gridel check`: scenes and their memory, held to what is recorded.
 
 use super::failure::Failure;
-use super::output::{print, print_json, refuse_inputs, warn, write_file};
+use super::output::{print, print_json, prove, refuse_inputs, warn, write_file};
 use super::progress::Progress;
 use clap::Args;
 use gridel_host::check::{self, Blessed, Manifest, Outcome, Report};
-use gridel_host::output::{Files, prove};
+use gridel_host::output::Files;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -120,7 +120,7 @@ fn prove_outputs(arguments: &Arguments, manifest: &Manifest) -> Result<(), Failu
         std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
     }
     if let Some(path) = junit {
-        prove(path).map_err(|error| Failure::writing(path, &error))?;
+        prove(path)?;
     }
     Ok(())
 }

@@ -131,13 +131,6 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         None => None,
     };
     drop(progress);
-    if let (Some(folder), Some(growth)) = (&arguments.plot, &grown) {
-        let name = path.file_stem().unwrap_or_default().display().to_string();
-        let charts = charts(&name, &comparison, growth).map_err(|error| {
-            Failure::failed(error.to_string(), "report this as a fault of gridel")
-        })?;
-        write_texts(folder, &charts)?;
-    }
     let report = Report {
         scene: path.display().to_string(),
         comparison: &comparison,
@@ -148,6 +141,13 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         print_json(&report)?;
     } else {
         print(text(&report))?;
+    }
+    if let (Some(folder), Some(growth)) = (&arguments.plot, &grown) {
+        let name = path.file_stem().unwrap_or_default().display().to_string();
+        let charts = charts(&name, &comparison, growth).map_err(|error| {
+            Failure::failed(error.to_string(), "report this as a fault of gridel")
+        })?;
+        write_texts(folder, &charts)?;
     }
     let steps = grown.iter().flat_map(|growth| &growth.steps);
     let rows = comparison
@@ -161,7 +161,14 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
             "this is a fault of gridel: report it with the scene file",
         ));
     }
-    Ok(())
+    // Of all structures some may not fit; one that was asked for must.
+    match comparison.refused.first() {
+        Some(refused) if !arguments.accel.is_empty() => Err(Failure::refused(
+            refused.why.clone(),
+            "give it a larger `--budget`, or fewer cells",
+        )),
+        _ => Ok(()),
+    }
 }
 
 fn text(report: &Report<'_>) -> String {

@@ -63,6 +63,14 @@ pub struct Arguments {
 
 /// Tells a story.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.ray.is_some()
+        && let Some(option) = arguments.picture.of_pixels()
+    {
+        return Err(Failure::usage(
+            format!("{option} is for pixels, and a ray is explained"),
+            "leave the option out",
+        ));
+    }
     let source = Source::to_trace(
         &arguments.input,
         &arguments.scene_options,

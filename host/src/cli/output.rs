@@ -1,7 +1,7 @@
 //! Where results go: files, and standard output.
 
 use super::failure::Failure;
-use gridel_host::output::{Files, place, write_whole};
+use gridel_host::output::{self, Files, place, write_whole};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::fmt::Display;
@@ -14,6 +14,11 @@ pub fn write_file(
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Failure> {
     write_whole(path, write).map_err(|error| Failure::writing(path, &error))
+}
+
+/// Proves that a file can be written, before any work that it shall hold.
+pub fn prove(path: &Path) -> Result<(), Failure> {
+    output::prove(path).map_err(|error| Failure::writing(path, &error))
 }
 
 /// What a file of [`write_files`] is to hold.

@@ -2,11 +2,12 @@
 
 use super::arguments::{self, PictureOptions, SceneOptions, TraceOptions};
 use super::failure::Failure;
-use super::output::{Content, print, print_json, refuse_same, write_files};
+use super::output::{Content, print, print_json, prove, refuse_same, write_files};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Counters, Scene, Settings, Structure};
+use gridel_host::output::place;
 use gridel_host::picture::{Making, PictureFormat};
 use gridel_host::render::{Job, Picture, render};
 use gridel_host::report::{Align, HeatMap, Table, counted, grouped};
@@ -200,12 +201,15 @@ fn check_outputs(arguments: &Arguments) -> Result<PictureFormat, Failure> {
             ));
         }
         refuse_same(&arguments.input, heat_map)?;
-        if heat_map == output {
+        if place(heat_map) == place(output) {
             return Err(Failure::usage(
                 format!("picture and heat map are both {}", output.display()),
                 "give the heat map another name",
             ));
         }
+    }
+    for path in [output].into_iter().chain(&arguments.heat_map) {
+        prove(path)?;
     }
     Ok(format)
 }

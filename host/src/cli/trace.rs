@@ -2,7 +2,7 @@
 
 use super::arguments::{self, GeometryOptions, TraceOptions};
 use super::failure::Failure;
-use super::output::{check_extension, print, print_json, refuse_same, write_file};
+use super::output::{check_extension, print, print_json, prove, refuse_same, write_file};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
@@ -51,9 +51,9 @@ pub struct Arguments {
     #[arg(long)]
     any: bool,
 
-    /// Trace all rays so many times, to measure
+    /// Trace all rays so many times, 1 to 1000, to measure
     #[arg(long, value_name = "N", default_value_t = 1,
-        value_parser = clap::value_parser!(u32).range(1..))]
+        value_parser = clap::value_parser!(u32).range(1..=1000))]
     repeat: u32,
 
     /// Threads, 1 to 1024
@@ -104,6 +104,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     refuse_same(&arguments.input, &arguments.output)?;
     refuse_same(&arguments.rays, &arguments.output)?;
     check_extension(&arguments.output, &["npy"], "a NumPy file")?;
+    prove(&arguments.output)?;
     let options = arguments.geometry.clone().into();
     let source = Source::to_trace(&arguments.input, &options, &arguments.with, Structure::Wide)?;
     let scene = source.scene()?;

@@ -1,6 +1,6 @@
 //! `gridel verify`: whether a scene keeps every promise.
 
-use super::arguments::{self, GeometryOptions, check_quality, distinct};
+use super::arguments::{self, GeometryOptions, check_quality, distinct, quoted};
 use super::failure::Failure;
 use super::output::{print, print_json};
 use super::progress::Progress;
@@ -11,7 +11,7 @@ use gridel_host::compile::{self, Quality};
 use gridel_host::report::{Align, Table, counted, grouped, significant};
 use gridel_host::verify::{RAYS, Report, judge, steps, verify};
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Throw hard rays at a scene and check that every promise is kept
 ///
@@ -80,7 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.json {
         print_json(&report)?;
     } else {
-        print(text(input, &report))?;
+        print(text(arguments, &report))?;
     }
     match report.broken() {
         0 => Ok(()),
@@ -95,10 +95,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-fn text(input: &Path, report: &Report) -> String {
+fn text(arguments: &Arguments, report: &Report) -> String {
     let mut text = format!(
         "{}: {} and as many from inside of {}, through {}\n\n",
-        input.display(),
+        arguments.input.display(),
         counted(report.rays as usize, "ray"),
         counted(report.closed_meshes, "closed mesh"),
         report.structures.join(", ")
@@ -131,7 +131,7 @@ fn text(input: &Path, report: &Report) -> String {
     for format in &report.formats {
         for worst in [&format.worst, &format.worst_grazing] {
             if let Some(ray) = &worst.ray {
-                let command = explain(input, ray, format.format, Structure::List.name());
+                let command = explain(arguments, ray, format.format, Structure::List.name());
                 let _ = writeln!(text, "  {command}");
             }
         }
@@ -158,17 +158,23 @@ fn text(input: &Path, report: &Report) -> String {
                 example.format,
                 example.structure,
                 example.what,
-                explain(input, &example.ray, example.format, example.structure)
+                explain(arguments, &example.ray, example.format, example.structure)
             );
         }
     }
     text
 }
 
-/// The command that tells a ray's story.
-fn explain(input: &Path, ray: &str, format: &str, structure: &str) -> String {
+/// The command that tells a ray's story, in the scene as it was read here.
+fn explain(arguments: &Arguments, ray: &str, format: &str, structure: &str) -> String {
+    let GeometryOptions {
+        lattice_bits,
+        molecule,
+    } = &arguments.geometry;
+    let bits = lattice_bits.map_or(String::new(), |bits| format!(" --lattice-bits {bits}"));
     format!(
-        "gridel explain {} --ray={ray} --format {format} --accel {structure}",
-        input.display()
+        "gridel explain {}{}{bits} --ray={ray} --format {format} --accel {structure}",
+        quoted(&arguments.input.to_string_lossy()),
+        molecule.written()
     )
 }

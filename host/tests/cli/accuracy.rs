@@ -72,3 +72,69 @@ fn a_bound_that_is_too_tight_still_shows_the_table() {
         assert!(build.contains("--accel dual-split"), "{build}");
     }
 }
+
+/// What is in the way is not replaced, and what an interrupted run has lost is made again.
+#[test]
+fn only_the_same_run_goes_on_in_its_folder() {
+    let folder = folder();
+    std::fs::create_dir(folder.path("out")).unwrap();
+    for own in ["page.html", "results.csv", "results.json"] {
+        let own = format!("out/{own}");
+        folder.write(&own, b"my own");
+        folder.fails(2, &SMALL, &[&own, "would be lost", "another folder"]);
+        assert_eq!(folder.read(&own), b"my own");
+        std::fs::remove_file(folder.path(&own)).unwrap();
+    }
+    folder.done(&SMALL);
+    let other = [&SMALL[..3], &["10x8"], &SMALL[4..]].concat();
+    folder.fails(2, &other, &["results.json", "would be lost"]);
+    let pictures = || {
+        std::fs::read_dir(folder.path("out/pictures"))
+            .unwrap()
+            .count()
+    };
+    let made = pictures();
+    std::fs::remove_dir_all(folder.path("out/pictures")).unwrap();
+    folder.done(&SMALL);
+    assert_eq!(pictures(), made);
+    // Nor is a picture begun that no memory holds.
+    let huge = [&SMALL[..3], &["65535x65535"], &SMALL[4..6], &["-o", "huge"]].concat();
+    folder.fails(2, &huge, &["4,294,836,225 pixels", "smaller `--size`"]);
+    assert!(!folder.path("huge").exists());
+}
+
+/// The commands that are printed make what was measured.
+#[test]
+fn the_choice_is_written_with_all_options() {
+    let folder = Folder::new();
+    let c60 = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/c60.pdb");
+    std::fs::copy(c60, folder.path("my c60.pdb")).unwrap();
+    let run = [
+        "accuracy",
+        "my c60.pdb",
+        "--size",
+        "8x6",
+        "--repeat",
+        "1",
+        "--style",
+        "ball-and-stick",
+        "--accel",
+        "wide",
+        "--quality",
+        "fast",
+        "--cutoff",
+        "0.25",
+        "--max-error",
+        "0.9",
+        "-o",
+        "o",
+    ];
+    let text = folder.done(&run);
+    for part in [
+        "gridel build 'my c60.pdb' --style ball-and-stick -o 'my c60.gridel' --accel wide --quality fast",
+        " --cutoff 0.25",
+        "gridel render 'my c60.gridel' -o 'my c60.png'",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}

@@ -1,6 +1,6 @@
 //! `gridel compare`.
 
-use crate::program::Folder;
+use crate::program::{Folder, fixture};
 
 #[test]
 fn every_structure_has_a_row_with_the_lists_answers() {
@@ -80,4 +80,31 @@ fn too_many_rays_are_refused() {
         "0",
     ];
     folder.fails(1, &large, &["more than", "rays", "--size"]);
+}
+
+/// All are compared that can be; one that was asked for and cannot be is a failure.
+#[test]
+fn what_was_asked_for_and_does_not_fit_is_refused() {
+    let folder = Folder::new();
+    folder.write("quick.toml", &fixture("quick"));
+    let compare = [
+        "compare",
+        "quick.toml",
+        "--accel",
+        "grid",
+        "--grid",
+        "1024",
+        "--size",
+        "8x8",
+        "--repeat",
+        "0",
+    ];
+    let run = folder.run(&compare);
+    assert_eq!(run.code, Some(3), "{}", run.stderr);
+    assert!(run.stdout.contains("the table of grid"), "{}", run.stdout);
+    assert!(
+        run.stderr.contains("more than its budget"),
+        "{}",
+        run.stderr
+    );
 }

@@ -108,6 +108,11 @@ fn options_that_a_verb_cannot_use_are_refused() {
         &["accuracy", "quick.toml", "--lattice-bits", "16"],
         &["--lattice-bits"],
     );
+    let explain = ["explain", "quick.gridel", "--ray", "0,4,11,0,-.3,-1"];
+    fails(
+        &[&explain[..], &["--samples", "4"]].concat(),
+        &["--samples is for pixels"],
+    );
     let help = folder.done(&["accuracy", "--help"]);
     assert!(!help.contains("--lattice-bits"), "{help}");
     // Verbs that want a scene file say so of a blob.
@@ -136,4 +141,38 @@ fn compare_takes_its_options() {
         folder.json(&[&compare[..], &options].concat())["rows"][0]["work"].clone()
     };
     assert_ne!(nodes("fast"), nodes("good"));
+}
+
+/// The commands that are printed are about the scene that was read.
+#[test]
+fn verify_prints_commands_with_its_options() {
+    let folder = Folder::new();
+    let c60 = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/c60.pdb");
+    std::fs::copy(c60, folder.path("my c60.pdb")).unwrap();
+    let verify = [
+        "verify",
+        "my c60.pdb",
+        "--style",
+        "ball-and-stick",
+        "--lattice-bits",
+        "10",
+        "--accel",
+        "bvh",
+        "--rays",
+        "50",
+    ];
+    let text = folder.done(&verify);
+    let command = "gridel explain 'my c60.pdb' --style ball-and-stick --lattice-bits 10 --ray=";
+    assert!(text.contains(command), "{text}");
+}
+
+/// A pipe is no file, and nobody waits for what comes through it.
+#[cfg(unix)]
+#[test]
+fn pipes_are_not_waited_for() {
+    let folder = Folder::new();
+    let pipe = folder.path("pipe.toml");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.unwrap().success());
+    folder.fails(1, &["inspect", "pipe.toml"], &["it is not a file"]);
 }

@@ -260,3 +260,25 @@ fn an_old_picture_survives_what_fails() {
         folder.fails(1, &full, &["make room"]);
     }
 }
+
+/// Before any work, and however two paths lead to one file.
+#[test]
+fn outputs_are_proved_and_told_apart() {
+    let folder = Folder::with_quick();
+    let render = |output: &str, heat_map: &str, words: &[&str], code| {
+        let render = [
+            "render",
+            "quick.gridel",
+            "-o",
+            output,
+            "--heat-map",
+            heat_map,
+        ];
+        folder.fails(code, &render, words);
+    };
+    render("a.png", "./a.png", &["are both a.png"], 2);
+    render("none/a.png", "b.png", &["none/a.png cannot be written"], 1);
+    std::fs::create_dir(folder.path("b.png")).unwrap();
+    render("a.png", "b.png", &["b.png cannot be written"], 1);
+    assert!(!folder.path("a.png").exists());
+}

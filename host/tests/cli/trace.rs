@@ -245,7 +245,12 @@ fn broken_rays_and_wrong_options_are_told() {
     fails(1, "rays.npy", "absent/hits.npy", &["create the folder"]);
     fails(2, "rays.npy", "rays.npy", &["is the input"]);
     fails(2, "rays.npy", "quick.gridel", &["is the input"]);
-    for option in [["--repeat", "0"], ["--threads", "0"], ["--format", "half"]] {
+    for option in [
+        ["--repeat", "0"],
+        ["--repeat", "1001"],
+        ["--threads", "0"],
+        ["--format", "half"],
+    ] {
         folder.fails(2, &[&TRACE[..], &option].concat(), &[option[0]]);
     }
     #[cfg(target_os = "linux")]
