@@ -1,0 +1,160 @@
+//! Rays without shading: what one costs, with a camera and without.
+
+use crate::casts::Casts;
+use crate::figures::Figures;
+use crate::firmware::{self, Build, board};
+use crate::scenes::{self, Compiled};
+use gridel_core::{Fixed, Format, List, Stack, Structure};
+use gridel_host::board::Board;
+
+/// Stack and workspace of the suzanne workload at most: loading, and tracing primary rays.
+const PRIMARY_RAM: u64 = 2 * 1024 + 256;
+
+/// One of each core that tracers for boards are compared on, and the one with floats without them.
+fn boards_for_primary_rays() -> [(&'static Board, Format); 5] {
+    [
+        ("mps2-an386", Format::F32),
+        ("mps2-an386", Format::Fixed),
+        ("mps2-an385", Format::Fixed),
+        ("microbit", Format::Fixed),
+        ("sifive_e", Format::Fixed),
+    ]
+    .map(|(name, format)| (board(name), format))
+}
+
+#[test]
+fn primary_rays_of_suzanne() {
+    if !firmware::available() {
+        return;
+    }
+    let Some(suzanne) = scenes::suzanne() else {
+        return;
+    };
+    let mut figures = Figures::new();
+    for (board, format) in boards_for_primary_rays() {
+        for structure in [Structure::DualSplit, Structure::Flagged, Structure::Bvh] {
+            let build = Build::new(board, format, structure, &suzanne);
+            let report = build.program("primary").run();
+            assert_eq!(report["rays"], 64 * 64, "{build}");
+            assert_eq!(report["hits"], 1400, "{build}");
+            let stack = report["load-stack-bytes"].max(report["ray-stack-bytes"]);
+            let ram = stack + report["workspace-bytes"];
+            assert!(ram <= PRIMARY_RAM, "{build}: {ram} bytes of RAM");
+            figures.add(&build.to_string(), &report);
+        }
+    }
+    figures.check();
+}
+
+/// What meshes for boards are compiled to: narrow vertices, dual-split nodes alone.
+#[test]
+fn primary_rays_of_suzanne_in_16_bits() {
+    if !firmware::available() {
+        return;
+    }
+    let Some(suzanne) = scenes::suzanne_in_16_bits() else {
+        return;
+    };
+    assert!(suzanne.blob.bytes().len() <= 32 * 1024);
+    let mut figures = Figures::new();
+    for (board, format) in boards_for_primary_rays() {
+        let build = Build::new(board, format, Structure::DualSplit, &suzanne);
+        let report = build.program("primary").run();
+        assert_eq!(report["hits"], 1400, "{build}");
+        figures.add(&build.to_string(), &report);
+    }
+    figures.check();
+}
+
+/// Instructions that a primary ray through a molecule of some 2,800 spheres takes at most, where there
+/// are floats.
+const A_RAY_AMONG_SPHERES: u64 = 620;
+
+/// Molecules of that size, a computed one and a protein, on a lattice of 16 bits.
+#[test]
+fn primary_rays_of_molecules() {
+    if !firmware::available() {
+        return;
+    }
+    let mut figures = Figures::new();
+    for molecule in [scenes::molecule()].into_iter().chain(scenes::protein()) {
+        for name in ["mps2-an386", "mps2-an385"] {
+            let board = board(name);
+            let build = Build::new(board, board.format(), Structure::DualSplit, &molecule);
+            let report = build.program("primary").run();
+            assert_eq!(report["rays"], 64 * 64, "{build}");
+            assert!(report["hits"] > 200, "{build}");
+            let a_ray = report["ray-instructions"];
+            if board.format() == Format::F32 {
+                assert!(a_ray <= A_RAY_AMONG_SPHERES, "{build}: {a_ray} a ray");
+            }
+            figures.add(&build.to_string(), &report);
+        }
+    }
+    figures.check();
+}
+
+/// Stack and workspace of a closest hit at most where there is no camera, in integers and in floats.
+const CAST_RAM: u64 = 1024;
+
+/// What a range finder or a collision needs: hits alone, those of the host's list.
+#[test]
+fn rays_without_a_camera() {
+    if !firmware::available() {
+        return;
+    }
+    let mut figures = Figures::new();
+    for scene in [scenes::torus()].into_iter().chain(scenes::suzanne()) {
+        for (board, format) in boards_for_primary_rays() {
+            let build = Build::new(board, format, Structure::DualSplit, &scene);
+            let mut report = build.program("casts").run();
+            let hosts = casts_through_the_list(&scene, format);
+            let found = ["hits", "sum"].map(|name| report.remove(name));
+            assert_eq!(
+                found,
+                [hosts.hits, hosts.sum].map(|x| Some(x.into())),
+                "{build}"
+            );
+            let ram = report["cast-stack-bytes"] + report["cast-workspace-bytes"];
+            // With half of the registers, a Cortex-M0 puts down more.
+            let is_bound = board.core != "Cortex-M0";
+            assert!(!is_bound || ram <= CAST_RAM, "{build}: {ram} bytes of RAM");
+            figures.add(&build.to_string(), &report);
+        }
+    }
+    figures.check();
+}
+
+/// What the rays of `casts` meet on the host, each primitive tested.
+fn casts_through_the_list(scene: &Compiled, format: Format) -> Casts {
+    let scene = scene.blob.scene().expect("the compiler's own blob");
+    let (mut casts, mut stack) = (Casts::default(), Stack::<0>::new());
+    match format {
+        Format::F32 => casts.run::<f32, List>(&scene, stack.as_view()),
+        Format::F64 => casts.run::<f64, List>(&scene, stack.as_view()),
+        Format::Fixed => casts.run::<Fixed, List>(&scene, stack.as_view()),
+    }
+    casts
+}
+
+/// The smallest layout, and what rays pay for it.
+#[test]
+fn primary_rays_of_suzanne_in_16_kib() {
+    if !firmware::available() {
+        return;
+    }
+    let Some(suzanne) = scenes::small_suzanne() else {
+        return;
+    };
+    assert!(suzanne.blob.bytes().len() <= 16 * 1024);
+    let mut figures = Figures::new();
+    for name in ["mps2-an386", "mps2-an385"] {
+        let board = board(name);
+        let format = board.format();
+        let build = Build::new(board, format, Structure::Flagged, &suzanne);
+        let report = build.program("primary").run();
+        assert_eq!(report["hits"], 1400, "{build}");
+        figures.add(&build.to_string(), &report);
+    }
+    figures.check();
+}

@@ -1,0 +1,108 @@
+//! Structures against each other, on the paper's sorts of scenes.
+
+use crate::figures::Figures;
+use crate::firmware::{self, Build, board};
+use crate::scenes::{self, Compiled};
+use gridel_core::{Format, Structure};
+use std::sync::LazyLock;
+
+/// The paper's claim, on its own sorts of scenes: whole pictures take less with flagged sides.
+#[test]
+fn flagged_is_ahead_of_plain() {
+    if !firmware::available() {
+        return;
+    }
+    const STRUCTURES: [Structure; 3] = [Structure::Bvh, Structure::Flagged, Structure::DualSplit];
+    let mut figures = Figures::new();
+    for scene in scenes::papers(&STRUCTURES) {
+        for (name, format) in PAPER_BOARDS {
+            let [plain, flagged, dual] = STRUCTURES.map(|structure| {
+                let spent = spent(name, format, structure, &scene, &mut figures);
+                spent.expect("short parts")
+            });
+            let about = format!("{} {}", scene.name, format.name());
+            println!(
+                "{about}: plain over flagged {:.3}, over dual-split {:.3}",
+                plain / flagged,
+                plain / dual
+            );
+            assert!(flagged < plain, "{about}: flagged sides do not pay");
+        }
+    }
+    figures.check();
+}
+
+#[test]
+fn lists_of_candidates_in_floats() {
+    lists_of_candidates(PAPER_BOARDS[0]);
+}
+
+#[test]
+fn lists_of_candidates_in_integers() {
+    lists_of_candidates(PAPER_BOARDS[1]);
+}
+
+/// The grid and lists of candidates on the paper's scenes, as far as a board's flash holds them, and
+/// on a molecule that fills the picture. What hierarchies take there `flagged_is_ahead_of_plain`
+/// records; the test `documents` compares.
+fn lists_of_candidates((name, format): (&str, Format)) {
+    use Structure::{Apex, CylinderCube, CylinderCubeEntry, CylinderCubeTight, DualSplit, Grid};
+    // Gridels a side are those that the builder would find for its budget.
+    static SCENES: LazyLock<Vec<(Structure, Compiled)>> = LazyLock::new(|| {
+        let [chess, molecule, large] = scenes::PAPERS;
+        let all = [
+            (chess, Grid, None),
+            (chess, CylinderCube, None),
+            (chess, CylinderCubeTight, Some(12)),
+            (chess, CylinderCubeEntry, Some(12)),
+            (chess, Apex, None),
+            (molecule, Grid, None),
+            (molecule, CylinderCube, None),
+            (molecule, CylinderCubeTight, Some(4)),
+            (molecule, CylinderCubeEntry, Some(8)),
+            (molecule, Apex, None),
+            (large, Grid, None),
+            (large, CylinderCubeEntry, Some(8)),
+            (large, Apex, None),
+            (scenes::CLOSE, Grid, None),
+            (scenes::CLOSE, DualSplit, None),
+            (scenes::CLOSE, Apex, None),
+        ];
+        all.map(|(scene, structure, gridels)| {
+            (structure, scenes::paper(scene, &[structure], gridels))
+        })
+        .into()
+    });
+    if !firmware::available() {
+        return;
+    }
+    let mut figures = Figures::new();
+    for (structure, scene) in SCENES.iter() {
+        spent(name, format, *structure, scene, &mut figures);
+    }
+    figures.check();
+}
+
+/// Where the paper's scenes are measured.
+const PAPER_BOARDS: [(&str, Format); 2] =
+    [("mps2-an386", Format::F32), ("mps2-an385", Format::Fixed)];
+
+/// Instructions of a picture, which must be the host's; `None` where a part of it takes longer than
+/// the board's timer counts.
+fn spent(
+    name: &str,
+    format: Format,
+    structure: Structure,
+    scene: &Compiled,
+    figures: &mut Figures,
+) -> Option<f64> {
+    let build = Build::new(board(name), format, structure, scene);
+    let program = build.program("picture");
+    let report = program.run();
+    let picture = program.file("picture.rgb");
+    let hosts = scene.picture_through(structure, format);
+    assert!(picture == hosts, "{build}: another picture");
+    figures.add(&build.to_string(), &report);
+    let spent = report.get("picture-instructions");
+    spent.map(|&instructions| instructions as f64)
+}
