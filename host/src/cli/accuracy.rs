@@ -60,7 +60,8 @@ pub struct Arguments {
     /// Scene file: .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif
     scene: PathBuf,
 
-    /// The folder to write into; it is made if need be [default: accuracy-SCENE]
+    /// The folder to write into; it is made if need be. A run of the same scene and options goes on
+    /// there, and no other is replaced [default: accuracy-SCENE]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
 
@@ -189,8 +190,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             format!("ask for at least {least} with `--reference-samples`, or leave it out"),
         ));
     }
-    std::fs::create_dir_all(folder.join("pictures"))
-        .map_err(|error| Failure::writing(&folder, &error))?;
     let key = format!(
         "gridel {} scene {:08x} size {size:?} structure {} reference {}",
         env!("CARGO_PKG_VERSION"),
@@ -198,10 +197,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         arguments.accel.name(),
         arguments.reference_samples
     );
+    let kept = kept(&folder, &key)?;
+    std::fs::create_dir_all(folder.join("pictures"))
+        .map_err(|error| Failure::writing(&folder, &error))?;
     for name in [PAGE, CSV] {
         prove(&folder.join(name))?;
     }
-    let results = measure(arguments, &mut bench, &folder, key, &settings)?;
+    let results = measure(arguments, &mut bench, &folder, (key, kept), &settings)?;
     let exhibits = exhibits(&folder, size, &results)?;
     let page = page(&stem, size, &results, &exhibits)
         .map_err(|error| Failure::failed(error.to_string(), "report this as a fault of gridel"))?;
@@ -264,14 +266,14 @@ fn measure(
     arguments: &Arguments,
     bench: &mut Bench<'_>,
     folder: &Path,
-    key: String,
+    (key, kept): (String, Option<Results>),
     settings: &[Setting],
 ) -> Result<Results, Failure> {
     let failed = |error: MeasureError| Failure::in_file(&arguments.scene, error);
     let file = folder.join(RESULTS);
     let repeats = usize::from(arguments.repeat);
     let progress = Progress::steps("measuring", (settings.len() * (repeats + 1)) as u64 + 1);
-    let mut results = match kept(folder, &file, &key)? {
+    let mut results = match kept {
         Some(results) => results,
         None => Results {
             key,
@@ -334,7 +336,8 @@ fn encoded(pixels: &[[u16; 3]]) -> Vec<u8> {
 }
 
 /// What an earlier run measured of the same. Another's results, or files of other sorts, are not replaced.
-fn kept(folder: &Path, file: &Path, key: &str) -> Result<Option<Results>, Failure> {
+fn kept(folder: &Path, key: &str) -> Result<Option<Results>, Failure> {
+    let file = folder.join(RESULTS);
     let foreign = |path: &Path| {
         Err(Failure::usage(
             format!(
@@ -351,7 +354,7 @@ fn kept(folder: &Path, file: &Path, key: &str) -> Result<Option<Results>, Failur
             None => Ok(None),
         };
     }
-    let bytes = std::fs::read(file).map_err(|error| Failure::reading(file, &error))?;
+    let bytes = std::fs::read(&file).map_err(|error| Failure::reading(&file, &error))?;
     match serde_json::from_slice::<Results>(&bytes) {
         Ok(mut results) if results.key == key => {
             // What has lost its pictures is measured again.
@@ -362,7 +365,7 @@ fn kept(folder: &Path, file: &Path, key: &str) -> Result<Option<Results>, Failur
             });
             Ok(Some(results))
         }
-        _ => foreign(file),
+        _ => foreign(&file),
     }
 }
 

@@ -83,6 +83,7 @@ fn only_the_same_run_goes_on_in_its_folder() {
         folder.write(&own, b"my own");
         folder.fails(2, &SMALL, &[&own, "would be lost", "another folder"]);
         assert_eq!(folder.read(&own), b"my own");
+        assert!(!folder.path("out/pictures").exists());
         std::fs::remove_file(folder.path(&own)).unwrap();
     }
     folder.done(&SMALL);

@@ -387,6 +387,14 @@ fn a_module_is_emitted_for_every_structure() {
 fn nothing_of_the_users_own_is_written_over() {
     let folder = Folder::with_quick();
     let own = b"a buffer, or a program";
+    let build = [
+        "build",
+        "quick.toml",
+        "-o",
+        "scene.bin",
+        "--emit-rust",
+        "src",
+    ];
     for (path, said) in [
         ("scene.bin", "scene.bin is there and is no blob"),
         (
@@ -396,27 +404,11 @@ fn nothing_of_the_users_own_is_written_over() {
     ] {
         std::fs::create_dir_all(folder.path("src")).unwrap();
         folder.write(path, own);
-        let build = [
-            "build",
-            "quick.toml",
-            "-o",
-            "scene.bin",
-            "--emit-rust",
-            "src",
-        ];
         folder.fails(2, &build, &[said, "move that file away"]);
         assert_eq!(folder.read(path), own);
         std::fs::remove_file(folder.path(path)).unwrap();
     }
     // What was written before is written anew.
-    let build = [
-        "build",
-        "quick.toml",
-        "-o",
-        "scene.bin",
-        "--emit-rust",
-        "src",
-    ];
     folder.done(&build);
     folder.done(&build);
     // Neither is a file taken for a folder, nor does a folder stay that nothing came into.
