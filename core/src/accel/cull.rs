@@ -19,8 +19,8 @@
 //! Lateral errors: coordinates are below 2^17 units. `f32` rounds a projected coordinate by less
 //! than 2^-4 unit and `o / s` by 2^-5; `fixed` by 2^-12 and 2^-13; `f64` by less than either.
 //!
-//! Values are monotone in `p`, so a child's interval lies in its parent's, whatever was rounded. Hits are
-//! clamped to these intervals; what cores walk with may be wider, never narrower.
+//! Values are monotone in `p`, so a child's interval lies in its parent's, whatever was rounded. Hits lie
+//! in these intervals or are clamped to them; what cores walk with may be wider, never narrower.
 
 use crate::blob::record::{Gridels, Pair, UnitBox, plane_word};
 use crate::number::{CullAxis, NARROW_PRODUCTS, Number, pick};

@@ -18,10 +18,10 @@
 //! planes that made it, whatever was rounded, and a box in a region has its interval in the
 //! region's; all the more where a core culls with wider ones.
 //! [`Scene::from_bytes`](crate::Scene::from_bytes) proves that the box of each primitive lies in the
-//! region of its leaf. A hit's `t` is clamped to the interval of the primitive's own box and lies
-//! between the ray's tmin and the best hit so far, both of which the walk's interval holds: so no node
-//! on the way to a hit is left out. A side that no plane bounds costs visits, not hits, and a region may
-//! even be empty, where there is nothing in it.
+//! region of its leaf. A hit's `t` lies in the interval of the primitive's own box, or is clamped to it,
+//! and between the ray's tmin and the best hit so far, both of which the walk's interval holds: so no
+//! node on the way to a hit is left out. A side that no plane bounds costs visits, not hits, and a region
+//! may even be empty, where there is nothing in it.
 
 use super::cull::{Cull, Culling, Interval, PairCulling};
 use super::order::Order;

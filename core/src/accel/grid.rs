@@ -7,7 +7,7 @@
 //! lie behind it or before it for good. A walk has at most `x + y + z` cells.
 //!
 //! **No primitive is passed over.** Let a hit be at step `t`, on a primitive whose box is
-//! \[`low`, `high`\] on some axis; the hit is clamped to the box's culling interval, so
+//! \[`low`, `high`\] on some axis; the hit lies in the box's culling interval, so
 //! `step(low) + near <= t <= step(high) + far` where the ray rises along the axis. The walk's cell
 //! at step `t` is the last one whose lower plane `p` has `step(p) + near <= t`. Steps are monotone,
 //! so `low` does not lie beyond that cell; and `step(p) <= step(high) + far - near`. `far - near` is

@@ -7,7 +7,7 @@
 //! the scene's box widened by [`Gridels::MARGIN`]: a ray in a side of the scene's box is a ray
 //! inside, a flat scene has gridels of some height, and corners and edges are like any other place.
 //!
-//! **No candidate is lost.** Let a primitive be hit at `t`. Hits are clamped to the culling interval
+//! **No candidate is lost.** Let a primitive be hit at `t`. Hits lie in the culling interval
 //! of the primitive's box (see [`cull`](super::cull)), so the ray's point at `t` lies in that box
 //! widened by 17 units: on an axis with a slope of at least 2^-12 by 1/4 unit and six steps of half a
 //! unit at the most, on one with less by 16 units more. That point lies at least 47 units inside the

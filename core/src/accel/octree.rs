@@ -4,7 +4,7 @@
 //! and its planes are computed from them. A child is entered if its culling interval is not empty.
 //!
 //! **No primitive is passed over.** On each axis the finest divisions' culling intervals overlap,
-//! because a box is entered no later than it is left; so for a hit at step `t`, clamped to the
+//! because a box is entered no later than it is left; so for a hit at step `t`, in the
 //! culling interval of its primitive's box, there is on every axis a division that the box meets and
 //! whose interval holds `t`. The cell of the three lies in a leaf that lists the primitive, and
 //! culling is monotone, so every node around that leaf is entered no later than at `t`. (See

@@ -1,8 +1,8 @@
 //! How far a primitive reaches: the points at which a hit on it can be reported.
 //!
-//! Volumes other than boxes must hold these, not only the primitive. A hit's t is clamped to the
-//! culling interval of the primitive's box (see `accept` in `shape`), and that interval is
-//! wider than the box: from the rule of [`cull`](super::cull) it follows that a hit lies within 4
+//! Volumes other than boxes must hold these, not only the primitive. A hit's t lies in the culling
+//! interval of the primitive's box, clamped to it if need be (see `accept_in_box` in `shape`), and
+//! that interval is wider than the box: from the rule of [`cull`](super::cull) it follows that a hit lies within 4
 //! units of the box on an axis along which the ray's slope is 2^-12 or more, and within 16.3 on the
 //! others, of which there are at most two. A sphere's own test is sharper: where it meets, the point
 //! of the hit lies within a unit of the sphere, because what rounding does to the half chord it does
