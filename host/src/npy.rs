@@ -6,7 +6,6 @@
 
 use crate::trace::{SceneHit, SceneRay};
 use glam::DVec3;
-use npyz::{DType, NpyHeader, Order, WriterBuilder};
 use std::io::{self, Write};
 
 /// The fields of a hit, with NumPy's names for their types.
@@ -42,27 +41,19 @@ const COLUMNS: usize = 8;
 /// # Errors
 /// If it is no NumPy file of such an array, is cut off, or has anything behind the array.
 pub fn read_rays(file: &[u8]) -> Result<Vec<SceneRay>, RaysError> {
-    check_header(file)?;
-    let mut data = file;
-    let header = NpyHeader::from_reader(&mut data).map_err(|error| RaysError::Header {
-        cause: error.to_string(),
-    })?;
-    let DType::Plain(element) = header.dtype() else {
-        let found = header.dtype().descr();
-        return Err(RaysError::Type { found });
-    };
-    let (size, read): (usize, fn(&[u8]) -> f64) = match element.to_string().as_str() {
+    let (header, data) = header(file)?;
+    let (size, read): (usize, fn(&[u8]) -> f64) = match header.element {
         "<f4" => (4, |bytes| f32::from_le_bytes(array(bytes)).into()),
         ">f4" => (4, |bytes| f32::from_be_bytes(array(bytes)).into()),
         "<f8" => (8, |bytes| f64::from_le_bytes(array(bytes))),
         ">f8" => (8, |bytes| f64::from_be_bytes(array(bytes))),
         found => {
-            let found = String::from(found);
+            let found = found.escape_debug().take(100).collect();
             return Err(RaysError::Type { found });
         }
     };
-    let &[rays, 8] = header.shape() else {
-        let extents: Vec<String> = header.shape().iter().map(u64::to_string).collect();
+    let &[rays, 8] = &header.shape[..] else {
+        let extents: Vec<String> = header.shape.iter().map(u64::to_string).collect();
         let found = format!("({})", extents.join(", "));
         return Err(RaysError::Shape { found });
     };
@@ -75,9 +66,9 @@ pub fn read_rays(file: &[u8]) -> Result<Vec<SceneRay>, RaysError> {
     }
     let rays = rays as usize;
     let number = |ray: usize, column: usize| {
-        let index = match header.order() {
-            Order::C => ray * COLUMNS + column,
-            Order::Fortran => column * rays + ray,
+        let index = match header.fortran_order {
+            false => ray * COLUMNS + column,
+            true => column * rays + ray,
         };
         read(&data[index * size..][..size])
     };
@@ -99,55 +90,120 @@ fn array<const N: usize>(bytes: &[u8]) -> [u8; N] {
     array
 }
 
-/// Refuses a header that could make the parser recurse deeply, overflow or allocate much: it
-/// nests without a bound and multiplies the shape unchecked. None of an array of numbers can.
-fn check_header(file: &[u8]) -> Result<(), RaysError> {
-    let broken = |cause: &str| {
-        let cause = String::from(cause);
-        Err(RaysError::Header { cause })
-    };
+/// What the header says of an array of plain numbers.
+struct Header<'a> {
+    element: &'a str,
+    fortran_order: bool,
+    shape: Vec<u64>,
+}
+
+/// Reads the header, and returns it with what is behind it.
+fn header(file: &[u8]) -> Result<(Header<'_>, &[u8]), RaysError> {
+    let broken = |cause: String| RaysError::Header { cause };
     let Some(rest) = file.strip_prefix(b"\x93NUMPY") else {
         return Err(RaysError::Magic);
     };
-    let text = match *rest {
-        [1, 0, a, b, ref text @ ..] => text.get(..u16::from_le_bytes([a, b]).into()),
-        [2 | 3, 0, a, b, c, d, ref text @ ..] => {
-            text.get(..u32::from_le_bytes([a, b, c, d]) as usize)
+    let split = match *rest {
+        [1, 0, a, b, ref rest @ ..] => rest.split_at_checked(u16::from_le_bytes([a, b]).into()),
+        [2 | 3, 0, a, b, c, d, ref rest @ ..] => {
+            rest.split_at_checked(u32::from_le_bytes([a, b, c, d]) as usize)
         }
         [1..=3, 0, ..] => None,
         [major, minor, ..] => {
-            return broken(&format!("version {major}.{minor} of the format is unknown"));
+            let cause = format!("version {major}.{minor} of the format is unknown");
+            return Err(broken(cause));
         }
         _ => None,
     };
-    let Some(text) = text else {
-        return broken("it is cut off");
+    let Some((text, data)) = split else {
+        return Err(broken(String::from("it is cut off")));
     };
-    let count = |is: fn(&u8) -> bool| text.iter().filter(|byte| is(byte)).count();
-    let brackets = count(|byte| b"([{}])".contains(byte));
-    // 19 digits cannot make a product above 2^64.
-    let digits = count(u8::is_ascii_digit);
-    if text.len() > 10_000
-        || brackets > 4
-        || digits > 19
-        || text.windows(2).any(|pair| pair.eq_ignore_ascii_case(b"0x"))
-    {
-        let text = String::from_utf8_lossy(text);
-        let start: String = text.trim_end().chars().take(100).collect();
-        return broken(&format!(
+    let header = std::str::from_utf8(text).ok().and_then(dictionary);
+    let header = header.ok_or_else(|| {
+        let start = &text[..text.len().min(400)];
+        let start = String::from_utf8_lossy(start);
+        let start: String = start.trim_end().chars().take(100).collect();
+        broken(format!(
             "it describes no array of plain numbers, but {start:?}"
-        ));
-    }
-    Ok(())
+        ))
+    })?;
+    Ok((header, data))
 }
 
-/// A hit as it lies in the file.
-#[derive(npyz::Serialize, npyz::AutoSerialize)]
-struct Record {
-    t: f64,
-    object: u32,
-    primitive: u32,
-    normal: [f32; 3],
+/// Parses the header's text: a Python dictionary of exactly three entries.
+fn dictionary(text: &str) -> Option<Header<'_>> {
+    let mut rest = token(text, "{")?;
+    let (mut element, mut fortran_order, mut shape) = (None, None, None);
+    while token(rest, "}").is_none() {
+        let (key, value) = string(rest)?;
+        let value = token(value, ":")?;
+        let is_new;
+        (is_new, rest) = match key {
+            "descr" => {
+                let (value, rest) = string(value)?;
+                (element.replace(value).is_none(), rest)
+            }
+            "fortran_order" => {
+                let is_true = token(value, "True").map(|rest| (true, rest));
+                let (value, rest) =
+                    is_true.or_else(|| token(value, "False").map(|rest| (false, rest)))?;
+                (fortran_order.replace(value).is_none(), rest)
+            }
+            "shape" => {
+                let (value, rest) = integers(value)?;
+                (shape.replace(value).is_none(), rest)
+            }
+            _ => return None,
+        };
+        if !is_new {
+            return None;
+        }
+        match token(rest, ",") {
+            Some(next) => rest = next,
+            None => break,
+        }
+    }
+    let end = token(rest, "}")?;
+    end.trim().is_empty().then_some(())?;
+    Some(Header {
+        element: element?,
+        fortran_order: fortran_order?,
+        shape: shape?,
+    })
+}
+
+/// What follows `token` and the space before it, if `text` begins with them.
+fn token<'a>(text: &'a str, token: &str) -> Option<&'a str> {
+    text.trim_start().strip_prefix(token)
+}
+
+/// A string without escapes, and what follows it.
+fn string(text: &str) -> Option<(&str, &str)> {
+    let text = text.trim_start();
+    let quote = text.chars().next().filter(|quote| "'\"".contains(*quote))?;
+    let (string, rest) = text[1..].split_once(quote)?;
+    (!string.contains('\\')).then_some((string, rest))
+}
+
+/// A tuple or list of integers, and what follows it.
+fn integers(text: &str) -> Option<(Vec<u64>, &str)> {
+    let (inside, rest) = match token(text, "(") {
+        Some(tuple) => tuple.split_once(')')?,
+        None => token(text, "[")?.split_once(']')?,
+    };
+    let inside = inside.trim();
+    // A comma may follow the last one.
+    let inside = inside.strip_suffix(',').unwrap_or(inside);
+    if inside.trim().is_empty() {
+        return Some((Vec::new(), rest));
+    }
+    let integer = |text: &str| {
+        let text = text.trim();
+        let is_integer = text.bytes().all(|byte| byte.is_ascii_digit());
+        is_integer.then(|| text.parse().ok()).flatten()
+    };
+    let integers: Option<_> = inside.split(',').map(integer).collect();
+    Some((integers?, rest))
 }
 
 /// Writes hits, as an array of shape (N,).
@@ -155,18 +211,29 @@ struct Record {
 /// # Errors
 /// If `out` has one.
 pub fn write_hits(out: &mut dyn Write, hits: &[SceneHit]) -> io::Result<()> {
-    let mut writer = npyz::WriteOptions::new()
-        .default_dtype()
-        .shape(&[hits.len() as u64])
-        .writer(out)
-        .begin_nd()?;
-    writer.extend(hits.iter().map(|hit| Record {
-        t: hit.t,
-        object: hit.object,
-        primitive: hit.primitive,
-        normal: hit.normal,
-    }))?;
-    writer.finish()
+    let mut header = format!(
+        "{{'descr': [('t', '<f8'), ('object', '<u4'), ('primitive', '<u4'), \
+         ('normal', '<f4', (3,)), ], 'fortran_order': False, 'shape': ({}, ), }}",
+        hits.len()
+    );
+    // The data begin at a multiple of 64 bytes.
+    let before = 10 + header.len() + 1;
+    header += &" ".repeat(before.next_multiple_of(64) - before);
+    header.push('\n');
+    out.write_all(b"\x93NUMPY\x01\x00")?;
+    out.write_all(&(header.len() as u16).to_le_bytes())?;
+    out.write_all(header.as_bytes())?;
+    for hit in hits {
+        let mut record = [0; 28];
+        record[..8].copy_from_slice(&hit.t.to_le_bytes());
+        record[8..12].copy_from_slice(&hit.object.to_le_bytes());
+        record[12..16].copy_from_slice(&hit.primitive.to_le_bytes());
+        for (bytes, normal) in record[16..].chunks_exact_mut(4).zip(hit.normal) {
+            bytes.copy_from_slice(&normal.to_le_bytes());
+        }
+        out.write_all(&record)?;
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -220,6 +287,17 @@ mod tests {
     }
 
     #[test]
+    fn headers_read_in_any_form_that_python_writes() {
+        for text in [
+            "{'descr': '<f4', 'fortran_order': False, 'shape': (0, 8)}",
+            "{\"shape\":[0,8,],\"descr\":\"<f4\",\"fortran_order\":True}",
+            " { 'fortran_order' : False , 'shape' : ( 0 , 8 , ) , 'descr' : '<f4' , } ",
+        ] {
+            assert_eq!(read_rays(&file(text, &[])).unwrap(), [], "{text}");
+        }
+    }
+
+    #[test]
     fn no_rays_are_an_array_too() {
         let file = file(&header("'<f4'", "False", "(0, 8)"), &[]);
         assert_eq!(read_rays(&file).unwrap(), []);
@@ -240,7 +318,13 @@ mod tests {
                 format!("its elements are of type {name}, not float32 or float64")
             );
         }
-        for shape in ["(16,)", "(8, 2)", "(2, 8, 1)", "()"] {
+        for shape in [
+            "(16,)",
+            "(8, 2)",
+            "(2, 8, 1)",
+            "()",
+            "(4294967296, 4294967296)",
+        ] {
             assert!(read("'<f8'", shape).contains("not (N, 8)"), "{shape}");
         }
         assert!(read("[('a', '<f8')]", "(16,)").contains("no array of plain numbers"));
@@ -256,7 +340,6 @@ mod tests {
         let nested = format!("{}1{}", "(".repeat(5000), ")".repeat(5000));
         for shape in [
             nested.as_str(),
-            "(4294967296, 4294967296)",
             "(0xffffffffffff, 0xffffffffffff, 8)",
             "(99999999999999999999999, 8)",
             "(-1, 8)",
@@ -266,6 +349,24 @@ mod tests {
             let file = file(&header("'<f8'", "False", shape), &[]);
             let error = read_rays(&file).unwrap_err();
             assert!(matches!(error, RaysError::Header { .. }), "{error}");
+        }
+        let whole = header("'<f8'", "False", "(0, 8)");
+        for text in [
+            whole.replace("'shape'", "'form'"),
+            whole.replace("'shape': (0, 8), ", ""),
+            whole.replace("'shape'", "'descr': '<f8', 'shape'"),
+            whole.replace("False", "0"),
+            whole.replace("(0, 8), ", "(0, 8) 1"),
+            whole.replace("(0, 8)", "(0,, 8)"),
+            whole.replace("(0, 8)", "(0, 8"),
+            whole.replace("(0, 8)", "(0, +8)"),
+            whole.replace("'<f8'", "'<f8"),
+            whole.replace("'<f8'", "'<f\\x38'"),
+            whole.clone() + "1",
+            String::new(),
+        ] {
+            let error = read_rays(&file(&text, &[])).unwrap_err();
+            assert!(matches!(error, RaysError::Header { .. }), "{text}: {error}");
         }
         // 2^60 rays would be 2^66 bytes.
         let file = file(&header("'<f8'", "False", "(1152921504606846976, 8)"), &[]);

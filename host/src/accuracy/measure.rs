@@ -2,6 +2,7 @@
 
 use super::flip::{self, flip};
 use super::setting::Setting;
+use super::ssim::ssim;
 use crate::blob::Blob;
 use crate::compile::{self, CompileError, Quality};
 use crate::render::{Job, Picture, chosen, render};
@@ -14,7 +15,6 @@ use gridel_core::{
     Effects, Fixed, Format, NoCount, Number, Renderer, Rgb888, Settings, Stack, Structure,
     closest_hit, render::Pixel,
 };
-use image_compare::Algorithm;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::time::Instant;
@@ -242,7 +242,7 @@ impl<'s> Bench<'s> {
         let point = Point {
             name: setting.name(),
             setting: *setting,
-            errors: errors(self.size, reference, &picture.pixels, &hits),
+            errors: errors(self.size[0], reference, &picture.pixels, &hits),
             cost: Cost {
                 seconds: Vec::new(),
                 pixels: picture.pixels.len(),
@@ -316,12 +316,7 @@ fn display(linear: u16) -> f64 {
     }
 }
 
-fn errors(
-    [width, height]: [u16; 2],
-    reference: &Reference,
-    pixels: &[[u16; 3]],
-    hits: &[FirstHit],
-) -> Errors {
+fn errors(width: u16, reference: &Reference, pixels: &[[u16; 3]], hits: &[FirstHit]) -> Errors {
     let [expected, found] = [&reference.pixels[..], pixels]
         .map(|p| -> Vec<[f64; 3]> { p.iter().map(|pixel| pixel.map(display)).collect() });
     let (mut squares, mut largest, mut pixels_off) = (0.0, 0.0_f64, 0);
@@ -337,16 +332,13 @@ fn errors(
         pixels,
     };
     let differences = flip(picture(&expected), picture(&found));
-    let grey = |pixels: &[[u16; 3]]| {
+    let grey = |pixels: &[[u16; 3]]| -> Vec<u8> {
         let luma = |linear: &[u16; 3]| {
             let [r, g, b] = Rgb888::encode(*linear, None).0.map(f64::from);
             (0.2126 * r + 0.7152 * g + 0.0722 * b).round() as u8
         };
-        let luma = pixels.iter().map(luma).collect();
-        image::GrayImage::from_raw(width.into(), height.into(), luma).unwrap_or_default()
+        pixels.iter().map(luma).collect()
     };
-    let (a, b) = (grey(&reference.pixels), grey(pixels));
-    let similarity = image_compare::gray_similarity_structure(&Algorithm::MSSIMSimple, &a, &b);
 
     let mut other_objects = 0;
     let mut ulps = Vec::new();
@@ -366,7 +358,7 @@ fn errors(
         rmse: (squares / (3 * pixels.len()).max(1) as f64).sqrt(),
         largest,
         pixels_off,
-        ssim: similarity.map_or(f64::NAN, |similarity| similarity.score),
+        ssim: ssim(width.into(), &grey(&reference.pixels), &grey(pixels)),
         flip: differences.iter().sum::<f64>() / differences.len().max(1) as f64,
         other_objects,
         t_ulps: [ulps.get(ulps.len() / 2).copied().unwrap_or(0.0), last],

@@ -9,6 +9,7 @@ mod flip;
 mod measure;
 mod page;
 mod setting;
+mod ssim;
 
 pub use measure::{
     Bench, Cost, Errors, MeasureError, Point, Reference, difference_picture, reference_setting,

@@ -82,12 +82,7 @@ impl Blessed {
     /// nothing changes.
     pub fn diff(&self) -> String {
         let name = self.path.display().to_string();
-        let diff = similar::TextDiff::from_lines(&self.old, &self.new);
-        let mut text = diff
-            .unified_diff()
-            .context_radius(2)
-            .header(&name, &name)
-            .to_string();
+        let mut text = super::diff::unified(&name, &self.old, &self.new);
         for (path, _) in &self.references {
             text += &format!("new reference {}\n", path.display());
         }

@@ -75,7 +75,9 @@
 
 mod bless;
 mod board;
+mod diff;
 mod image;
+mod junit;
 mod manifest;
 mod measure;
 mod report;

@@ -2,7 +2,6 @@
 
 use super::image::Image;
 use crate::report::{Align, Table, grouped};
-use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 use serde::{Serialize, Serializer};
 use std::fmt;
 use std::io::{self, Write};
@@ -160,47 +159,7 @@ impl Report {
     /// # Errors
     /// If `out` has one.
     pub fn write_junit(&self, out: &mut dyn Write) -> io::Result<()> {
-        let mut report = quick_junit::Report::new("gridel check");
-        for findings in self.findings.chunk_by(|a, b| a.check == b.check) {
-            let Some(first) = findings.first() else {
-                continue;
-            };
-            let mut suite = TestSuite::new(&first.check);
-            suite.add_test_cases(findings.iter().map(Finding::case));
-            report.add_test_suite(suite);
-        }
-        report.serialize(out).map_err(io::Error::other)
-    }
-}
-
-impl Finding {
-    fn case(&self) -> TestCase {
-        let status = match &self.outcome {
-            Outcome::Held | Outcome::Recorded => TestCaseStatus::success(),
-            Outcome::Broken(why) => {
-                let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-                status.set_message(why.as_str());
-                status
-            }
-            Outcome::NotRun(why) => {
-                let mut status = TestCaseStatus::skipped();
-                status.set_message(why.as_str());
-                status
-            }
-        };
-        let name = match &self.on {
-            Some(on) => format!("{} on {on}", self.what),
-            None => self.what.clone(),
-        };
-        let mut case = TestCase::new(name, status);
-        case.set_classname(self.check.as_str());
-        let figures = [("found", &self.found), ("allowed", &self.allowed)];
-        for (name, figure) in figures {
-            if let Some(figure) = figure {
-                case.add_property((name, figure.plain().as_str()));
-            }
-        }
-        case
+        out.write_all(super::junit::document(&self.findings).as_bytes())
     }
 }
 
@@ -215,7 +174,7 @@ impl Figure {
     }
 
     /// Without separators.
-    fn plain(&self) -> String {
+    pub(super) fn plain(&self) -> String {
         match self {
             Self::Count(count) => count.to_string(),
             Self::Mean(mean) => mean.to_string(),
