@@ -151,53 +151,6 @@ fn boards_that_are_missing_are_named() {
     assert_eq!(run.code, Some(1), "{}", run.stderr);
 }
 
-/// The project's own firmware, on an emulated board.
-#[test]
-fn firmware_is_built_and_run() {
-    let folder = folder();
-    let firmware = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/firmware");
-    let manifest = format!(
-        r#"
-[[check]]
-scene = "quick.toml"
-accel = "dual-split"
-size = [24, 18]
-[[check.board]]
-machine = "mps2-an386"
-firmware = '{firmware}'
-program = "picture"
-target = "thumbv7em-none-eabihf"
-features = ["f32", "dual-split", "everything"]
-picture = "picture.rgb"
-budget = {{ picture-instructions = 40_000_000, load-instructions = 1 }}
-"#
-    );
-    folder.write("check.toml", manifest.as_bytes());
-    let output = folder
-        .command(&["check", "check.toml", "--json"])
-        // Not among the sources.
-        .env(
-            "CARGO_TARGET_DIR",
-            concat!(env!("CARGO_TARGET_TMPDIR"), "/firmware"),
-        )
-        .output()
-        .unwrap();
-    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
-    if report["not_run"] != 0 {
-        let required = std::env::var_os("GRIDEL_REQUIRE_BOARDS").is_some_and(|value| value == "1");
-        assert!(!required, "{report:#}");
-        eprintln!("SKIPPED: {}", report["findings"][0]["why"]);
-        return;
-    }
-    // Loading takes more than one instruction; all else is as it should be.
-    let outcomes = report["findings"].as_array().unwrap().iter();
-    let broken: Vec<_> = outcomes.filter(|it| it["outcome"] != "held").collect();
-    assert_eq!(broken.len(), 1, "{report:#}");
-    assert_eq!(broken[0]["what"], "load-instructions");
-    assert!(broken[0]["found"].as_u64().unwrap() > 1000);
-    assert_eq!(output.status.code(), Some(1));
-}
-
 /// What the manifest reads is never written over, by whatever path it is reached.
 #[test]
 fn files_that_are_read_stay() {

@@ -1,7 +1,8 @@
 //! What code, call stacks and pictures cost, by shape, effect and structure: what ledgers are added up from.
 
 use crate::figures::{self, Figures};
-use crate::firmware::{self, Build, WASM, board};
+use crate::firmware::{Build, WASM, board};
+use crate::plan::Plan;
 use crate::scenes::{self, Compiled};
 use crate::{boards, elf, parts};
 use gridel_core::{Effects, Format, Structure, Vouched};
@@ -9,45 +10,64 @@ use gridel_host::board::Board;
 use gridel_host::report::{Ledger, Target};
 use std::collections::BTreeMap;
 
+pub fn plan(plan: &mut Plan) {
+    for (board, format) in measured_in_full() {
+        plan.test_on("every_core_pays_for_parts_one_by_one", board, format)
+            .in_full()
+            .run(move || core_pays_for_parts_one_by_one(board, format));
+    }
+    let others = boards().filter(|&(board, _)| board != &WASM);
+    for (board, format) in others.filter(|&(board, format)| board.kin(format) != (board, format)) {
+        plan.test_on("every_board_pays_for_few_parts", board, format)
+            .in_full()
+            .run(move || board_pays_for_few_parts(board, format));
+    }
+    for (board, format) in boards().filter(|&(board, _)| board != &WASM) {
+        plan.test_on("everything_on_every_board", board, format)
+            .in_full()
+            .run(move || everything_on_a_board(board, format));
+    }
+    let discovery = board("stm32vldiscovery");
+    plan.test("shapes_and_effects_are_paid_for_one_by_one")
+        .on(discovery)
+        .in_full()
+        .run(shapes_and_effects_are_paid_for_one_by_one);
+    plan.test("small_code_fits_in_16_kib")
+        .on(discovery)
+        .in_full()
+        .run(small_code_fits_in_16_kib);
+    plan.test("ledgers_are_enough_for_what_was_measured")
+        .run(ledgers_are_enough_for_what_was_measured);
+}
+
 /// What every shape and effect takes where all cores of its kind are measured: the README's table is
 /// that of the smallest board, and ledgers are added up from it.
-#[test]
-fn every_core_pays_for_parts_one_by_one() {
-    if !firmware::available() {
-        return;
-    }
+fn core_pays_for_parts_one_by_one(board: &'static Board, format: Format) {
     let mut figures = Figures::new();
-    let scenes = parts::scenes();
-    for (board, format) in measured_in_full() {
-        for scene in scenes.iter().chain([&parts::sphere_and_triangle()]) {
-            let build = Build::new(board, format, Structure::DualSplit, scene);
-            let elf = build.program("bare").elf();
-            figures.add(&build.to_string(), &footprint(&build, &elf, scene));
-        }
-        for scene in &parts::wider_storage() {
-            let build = Build::new(board, format, Structure::DualSplit, scene);
-            let features = [&scene.features()[..], &[scene.name]].concat();
-            let elf = build.program_with("bare", &features).elf();
-            figures.add(&build.to_string(), &footprint(&build, &elf, scene));
-        }
+    for scene in parts::scenes()
+        .iter()
+        .chain([&parts::sphere_and_triangle()])
+    {
+        let build = Build::new(board, format, Structure::DualSplit, scene);
+        let elf = build.program("bare").elf();
+        figures.add(&build.to_string(), &footprint(&build, &elf, scene));
+    }
+    for scene in &parts::wider_storage() {
+        let build = Build::new(board, format, Structure::DualSplit, scene);
+        let features = [&scene.features()[..], &[scene.name]].concat();
+        let elf = build.program_with("bare", &features).elf();
+        figures.add(&build.to_string(), &footprint(&build, &elf, scene));
     }
     figures.check();
 }
 
-/// What some parts take on the other boards, by which the ledgers stretch what was measured for their kin.
-#[test]
-fn every_board_pays_for_few_parts() {
-    if !firmware::available() {
-        return;
-    }
+/// What some parts take on a board, by which the ledgers stretch what was measured for its kin.
+fn board_pays_for_few_parts(board: &'static Board, format: Format) {
     let scene = parts::sphere_and_triangle();
     let mut figures = Figures::new();
-    let others = boards().filter(|&(board, _)| board != &WASM);
-    for (board, format) in others.filter(|&(board, format)| board.kin(format) != (board, format)) {
-        let build = Build::new(board, format, Structure::DualSplit, &scene);
-        let elf = build.program("bare").elf();
-        figures.add(&build.to_string(), &footprint(&build, &elf, &scene));
-    }
+    let build = Build::new(board, format, Structure::DualSplit, &scene);
+    let elf = build.program("bare").elf();
+    figures.add(&build.to_string(), &footprint(&build, &elf, &scene));
     figures.check();
 }
 
@@ -57,11 +77,7 @@ fn measured_in_full() -> impl Iterator<Item = (&'static Board, Format)> {
 }
 
 /// What every shape and effect costs rays on the smallest board: the README's table.
-#[test]
 fn shapes_and_effects_are_paid_for_one_by_one() {
-    if !firmware::available() {
-        return;
-    }
     let discovery = board("stm32vldiscovery");
     let mut figures = Figures::new();
     let mut instructions = BTreeMap::new();
@@ -98,31 +114,24 @@ fn shapes_and_effects_are_paid_for_one_by_one() {
     );
 }
 
-/// What a product with every shape and effect takes on every board, fast or small, and one on each kind
+/// What a product with every shape and effect takes on a board, fast or small, and on one of each kind
 /// of core through every structure that boards vouch for: the ledgers' bounds.
-#[test]
-fn everything_on_every_board() {
-    if !firmware::available() {
-        return;
-    }
+fn everything_on_a_board(board: &'static Board, format: Format) {
     let scene = scenes::quick();
     let mut figures = Figures::new();
-    for (board, format) in boards().filter(|&(board, _)| board != &WASM) {
-        let in_full = board.kin(format) == (board, format);
-        let measured = |&it: &Structure| in_full || it == Structure::DualSplit;
-        for structure in Vouched::STRUCTURES.into_iter().filter(measured) {
-            let fast = || Build::new(board, format, structure, &scene);
-            for build in [fast(), fast().small()] {
-                let elf = build.program_with("bare", &["everything"]).elf();
-                figures.add(&build.to_string(), &footprint(&build, &elf, &scene));
-            }
+    let in_full = board.kin(format) == (board, format);
+    let measured = |&it: &Structure| in_full || it == Structure::DualSplit;
+    for structure in Vouched::STRUCTURES.into_iter().filter(measured) {
+        let fast = || Build::new(board, format, structure, &scene);
+        for build in [fast(), fast().small()] {
+            let elf = build.program_with("bare", &["everything"]).elf();
+            figures.add(&build.to_string(), &footprint(&build, &elf, &scene));
         }
     }
     figures.check();
 }
 
 /// What parts add up to is enough for a program that holds some of them.
-#[test]
 fn ledgers_are_enough_for_what_was_measured() {
     let scene = parts::sphere_and_triangle();
     let view = scene.blob.scene().expect("the compiler's own blob");
@@ -149,11 +158,7 @@ fn ledgers_are_enough_for_what_was_measured() {
 const SMALL_CODE: u64 = 16 * 1024;
 
 /// What the feature `small` saves, and what rays pay for it: the README's table.
-#[test]
 fn small_code_fits_in_16_kib() {
-    if !firmware::available() {
-        return;
-    }
     let discovery = board("stm32vldiscovery");
     let scene = parts::sphere_and_triangle();
     let fast = || Build::new(discovery, Format::Fixed, Structure::DualSplit, &scene);

@@ -1,7 +1,8 @@
 //! What `gridel build --emit-rust` writes, and blobs that a program vouches for.
 
 use crate::figures::Figures;
-use crate::firmware::{self, Build, board};
+use crate::firmware::{Build, board};
+use crate::plan::Plan;
 use crate::scenes::{self, Compiled};
 use crate::{look_into, parts};
 use gridel_core::{Format, Structure};
@@ -9,13 +10,29 @@ use gridel_host::emit::{self, Emitted};
 use std::fs;
 use std::path::Path;
 
+pub fn plan(plan: &mut Plan) {
+    plan.test("emitted_modules_run_or_do_not_compile")
+        .on(board("stm32vldiscovery"))
+        .in_full()
+        .run(emitted_modules_run_or_do_not_compile);
+    type Make = fn() -> Compiled;
+    let vouched: [(&str, Make); 4] = [
+        ("mps2-an385", scenes::quick),
+        ("mps2-an385", scenes::molecule),
+        ("microbit", scenes::quick),
+        ("sifive_e", scenes::quick),
+    ];
+    for (number, (name, scene)) in vouched.into_iter().enumerate() {
+        let test = format!("vouched_blobs_load_in_constant_time::{number}");
+        plan.test_on(&test, board(name), Format::Fixed)
+            .in_full()
+            .run(move || vouched_blob_loads_in_constant_time(name, &scene()));
+    }
+}
+
 /// What `gridel build --emit-rust` writes runs on a board; with a blob that is not the one that it
 /// was written for, or that has no room, it does not compile.
-#[test]
 fn emitted_modules_run_or_do_not_compile() {
-    if !firmware::available() {
-        return;
-    }
     let discovery = board("stm32vldiscovery");
     let scene = parts::sphere_and_triangle();
     let view = scene.blob.scene().expect("the compiler's own blob");
@@ -69,43 +86,31 @@ fn emitted_modules_run_or_do_not_compile() {
 
 /// Firmware that vouches for its blob loads it in the same time, however long it is, and without the
 /// code that proves the rest.
-#[test]
-fn vouched_blobs_load_in_constant_time() {
-    if !firmware::available() {
-        return;
-    }
-    let (quick, molecule) = (scenes::quick(), scenes::molecule());
+fn vouched_blob_loads_in_constant_time(name: &str, scene: &Compiled) {
     let mut figures = Figures::new();
-    for (name, scene) in [
-        ("mps2-an385", &quick),
-        ("mps2-an385", &molecule),
-        ("microbit", &quick),
-        ("sifive_e", &quick),
-    ] {
-        let build = Build::new(board(name), Format::Fixed, Structure::DualSplit, scene);
-        let emitted = Emitted {
-            scene: &scene.blob.scene().expect("the compiler's own blob"),
-            structure: Structure::DualSplit,
-            format: Format::Fixed,
-            budget: None,
-        };
-        let folder = build.folder("emitted");
-        write_module(&folder, &emitted.module(), scene.blob.bytes());
-        let features = [&["emitted"], &scene.features()[..]].concat();
-        let program = build.program_with("emitted", &features);
-        let mut report = program.run();
-        assert!(program.file("picture.rgb") == scene.picture(Format::Fixed));
-        look_into(
-            &build,
-            &program.elf(),
-            board(name),
-            Format::Fixed,
-            &mut report,
-        );
-        let load = report["load-instructions"];
-        assert!(load <= 6000, "{build}: {load} instructions to load");
-        figures.add(&format!("{build} vouched"), &report);
-    }
+    let build = Build::new(board(name), Format::Fixed, Structure::DualSplit, scene);
+    let emitted = Emitted {
+        scene: &scene.blob.scene().expect("the compiler's own blob"),
+        structure: Structure::DualSplit,
+        format: Format::Fixed,
+        budget: None,
+    };
+    let folder = build.folder("emitted");
+    write_module(&folder, &emitted.module(), scene.blob.bytes());
+    let features = [&["emitted"], &scene.features()[..]].concat();
+    let program = build.program_with("emitted", &features);
+    let mut report = program.run();
+    assert!(program.file("picture.rgb") == scene.picture(Format::Fixed));
+    look_into(
+        &build,
+        &program.elf(),
+        board(name),
+        Format::Fixed,
+        &mut report,
+    );
+    let load = report["load-instructions"];
+    assert!(load <= 6000, "{build}: {load} instructions to load");
+    figures.add(&format!("{build} vouched"), &report);
     figures.check();
 }
 

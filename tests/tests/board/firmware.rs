@@ -3,14 +3,13 @@
 use crate::elf::Elf;
 use crate::scenes::{Compiled, repository};
 use gridel_core::{Format, Structure};
-use gridel_host::board::{BOARDS, Board};
-use std::collections::{BTreeMap, BTreeSet};
+use gridel_host::board::Board;
+use std::collections::BTreeMap;
 use std::fmt;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::{env, fs, io};
+use std::{env, fs};
 
 /// The runner that comes nearest to a board without an operating system: WebAssembly in Node.
 pub const WASM: Board = Board {
@@ -60,43 +59,29 @@ fn linker(board: &Board) -> Option<String> {
     Some(format!("{processor}-linux-gnu-gcc"))
 }
 
-/// Whether boards can be emulated here. Says what is missing, and fails where boards are required.
-pub fn available() -> bool {
-    all_available(BOARDS.iter().chain([&WASM]))
-}
-
-/// The same for some boards.
-pub fn all_available<'b>(boards: impl IntoIterator<Item = &'b Board>) -> bool {
-    let mut missing = BTreeSet::new();
-    for board in boards {
-        for tool in linker(board).into_iter().chain([emulator(board).into()]) {
-            if Command::new(&tool).arg("--version").output().is_err() {
-                missing.insert(tool);
-            }
+/// What is missing to build a board's programs and to run them.
+pub fn missing_for(board: &Board) -> Vec<String> {
+    static KNOWN: Mutex<BTreeMap<String, bool>> = Mutex::new(BTreeMap::new());
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut missing = Vec::new();
+    for tool in linker(board).into_iter().chain([emulator(board).into()]) {
+        let starts = || Command::new(&tool).arg("--version").output().is_ok();
+        if !*known.entry(tool.clone()).or_insert_with(starts) {
+            missing.push(tool);
         }
+    }
+    let target = format!("the Rust target {}", board.target);
+    let has_library = || {
         let library = Command::new("rustc")
             .args(["--print", "target-libdir", "--target", board.target])
             .output();
-        let found = library
-            .is_ok_and(|output| Path::new(String::from_utf8_lossy(&output.stdout).trim()).exists());
-        if !found {
-            missing.insert(format!("the Rust target {}", board.target));
-        }
+        library
+            .is_ok_and(|output| Path::new(String::from_utf8_lossy(&output.stdout).trim()).exists())
+    };
+    if !*known.entry(target.clone()).or_insert_with(has_library) {
+        missing.push(target);
     }
-    if missing.is_empty() {
-        return true;
-    }
-    let missing = Vec::from_iter(missing).join(", ");
-    let required = env::var_os("GRIDEL_REQUIRE_BOARDS").is_some_and(|value| value == "1");
-    assert!(!required, "no boards can be emulated without {missing}");
-    skip(format_args!("no boards can be emulated without {missing}"));
-    false
-}
-
-/// Says that a test does not run, past the capture of what passing tests print.
-pub fn skip(why: fmt::Arguments<'_>) {
-    // Where nothing can be printed, nobody is there to read it.
-    let _ = writeln!(io::stderr(), "SKIPPED: {why}");
+    missing
 }
 
 /// What the firmware is built for.

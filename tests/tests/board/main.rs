@@ -1,8 +1,9 @@
 //! The firmware on emulated boards: the same pictures as the host's, within the recorded cost.
 //!
 //! Needs `qemu-system-arm`, `qemu-system-riscv32`, Node, and the Rust targets of all boards
-//! (`rustup target add`). Without them the tests say so and pass, unless `GRIDEL_REQUIRE_BOARDS`
-//! is 1. `fixtures/recorded/board.json` holds what was measured last: nothing may grow by more than 2 %.
+//! (`rustup target add`). A test without what its board needs is ignored and says why; it fails if
+//! `GRIDEL_REQUIRE_BOARDS` is 1. The ordinary run has a picture of every board and a ray of every core;
+//! `GRIDEL_FULL=1` runs all. `fixtures/recorded/board.json` holds what was measured last: nothing may grow by more than 2 %.
 //! `GRIDEL_RECORD_BOARDS=1` records anew; read the difference before it is committed.
 
 #[path = "../../firmware/src/casts.rs"]
@@ -13,15 +14,18 @@ mod emitted;
 mod figures;
 mod firmware;
 mod parts;
+mod plan;
 mod rays;
 mod scenes;
 mod stack;
 mod structures;
 
 use figures::Figures;
-use firmware::{AARCH64, Build, S390X, WASM, board};
+use firmware::{AARCH64, Build, Program, S390X, WASM, board};
 use gridel_core::{Format, Structure};
 use gridel_host::board::{BOARDS, Board};
+use libtest_mimic::Arguments;
+use plan::Plan;
 use scenes::Compiled;
 use std::collections::BTreeMap;
 use std::fs;
@@ -32,50 +36,30 @@ fn boards() -> impl Iterator<Item = (&'static Board, Format)> {
     boards.flat_map(|board| board.formats.iter().map(move |&format| (board, format)))
 }
 
-#[test]
-fn every_effect_on_every_board() {
-    let scene = scenes::quick();
-    pictures_are_the_hosts(boards().map(|(board, format)| (board, format, &scene)));
+fn main() {
+    let mut plan = Plan::default();
+    pictures(&mut plan);
+    other_processors(&mut plan);
+    linked(&mut plan);
+    costs::plan(&mut plan);
+    emitted::plan(&mut plan);
+    rays::plan(&mut plan);
+    structures::plan(&mut plan);
+    plan.test("memory_maps_are_the_boards")
+        .run(memory_maps_are_the_boards);
+    plan.test("loading_takes_less_than_40_instructions_a_byte")
+        .run(figures::loading_takes_less_than_40_instructions_a_byte);
+    libtest_mimic::run(&Arguments::from_args(), plan.trials).exit();
 }
 
-/// Every number format and every structure, where lanes are those of NEON or of none, is the host's to
-/// the bit. Where bytes lie the other way round, the blob is refused.
-#[test]
-fn every_structure_on_other_processors() {
-    if !firmware::all_available([&WASM, &AARCH64, &S390X]) {
-        return;
+fn pictures(plan: &mut Plan) {
+    for (board, format) in boards() {
+        let test = plan.test_on("every_effect_on_every_board", board, format);
+        let is_ordinary = format == board.format();
+        let test = if is_ordinary { test } else { test.in_full() };
+        test.run(move || picture_is_the_hosts(board, format, &scenes::quick()));
     }
-    let scene = scenes::quick_through_everything();
-    let program = |board| {
-        Build::new(board, Format::Fixed, Structure::DualSplit, &scene)
-            .program_with("everywhere", &["everywhere"])
-    };
-    let mut pictures = Vec::new();
-    for format in Format::ALL {
-        for structure in Structure::ALL {
-            pictures.extend(scene.picture_through(structure, format));
-        }
-    }
-    for board in [&WASM, &AARCH64] {
-        let program = program(board);
-        let report = program.run();
-        assert_eq!(report["structures"], Structure::ALL.len() as u64);
-        assert!(
-            program.file("pictures.rgb") == pictures,
-            "{}: pictures differ from the host's",
-            board.name
-        );
-    }
-    let refusal = program(&S390X).failure();
-    assert!(
-        refusal.contains("little-endian and this machine must be too"),
-        "{refusal}"
-    );
-}
 
-#[test]
-fn glass_on_boards() {
-    let scene = scenes::glass_chess();
     let names = [
         "microbit",
         "sifive_e",
@@ -86,56 +70,116 @@ fn glass_on_boards() {
     let boards = names.map(board).into_iter().chain([&WASM]);
     let boards = boards.map(|board| (board, board.format()));
     // With floats or without: `gridel accuracy` compares them.
-    let both = boards.chain([(board("mps2-an386"), Format::Fixed)]);
-    pictures_are_the_hosts(both.map(|(board, format)| (board, format, &scene)));
-}
+    for (board, format) in boards.chain([(board("mps2-an386"), Format::Fixed)]) {
+        plan.test_on("glass_on_boards", board, format)
+            .in_full()
+            .run(move || picture_is_the_hosts(board, format, &scenes::glass_chess()));
+    }
 
-/// What 8 KiB of RAM and 128 KiB of flash are enough for, and 16 KiB and 256 KiB.
-#[test]
-fn the_smallest_boards_render_large_scenes() {
+    // What 8 KiB of RAM and 128 KiB of flash are enough for, and 16 KiB and 256 KiB.
     let discovery = board("stm32vldiscovery");
-    let (glass, molecule, torus) = (
-        scenes::glass_chess_small(),
-        scenes::molecule(),
-        scenes::torus(),
-    );
-    let protein = scenes::protein();
-    let mut all = vec![
-        (discovery, Format::Fixed, &glass),
-        (discovery, Format::Fixed, &molecule),
-        (board("microbit"), Format::Fixed, &torus),
+    type Make = fn() -> Compiled;
+    let large: [(&str, &'static Board, Make); 4] = [
+        ("glass", discovery, scenes::glass_chess_small),
+        ("molecule", discovery, scenes::molecule),
+        ("torus", board("microbit"), scenes::torus),
+        ("protein", discovery, scenes::protein),
     ];
-    all.extend(
-        protein
-            .iter()
-            .map(|protein| (discovery, Format::Fixed, protein)),
-    );
-    pictures_are_the_hosts(all);
+    for (name, board, scene) in large {
+        let test = format!("the_smallest_boards_render_large_scenes::{name}");
+        let mut test = plan.test(test).on(board).in_full();
+        if name == "protein" {
+            test = test.with_scene(scenes::PROTEIN);
+        }
+        test.run(move || picture_is_the_hosts(board, Format::Fixed, &scene()));
+    }
+
+    // Small code gives the same bits, with every shape and effect, and holds no more that panics.
+    for (name, format) in [
+        ("mps2-an386", Format::F32),
+        ("mps2-an385", Format::Fixed),
+        ("microbit", Format::Fixed),
+        ("sifive_e", Format::Fixed),
+    ] {
+        let board = board(name);
+        plan.test_on("small_pictures_are_the_hosts", board, format)
+            .in_full()
+            .run(move || {
+                let scene = scenes::quick();
+                let build = Build::new(board, format, Structure::DualSplit, &scene).small();
+                let program = build.program("picture");
+                let mut report = program.run();
+                let picture = program.file("picture.rgb");
+                assert!(picture == scene.picture(format), "{build}: another picture");
+                look_into(&build, &program.elf(), board, format, &mut report);
+            });
+    }
+
+    for board in ["mps2-an386", "mps2-an385"].map(board) {
+        let format = board.format();
+        plan.test_on("the_cores_own_tests_pass_on_boards", board, format)
+            .in_full()
+            .run(move || {
+                let scene = scenes::quick();
+                let build = Build::new(board, format, Structure::DualSplit, &scene);
+                build.program_with("selftest", &["selftest"]).run();
+            });
+    }
 }
 
-/// Builds and runs each, compares its picture with the host's, and looks at what was linked:
-/// nothing that panics or allocates, no soft floats in `fixed`, and no more memory than there is.
-fn pictures_are_the_hosts<'s>(
-    all: impl IntoIterator<Item = (&'static Board, Format, &'s Compiled)>,
-) {
-    if !firmware::available() {
-        return;
+/// Every number format and every structure, where lanes are those of NEON or of none, is the host's to
+/// the bit. Where bytes lie the other way round, the blob is refused.
+fn other_processors(plan: &mut Plan) {
+    fn program<'b>(board: &'b Board, scene: &'b Compiled) -> Program<'b> {
+        Build::new(board, Format::Fixed, Structure::DualSplit, scene)
+            .program_with("everywhere", &["everywhere"])
     }
-    let mut figures = Figures::new();
-    for (board, format, scene) in all {
-        let build = Build::new(board, format, Structure::DualSplit, scene);
-        let program = build.program("picture");
-        let mut report = program.run();
+    const NAME: &str = "every_structure_on_other_processors";
+    for board in [&WASM, &AARCH64] {
+        let name = format!("{NAME}::{}", board.name);
+        plan.test(name).on(board).in_full().run(move || {
+            let scene = scenes::quick_through_everything();
+            let mut pictures = Vec::new();
+            for format in Format::ALL {
+                for structure in Structure::ALL {
+                    pictures.extend(scene.picture_through(structure, format));
+                }
+            }
+            let program = program(board, &scene);
+            let report = program.run();
+            assert_eq!(report["structures"], Structure::ALL.len() as u64);
+            assert!(
+                program.file("pictures.rgb") == pictures,
+                "pictures differ from the host's"
+            );
+        });
+    }
+    let name = format!("{NAME}::{}", S390X.name);
+    plan.test(name).on(&S390X).in_full().run(move || {
+        let refusal = program(&S390X, &scenes::quick_through_everything()).failure();
         assert!(
-            program.file("picture.rgb") == scene.picture(format),
-            "{build}: the picture differs from the host's; see {}",
-            program.folder().display()
+            refusal.contains("little-endian and this machine must be too"),
+            "{refusal}"
         );
-        if board != &WASM {
-            look_into(&build, &program.elf(), board, format, &mut report);
-        }
-        figures.add(&build.to_string(), &report);
+    });
+}
+
+/// Builds and runs a scene's picture, compares it with the host's, and looks at what was linked:
+/// nothing that panics or allocates, no soft floats in `fixed`, and no more memory than there is.
+fn picture_is_the_hosts(board: &'static Board, format: Format, scene: &Compiled) {
+    let mut figures = Figures::new();
+    let build = Build::new(board, format, Structure::DualSplit, scene);
+    let program = build.program("picture");
+    let mut report = program.run();
+    assert!(
+        program.file("picture.rgb") == scene.picture(format),
+        "{build}: the picture differs from the host's; see {}",
+        program.folder().display()
+    );
+    if board != &WASM {
+        look_into(&build, &program.elf(), board, format, &mut report);
     }
+    figures.add(&build.to_string(), &report);
     figures.check();
 }
 
@@ -182,12 +226,7 @@ fn look_into(
 
 /// No sum, product or shift of the core leaves its type, and the compiler can tell: with all of them
 /// checked, nothing is linked that panics.
-#[test]
-fn nothing_panics_with_overflow_checks() {
-    if !firmware::available() {
-        return;
-    }
-    let scene = scenes::quick();
+fn linked(plan: &mut Plan) {
     let everywhere = [
         ("microbit", Format::Fixed),
         ("mps2-an385", Format::Fixed),
@@ -195,19 +234,14 @@ fn nothing_panics_with_overflow_checks() {
         ("mps2-an386", Format::F32),
         ("mps2-an500", Format::F64),
     ]
-    .map(|(name, format)| (name, format, Structure::DualSplit));
-    let checked = |name, format, structure| {
-        Build::new(board(name), format, structure, &scene).with_overflow_checks()
-    };
+    .map(|(name, format)| (name, format, Structure::DualSplit, false));
     let others = [
         Structure::Flagged,
         Structure::Bvh,
         Structure::Grid,
         Structure::Apex,
     ]
-    .map(|structure| ("mps2-an385", Format::Fixed, structure));
-    let builds = everywhere.into_iter().chain(others);
-    let builds = builds.map(|(name, format, structure)| checked(name, format, structure));
+    .map(|structure| ("mps2-an385", Format::Fixed, structure, false));
     // In single precision libm's square root holds a sum that small code does not see through.
     let small = [
         ("microbit", Format::Fixed),
@@ -215,51 +249,23 @@ fn nothing_panics_with_overflow_checks() {
         ("sifive_e", Format::Fixed),
         ("mps2-an500", Format::F64),
     ]
-    .map(|(name, format)| checked(name, format, Structure::DualSplit).small());
-    for build in builds.chain(small) {
-        let elf = build.program_with("picture", &["everything"]).elf();
-        let panicking = elf.functions(elf::panics);
-        assert!(panicking.is_empty(), "{build} can panic: {panicking:#?}");
-    }
-}
-
-/// Small code gives the same bits, with every shape and effect, and holds no more that panics.
-#[test]
-fn small_pictures_are_the_hosts() {
-    if !firmware::available() {
-        return;
-    }
-    let scene = scenes::quick();
-    for (name, format) in [
-        ("mps2-an386", Format::F32),
-        ("mps2-an385", Format::Fixed),
-        ("microbit", Format::Fixed),
-        ("sifive_e", Format::Fixed),
-    ] {
-        let build = Build::new(board(name), format, Structure::DualSplit, &scene).small();
-        let program = build.program("picture");
-        let mut report = program.run();
-        let picture = program.file("picture.rgb");
-        assert!(picture == scene.picture(format), "{build}: another picture");
-        look_into(&build, &program.elf(), board(name), format, &mut report);
-    }
-}
-
-#[test]
-fn the_cores_own_tests_pass_on_boards() {
-    if !firmware::available() {
-        return;
-    }
-    let scene = scenes::quick();
-    for name in ["mps2-an386", "mps2-an385"] {
+    .map(|(name, format)| (name, format, Structure::DualSplit, true));
+    for (name, format, structure, small) in everywhere.into_iter().chain(others).chain(small) {
         let board = board(name);
-        let build = Build::new(board, board.format(), Structure::DualSplit, &scene);
-        build.program_with("selftest", &["selftest"]).run();
+        let size = if small { "small" } else { structure.name() };
+        let test = format!("nothing_panics_with_overflow_checks::{size}");
+        plan.test_on(&test, board, format).in_full().run(move || {
+            let scene = scenes::quick();
+            let build = Build::new(board, format, structure, &scene).with_overflow_checks();
+            let build = if small { build.small() } else { build };
+            let elf = build.program_with("picture", &["everything"]).elf();
+            let panicking = elf.functions(elf::panics);
+            assert!(panicking.is_empty(), "{build} can panic: {panicking:#?}");
+        });
     }
 }
 
 /// The linker knows the boards that the host knows.
-#[test]
 fn memory_maps_are_the_boards() {
     for board in &BOARDS {
         let path = format!("tests/firmware/src/board/memory/{}.x", board.name);

@@ -2,7 +2,8 @@
 
 use crate::casts::Casts;
 use crate::figures::Figures;
-use crate::firmware::{self, Build, board};
+use crate::firmware::{Build, board};
+use crate::plan::Plan;
 use crate::scenes::{self, Compiled};
 use gridel_core::{Fixed, Format, List, Stack, Structure};
 use gridel_host::board::Board;
@@ -22,47 +23,64 @@ fn boards_for_primary_rays() -> [(&'static Board, Format); 5] {
     .map(|(name, format)| (board(name), format))
 }
 
-#[test]
-fn primary_rays_of_suzanne() {
-    if !firmware::available() {
-        return;
-    }
-    let Some(suzanne) = scenes::suzanne() else {
-        return;
-    };
-    let mut figures = Figures::new();
+pub fn plan(plan: &mut Plan) {
     for (board, format) in boards_for_primary_rays() {
-        for structure in [Structure::DualSplit, Structure::Flagged, Structure::Bvh] {
-            let build = Build::new(board, format, structure, &suzanne);
-            let report = build.program("primary").run();
-            assert_eq!(report["rays"], 64 * 64, "{build}");
-            assert_eq!(report["hits"], 1400, "{build}");
-            let stack = report["load-stack-bytes"].max(report["ray-stack-bytes"]);
-            let ram = stack + report["workspace-bytes"];
-            assert!(ram <= PRIMARY_RAM, "{build}: {ram} bytes of RAM");
-            figures.add(&build.to_string(), &report);
-        }
+        plan.test_on("primary_rays_of_suzanne", board, format)
+            .with_scene(scenes::SUZANNE)
+            .in_full()
+            .run(move || primary_rays_of_suzanne(board, format));
+        plan.test_on("primary_rays_of_suzanne_in_16_bits", board, format)
+            .with_scene(scenes::SUZANNE)
+            .run(move || primary_rays_of_suzanne_in_16_bits(board, format));
+        plan.test_on("rays_without_a_camera::torus", board, format)
+            .in_full()
+            .run(move || rays_without_a_camera(board, format, &scenes::torus()));
+        plan.test_on("rays_without_a_camera::suzanne", board, format)
+            .with_scene(scenes::SUZANNE)
+            .in_full()
+            .run(move || rays_without_a_camera(board, format, &scenes::suzanne()));
+    }
+    for board in ["mps2-an386", "mps2-an385"].map(board) {
+        let format = board.format();
+        plan.test_on("primary_rays_of_molecules::nanotube", board, format)
+            .in_full()
+            .run(move || primary_rays_of_a_molecule(board, &scenes::molecule()));
+        plan.test_on("primary_rays_of_molecules::protein", board, format)
+            .with_scene(scenes::PROTEIN)
+            .in_full()
+            .run(move || primary_rays_of_a_molecule(board, &scenes::protein()));
+        plan.test_on("primary_rays_of_suzanne_in_16_kib", board, format)
+            .with_scene(scenes::SUZANNE)
+            .in_full()
+            .run(move || primary_rays_of_suzanne_in_16_kib(board));
+    }
+}
+
+fn primary_rays_of_suzanne(board: &'static Board, format: Format) {
+    let suzanne = scenes::suzanne();
+    let mut figures = Figures::new();
+    for structure in [Structure::DualSplit, Structure::Flagged, Structure::Bvh] {
+        let build = Build::new(board, format, structure, &suzanne);
+        let report = build.program("primary").run();
+        assert_eq!(report["rays"], 64 * 64, "{build}");
+        assert_eq!(report["hits"], 1400, "{build}");
+        let stack = report["load-stack-bytes"].max(report["ray-stack-bytes"]);
+        let ram = stack + report["workspace-bytes"];
+        assert!(ram <= PRIMARY_RAM, "{build}: {ram} bytes of RAM");
+        figures.add(&build.to_string(), &report);
     }
     figures.check();
 }
 
 /// What meshes for boards are compiled to: narrow vertices, dual-split nodes alone.
-#[test]
-fn primary_rays_of_suzanne_in_16_bits() {
-    if !firmware::available() {
-        return;
-    }
-    let Some(suzanne) = scenes::suzanne_in_16_bits() else {
-        return;
-    };
+fn primary_rays_of_suzanne_in_16_bits(board: &'static Board, format: Format) {
+    let suzanne = scenes::suzanne_in_16_bits();
     assert!(suzanne.blob.bytes().len() <= 32 * 1024);
     let mut figures = Figures::new();
-    for (board, format) in boards_for_primary_rays() {
-        let build = Build::new(board, format, Structure::DualSplit, &suzanne);
-        let report = build.program("primary").run();
-        assert_eq!(report["hits"], 1400, "{build}");
-        figures.add(&build.to_string(), &report);
-    }
+    let build = Build::new(board, format, Structure::DualSplit, &suzanne);
+    let report = build.program("primary").run();
+    assert_eq!(report["hits"], 1400, "{build}");
+    figures.add(&build.to_string(), &report);
     figures.check();
 }
 
@@ -70,27 +88,18 @@ fn primary_rays_of_suzanne_in_16_bits() {
 /// are floats.
 const A_RAY_AMONG_SPHERES: u64 = 620;
 
-/// Molecules of that size, a computed one and a protein, on a lattice of 16 bits.
-#[test]
-fn primary_rays_of_molecules() {
-    if !firmware::available() {
-        return;
-    }
+/// A molecule of that size, computed or a protein, on a lattice of 16 bits.
+fn primary_rays_of_a_molecule(board: &'static Board, molecule: &Compiled) {
     let mut figures = Figures::new();
-    for molecule in [scenes::molecule()].into_iter().chain(scenes::protein()) {
-        for name in ["mps2-an386", "mps2-an385"] {
-            let board = board(name);
-            let build = Build::new(board, board.format(), Structure::DualSplit, &molecule);
-            let report = build.program("primary").run();
-            assert_eq!(report["rays"], 64 * 64, "{build}");
-            assert!(report["hits"] > 200, "{build}");
-            let a_ray = report["ray-instructions"];
-            if board.format() == Format::F32 {
-                assert!(a_ray <= A_RAY_AMONG_SPHERES, "{build}: {a_ray} a ray");
-            }
-            figures.add(&build.to_string(), &report);
-        }
+    let build = Build::new(board, board.format(), Structure::DualSplit, molecule);
+    let report = build.program("primary").run();
+    assert_eq!(report["rays"], 64 * 64, "{build}");
+    assert!(report["hits"] > 200, "{build}");
+    let a_ray = report["ray-instructions"];
+    if board.format() == Format::F32 {
+        assert!(a_ray <= A_RAY_AMONG_SPHERES, "{build}: {a_ray} a ray");
     }
+    figures.add(&build.to_string(), &report);
     figures.check();
 }
 
@@ -98,30 +107,22 @@ fn primary_rays_of_molecules() {
 const CAST_RAM: u64 = 1024;
 
 /// What a range finder or a collision needs: hits alone, those of the host's list.
-#[test]
-fn rays_without_a_camera() {
-    if !firmware::available() {
-        return;
-    }
+fn rays_without_a_camera(board: &'static Board, format: Format, scene: &Compiled) {
     let mut figures = Figures::new();
-    for scene in [scenes::torus()].into_iter().chain(scenes::suzanne()) {
-        for (board, format) in boards_for_primary_rays() {
-            let build = Build::new(board, format, Structure::DualSplit, &scene);
-            let mut report = build.program("casts").run();
-            let hosts = casts_through_the_list(&scene, format);
-            let found = ["hits", "sum"].map(|name| report.remove(name));
-            assert_eq!(
-                found,
-                [hosts.hits, hosts.sum].map(|x| Some(x.into())),
-                "{build}"
-            );
-            let ram = report["cast-stack-bytes"] + report["cast-workspace-bytes"];
-            // With half of the registers, a Cortex-M0 puts down more.
-            let is_bound = board.core != "Cortex-M0";
-            assert!(!is_bound || ram <= CAST_RAM, "{build}: {ram} bytes of RAM");
-            figures.add(&build.to_string(), &report);
-        }
-    }
+    let build = Build::new(board, format, Structure::DualSplit, scene);
+    let mut report = build.program("casts").run();
+    let hosts = casts_through_the_list(scene, format);
+    let found = ["hits", "sum"].map(|name| report.remove(name));
+    assert_eq!(
+        found,
+        [hosts.hits, hosts.sum].map(|x| Some(x.into())),
+        "{build}"
+    );
+    let ram = report["cast-stack-bytes"] + report["cast-workspace-bytes"];
+    // With half of the registers, a Cortex-M0 puts down more.
+    let is_bound = board.core != "Cortex-M0";
+    assert!(!is_bound || ram <= CAST_RAM, "{build}: {ram} bytes of RAM");
+    figures.add(&build.to_string(), &report);
     figures.check();
 }
 
@@ -138,23 +139,13 @@ fn casts_through_the_list(scene: &Compiled, format: Format) -> Casts {
 }
 
 /// The smallest layout, and what rays pay for it.
-#[test]
-fn primary_rays_of_suzanne_in_16_kib() {
-    if !firmware::available() {
-        return;
-    }
-    let Some(suzanne) = scenes::small_suzanne() else {
-        return;
-    };
+fn primary_rays_of_suzanne_in_16_kib(board: &'static Board) {
+    let suzanne = scenes::small_suzanne();
     assert!(suzanne.blob.bytes().len() <= 16 * 1024);
     let mut figures = Figures::new();
-    for name in ["mps2-an386", "mps2-an385"] {
-        let board = board(name);
-        let format = board.format();
-        let build = Build::new(board, format, Structure::Flagged, &suzanne);
-        let report = build.program("primary").run();
-        assert_eq!(report["hits"], 1400, "{build}");
-        figures.add(&build.to_string(), &report);
-    }
+    let build = Build::new(board, board.format(), Structure::Flagged, &suzanne);
+    let report = build.program("primary").run();
+    assert_eq!(report["hits"], 1400, "{build}");
+    figures.add(&build.to_string(), &report);
     figures.check();
 }

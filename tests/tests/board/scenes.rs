@@ -1,6 +1,5 @@
 //! The scenes that go into flash, compiled small.
 
-use crate::firmware::skip;
 use glam::DVec3;
 use gridel_core::render::Pixel;
 use gridel_core::{Format, Rgb888, Settings, Structure};
@@ -91,10 +90,13 @@ pub fn molecule() -> Compiled {
     compile_with("nanotube", scene, [64, 64], small())
 }
 
-/// A protein of about as many atoms. `None` where it is missing.
-pub fn protein() -> Option<Compiled> {
-    let scene = load(&real("molecules/3dqb.pdb")?);
-    Some(compile_with("3dqb", scene, [64, 64], small()))
+/// The real scenes' files.
+pub const PROTEIN: &str = "molecules/3dqb.pdb";
+pub const SUZANNE: &str = "meshes/suzanne.obj";
+
+/// A protein of about as many atoms.
+pub fn protein() -> Compiled {
+    compile_with("3dqb", load(&real(PROTEIN)), [64, 64], small())
 }
 
 /// A torus of 2,048 triangles, lit from the side on which it is seen.
@@ -148,30 +150,30 @@ pub fn torus() -> Compiled {
 }
 
 /// The mesh on which tracers for boards are compared: seen from 3.2 before its middle, in a square
-/// picture that is 2.9 wide there. `None` where the mesh is missing.
-pub fn suzanne() -> Option<Compiled> {
-    Some(compile("suzanne", suzanne_scene()?, [64, 64]))
+/// picture that is 2.9 wide there.
+pub fn suzanne() -> Compiled {
+    compile("suzanne", suzanne_scene(), [64, 64])
 }
 
 /// The same on a lattice of 16 bits, which moves no vertex by more than 2.4e-5 of 2.7.
-pub fn suzanne_in_16_bits() -> Option<Compiled> {
+pub fn suzanne_in_16_bits() -> Compiled {
     let (name, size) = ("suzanne-16", [64, 64]);
-    Some(compile_with(name, suzanne_scene()?, size, small()))
+    compile_with(name, suzanne_scene(), size, small())
 }
 
 /// The same in as few bytes as a hierarchy takes.
-pub fn small_suzanne() -> Option<Compiled> {
+pub fn small_suzanne() -> Compiled {
     let options = Options {
         structures: vec![Structure::Flagged],
         leaf_size: 8,
         ..small()
     };
     let (name, size) = ("suzanne-small", [64, 64]);
-    Some(compile_with(name, suzanne_scene()?, size, options))
+    compile_with(name, suzanne_scene(), size, options)
 }
 
-fn suzanne_scene() -> Option<Scene> {
-    let mut scene = load(&real("meshes/suzanne.obj")?);
+fn suzanne_scene() -> Scene {
+    let mut scene = load(&real(SUZANNE));
     let vertices = scene.objects.iter().flat_map(|object| match &object.shape {
         Shape::Mesh { vertices, .. } => &vertices[..],
         _ => &[],
@@ -187,7 +189,7 @@ fn suzanne_scene() -> Option<Scene> {
         up: DVec3::Y,
         fov_degrees: 2.0 * f64::atan(1.45 / 3.2).to_degrees(),
     });
-    Some(scene)
+    scene
 }
 
 impl Compiled {
@@ -224,17 +226,11 @@ fn fixture_path(name: &str) -> PathBuf {
     path.with_extension("toml")
 }
 
-/// A real scene. `None`, said aloud, where it is missing.
-fn real(name: &str) -> Option<PathBuf> {
+/// Where a real scene lies, if it is there.
+pub fn real(name: &str) -> PathBuf {
     let folder = env::var_os("GRIDEL_SCENES")
         .map_or_else(|| repository().join("../shared/scenes"), PathBuf::from);
-    let path = folder.join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    let path = path.display();
-    skip(format_args!("{path} is missing; set GRIDEL_SCENES"));
-    None
+    folder.join(name)
 }
 
 fn load(path: &Path) -> Scene {

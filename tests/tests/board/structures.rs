@@ -1,51 +1,48 @@
 //! Structures against each other, on the paper's sorts of scenes.
 
 use crate::figures::Figures;
-use crate::firmware::{self, Build, board};
+use crate::firmware::{Build, board};
+use crate::plan::Plan;
 use crate::scenes::{self, Compiled};
 use gridel_core::{Format, Structure};
 use std::sync::LazyLock;
 
-/// The paper's claim, on its own sorts of scenes: whole pictures take less with flagged sides.
-#[test]
-fn flagged_is_ahead_of_plain() {
-    if !firmware::available() {
-        return;
+pub fn plan(plan: &mut Plan) {
+    for (name, format) in PAPER_BOARDS {
+        plan.test_on("flagged_is_ahead_of_plain", board(name), format)
+            .in_full()
+            .run(move || flagged_is_ahead_of_plain(name, format));
+        plan.test_on("lists_of_candidates", board(name), format)
+            .in_full()
+            .run(move || lists_of_candidates(name, format));
     }
+}
+
+/// The paper's claim, on its own sorts of scenes: whole pictures take less with flagged sides.
+fn flagged_is_ahead_of_plain(name: &str, format: Format) {
     const STRUCTURES: [Structure; 3] = [Structure::Bvh, Structure::Flagged, Structure::DualSplit];
+    static SCENES: LazyLock<[Compiled; 3]> = LazyLock::new(|| scenes::papers(&STRUCTURES));
     let mut figures = Figures::new();
-    for scene in scenes::papers(&STRUCTURES) {
-        for (name, format) in PAPER_BOARDS {
-            let [plain, flagged, dual] = STRUCTURES.map(|structure| {
-                let spent = spent(name, format, structure, &scene, &mut figures);
-                spent.expect("short parts")
-            });
-            let about = format!("{} {}", scene.name, format.name());
-            println!(
-                "{about}: plain over flagged {:.3}, over dual-split {:.3}",
-                plain / flagged,
-                plain / dual
-            );
-            assert!(flagged < plain, "{about}: flagged sides do not pay");
-        }
+    for scene in SCENES.iter() {
+        let [plain, flagged, dual] = STRUCTURES.map(|structure| {
+            let spent = spent(name, format, structure, scene, &mut figures);
+            spent.expect("short parts")
+        });
+        let about = format!("{} {}", scene.name, format.name());
+        println!(
+            "{about}: plain over flagged {:.3}, over dual-split {:.3}",
+            plain / flagged,
+            plain / dual
+        );
+        assert!(flagged < plain, "{about}: flagged sides do not pay");
     }
     figures.check();
-}
-
-#[test]
-fn lists_of_candidates_in_floats() {
-    lists_of_candidates(PAPER_BOARDS[0]);
-}
-
-#[test]
-fn lists_of_candidates_in_integers() {
-    lists_of_candidates(PAPER_BOARDS[1]);
 }
 
 /// The grid and lists of candidates on the paper's scenes, as far as a board's flash holds them, and
 /// on a molecule that fills the picture. What hierarchies take there `flagged_is_ahead_of_plain`
 /// records; the test `documents` compares.
-fn lists_of_candidates((name, format): (&str, Format)) {
+fn lists_of_candidates(name: &str, format: Format) {
     use Structure::{Apex, CylinderCube, CylinderCubeEntry, CylinderCubeTight, DualSplit, Grid};
     // Gridels a side are those that the builder would find for its budget.
     static SCENES: LazyLock<Vec<(Structure, Compiled)>> = LazyLock::new(|| {
@@ -73,9 +70,6 @@ fn lists_of_candidates((name, format): (&str, Format)) {
         })
         .into()
     });
-    if !firmware::available() {
-        return;
-    }
     let mut figures = Figures::new();
     for (structure, scene) in SCENES.iter() {
         spent(name, format, *structure, scene, &mut figures);

@@ -1,6 +1,6 @@
 //! Cones and frusta: hard cases D15, D16 and D24.
 
-use crate::{hold, hold_all, of_every_sort};
+use super::{hold, hold_all, of_every_sort};
 use glam::DVec3;
 use gridel_core::Number;
 use gridel_tests::cases::{Case, lattice, slope};

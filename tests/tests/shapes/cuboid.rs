@@ -1,6 +1,6 @@
 //! Boxes as objects: hard cases A1, A6, A7 and D24 for solids.
 
-use crate::{hold, of_every_sort};
+use super::{hold, of_every_sort};
 use glam::DVec3;
 use gridel_core::Number;
 use gridel_tests::cases::{Case, lattice, slope};

@@ -1,6 +1,6 @@
 //! Capped cylinders: hard cases D12 to D14 and D24.
 
-use crate::{hold, hold_all, of_every_sort};
+use super::{hold, hold_all, of_every_sort};
 use glam::DVec3;
 use gridel_core::{List, NoCount, Number};
 use gridel_tests::cases::{Case, lattice, slope};

@@ -1,6 +1,6 @@
 //! Discs: hard case D11.
 
-use crate::{hold, of_every_sort};
+use super::{hold, of_every_sort};
 use glam::DVec3;
 use gridel_core::Number;
 use gridel_tests::cases::{Case, lattice, slope};

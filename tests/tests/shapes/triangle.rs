@@ -1,6 +1,6 @@
 //! Single triangles: hard cases D6 to D10. Meshes without holes are in `watertight`.
 
-use crate::{hold_all, of_every_sort};
+use super::{hold_all, of_every_sort};
 use glam::DVec3;
 use gridel_core::{List, NoCount, Number, Scene};
 use gridel_host::scene::Shape;
