@@ -452,7 +452,9 @@ fn numbered<T>(leaf: Leaf, records: Option<&[T]>) -> impl Iterator<Item = (u32, 
 ///
 /// Of hits at the same t the one that comes first in the scene file counts, so the answer is the
 /// same whatever the structure. The stack must be as deep as the blob says.
-#[inline]
+// Hosts have the room; a ray that goes through memory is waited for.
+#[cfg_attr(feature = "wide", inline(always))]
+#[cfg_attr(not(feature = "wide"), inline)]
 pub fn closest_primitive<N: Number, A: Accel, C: Count>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
@@ -507,6 +509,7 @@ fn search<N: Number, A: Accel, C: Count, const ANY: bool>(
 impl<N: Number> Found<N> {
     /// The whole hit: the point and how the surface lies there. `scene` and `ray` are those of the
     /// query.
+    #[cfg_attr(feature = "wide", inline(always))]
     pub fn hit(&self, scene: &Scene<'_>, ray: &Ray<N>) -> Option<Hit<N>> {
         let best = self.best;
         let point = ray.at(best.t);
@@ -583,7 +586,7 @@ pub fn closest_hit<N: Number, A: Accel, C: Count>(
 }
 
 /// Whether a ray meets anything in its interval: whether [`closest_hit`] would find something.
-// Hosts have the room; a ray that goes through memory is waited for.
+// As above.
 #[cfg_attr(feature = "wide", inline(always))]
 pub fn any_hit<N: Number, A: Accel, C: Count>(
     scene: &Scene<'_>,

@@ -310,6 +310,7 @@ impl<N: Number> Ray<N> {
     ///
     /// # Errors
     /// As [`Ray::new`].
+    #[cfg_attr(feature = "wide", inline(always))]
     pub fn from_f64(
         bounds: &UnitBox,
         origin: [f64; 3],

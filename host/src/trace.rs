@@ -3,8 +3,8 @@
 use glam::DVec3;
 use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
 use gridel_core::{
-    Accel, Bvh, Count, DualSplit, Fixed, Flagged, Format, Number, Ray, Scene, Stack, Structure,
-    Wide, any_hit, closest_hit,
+    Accel, Bvh, Count, Counters, DualSplit, Fixed, Flagged, Format, NoCount, Number, Ray, RayKind,
+    Scene, Stack, Structure, Wide, any_hit, closest_primitive,
 };
 
 /// A ray in scene units; t counts multiples of the direction.
@@ -34,6 +34,14 @@ impl SceneHit {
         primitive: u32::MAX,
         normal: [0.0; 3],
     };
+
+    /// Something was met, where any hit will do.
+    const ANY: Self = Self {
+        t: 0.0,
+        object: 0,
+        primitive: 0,
+        normal: [0.0; 3],
+    };
 }
 
 /// How to trace.
@@ -46,74 +54,112 @@ pub struct Query {
 }
 
 /// Traces rays one after the other on this thread.
-pub fn trace<C: Count>(
-    scene: &Scene<'_>,
-    rays: &[SceneRay],
-    query: Query,
-    hits: &mut [SceneHit],
-    count: &mut C,
-) {
+pub fn trace(scene: &Scene<'_>, rays: &[SceneRay], query: Query, hits: &mut [SceneHit]) {
     match query.format {
-        Format::Fixed => with_format::<Fixed, C>(scene, rays, query, hits, count),
-        Format::F32 => with_format::<f32, C>(scene, rays, query, hits, count),
-        Format::F64 => with_format::<f64, C>(scene, rays, query, hits, count),
+        Format::Fixed => with_format::<Fixed>(scene, rays, query, hits),
+        Format::F32 => with_format::<f32>(scene, rays, query, hits),
+        Format::F64 => with_format::<f64>(scene, rays, query, hits),
     }
 }
 
-fn with_format<N: Number, C: Count>(
+/// Traces rays like [`trace`], and counts what is tested for them.
+pub fn trace_counted(
     scene: &Scene<'_>,
     rays: &[SceneRay],
     query: Query,
     hits: &mut [SceneHit],
-    count: &mut C,
+    counters: &mut Counters,
 ) {
+    let Some(scene) = scene.choose(query.structure) else {
+        return hits.fill(SceneHit::MISS);
+    };
     let any = query.any;
+    match query.format {
+        Format::Fixed => through::<Fixed, Chosen, _>(&scene, rays, any, hits, counters),
+        Format::F32 => through::<f32, Chosen, _>(&scene, rays, any, hits, counters),
+        Format::F64 => through::<f64, Chosen, _>(&scene, rays, any, hits, counters),
+    }
+}
+
+fn with_format<N: Number>(
+    scene: &Scene<'_>,
+    rays: &[SceneRay],
+    query: Query,
+    hits: &mut [SceneHit],
+) {
+    let (any, count) = (query.any, &mut NoCount);
     // What hosts and boards trace with; the others are there to be compared.
     match query.structure {
-        Structure::Bvh => trace_through::<N, Bvh, C>(scene, rays, any, hits, count),
-        Structure::Flagged => trace_through::<N, Flagged, C>(scene, rays, any, hits, count),
-        Structure::DualSplit => trace_through::<N, DualSplit, C>(scene, rays, any, hits, count),
-        Structure::Wide => trace_through::<N, Wide, C>(scene, rays, any, hits, count),
+        Structure::Bvh => through::<N, Bvh, _>(scene, rays, any, hits, count),
+        Structure::Flagged => through::<N, Flagged, _>(scene, rays, any, hits, count),
+        Structure::DualSplit => through::<N, DualSplit, _>(scene, rays, any, hits, count),
+        Structure::Wide => through::<N, Wide, _>(scene, rays, any, hits, count),
         other => match scene.choose(other) {
-            Some(scene) => trace_through::<N, Chosen, C>(&scene, rays, any, hits, count),
+            Some(scene) => through::<N, Chosen, _>(&scene, rays, any, hits, count),
             None => hits.fill(SceneHit::MISS),
         },
     }
 }
 
-fn trace_through<N: Number, A: Accel, C: Count>(
+fn through<N: Number, A: Accel, C: Count>(
     scene: &Scene<'_>,
     rays: &[SceneRay],
     any: bool,
     hits: &mut [SceneHit],
     count: &mut C,
 ) {
+    if any {
+        any_of_each::<N, A, C>(scene, rays, hits, count);
+    } else {
+        closest_of_each::<N, A, C>(scene, rays, hits, count);
+    }
+}
+
+/// Finds whether each ray meets anything.
+fn any_of_each<N: Number, A: Accel, C: Count>(
+    scene: &Scene<'_>,
+    rays: &[SceneRay],
+    hits: &mut [SceneHit],
+    count: &mut C,
+) {
     let frame = Frame::of(scene);
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
     for (ray, hit) in rays.iter().zip(hits) {
-        *hit = SceneHit::MISS;
-        let Some((core_ray, scale)) = frame.ray::<N>(scene, ray) else {
-            continue;
+        let is_hit = frame.ray::<N>(scene, ray).is_some_and(|(ray, _)| {
+            count.ray(RayKind::Primary, &ray);
+            any_hit::<N, A, C>(scene, &ray, stack.as_view(), count)
+        });
+        *hit = if is_hit {
+            SceneHit::ANY
+        } else {
+            SceneHit::MISS
         };
-        count.ray(gridel_core::RayKind::Primary, &core_ray);
-        if any {
-            if any_hit::<N, A, C>(scene, &core_ray, stack.as_view(), count) {
-                *hit = SceneHit {
-                    t: 0.0,
-                    object: 0,
-                    primitive: 0,
-                    normal: [0.0; 3],
-                };
-            }
-        } else if let Some(found) = closest_hit::<N, A, C>(scene, &core_ray, stack.as_view(), count)
-        {
-            *hit = SceneHit {
-                t: N::far_to_f64(found.t) / scale,
-                object: found.object,
-                primitive: found.primitive,
-                normal: found.normal.map(|x| x.ratio_to_f64() as f32),
-            };
-        }
+    }
+}
+
+/// Finds what each ray meets first.
+fn closest_of_each<N: Number, A: Accel, C: Count>(
+    scene: &Scene<'_>,
+    rays: &[SceneRay],
+    hits: &mut [SceneHit],
+    count: &mut C,
+) {
+    let frame = Frame::of(scene);
+    let mut stack = Stack::<MAX_STACK_DEPTH>::new();
+    for (ray, hit) in rays.iter().zip(hits) {
+        let closest = frame.ray::<N>(scene, ray).and_then(|(ray, scale)| {
+            count.ray(RayKind::Primary, &ray);
+            let found = closest_primitive::<N, A, C>(scene, &ray, stack.as_view(), count)?;
+            // Inlined, it computes what is used here, and nothing else.
+            let hit = found.hit(scene, &ray)?;
+            Some(SceneHit {
+                t: N::far_to_f64(hit.t) / scale,
+                object: hit.object,
+                primitive: hit.primitive,
+                normal: hit.normal.map(|x| x.ratio_to_f64() as f32),
+            })
+        });
+        *hit = closest.unwrap_or(SceneHit::MISS);
     }
 }
 
@@ -158,6 +204,7 @@ impl Frame {
     }
 
     /// A ray in the core's form, and by how much its t is larger: `None` for what is no ray.
+    #[inline(always)]
     pub fn ray<N: Number>(&self, scene: &Scene<'_>, ray: &SceneRay) -> Option<(Ray<N>, f64)> {
         // Multiples of the direction become lengths along its largest component.
         let scale = ray.direction.abs().max_element() / self.unit;

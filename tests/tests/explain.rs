@@ -1,6 +1,6 @@
 //! The story of a pixel is that of the pixel that is rendered: the same hits, and parts that add up.
 
-use gridel_core::{Format, NoCount, Scene, Settings, Structure};
+use gridel_core::{Format, Scene, Settings, Structure};
 use gridel_host::explain::{
     Culled, Fall, Names, Sample, Shown, Step, Story, Subject, Verdict, Walk, explain,
 };
@@ -128,7 +128,7 @@ fn a_rays_hit_is_the_one_that_is_traced() {
                 any: false,
             };
             let mut hits = [SceneHit::MISS];
-            trace(&scene, &[ray], query, &mut hits, &mut NoCount);
+            trace(&scene, &[ray], query, &mut hits);
             let settings = Settings::of(&scene);
             let subject = Subject::Ray(ray);
             let story = explain(&scene, format, Structure::Flagged, settings, subject);

@@ -1,7 +1,7 @@
 //! Meshes and rays with answers by brute force in double precision, which Embree shares.
 
 use glam::DVec3;
-use gridel_core::{Format, NoCount, Structure};
+use gridel_core::{Format, Structure};
 use gridel_host::scene::{Scene, Shape};
 use gridel_host::trace::{Query, SceneHit, SceneRay, trace};
 use gridel_tests::scenes;
@@ -125,7 +125,7 @@ fn answers_agree_with_brute_force() {
                 any: false,
             };
             let mut hits = vec![SceneHit::MISS; rays.len()];
-            trace(&scene, &rays, query, &mut hits, &mut NoCount);
+            trace(&scene, &rays, query, &mut hits);
             compare(mesh, format, step, &answers, &hits);
         }
     }

@@ -1,7 +1,7 @@
 //! The Standard Procedural Databases: how many of 513 by 513 rays through pixel corners hit.
 
 use glam::DVec3;
-use gridel_core::{Format, NoCount, Structure};
+use gridel_core::{Format, Structure};
 use gridel_host::scene::Scene;
 use gridel_host::trace::{Query, SceneHit, SceneRay, trace};
 use gridel_tests::scenes;
@@ -39,7 +39,7 @@ fn hits(name: &str, format: Format) -> Option<usize> {
     };
     let mut hits = vec![SceneHit::MISS; rays.len()];
     let scene = blob.scene().expect("a scene");
-    trace(&scene, &rays, query, &mut hits, &mut NoCount);
+    trace(&scene, &rays, query, &mut hits);
     assert!(
         hits.iter()
             .all(|hit| !hit.t.is_nan() && hit.normal.iter().all(|x| x.is_finite()))

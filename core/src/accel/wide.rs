@@ -111,7 +111,7 @@ impl Accel for Wide {
     const HAS_CLUSTERS: bool = true;
     type Cull<N: Number> = N::WideCull;
 
-    #[inline]
+    #[inline(always)]
     fn walk<N: Number, C: Count>(
         scene: &Scene<'_>,
         ray: &Ray<N>,
@@ -154,7 +154,7 @@ impl Accel for Wide {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn walk_any<N: Number, C: Count>(
         scene: &Scene<'_>,
         ray: &Ray<N>,

@@ -206,6 +206,7 @@ impl<'a> Scene<'a> {
     /// The key of a member of a cluster, by its number among those of its kind and the number of
     /// members before them.
     #[cfg(feature = "wide")]
+    #[inline]
     fn member(&self, kind: Kind, number: u32, before: usize) -> (u32, u8, u32) {
         let clusters = &self.shapes.clusters;
         let member = clusters.members.get(before + number as usize).unwrap_or(0);
@@ -224,6 +225,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The object that a primitive belongs to.
+    #[cfg_attr(feature = "wide", inline)]
     pub fn object(&self, primitive: u32) -> u32 {
         if self.object_first.is_empty() {
             return if self.header.objects == self.header.primitives {

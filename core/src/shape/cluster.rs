@@ -53,6 +53,7 @@ impl Strips<'_> {
         }
     }
 
+    #[inline]
     pub(crate) fn members(&self, strip: u32) -> Option<&StripMembers> {
         match self {
             Strips::S16(strips) => strips.get(strip as usize).map(Strip::members),
@@ -61,6 +62,7 @@ impl Strips<'_> {
     }
 
     /// The corners of a triangle in 1/256 unit.
+    #[inline]
     pub(crate) fn triangle(&self, strip: u32, place: u32) -> Option<[[i32; 3]; 3]> {
         match self {
             Strips::S16(strips) => strips.get(strip as usize)?.triangle(place),

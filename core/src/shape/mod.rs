@@ -412,6 +412,7 @@ impl Shapes<'_> {
 
     /// How a primitive's surface lies where a ray hit it, and whether the ray came from the side to
     /// which the normal points.
+    #[cfg_attr(feature = "wide", inline(always))]
     pub(crate) fn surface<N: Number>(
         &self,
         place: Place,
@@ -454,7 +455,8 @@ impl Shapes<'_> {
 
     /// The surface of a primitive that has a record of its own, at a point, and the way towards where
     /// it is seen from.
-    #[inline(always)]
+    #[cfg_attr(feature = "wide", inline(never))]
+    #[cfg_attr(not(feature = "wide"), inline(always))]
     fn surface_in_slot<N: Number>(
         &self,
         kind: Kind,

@@ -134,6 +134,7 @@ pub(crate) fn bounds([a, b, c]: [[i32; 3]; 3]) -> UnitBox {
 }
 
 /// The front is where the corners run counter-clockwise.
+#[cfg_attr(feature = "wide", inline(always))]
 pub(crate) fn surface<N: Number>(corners: [[i32; 3]; 3]) -> Surface<N> {
     let extents = corners.map(|corner| extent(corner.map(N::from_lattice)));
     Surface {

@@ -6,10 +6,10 @@ use super::output::{check_extension, print, print_json, prove, refuse_same, writ
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
-use gridel_core::{Count, Counters, NoCount, Scene, Structure};
+use gridel_core::{Counters, Structure};
 use gridel_host::npy::{read_rays, write_hits};
 use gridel_host::report::grouped;
-use gridel_host::trace::{Frame, Query, SceneHit, SceneRay, trace};
+use gridel_host::trace::{Frame, Query, SceneHit, SceneRay, trace, trace_counted};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -130,14 +130,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let progress = Progress::steps("tracing", passes * chunks);
     let mut hits = vec![SceneHit::MISS; rays.len()];
     let pass = Pass {
-        scene: &scene,
         rays: &rays,
-        query,
         pool: &pool,
         progress: &progress,
     };
     let counters = arguments.json.then(|| {
-        let counted: Vec<Counters> = pass.run(&mut hits);
+        let counted = pass.run(&mut hits, |rays, hits| {
+            let mut counters = Counters::default();
+            trace_counted(&scene, rays, query, hits, &mut counters);
+            counters
+        });
         counted
             .iter()
             .fold(Counters::default(), |sum, part| sum.plus(part))
@@ -145,7 +147,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let seconds: Vec<f64> = (0..arguments.repeat)
         .map(|_| {
             let begun = Instant::now();
-            let _: Vec<NoCount> = pass.run(&mut hits);
+            pass.run(&mut hits, |rays, hits| trace(&scene, rays, query, hits));
             begun.elapsed().as_secs_f64()
         })
         .collect();
@@ -192,22 +194,23 @@ fn read(path: &Path) -> Result<Vec<SceneRay>, Failure> {
 
 /// All rays, once.
 struct Pass<'p> {
-    scene: &'p Scene<'p>,
     rays: &'p [SceneRay],
-    query: Query,
     pool: &'p ThreadPool,
     /// Told of every chunk.
     progress: &'p Progress,
 }
 
 impl Pass<'_> {
-    /// Traces the rays; a counter for each part of the work.
-    fn run<C: Count + Default + Send>(&self, hits: &mut [SceneHit]) -> Vec<C> {
+    /// Traces the rays in chunks, and returns what tracing each of them returns.
+    fn run<T: Send>(
+        &self,
+        hits: &mut [SceneHit],
+        trace: impl Fn(&[SceneRay], &mut [SceneHit]) -> T + Sync,
+    ) -> Vec<T> {
         let one = |(rays, hits): (&[SceneRay], &mut [SceneHit])| {
-            let mut count = C::default();
-            trace(self.scene, rays, self.query, hits, &mut count);
+            let traced = trace(rays, hits);
             self.progress.step();
-            count
+            traced
         };
         if self.pool.current_num_threads() == 1 {
             let rays = self.rays.chunks(CHUNK);
