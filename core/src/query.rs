@@ -476,7 +476,7 @@ fn search<N: Number, A: Accel, C: Count, const ANY: bool>(
     any: bool,
 ) -> Option<Found<N>> {
     // Known when the code is compiled, unless one copy of it is to serve both.
-    let any = if SMALL { any } else { ANY };
+    let any = if A::ONE_COPY { any } else { ANY };
     let cull = A::Cull::<N>::new(ray);
     let mut search = Search::new(scene, ray, &cull);
     if C::TELLS {
@@ -487,7 +487,7 @@ fn search<N: Number, A: Accel, C: Count, const ANY: bool>(
             search.leaf::<A, C, ANY>(leaf, count);
             search.best.is_some()
         });
-    } else if SMALL {
+    } else if A::ONE_COPY {
         A::walk(scene, ray, &cull, stack, count, |leaf, count| {
             search.leaf::<A, C, ANY>(leaf, count);
             (!any || search.best.is_none()).then_some(search.tmax)
@@ -594,7 +594,12 @@ pub fn any_hit<N: Number, A: Accel, C: Count>(
     stack: &mut StackView,
     count: &mut C,
 ) -> bool {
-    let any = search::<N, A, C, { !SMALL }>(scene, ray, stack, count, true).is_some();
+    let found = if A::ONE_COPY {
+        search::<N, A, C, false>(scene, ray, stack, count, true)
+    } else {
+        search::<N, A, C, true>(scene, ray, stack, count, true)
+    };
+    let any = found.is_some();
     if C::TELLS {
         count.tell(Event::Any(any));
     }

@@ -117,6 +117,7 @@ pub use spheres::Spheres;
 #[cfg(feature = "wide")]
 pub use wide::Wide;
 
+use crate::SMALL;
 use crate::blob::Scene;
 use crate::count::Count;
 use crate::number::Number;
@@ -135,6 +136,9 @@ pub trait Accel: Send + Sync {
     /// Whether its leaves can be [clusters](crate::blob::cluster): code for these is only compiled
     /// where they are.
     const HAS_CLUSTERS: bool = false;
+    /// Whether one copy of a query's code serves the closest hit and any hit: less code, and a branch
+    /// per leaf.
+    const ONE_COPY: bool = SMALL;
 
     /// What a scene must hold to be walked.
     fn needs(_: &Scene<'_>) -> Structure {

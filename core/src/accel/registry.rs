@@ -78,6 +78,8 @@ macro_rules! structures {
         impl Accel for Chosen {
             const STRUCTURE: Structure = Structure::List;
             const HAS_CLUSTERS: bool = cfg!(feature = "wide");
+            // All walks are in each copy.
+            const ONE_COPY: bool = true;
             type Cull<N: Number> = N::Cull;
 
             fn needs(scene: &Scene<'_>) -> Structure {
