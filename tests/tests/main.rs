@@ -4,9 +4,11 @@
 
 mod accuracy;
 mod apex;
+#[path = "blob/main.rs"]
 mod blob;
 mod boxes;
 mod cylinder_cube;
+#[path = "documents/main.rs"]
 mod documents;
 mod explain;
 mod fixed_point;
@@ -14,6 +16,7 @@ mod grids;
 mod reference;
 mod render;
 mod shading;
+#[path = "shapes/main.rs"]
 mod shapes;
 mod spd;
 mod structures;
