@@ -1,10 +1,27 @@
 //! How much is tested: a part in the ordinary run, all that the project promises on demand.
 
+use std::env;
+
+fn is_set(name: &str) -> bool {
+    env::var_os(name).is_some_and(|value| value == "1")
+}
+
+/// Whether the environment asks for all that the project promises, by `GRIDEL_FULL=1`.
+pub fn full() -> bool {
+    is_set("GRIDEL_FULL")
+}
+
 /// `quick`, or `full` where the environment says `GRIDEL_FULL=1`.
 pub fn part_of(quick: usize, full: usize) -> usize {
-    if std::env::var_os("GRIDEL_FULL").is_some_and(|value| value == "1") {
-        full
+    if self::full() { full } else { quick }
+}
+
+/// `count` where the environment says `GRIDEL_CI=1` or `GRIDEL_FULL=1`, or else a third of it: for the
+/// longest tests.
+pub fn third_of(count: usize) -> usize {
+    if full() || is_set("GRIDEL_CI") {
+        count
     } else {
-        quick
+        count.div_ceil(3)
     }
 }
