@@ -169,7 +169,7 @@ fn check_view<'a>(sections: &Sections<'a>) -> Result<&'a View, BlobError> {
         MAX_SAMPLES.into(),
     )?;
     at.within("depth", view.depth.into(), 0, MAX_RAY_DEPTH as i64)?;
-    at.within("spare byte", view.spare.into(), 0, 0)?;
+    at.within("display values", view.display_values.into(), 0, 1)?;
     Ok(view)
 }
 

@@ -141,8 +141,9 @@ pub struct View {
     pub samples: u16,
     /// How often a ray may be reflected or refracted, 0 to [`MAX_RAY_DEPTH`](crate::render::MAX_RAY_DEPTH).
     pub depth: u8,
-    /// Zero.
-    pub spare: u8,
+    /// 1 where all colours and lights are display values, which reach the display as they are; 0
+    /// where they are linear.
+    pub display_values: u8,
 }
 
 /// A light.

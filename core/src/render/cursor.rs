@@ -163,7 +163,7 @@ impl<N: Number> Samples<N> {
             self.sum
                 .scaled(N::ratio((1 << 30) / i32::from(samples.max(1))))
         };
-        Some(mean.0.map(N::to_linear16))
+        Some(renderer.to_linear(mean))
     }
 }
 

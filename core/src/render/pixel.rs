@@ -70,6 +70,24 @@ fn srgb(linear: u16) -> u32 {
     ((below as u32) << 8).wrapping_add(part.unwrap_or(0))
 }
 
+/// The linear values whose sRGB codes are these display values, 65535 being white.
+#[cold]
+#[inline(never)]
+pub(crate) fn from_display(values: [u16; 3]) -> Linear {
+    values.map(|value| {
+        // At most 255 * 65535: a code with 16 fraction bits, but for a part in 65536.
+        let code = u32::from(value) * 255;
+        let (below, part) = ((code / 65_535) as usize, code % 65_535);
+        let Some(&low) = LINEAR_OF_SRGB.get(below) else {
+            return u16::MAX;
+        };
+        let high = LINEAR_OF_SRGB.get(below.wrapping_add(1)).unwrap_or(&low);
+        // The table ascends, by at most 583 at a step.
+        let step = u32::from(high.wrapping_sub(low));
+        low.wrapping_add(((step * part + 32_767) / 65_535) as u16)
+    })
+}
+
 /// Bayer's matrix of order 8: every number of 0 to 63 once.
 fn bayer(x: u16, y: u16) -> u16 {
     let (a, b) = (x ^ y, y);
@@ -135,6 +153,21 @@ mod tests {
         assert_eq!(last, 255);
         assert_eq!(Rgb565::encode([u16::MAX; 3], None).0, 0xffff);
         assert_eq!(Rgb565::encode([0; 3], None).0, 0);
+    }
+
+    /// What is a display value reaches the display as it is.
+    #[test]
+    fn display_values_come_out_as_they_went_in() {
+        for code in 0..=255_u16 {
+            let linear = from_display([code * 257; 3]);
+            assert_eq!(Rgb888::encode(linear, None).0, [code as u8; 3]);
+        }
+        for value in 0..=u16::MAX {
+            let found = f64::from(srgb(from_display([value; 3])[0])) / 256.0;
+            let exact = f64::from(value) / 257.0;
+            // Where a code's step is 20 linear values, rounding to one is a twentieth of a code.
+            assert!((found - exact).abs() < 0.06, "{value}: {found}");
+        }
     }
 
     /// The mean of a dithered 8 by 8 block is the undithered value, within a fraction of a code.

@@ -2,7 +2,7 @@
 
 use super::camera::Camera;
 use super::cursor::{Cursor, Samples};
-use super::pixel::Pixel;
+use super::pixel::{Linear, Pixel, from_display};
 use super::sample::SUBPIXELS;
 use super::trace::{Loop, WorkspaceView};
 use super::{MAX_RAY_DEPTH, MAX_SAMPLES};
@@ -254,7 +254,17 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
                 radiance: seen.told(),
             });
         }
-        seen.0.map(N::to_linear16)
+        self.to_linear(seen)
+    }
+
+    /// A pixel's value in the steps of a picture.
+    #[inline(always)]
+    pub(super) fn to_linear(&self, seen: Color<N>) -> Linear {
+        let values = seen.0.map(N::to_linear16);
+        match self.scene.view().display_values {
+            0 => values,
+            _ => from_display(values),
+        }
     }
 
     /// One pixel in a display's form.

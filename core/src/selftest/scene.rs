@@ -147,7 +147,7 @@ fn view() -> View {
         height: TinyBlob::SIZE[1],
         samples: 2,
         depth: 4,
-        spare: 0,
+        display_values: 0,
     }
 }
 

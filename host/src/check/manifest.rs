@@ -32,6 +32,8 @@ pub struct Check {
     pub scene: Named,
     pub accel: Option<Structure>,
     pub lattice_bits: Option<u8>,
+    /// Whether the scene file may name files outside of its folder.
+    pub allow_outside: bool,
     pub formats: Vec<Format>,
     pub size: Option<[u16; 2]>,
     pub samples: Option<u16>,
@@ -214,6 +216,7 @@ impl Check {
             "scene",
             "accel",
             "lattice_bits",
+            "allow_outside",
             "formats",
             "size",
             "samples",
@@ -258,6 +261,7 @@ impl Check {
             lattice_bits: fields.or("lattice_bits", None, |value| {
                 Ok(Some(value.integer_in(10..=24)? as u8))
             })?,
+            allow_outside: fields.or("allow_outside", false, Value::boolean)?,
             size: fields.or("size", None, |value| size(value).map(Some))?,
             samples: fields.or("samples", None, |value| {
                 Ok(Some(value.integer_in(1..=MAX_SAMPLES.into())? as u16))

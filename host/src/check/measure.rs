@@ -9,7 +9,7 @@ use crate::compile::{self, Options};
 use crate::picture::hash;
 use crate::render::{Job, Picture, render};
 use crate::report::working_memory;
-use crate::scene::{self, MoleculeOptions};
+use crate::scene::{self, ImportOptions};
 use gridel_core::{Format, Scene, Settings, Structure};
 use miette::Diagnostic;
 use std::io;
@@ -95,8 +95,11 @@ impl Run<'_> {
             }
             return Blob::read(path).map_err(unreadable);
         }
-        let imported =
-            scene::load(path, &MoleculeOptions::default()).map_err(|error| explained(&error))?;
+        let options = ImportOptions {
+            allow_outside: check.allow_outside,
+            ..ImportOptions::default()
+        };
+        let imported = scene::load_with(path, &options).map_err(|error| explained(&error))?;
         for warning in imported.warnings {
             if !self.warnings.contains(&warning) {
                 self.warnings.push(warning);

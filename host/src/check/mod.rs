@@ -12,6 +12,7 @@
 //! | `name` | text, which no other check has | the file's name without its extension |
 //! | `accel` | name of the acceleration structure | what `build` builds; for a blob the best it holds |
 //! | `lattice_bits` | 10 to 24; scene files only | 24 |
+//! | `allow_outside` | whether the scene file may name files outside of its folder | `false` |
 //! | `formats` | array of `"fixed"`, `"f32"`, `"f64"`: pictures are rendered in each | `["f32"]` |
 //! | `size` | `[width, height]` of the pictures | what the scene states |
 //! | `samples` | samples a pixel, 1 to 256 | what the scene states |

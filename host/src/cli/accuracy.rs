@@ -1,10 +1,8 @@
 //! `gridel accuracy`: what accuracy costs in time.
 
-use super::arguments::{
-    self, GeometryOptions, MoleculeOptions, SceneOptions, check_quality, quoted,
-};
+use super::arguments::{self, GeometryOptions, ImportOptions, SceneOptions, check_quality, quoted};
 use super::failure::Failure;
-use super::output::{print, print_json, prove, write_file, write_texts};
+use super::output::{print, print_json_warned, prove, write_file, write_texts};
 use super::progress::Progress;
 use super::source::import;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -108,7 +106,7 @@ pub struct Arguments {
     cutoff: Option<f64>,
 
     #[command(flatten)]
-    molecule: MoleculeOptions,
+    import: ImportOptions,
 }
 
 /// Reads an error bound.
@@ -152,7 +150,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         cutoff: arguments.cutoff,
         geometry: GeometryOptions {
             lattice_bits: None,
-            molecule: arguments.molecule.clone(),
+            import: arguments.import.clone(),
         },
     };
     let imported = import(path, &options)?;
@@ -212,14 +210,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let choice = choice(arguments, &stem, &results);
     if arguments.json {
-        print_json(&Told {
+        let told = Told {
             folder: folder.display().to_string(),
             size,
             points: &results.points,
             frontier: frontier(&results.points),
             sentences: sentences(&results.base, &results.points),
             cheapest: choice.as_ref(),
-        })?;
+        };
+        print_json_warned(&told, &imported.warnings)?;
     } else {
         print(text(&folder, size, &results, choice.as_ref()))?;
     }
@@ -431,7 +430,7 @@ fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Option<Choice
         build: format!(
             "gridel build {}{} -o {blob} --accel {}{quality} --lattice-bits {}{cutoff}",
             quoted(&arguments.scene.to_string_lossy()),
-            arguments.molecule.written(),
+            arguments.import.written(),
             arguments.accel.name(),
             setting.lattice_bits
         ),

@@ -166,6 +166,18 @@ pub struct GeometryOptions {
     pub lattice_bits: Option<u8>,
 
     #[command(flatten)]
+    pub import: ImportOptions,
+}
+
+/// How a scene file is read.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Options for scene files")]
+pub struct ImportOptions {
+    /// Read files that the scene file names outside of its folder
+    #[arg(long)]
+    pub allow_outside: bool,
+
+    #[command(flatten)]
     pub molecule: MoleculeOptions,
 }
 
@@ -193,8 +205,9 @@ impl SceneOptions {
         first_given([
             (geometry.lattice_bits.is_some(), "--lattice-bits"),
             (cutoff.is_some(), "--cutoff"),
+            (geometry.import.allow_outside, "--allow-outside"),
         ])
-        .or(geometry.molecule.given())
+        .or(geometry.import.molecule.given())
     }
 }
 
@@ -203,6 +216,26 @@ impl From<GeometryOptions> for SceneOptions {
         Self {
             cutoff: None,
             geometry,
+        }
+    }
+}
+
+impl ImportOptions {
+    /// What was given, as it is written behind a file's name.
+    pub fn written(&self) -> String {
+        let outside = if self.allow_outside {
+            " --allow-outside"
+        } else {
+            ""
+        };
+        format!("{outside}{}", self.molecule.written())
+    }
+
+    /// The options for importers.
+    pub fn for_import(&self) -> scene::ImportOptions {
+        scene::ImportOptions {
+            molecule: self.molecule.for_import(),
+            allow_outside: self.allow_outside,
         }
     }
 }
@@ -217,8 +250,7 @@ impl MoleculeOptions {
         ])
     }
 
-    /// What was given, as it is written behind a file's name.
-    pub fn written(&self) -> String {
+    fn written(&self) -> String {
         let style = self.style.map(|style| match style {
             MoleculeStyle::SpaceFilling => format!(" --style {SPACE_FILLING}"),
             MoleculeStyle::BallAndStick => format!(" --style {BALL_AND_STICK}"),
@@ -229,8 +261,7 @@ impl MoleculeOptions {
         [style, model, altloc].into_iter().flatten().collect()
     }
 
-    /// The options for importers of molecules.
-    pub fn for_import(&self) -> scene::MoleculeOptions {
+    fn for_import(&self) -> scene::MoleculeOptions {
         let default = scene::MoleculeOptions::default();
         scene::MoleculeOptions {
             style: self.style.unwrap_or(default.style),

@@ -2,7 +2,7 @@
 
 use super::arguments::{self, SceneOptions, StructureOptions, check_hierarchy, distinct};
 use super::failure::Failure;
-use super::output::{print, print_json, write_texts};
+use super::output::{print, print_json_warned, write_texts};
 use super::progress::Progress;
 use super::source::import;
 use clap::Args;
@@ -138,7 +138,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         growth: grown.as_ref(),
     };
     if arguments.json {
-        print_json(&report)?;
+        print_json_warned(&report, &imported.warnings)?;
     } else {
         print(text(&report))?;
     }

@@ -2,7 +2,7 @@
 
 use super::arguments::{PictureOptions, SceneOptions, TraceOptions};
 use super::failure::Failure;
-use super::output::{print, print_json};
+use super::output::{print, print_json_warned};
 use super::source::Source;
 use clap::{ArgGroup, Args};
 use glam::DVec3;
@@ -101,7 +101,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let story = explain(&scene, arguments.with.format, structure, settings, subject)
         .map_err(|error| failure(&error))?;
     if arguments.json {
-        return print_json(&story);
+        return print_json_warned(&story, &source.warnings);
     }
     print(Shown {
         story: &story,

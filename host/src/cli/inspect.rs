@@ -3,7 +3,7 @@
 use super::arguments::{SceneOptions, TargetOptions};
 use super::effects::CalledFor;
 use super::failure::Failure;
-use super::output::{print, print_json};
+use super::output::{print, print_json_warned};
 use super::source::Source;
 use clap::Args;
 use glam::DVec3;
@@ -100,7 +100,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             .ledger(&scene, source.blob.bytes(), format)?,
     };
     if arguments.json {
-        print_json(&inspection)?;
+        print_json_warned(&inspection, &source.warnings)?;
     } else {
         print(inspection.text())?;
     }

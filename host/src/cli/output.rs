@@ -107,6 +107,17 @@ pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     to_standard_output(&text)
 }
 
+/// Prints one JSON document about a scene, to which it adds what its importer warned of.
+pub fn print_json_warned(value: &impl Serialize, warnings: &[String]) -> Result<(), Failure> {
+    #[derive(Serialize)]
+    struct Warned<'w, T: Serialize> {
+        #[serde(flatten)]
+        value: &'w T,
+        warnings: &'w [String],
+    }
+    print_json(&Warned { value, warnings })
+}
+
 fn to_standard_output(text: &[u8]) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     let written = out.write_all(text).and_then(|()| out.flush());

@@ -2,7 +2,7 @@
 
 use super::arguments::{self, PictureOptions, SceneOptions, TraceOptions};
 use super::failure::Failure;
-use super::output::{Content, print, print_json, prove, refuse_same, write_files};
+use super::output::{Content, print, print_json_warned, prove, refuse_same, write_files};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
@@ -177,7 +177,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         heat_map,
     };
     if arguments.json {
-        print_json(&rendered)
+        print_json_warned(&rendered, &source.warnings)
     } else {
         print(rendered.text())
     }

@@ -24,7 +24,7 @@ pub struct Source {
     /// What a scene file calls its objects.
     pub names: Names,
     /// How a scene file was read and compiled.
-    made_by: Option<(scene::MoleculeOptions, compile::Options)>,
+    made_by: Option<(scene::ImportOptions, compile::Options)>,
 }
 
 impl Source {
@@ -105,7 +105,7 @@ impl Source {
             report: Some(report),
             warnings: imported.warnings,
             names: names(&imported.scene),
-            made_by: Some((options.geometry.molecule.for_import(), compiling)),
+            made_by: Some((options.geometry.import.for_import(), compiling)),
         })
     }
 
@@ -121,8 +121,8 @@ impl Source {
 
     /// What makes the blob of a scene file smaller: what is said where no byte is allowed.
     fn smaller(&self) -> Option<String> {
-        let (molecules, compiling) = self.made_by.as_ref()?;
-        let imported = scene::load(&self.path, molecules).ok()?;
+        let (importing, compiling) = self.made_by.as_ref()?;
+        let imported = scene::load_with(&self.path, importing).ok()?;
         let nothing = compile::Options {
             max_bytes: Some(0),
             ..compiling.clone()
@@ -204,12 +204,12 @@ pub fn import(path: &Path, options: &SceneOptions) -> Result<Imported, Failure> 
              blobs",
         ));
     }
-    let molecule = &options.geometry.molecule;
+    let importing = &options.geometry.import;
     let progress = Progress::unknown("reading");
-    let imported = scene::load(path, &molecule.for_import());
+    let imported = scene::load_with(path, &importing.for_import());
     drop(progress);
     let mut imported = imported.map_err(|error| Failure::Failed(miette::Report::new(error)))?;
-    if let Some(option) = molecule.given().filter(|_| !imported.molecules) {
+    if let Some(option) = importing.molecule.given().filter(|_| !imported.molecules) {
         return Err(Failure::usage(
             format!("{option} is for molecules, and {} has none", path.display()),
             "leave the option out",

@@ -2,7 +2,7 @@
 
 use super::arguments::{self, GeometryOptions, TraceOptions};
 use super::failure::Failure;
-use super::output::{check_extension, print, print_json, prove, refuse_same, write_file};
+use super::output::{check_extension, print, print_json_warned, prove, refuse_same, write_file};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
@@ -176,7 +176,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }),
     };
     if arguments.json {
-        print_json(&traced)
+        print_json_warned(&traced, &source.warnings)
     } else {
         print(traced.text(&arguments.output))
     }

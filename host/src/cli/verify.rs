@@ -2,7 +2,7 @@
 
 use super::arguments::{self, GeometryOptions, check_quality, distinct, quoted};
 use super::failure::Failure;
-use super::output::{print, print_json};
+use super::output::{print, print_json_warned};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
@@ -78,7 +78,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let report = verify(&scene, arguments.rays, &|| progress.step());
     drop(progress);
     if arguments.json {
-        print_json(&report)?;
+        print_json_warned(&report, &source.warnings)?;
     } else {
         print(text(arguments, &report))?;
     }
@@ -169,12 +169,12 @@ fn text(arguments: &Arguments, report: &Report) -> String {
 fn explain(arguments: &Arguments, ray: &str, format: &str, structure: &str) -> String {
     let GeometryOptions {
         lattice_bits,
-        molecule,
+        import,
     } = &arguments.geometry;
     let bits = lattice_bits.map_or(String::new(), |bits| format!(" --lattice-bits {bits}"));
     format!(
         "gridel explain {}{}{bits} --ray={ray} --format {format} --accel {structure}",
         quoted(&arguments.input.to_string_lossy()),
-        molecule.written()
+        import.written()
     )
 }

@@ -225,7 +225,7 @@ fn view_record(scene: &Scene, ambient: Color, camera: &Camera, eye: [i64; 3]) ->
         height: render.height.clamp(1, u16::MAX.into()) as u16,
         samples: render.samples,
         depth: render.depth,
-        spare: 0,
+        display_values: u8::from(scene.display_values),
     }
 }
 

@@ -21,29 +21,26 @@ const CIF: &str = "data_t\n_cell.a 'x y'\nloop_\n_atom_site.id\n_atom_site.type_
                    _atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n1 C \"C1'\" 0 0 0\n2 O O 1.2 ? 0\n\
                    loop_\n_struct_conn.conn_type_id\n_struct_conn.ptnr1_label_atom_id\ncovale\n;O\n;\n";
 
-/// A scene in which all indices lead somewhere and all numbers are finite.
+/// A scene of something in which all indices lead somewhere and all numbers are finite.
 fn holds_together(scene: &Scene) -> bool {
-    !scene.objects.is_empty()
-        && scene.objects.iter().all(|object| {
-            let shape = match &object.shape {
-                Shape::Mesh {
-                    vertices,
-                    triangles,
-                } => {
-                    vertices.iter().all(|vertex| vertex.is_finite())
-                        && triangles
-                            .iter()
-                            .flatten()
-                            .all(|&index| (index as usize) < vertices.len())
-                }
-                Shape::Sphere { center, radius } => center.is_finite() && *radius > 0.0,
-                Shape::Cone { base, apex, .. } => {
-                    base.is_finite() && apex.is_finite() && base != apex
-                }
-                Shape::Box { .. } | Shape::Disc { .. } => false,
-            };
-            shape && object.material < scene.materials.len()
-        })
+    scene.objects.iter().all(|object| {
+        let shape = match &object.shape {
+            Shape::Mesh {
+                vertices,
+                triangles,
+            } => {
+                vertices.iter().all(|vertex| vertex.is_finite())
+                    && triangles
+                        .iter()
+                        .flatten()
+                        .all(|&index| (index as usize) < vertices.len())
+            }
+            Shape::Sphere { center, radius } => center.is_finite() && *radius > 0.0,
+            Shape::Cone { base, apex, .. } => base.is_finite() && apex.is_finite() && base != apex,
+            Shape::Box { .. } | Shape::Disc { .. } => false,
+        };
+        shape && object.material < scene.materials.len()
+    })
 }
 
 /// Loads a file of these bytes.
@@ -59,7 +56,8 @@ fn check(path: &Path, bytes: &[u8]) {
             },
         ) {
             Ok(imported) => assert!(
-                holds_together(&imported.scene),
+                holds_together(&imported.scene)
+                    && (!imported.scene.objects.is_empty() || !imported.warnings.is_empty()),
                 "{:?}",
                 String::from_utf8_lossy(bytes)
             ),

@@ -4,6 +4,9 @@
 //! transforms of groups and instances into the geometry, so that nothing downstream knows of
 //! them. Colours are linear RGB, 1.0 being full display white.
 
+mod access;
+#[cfg(test)]
+mod bad;
 #[cfg(test)]
 mod damaged;
 mod error;
@@ -13,6 +16,7 @@ mod nff;
 mod obj;
 mod ply;
 mod polygon;
+mod size;
 mod stl;
 #[cfg(test)]
 mod test_scenes;
@@ -21,6 +25,7 @@ pub mod toml;
 
 pub use error::SceneError;
 
+use access::Access;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -35,6 +40,9 @@ pub struct Scene {
     pub camera: Option<Camera>,
     /// What a ray that meets nothing sees.
     pub background: Color,
+    /// Whether colours and lights are display values, which are added up and shown as they are: what
+    /// ray tracers did before pictures were encoded. Linear without.
+    pub display_values: bool,
     /// Light that reaches every surface from everywhere, multiplied with its diffuse colour.
     pub ambient: Color,
     /// Point and directional lights.
@@ -197,6 +205,7 @@ impl Default for Scene {
         Self {
             camera: None,
             background: [0.0; 3],
+            display_values: false,
             ambient: [0.0; 3],
             lights: Vec::new(),
             materials: Vec::new(),
@@ -244,20 +253,56 @@ pub struct Imported {
     pub molecules: bool,
 }
 
-/// Reads a scene file; its extension says which format it is in.
+/// How a scene file is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ImportOptions {
+    /// What a molecule file leaves open.
+    pub molecule: MoleculeOptions,
+    /// Whether the file may name files outside of its folder: imports, materials, buffers. A scene
+    /// from elsewhere could read any file of the user's so.
+    pub allow_outside: bool,
+}
+
+/// Reads a scene file; its extension says which format it is in. It may only name files in its own
+/// folder and below: see [`load_with`].
 ///
 /// # Errors
 /// If the file cannot be read, its extension is unknown, or its content is broken.
 pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneError> {
+    load_with(
+        path,
+        &ImportOptions {
+            molecule: *molecule,
+            ..ImportOptions::default()
+        },
+    )
+}
+
+/// Reads a scene file; its extension says which format it is in.
+///
+/// # Errors
+/// If the file cannot be read, its extension is unknown, its content is broken, or it names a file
+/// outside of its folder and may not.
+pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, SceneError> {
+    let access = Access::of(path, options.allow_outside);
+    load_within(path, &options.molecule, &access)
+}
+
+/// Reads a scene file as a part of the scene that has this access.
+fn load_within(
+    path: &Path,
+    molecule: &MoleculeOptions,
+    access: &Access,
+) -> Result<Imported, SceneError> {
     let extension = path
         .extension()
         .and_then(|e| e.to_str())
         .unwrap_or("")
         .to_ascii_lowercase();
     match extension.as_str() {
-        "toml" => toml::load(path, molecule),
-        "obj" => obj::load(path),
-        "gltf" | "glb" => gltf::load(path),
+        "toml" => toml::load(path, molecule, access),
+        "obj" => obj::load(path, access),
+        "gltf" | "glb" => gltf::load(path, access),
         "stl" => stl::load(path),
         "ply" => ply::load(path),
         "nff" => nff::load(path),

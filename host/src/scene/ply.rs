@@ -1,9 +1,11 @@
 //! Reads PLY, binary and text: the vertices and faces of a mesh.
 //!
-//! Faces are cut into triangles. Colours, normals and elements of other names are passed over.
+//! Faces are cut into triangles, and triangle strips (the element `tristrips`, where -1 ends a
+//! strip) into theirs. Colours, normals, textures and elements of other names are ignored, with a
+//! warning each.
 
 use super::polygon::{self, MAX_CONCAVE};
-use super::text::read_file;
+use super::text::{Warnings, check_encoding, read_file};
 use super::{Imported, Material, Object, Place, Scene, SceneError, Shape};
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -17,6 +19,7 @@ use std::path::Path;
 /// where there are lines, else the vertex or the face.
 pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
     let bytes = read_file(path)?;
+    check_encoding(path, &bytes)?;
     let broken = |error: ParseError| {
         let cause = error.to_string();
         let cause = cause.split_once(": ").filter(|_| error.line().is_some());
@@ -36,8 +39,9 @@ pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
     let header = Parser::<Skipped>::new()
         .read_header(&mut reader)
         .map_err(broken)?;
-    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
-    let mut warnings = Vec::new();
+    let (mut vertices, mut faces, mut strips) = (Vec::new(), Vec::new(), Vec::new());
+    let mut warnings = Warnings::default();
+    ignored(path, &bytes, &header.elements, &mut warnings);
     for element in header.elements.values() {
         announced(path, element, bytes.len())?;
         match element.name.as_str() {
@@ -51,16 +55,21 @@ pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
                 let read = parser.read_payload_for_element(&mut reader, element, &header);
                 faces = read.map_err(broken)?;
             }
+            "tristrips" => {
+                let parser = Parser::<Face>::new();
+                let read = parser.read_payload_for_element(&mut reader, element, &header);
+                strips = read.map_err(broken)?;
+            }
             name => {
                 let parser = Parser::<Skipped>::new();
                 let read = parser.read_payload_for_element(&mut reader, element, &header);
                 read.map_err(broken)?;
-                let place = Place::of(path);
-                warnings.push(format!("{place}: elements {name:?} are passed over"));
+                let sentence = format!("elements {name:?} are ignored");
+                warnings.add_times(Place::of(path), element.count.max(1), sentence);
             }
         }
     }
-    let shape = mesh(path, &vertices, &faces, &mut warnings)?;
+    let shape = mesh(path, &vertices, &faces, &strips, &mut warnings)?;
     let scene = Scene {
         materials: vec![Material::default()],
         objects: vec![Object {
@@ -73,9 +82,66 @@ pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
     };
     Ok(Imported {
         scene,
-        warnings,
+        warnings: warnings.into_sentences(),
         molecules: false,
     })
+}
+
+/// Warns of what the header announces that changes the picture and is not drawn.
+fn ignored<'e>(
+    path: &Path,
+    bytes: &[u8],
+    elements: impl IntoIterator<Item = (&'e String, &'e ElementDef)>,
+    warnings: &mut Warnings,
+) {
+    let header: Vec<_> = bytes
+        .split(|&byte| byte == b'\n')
+        .map(|line| String::from_utf8_lossy(line))
+        .take_while(|line| line.trim() != "end_header")
+        .collect();
+    // The line of a word in the header; a property's name is the last word of its line.
+    let place = |is: &dyn Fn(&str) -> bool| {
+        let line = header.iter().position(|line| is(line.trim()));
+        Place {
+            line: line.map_or(0, |index| index + 1),
+            ..Place::of(path)
+        }
+    };
+    let colors = [
+        "red",
+        "green",
+        "blue",
+        "diffuse_red",
+        "diffuse_green",
+        "diffuse_blue",
+    ];
+    for (_, element) in elements {
+        let (one, is_mesh) = match element.name.as_str() {
+            "vertex" => ("vertex", true),
+            "face" => ("face", true),
+            _ => ("", false),
+        };
+        for (what, names, lacking) in [
+            ("colour", &colors[..], "the surface has one colour"),
+            ("normal", &["nx", "ny", "nz"], "the surface is shaded flat"),
+        ] {
+            let mut properties = element.properties.keys();
+            let first = properties.find(|property| names.contains(&property.as_str()));
+            let Some(first) = first.filter(|_| is_mesh && element.count > 0) else {
+                continue;
+            };
+            let is_it = |line: &str| {
+                line.starts_with("property") && line.split_whitespace().last() == Some(first)
+            };
+            let sentence = format!("the {what} of a {one} is ignored; {lacking}");
+            warnings.add_times(place(&is_it), element.count, sentence);
+        }
+    }
+    let texture = |line: &str| line.starts_with("comment TextureFile");
+    if header.iter().any(|line| texture(line.trim())) {
+        let sentence = "textures are not drawn; the plain colours are used";
+        warnings.add_times(place(&texture), 1, sentence);
+    }
 }
 
 /// Refuses a number of elements that the file cannot hold: each takes a byte at least.
@@ -99,12 +165,13 @@ fn mesh(
     path: &Path,
     read: &[Vertex],
     faces: &[Face],
-    warnings: &mut Vec<String>,
+    strips: &[Face],
+    warnings: &mut Warnings,
 ) -> Result<Shape, SceneError> {
     let wrong = |cause: String, remedy: &str| SceneError::new(path, cause, remedy);
-    if faces.is_empty() {
+    if faces.is_empty() && strips.is_empty() {
         return Err(wrong(
-            String::from("the file has no faces"),
+            String::from("the file has no faces and no triangle strips"),
             "export a mesh; points alone cannot be rendered",
         ));
     }
@@ -154,21 +221,43 @@ fn mesh(
         let named = |triangle: [u32; 3]| triangle.map(|corner| face.0[corner as usize] as u32);
         triangles.extend(cut.triangles.into_iter().map(named));
     }
-    let place = Place::of(path);
-    for (count, what) in [
-        (short, "have fewer than three vertices and are left out"),
+    for (count, sentence) in [
+        (
+            short,
+            "a face has fewer than three vertices and is left out",
+        ),
         (
             crossing,
-            "cross themselves; their triangles cover more than they enclose",
+            "a face crosses itself; its triangles cover more than it encloses",
         ),
     ] {
         if count > 0 {
-            warnings.push(format!("{place}: {count} faces {what}"));
+            warnings.add_times(Place::of(path), count, sentence);
+        }
+    }
+    for (number, strip) in strips.iter().enumerate() {
+        for strip in strip.0.split(|&corner| corner == -1) {
+            let mut corners = Vec::with_capacity(strip.len());
+            for &corner in strip {
+                let index = u32::try_from(corner).ok();
+                let index = index.filter(|&index| (index as usize) < vertices.len());
+                corners.push(index.ok_or_else(|| {
+                    wrong(
+                        format!(
+                            "triangle strips {number} (from 0) use vertex {corner}, and there are \
+                             {} vertices",
+                            vertices.len()
+                        ),
+                        "export the file again; vertices count from 0, and -1 ends a strip",
+                    )
+                })?);
+            }
+            triangles.extend(strip_triangles(&corners));
         }
     }
     if triangles.is_empty() {
         return Err(wrong(
-            String::from("no face of the file has three vertices"),
+            String::from("no face and no triangle strip of the file has three vertices"),
             "export a mesh; points and lines cannot be rendered",
         ));
     }
@@ -176,6 +265,20 @@ fn mesh(
         vertices,
         triangles,
     })
+}
+
+/// The triangles of a strip, of which every second one is turned. Vertices that come twice join
+/// strips, and make triangles that are none.
+fn strip_triangles(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+    let triangles = corners.windows(3).enumerate().map(|(number, c)| {
+        let turned = number % 2 == 1;
+        if turned {
+            [c[1], c[0], c[2]]
+        } else {
+            [c[0], c[1], c[2]]
+        }
+    });
+    triangles.filter(|[a, b, c]| a != b && b != c && c != a)
 }
 
 /// A vertex; NaN where it says nothing.

@@ -5,9 +5,9 @@
 //!
 //! Every solid of a text file is an object. Vertices are shared by their coordinates, so that
 //! triangles meet without a gap. Normals are passed over, since the order of the corners says the
-//! same, and so are the colours that some programs put into binary files.
+//! same, and so are the colours that some programs put into binary files, with a warning.
 
-use super::text::{Source, Warnings, read_file};
+use super::text::{Source, Warnings, check_encoding, read_file};
 use super::{Imported, Material, Object, Place, Scene, SceneError, Shape};
 use glam::DVec3;
 use std::collections::HashMap;
@@ -36,15 +36,18 @@ pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
         .trim_ascii_start()
         .get(..5)
         .is_some_and(|it| it.eq_ignore_ascii_case(b"solid"));
+    if announced.is_none_or(|count| length(count) != found) {
+        check_encoding(path, &bytes)?;
+    }
     match announced {
-        Some(count) if length(count) == found => binary(path, &bytes, Vec::new()),
+        Some(count) if length(count) == found => binary(path, &bytes, Warnings::default()),
         _ if is_text => text(&Source::from_bytes(path, &bytes)),
         Some(count) if length(count) < found => {
             let more = found - length(count);
-            let place = Place::of(path);
-            let sentence =
-                format!("{place}: {more} bytes behind the last triangle are passed over");
-            binary(path, &bytes, vec![sentence])
+            let mut warnings = Warnings::default();
+            let sentence = format!("{more} bytes behind the last triangle are ignored");
+            warnings.add_times(Place::of(path), 1, sentence);
+            binary(path, &bytes, warnings)
         }
         Some(count) => Err(SceneError::new(
             path,
@@ -62,12 +65,13 @@ pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
     }
 }
 
-fn binary(path: &Path, bytes: &[u8], warnings: Vec<String>) -> Result<Imported, SceneError> {
+fn binary(path: &Path, bytes: &[u8], mut warnings: Warnings) -> Result<Imported, SceneError> {
     let announced = bytes
         .get(HEAD - 4..HEAD)
         .and_then(|count| count.try_into().ok());
     let count = u32::from_le_bytes(announced.unwrap_or_default()) as usize;
     let mut soup = Soup::default();
+    let mut coloured = 0;
     for (number, triangle) in bytes[HEAD..].chunks_exact(TRIANGLE).take(count).enumerate() {
         let mut corners = [DVec3::ZERO; 3];
         // The normal comes first.
@@ -86,11 +90,17 @@ fn binary(path: &Path, bytes: &[u8], warnings: Vec<String>) -> Result<Imported, 
             }
         }
         soup.push(corners);
+        coloured += usize::from(triangle[48..] != [0; 2]);
+    }
+    if coloured > 0 {
+        let sentence = "the attributes of a triangle, which some programs use for its colour, are \
+                        ignored; the surface has one colour";
+        warnings.add_times(Place::of(path), coloured, sentence);
     }
     let name = path.file_stem().unwrap_or_default().display().to_string();
     let place = Place::of(path);
     let objects = soup.object(name, place).into_iter().collect();
-    scene(path, objects, warnings)
+    scene(path, objects, warnings.into_sentences())
 }
 
 fn text(source: &Source) -> Result<Imported, SceneError> {

@@ -15,7 +15,9 @@ pub(super) struct Source {
 
 impl Source {
     pub(super) fn read(path: &Path) -> Result<Self, SceneError> {
-        Ok(Self::from_bytes(path, &read_file(path)?))
+        let bytes = read_file(path)?;
+        check_encoding(path, &bytes)?;
+        Ok(Self::from_bytes(path, &bytes))
     }
 
     pub(super) fn from_bytes(path: &Path, bytes: &[u8]) -> Self {
@@ -98,6 +100,34 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
     })
 }
 
+/// Rejects text in UTF-16 and UTF-32, which no scene format has: read as bytes, its faults would be
+/// told of words that nobody wrote.
+pub(crate) fn check_encoding(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
+    // Without a mark, every second byte of plain text is 0, of which other text has none.
+    let head = &bytes[..bytes.len().min(64)];
+    let zeros = |odd: usize| {
+        let bytes = head.iter().skip(odd).step_by(2);
+        (
+            bytes.clone().count(),
+            bytes.filter(|&&byte| byte == 0).count(),
+        )
+    };
+    let ((even, even_zeros), (odd, odd_zeros)) = (zeros(0), zeros(1));
+    let name = match bytes {
+        [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => "UTF-32",
+        [0xff, 0xfe, ..] => "UTF-16LE",
+        [0xfe, 0xff, ..] => "UTF-16BE",
+        _ if odd >= 2 && odd_zeros == odd && even_zeros == 0 => "UTF-16LE",
+        _ if even >= 2 && even_zeros == even && odd_zeros == 0 => "UTF-16BE",
+        _ => return Ok(()),
+    };
+    Err(SceneError::new(
+        path,
+        format!("the text is in {name}; UTF-8 is required"),
+        format!("save it in UTF-8, or convert it: `iconv -f {name} -t UTF-8 OLD > NEW`"),
+    ))
+}
+
 /// What an importer passed over. The same sentence is kept once, with the first line it applies
 /// to and how many lines follow it, so that a file of a million equal faults stays readable.
 #[derive(Default)]
@@ -110,13 +140,18 @@ pub(super) struct Warnings {
 impl Warnings {
     /// `sentence` has neither capital nor full stop; a line of 0 stands for the whole file.
     pub(super) fn add(&mut self, source: &Source, line: usize, sentence: impl Into<String>) {
+        self.add_times(source.place(line), 1, sentence);
+    }
+
+    /// A sentence that holds at this place first, and so many times in all, at least once.
+    pub(super) fn add_times(&mut self, place: Place, times: usize, sentence: impl Into<String>) {
         let sentence = sentence.into();
         if let Some(&index) = self.index.get(&sentence) {
-            self.found[index].2 += 1;
+            self.found[index].2 += times;
             return;
         }
         self.index.insert(sentence.clone(), self.found.len());
-        self.found.push((sentence, source.place(line), 0));
+        self.found.push((sentence, place, times.saturating_sub(1)));
     }
 
     pub(super) fn into_sentences(self) -> Vec<String> {
@@ -144,6 +179,40 @@ mod tests {
             error.to_string(),
             "a.nff:2: the radius is \"nan\", which is not a finite number"
         );
+    }
+
+    #[test]
+    fn utf16_and_utf32_are_named_with_or_without_a_mark() {
+        let text = "solid a\nendsolid\n";
+        let wide = |mark: &[u8], unit: fn(u16) -> [u8; 2]| {
+            [
+                mark,
+                &text.encode_utf16().flat_map(unit).collect::<Vec<u8>>(),
+            ]
+            .concat()
+        };
+        let cases = [
+            (wide(b"\xff\xfe", u16::to_le_bytes), "UTF-16LE"),
+            (wide(b"\xfe\xff", u16::to_be_bytes), "UTF-16BE"),
+            (wide(b"", u16::to_le_bytes), "UTF-16LE"),
+            (wide(b"", u16::to_be_bytes), "UTF-16BE"),
+            (b"\xff\xfe\0\0s\0\0\0".to_vec(), "UTF-32"),
+        ];
+        for (bytes, name) in cases {
+            let error = check_encoding(Path::new("a"), &bytes).unwrap_err();
+            assert!(error.cause.contains(name), "{error}");
+            assert!(error.remedy.contains("iconv"), "{}", error.remedy);
+        }
+        for bytes in [
+            &b""[..],
+            b"\0",
+            b"a",
+            b"a\0",
+            b"caf\xe9 and more",
+            b"\xef\xbb\xbfa",
+        ] {
+            assert!(check_encoding(Path::new("a"), bytes).is_ok());
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@
 
 use super::MOST;
 use crate::scene::SceneError;
+use crate::scene::access::Access;
 use crate::scene::text::read_file;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -11,12 +12,14 @@ use gltf::accessor::sparse::IndexType;
 use gltf::accessor::{Accessor, DataType, Dimensions};
 use gltf::buffer::{Source, View};
 use gltf::{Buffer, Document};
+use std::collections::HashMap;
 use std::path::Path;
+use std::rc::Rc;
 
 /// The bytes of a file's buffers, in their order.
 pub(super) struct Buffers<'a> {
     path: &'a Path,
-    bytes: Vec<Vec<u8>>,
+    bytes: Vec<Rc<[u8]>>,
 }
 
 impl<'a> Buffers<'a> {
@@ -25,13 +28,23 @@ impl<'a> Buffers<'a> {
         path: &'a Path,
         document: &Document,
         mut blob: Option<Vec<u8>>,
+        access: &Access,
     ) -> Result<Self, SceneError> {
+        // Many buffers may name one file.
+        let mut files: HashMap<String, Rc<[u8]>> = HashMap::new();
         let bytes = document
             .buffers()
             .map(|buffer| {
-                let bytes = match buffer.source() {
-                    Source::Bin => blob.take().unwrap_or_default(),
-                    Source::Uri(uri) => fetch(path, &buffer, uri)?,
+                let bytes: Rc<[u8]> = match buffer.source() {
+                    Source::Bin => blob.take().unwrap_or_default().into(),
+                    Source::Uri(uri) => match files.get(uri) {
+                        Some(bytes) => Rc::clone(bytes),
+                        None => {
+                            let bytes: Rc<[u8]> = fetch(path, &buffer, uri, access)?.into();
+                            files.insert(uri.to_owned(), Rc::clone(&bytes));
+                            bytes
+                        }
+                    },
                 };
                 if bytes.len() < buffer.length() {
                     return Err(SceneError::new(
@@ -77,12 +90,28 @@ impl<'a> Buffers<'a> {
         }
     }
 
+    /// The first element of an accessor that holds a number that is not finite.
+    pub(super) fn first_not_finite(
+        &self,
+        accessor: &Accessor<'_>,
+    ) -> Result<Option<usize>, SceneError> {
+        if accessor.data_type() != DataType::F32 {
+            return Ok(None);
+        }
+        let finite = |bytes: &[u8]| {
+            let mut numbers = bytes.chunks_exact(4);
+            numbers.all(|bytes| f32::from_bits(narrow::<4>(bytes)).is_finite())
+        };
+        let elements = self.values(accessor, true, finite)?;
+        Ok(elements.iter().position(|finite| !finite))
+    }
+
     /// Reads all elements of an accessor, those that are replaced included.
     fn values<T: Clone>(
         &self,
         accessor: &Accessor<'_>,
         zero: T,
-        parse: fn(&[u8]) -> T,
+        parse: impl Fn(&[u8]) -> T,
     ) -> Result<Vec<T>, SceneError> {
         let count = accessor.count();
         if count > MOST {
@@ -95,7 +124,7 @@ impl<'a> Buffers<'a> {
         let mut values: Vec<T> = match accessor.view() {
             Some(view) => {
                 let elements = self.elements(accessor, &view, accessor.offset(), count, size)?;
-                elements.map(parse).collect()
+                elements.map(&parse).collect()
             }
             None => vec![zero; count],
         };
@@ -111,7 +140,7 @@ impl<'a> Buffers<'a> {
         let count = sparse.count();
         let places = self.elements(accessor, &indices.view(), indices.offset(), count, width)?;
         let elements = self.elements(accessor, &replaced.view(), replaced.offset(), count, size)?;
-        for (place, element) in places.map(number).zip(elements.map(parse)) {
+        for (place, element) in places.map(number).zip(elements.map(&parse)) {
             let value = values.get_mut(place as usize).ok_or_else(|| {
                 self.error(
                     accessor,
@@ -176,7 +205,12 @@ fn narrow<const N: usize>(bytes: &[u8]) -> u32 {
 }
 
 /// What a URI stands for: bytes in base 64, or a file beside the scene's.
-fn fetch(path: &Path, buffer: &Buffer<'_>, uri: &str) -> Result<Vec<u8>, SceneError> {
+fn fetch(
+    path: &Path,
+    buffer: &Buffer<'_>,
+    uri: &str,
+    access: &Access,
+) -> Result<Vec<u8>, SceneError> {
     let wrong = |cause: String, remedy: &str| {
         SceneError::new(path, format!("buffer {} {cause}", buffer.index()), remedy)
     };
@@ -191,14 +225,20 @@ fn fetch(path: &Path, buffer: &Buffer<'_>, uri: &str) -> Result<Vec<u8>, SceneEr
                 )
             });
     }
-    if uri.contains("://") {
+    let local = uri.strip_prefix("file:").map(|file| {
+        let file = file.strip_prefix("//localhost").unwrap_or(file);
+        file.strip_prefix("//").unwrap_or(file)
+    });
+    if local.is_none() && uri.contains("://") {
         return Err(wrong(
             format!("lies at {uri:?}, and nothing is fetched from a network"),
             "put the file beside the scene file and name it there",
         ));
     }
-    let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
-    let file = path.parent().unwrap_or(Path::new("")).join(&*name);
+    let name = percent_encoding::percent_decode_str(local.unwrap_or(uri)).decode_utf8_lossy();
+    let file = access
+        .resolve(path, &name)
+        .map_err(|[cause, remedy]| wrong(format!("is in a file: {cause}"), &remedy))?;
     read_file(&file).map_err(|error| {
         wrong(
             format!("is in {}: {}", file.display(), error.cause),

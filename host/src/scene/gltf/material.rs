@@ -17,16 +17,41 @@
 use crate::scene::{Color, Diffuse, Material};
 use gltf::material::AlphaMode;
 
-/// Reads a material; and a sentence on what of it is passed over.
-pub(super) fn read(material: &gltf::Material<'_>) -> (Material, Option<String>) {
-    let default = Material::default();
-    let name = material.name().map_or_else(
+fn name(material: &gltf::Material<'_>) -> String {
+    material.name().map_or_else(
         || match material.index() {
             Some(index) => format!("material {index}"),
-            None => default.name.clone(),
+            None => Material::default().name,
         },
         str::to_owned,
-    );
+    )
+}
+
+/// Sentences on what of a material is ignored or taken otherwise.
+pub(super) fn ignored(material: &gltf::Material<'_>) -> impl Iterator<Item = String> {
+    let name = name(material);
+    let glows = material.emissive_factor().iter().any(|&x| x > 0.0);
+    let masked = material.alpha_mode() == AlphaMode::Mask;
+    let index = material.ior().filter(|ior| !(1.0..=4.0).contains(ior));
+    [
+        glows.then(|| format!("material {name:?} glows, which is ignored; it is not brighter")),
+        masked.then(|| format!("the alpha mask of material {name:?} is ignored; it is opaque")),
+        index.map(|ior| {
+            let taken = taken_ior(ior);
+            format!("the index of refraction {ior} of material {name:?} is taken as {taken}; it must be 1 to 4")
+        }),
+    ]
+    .into_iter()
+    .flatten()
+}
+
+fn taken_ior(ior: f32) -> f64 {
+    f64::from(ior).clamp(1.0, 4.0)
+}
+
+/// Reads a material.
+pub(super) fn read(material: &gltf::Material<'_>) -> Material {
+    let name = name(material);
     let unit = |x: f32| f64::from(x).clamp(0.0, 1.0);
     let surface = material.pbr_metallic_roughness();
     let [red, green, blue, alpha] = surface.base_color_factor().map(unit);
@@ -44,7 +69,7 @@ pub(super) fn read(material: &gltf::Material<'_>) -> (Material, Option<String>) 
     let facing = base.map(|channel| 0.04 * (1.0 - metal) + channel * metal);
     let volume = material.volume().filter(|v| v.thickness_factor() > 0.0);
     let glass = times(through * (1.0 - metal));
-    let made = Material {
+    Material {
         diffuse: Diffuse::Plain(times((1.0 - metal) * (1.0 - through) + metal * rough)),
         highlight: if rough < 1.0 {
             facing.map(|channel| (channel * (shininess + 8.0) / 8.0).min(1.0) * there)
@@ -55,17 +80,14 @@ pub(super) fn read(material: &gltf::Material<'_>) -> (Material, Option<String>) 
         mirror: times(metal * (1.0 - rough)),
         transmit: glass.map(|channel| channel + 1.0 - there),
         ior: match &volume {
-            Some(_) => f64::from(material.ior().unwrap_or(1.5)).clamp(1.0, 4.0),
+            Some(_) => taken_ior(material.ior().unwrap_or(1.5)),
             None => 1.0,
         },
         absorption: volume.map_or([0.0; 3], |volume| {
             absorption(volume.attenuation_color(), volume.attenuation_distance())
         }),
         name,
-    };
-    let glows = material.emissive_factor().iter().any(|&x| x > 0.0);
-    let warning = glows.then(|| format!("material {:?} glows, which is passed over", made.name));
-    (made, warning)
+    }
 }
 
 /// The coefficient of Beer's law by which white light turns into a colour over a distance.

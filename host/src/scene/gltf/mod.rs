@@ -3,22 +3,24 @@
 //!
 //! Each set of triangles of each node becomes an object, in the order of the nodes; a mesh that
 //! several nodes share is copied. Meshes stand as they are at rest: skins, morph targets and
-//! animations are passed over, and so are normals, textures and vertex colours, since geometry is
-//! exact here and colours come from materials. What of this a file has, a warning tells.
+//! animations are ignored, and so are normals, textures and vertex colours. What of this a file
+//! has, a warning tells. Images are never read, wherever they lie.
 
 mod buffers;
+mod container;
+mod document;
 mod material;
 mod view;
 
-use super::text::read_file;
+use super::access::Access;
+use super::size::Size;
+use super::text::{Warnings, read_file};
 use super::{Imported, Object, Place, Scene, SceneError, Shape};
 use buffers::Buffers;
 use glam::{DMat4, DQuat, DVec3};
-use gltf::json::camera::Type;
-use gltf::json::validation::Checked;
 use gltf::mesh::Mode;
 use gltf::scene::Transform;
-use gltf::{Document, Gltf, Node, Primitive, Semantic};
+use gltf::{Document, Node, Primitive, Semantic};
 use std::collections::HashMap;
 use std::path::Path;
 use view::View;
@@ -30,28 +32,28 @@ const MOST: usize = 1 << 24;
 /// lights, the compiler adds them.
 ///
 /// # Errors
-/// If the file or a buffer cannot be read, a required extension is not understood, there are no
-/// triangles, or the content is broken; the error names the line of broken JSON, else the element.
-pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
-    let Gltf { document, blob } = parse(path, &read_file(path)?)?;
+/// If the file or a buffer cannot be read, a required extension is not understood, or the content
+/// is broken; the error names the line of broken JSON, else the element.
+pub(super) fn load(path: &Path, access: &Access) -> Result<Imported, SceneError> {
+    let mut warnings = Warnings::default();
+    let (document, blob) = document::read(path, &read_file(path)?, &mut warnings)?;
     let mut importer = Importer {
         path,
         place: Place::of(path),
-        buffers: Buffers::read(path, &document, blob)?,
+        buffers: Buffers::read(path, &document, blob, access)?,
         scene: Scene::default(),
         materials: HashMap::new(),
         view: View::default(),
         vertices: 0,
         triangles: 0,
-        warnings: Vec::new(),
+        size: Size::default(),
+        warnings,
     };
-    importer.passed_over(&document);
+    importer.check(&document)?;
+    importer.ignored(&document);
     importer.nodes(&document)?;
     if importer.scene.objects.is_empty() {
-        return Err(importer.error(
-            "the scene of the file has no triangles",
-            "export meshes; points and lines cannot be rendered",
-        ));
+        importer.warn("the scene of the file has no triangles; nothing is drawn");
     }
     let Importer {
         mut scene,
@@ -60,82 +62,14 @@ pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
         mut warnings,
         ..
     } = importer;
-    view.finish(&mut scene, &mut warnings);
-    let warnings = warnings
-        .into_iter()
-        .map(|sentence| format!("{place}: {sentence}"))
-        .collect();
+    view.finish(&mut scene, &mut |sentence| {
+        warnings.add_times(place.clone(), 1, sentence);
+    });
     Ok(Imported {
         scene,
-        warnings,
+        warnings: warnings.into_sentences(),
         molecules: false,
     })
-}
-
-fn parse(path: &Path, bytes: &[u8]) -> Result<Gltf, SceneError> {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let again = "export the file again, as glTF 2.0";
-    // The crate takes this length for at least that of the header.
-    if let [b'g', b'l', b'T', b'F', _, _, _, _, length @ ..] = bytes
-        && let Some(length) = length.first_chunk()
-        && u32::from_le_bytes(*length) < 12
-    {
-        let cause = "the file is no glTF: its header announces less than itself";
-        return Err(SceneError::new(path, cause, again));
-    }
-    let broken = |error: gltf::Error| match error {
-        gltf::Error::Deserialize(error) => {
-            let wrong = SceneError::new(path, error.to_string(), again);
-            // In a binary file the text has lines of its own.
-            match error.line() {
-                line if line > 0 && !bytes.starts_with(b"glTF") => wrong.at_line(line),
-                _ => wrong,
-            }
-        }
-        gltf::Error::Validation(problems) => match problems.into_iter().next() {
-            Some((place, gltf::json::validation::Error::Unsupported)) => SceneError::new(
-                path,
-                format!("an extension that the file requires is not understood: {place}"),
-                "export without it; compressed and quantised meshes are not read",
-            ),
-            Some((place, error)) => {
-                let cause = error.to_string().to_lowercase();
-                SceneError::new(path, format!("{place}: {cause}"), again)
-            }
-            None => SceneError::new(path, "the file is no valid glTF", again),
-        },
-        error => SceneError::new(path, format!("the file is no glTF: {error}"), again),
-    };
-    let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(broken)?;
-    let root = document.into_json();
-    // The crate looks all this up without having validated it.
-    let lacks = |camera: &gltf::json::Camera| match camera.type_ {
-        Checked::Valid(Type::Perspective) => camera.perspective.is_none(),
-        Checked::Valid(Type::Orthographic) => camera.orthographic.is_none(),
-        Checked::Invalid => false,
-    };
-    if let Some(number) = root.cameras.iter().position(lacks) {
-        let cause = format!("camera {number} lacks the numbers of its type");
-        return Err(SceneError::new(path, cause, again));
-    }
-    for (number, mesh) in root.meshes.iter().enumerate() {
-        let attributes = mesh.primitives.iter().flat_map(|part| &part.attributes);
-        for (_, accessor) in attributes {
-            if accessor.value() >= root.accessors.len() {
-                return Err(SceneError::new(
-                    path,
-                    format!(
-                        "mesh {number} uses accessor {}, and there are {}",
-                        accessor.value(),
-                        root.accessors.len()
-                    ),
-                    again,
-                ));
-            }
-        }
-    }
-    let document = Document::from_json(root).map_err(broken)?;
-    Ok(Gltf { document, blob })
 }
 
 /// What a file has come to so far.
@@ -149,8 +83,8 @@ struct Importer<'a> {
     view: View,
     vertices: usize,
     triangles: usize,
-    /// Sentences, each once.
-    warnings: Vec<String>,
+    size: Size,
+    warnings: Warnings,
 }
 
 impl Importer<'_> {
@@ -159,22 +93,112 @@ impl Importer<'_> {
     }
 
     fn warn(&mut self, sentence: impl Into<String>) {
-        let sentence = sentence.into();
-        if !self.warnings.contains(&sentence) {
-            self.warnings.push(sentence);
+        self.warn_of(1, sentence);
+    }
+
+    /// Warns of so many things at once, if there are any.
+    fn warn_of(&mut self, count: usize, sentence: impl Into<String>) {
+        if count > 0 {
+            self.warnings.add_times(self.place.clone(), count, sentence);
         }
     }
 
-    /// Tells what nothing is made of.
-    fn passed_over(&mut self, document: &Document) {
+    /// Proves what holds of the whole file, whether it is drawn or not: nodes make trees, and meshes
+    /// use vertices that they have.
+    fn check(&mut self, document: &Document) -> Result<(), SceneError> {
+        let count = document.nodes().len();
+        let mut parent = vec![None; count];
+        for node in document.nodes() {
+            for child in node.children() {
+                if parent[child.index()].replace(node.index()).is_some() {
+                    return Err(self.error(
+                        format!("node {} is inside of two nodes", child.index()),
+                        "give every node one parent at most",
+                    ));
+                }
+            }
+        }
+        // From those that are inside of none, every node is reached that is not inside of itself.
+        let mut open: Vec<Node<'_>> = document
+            .nodes()
+            .filter(|node| parent[node.index()].is_none())
+            .collect();
+        let mut reached = vec![false; count];
+        while let Some(node) = open.pop() {
+            reached[node.index()] = true;
+            open.extend(node.children());
+        }
+        if let Some(node) = reached.iter().position(|reached| !reached) {
+            return Err(self.error(
+                format!("node {node} is inside of itself"),
+                "give every node one parent at most, and no circle",
+            ));
+        }
+        for mesh in document.meshes() {
+            for part in mesh.primitives() {
+                let place = place(&mesh, &part);
+                if let (Some(positions), Some(indices)) =
+                    (part.get(&Semantic::Positions), part.indices())
+                {
+                    let corners = self.buffers.indices(&indices)?;
+                    self.check_corners(&place, &corners, positions.count())?;
+                }
+            }
+        }
+        for accessor in document.accessors() {
+            if let Some(element) = self.buffers.first_not_finite(&accessor)? {
+                self.warn(format!(
+                    "element {element} of accessor {} is not a finite number",
+                    accessor.index()
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_corners(
+        &self,
+        place: &str,
+        corners: &[u32],
+        vertices: usize,
+    ) -> Result<(), SceneError> {
+        match corners.iter().find(|&&corner| corner as usize >= vertices) {
+            None => Ok(()),
+            Some(corner) => Err(self.error(
+                format!("{place} uses vertex {corner}, and it has {vertices} vertices"),
+                "export the file again; vertices count from 0",
+            )),
+        }
+    }
+
+    /// Warns of what changes the picture and is not drawn.
+    fn ignored(&mut self, document: &Document) {
         if document.scenes().len() > 1 {
             self.warn("the file has several scenes, of which the default one is read");
         }
-        if document.textures().len() > 0 {
-            self.warn("textures are not drawn; the plain colours are used");
-        }
-        if document.animations().len() > 0 || document.skins().len() > 0 {
-            self.warn("skins and animations are passed over; meshes stand as they are at rest");
+        let parts = || document.meshes().flat_map(|mesh| mesh.primitives());
+        let with =
+            |semantic: Semantic| parts().filter(|part| part.get(&semantic).is_some()).count();
+        self.warn_of(
+            with(Semantic::Normals),
+            "NORMAL of a primitive is ignored; its surface is shaded flat",
+        );
+        self.warn_of(
+            with(Semantic::Colors(0)),
+            "COLOR_0 of a primitive is ignored; its surface has its material's colour",
+        );
+        self.warn_of(
+            document.textures().len(),
+            "textures are not drawn; the plain colours are used",
+        );
+        self.warn_of(
+            document.animations().len() + document.skins().len(),
+            "skins and animations are ignored; meshes stand as they are at rest",
+        );
+        for material in document.materials() {
+            for sentence in material::ignored(&material) {
+                self.warn(sentence);
+            }
         }
         let known = [
             "KHR_lights_punctual",
@@ -185,7 +209,7 @@ impl Importer<'_> {
         let used = document.extensions_used();
         let others: Vec<_> = used.filter(|name| !known.contains(name)).collect();
         if !others.is_empty() {
-            self.warn(format!("extensions are passed over: {}", others.join(", ")));
+            self.warn(format!("extensions are ignored: {}", others.join(", ")));
         }
     }
 
@@ -209,10 +233,11 @@ impl Importer<'_> {
         while let Some((node, outer)) = open.pop() {
             if std::mem::replace(&mut seen[node.index()], true) {
                 return Err(self.error(
-                    format!("node {} is inside of itself or of two nodes", node.index()),
-                    "give every node one parent at most",
+                    format!("node {} stands twice in the scene", node.index()),
+                    "give every node one parent, or list it once among the scene's nodes",
                 ));
             }
+            self.check_affine(&node)?;
             let world = outer * transform(&node);
             if !world.is_finite() {
                 return Err(self.error(
@@ -226,6 +251,28 @@ impl Importer<'_> {
             open[from..].reverse();
         }
         Ok(())
+    }
+
+    /// A matrix must keep the points at infinity there.
+    fn check_affine(&self, node: &Node<'_>) -> Result<(), SceneError> {
+        let Transform::Matrix { matrix } = node.transform() else {
+            return Ok(());
+        };
+        let last = matrix.map(|column| column[3]);
+        if last == [0.0, 0.0, 0.0, 1.0] {
+            return Ok(());
+        }
+        let name = node
+            .name()
+            .map_or_else(String::new, |name| format!(" {name:?}"));
+        let [x, y, z, w] = last;
+        Err(self.error(
+            format!(
+                "node {}{name}: the matrix is projective (its last row is {x} {y} {z} {w}, not 0 0 0 1)",
+                node.index()
+            ),
+            "export the node with an affine transform",
+        ))
     }
 
     fn node(&mut self, node: &Node<'_>, world: &DMat4) -> Result<(), SceneError> {
@@ -242,7 +289,7 @@ impl Importer<'_> {
         let name = name.map_or_else(|| format!("node {}", node.index()), str::to_owned);
         let parts = mesh.primitives().len();
         for part in mesh.primitives() {
-            let place = format!("mesh {}, primitive {}", mesh.index(), part.index());
+            let place = place(&mesh, &part);
             let Some(shape) = self.mesh(&place, &part, world)? else {
                 continue;
             };
@@ -250,6 +297,13 @@ impl Importer<'_> {
                 1 => name.clone(),
                 _ => format!("{name} {}", part.index()),
             };
+            self.size = self.size.plus(Size::of(&shape, name.len()));
+            if let Some(excess) = self.size.excess() {
+                return Err(self.error(
+                    format!("up to {place}, instances counted, the file takes {excess}"),
+                    "export a part of the scene, or coarser meshes",
+                ));
+            }
             let material = self.material(&part);
             self.scene.objects.push(Object {
                 name,
@@ -266,10 +320,7 @@ impl Importer<'_> {
         if let Some(&known) = self.materials.get(&material.index()) {
             return known;
         }
-        let (made, warning) = material::read(&material);
-        if let Some(warning) = warning {
-            self.warn(warning);
-        }
+        let made = material::read(&material);
         let number = self.scene.materials.len();
         self.scene.materials.push(made);
         self.materials.insert(material.index(), number);
@@ -287,11 +338,11 @@ impl Importer<'_> {
             part.mode(),
             Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
         ) {
-            self.warn("points and lines are passed over");
+            self.warn("points and lines are not drawn");
             return Ok(None);
         }
         if part.morph_targets().len() > 0 {
-            self.warn("morph targets are passed over; meshes stand as they are at rest");
+            self.warn("morph targets are ignored; meshes stand as they are at rest");
         }
         // Without positions the file is not valid.
         let Some(positions) = part.get(&Semantic::Positions) else {
@@ -302,15 +353,7 @@ impl Importer<'_> {
             Some(indices) => self.buffers.indices(&indices)?,
             None => (0..vertices.len() as u32).collect(),
         };
-        if let Some(&corner) = corners.iter().find(|&&c| c as usize >= vertices.len()) {
-            return Err(self.error(
-                format!(
-                    "{place} uses vertex {corner}, and it has {} vertices",
-                    vertices.len()
-                ),
-                "export the file again; vertices count from 0",
-            ));
-        }
+        self.check_corners(place, &corners, vertices.len())?;
         // A transform that mirrors would turn the mesh inside out.
         let mirrored = world.determinant() < 0.0;
         let triangles = triangles(part.mode(), &corners, mirrored);
@@ -344,6 +387,11 @@ impl Importer<'_> {
             triangles,
         }))
     }
+}
+
+/// What messages call a part of a mesh.
+fn place(mesh: &gltf::Mesh<'_>, part: &Primitive<'_>) -> String {
+    format!("mesh {}, primitive {}", mesh.index(), part.index())
 }
 
 /// Where a node stands in its parent, computed in double precision.

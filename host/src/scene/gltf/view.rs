@@ -82,7 +82,7 @@ impl View {
     }
 
     /// Puts camera and lights into a scene whose objects are all there.
-    pub(super) fn finish(self, scene: &mut Scene, warnings: &mut Vec<String>) {
+    pub(super) fn finish(self, scene: &mut Scene, warn: &mut dyn FnMut(&str)) {
         for (there, sentence) in [
             (
                 self.cameras > 0 && self.camera.is_none(),
@@ -102,7 +102,7 @@ impl View {
             ),
         ] {
             if there {
-                warnings.push(String::from(sentence));
+                warn(sentence);
             }
         }
         scene.camera = self.camera;

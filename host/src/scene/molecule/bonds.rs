@@ -18,6 +18,9 @@ const CLOSEST: f64 = 0.4;
 /// Files in which all atoms lie in one point exist, and must not take quadratic time.
 const MOST_IN_CELL: usize = 1000;
 
+/// The most bonds that are collected; their sticks would fit into no memory.
+const MOST_BONDS: usize = 1 << 24;
+
 /// The bonds between sites, each pair once with the lower index first, and the sites that are
 /// crowded beyond reason, for which none are found.
 ///
@@ -51,6 +54,9 @@ pub(crate) fn perceive(sites: &[Site]) -> (Vec<[u32; 2]>, Vec<u32>) {
         let own = cell(site.position);
         if !cells.contains_key(&own) {
             continue;
+        }
+        if bonds.len() > MOST_BONDS {
+            break;
         }
         for offset in 0..27 {
             let step = [offset % 3 - 1, offset / 3 % 3 - 1, offset / 9 - 1];

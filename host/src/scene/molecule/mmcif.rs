@@ -260,7 +260,7 @@ impl<'a> Parser<'a, '_> {
             };
             self.parsed
                 .bonds
-                .push([end(&columns.ends[0]), end(&columns.ends[1])]);
+                .push((table.line, [end(&columns.ends[0]), end(&columns.ends[1])]));
         }
     }
 }

@@ -21,10 +21,11 @@ pub(crate) use bonds::perceive;
 pub(crate) use draw::{Ball, draw};
 pub(crate) use element::Element;
 
+use super::size::Size;
 use super::text::{Source, Warnings};
 use super::{Imported, MoleculeOptions, MoleculeStyle, Scene, SceneError};
 use glam::DVec3;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// An element at a position in angstroms.
@@ -89,7 +90,8 @@ struct Parsed<'a> {
     atoms: Vec<Atom<'a>>,
     /// The numbers that the file gives to its models, in file order.
     models: Vec<&'a str>,
-    bonds: Vec<[End<'a>; 2]>,
+    /// The ends of each, and its line.
+    bonds: Vec<(usize, [End<'a>; 2])>,
 }
 
 /// Reads a PDB (`.pdb`, `.ent`) or mmCIF (`.cif`, `.mmcif`) file.
@@ -114,10 +116,24 @@ fn import(source: &Source, options: &MoleculeOptions) -> Result<Imported, SceneE
         _ => pdb::parse(source, &mut warnings)?,
     };
     let atoms = select::select(source, &parsed, options)?;
+    if parsed.models.len() > 1 {
+        let other = parsed
+            .atoms
+            .iter()
+            .find(|atom| atom.model + 1 != options.model);
+        let sentence = format!(
+            "the file has {} models, of which model {} is drawn; `--model N` chooses another",
+            parsed.models.len(),
+            options.model
+        );
+        warnings.add(source, other.map_or(0, |atom| atom.line), sentence);
+    }
+    missing_ends(source, &parsed, &mut warnings);
     let bonds = match options.style {
         MoleculeStyle::SpaceFilling => Vec::new(),
         MoleculeStyle::BallAndStick => find_bonds(source, &parsed, &atoms, &mut warnings),
     };
+    check_size(source, &atoms, &bonds)?;
     let balls = atoms
         .into_iter()
         .map(|atom| Ball {
@@ -139,6 +155,56 @@ fn import(source: &Source, options: &MoleculeOptions) -> Result<Imported, SceneE
     })
 }
 
+/// Rejects atoms so crowded that their bonds fit into no memory.
+fn check_size(source: &Source, atoms: &[&Atom<'_>], bonds: &[[u32; 2]]) -> Result<(), SceneError> {
+    // A name has a few words, of which each has a few letters.
+    let objects = (atoms.len() + 2 * bonds.len()) as u64;
+    let size = Size {
+        objects,
+        ..Size::default()
+    };
+    match size.excess() {
+        None => Ok(()),
+        Some(excess) => Err(source.error(
+            format!(
+                "{} bonds of {} atoms take {excess}",
+                bonds.len(),
+                atoms.len()
+            ),
+            "use the style space-filling, or check that the coordinates are in angstroms",
+        )),
+    }
+}
+
+/// Warns of bonds to atoms that no model of the file has.
+fn missing_ends(source: &Source, parsed: &Parsed<'_>, warnings: &mut Warnings) {
+    if parsed.bonds.is_empty() {
+        return;
+    }
+    let known: HashSet<End<'_>> = parsed.atoms.iter().flat_map(ends_of).collect();
+    let mut all = parsed.bonds.iter().filter_map(|(line, bond)| {
+        let end = bond.iter().find(|end| !known.contains(end))?;
+        Some((*line, *end))
+    });
+    let Some((line, first)) = all.next() else {
+        return;
+    };
+    let named = match first {
+        End::Serial(serial) => format!("CONECT names the atom {serial}"),
+        End::Name([chain, number, _, name]) => {
+            format!("struct_conn names the atom {chain}/{number}/{name}")
+        }
+    };
+    let sentence = format!("{named}, which the file lacks; the bond is left out");
+    warnings.add_times(source.place(line), 1 + all.count(), sentence);
+}
+
+/// What bonds call an atom.
+fn ends_of<'a>(atom: &Atom<'a>) -> [End<'a>; 2] {
+    let name = [atom.chain, atom.number, atom.insertion, atom.name];
+    [End::Serial(atom.serial), End::Name(name)]
+}
+
 /// The bonds between the chosen atoms: those of the file, and those that distances tell.
 fn find_bonds(
     source: &Source,
@@ -148,8 +214,7 @@ fn find_bonds(
 ) -> Vec<[u32; 2]> {
     let mut ends: HashMap<End<'_>, u32> = HashMap::new();
     for (atom, index) in atoms.iter().zip(0..) {
-        let name = [atom.chain, atom.number, atom.insertion, atom.name];
-        for end in [End::Serial(atom.serial), End::Name(name)] {
+        for end in ends_of(atom) {
             ends.entry(end).or_insert(index);
         }
     }
@@ -157,7 +222,7 @@ fn find_bonds(
     let stated = parsed
         .bonds
         .iter()
-        .filter_map(|[a, b]| Some([*ends.get(a)?, *ends.get(b)?]));
+        .filter_map(|(_, [a, b])| Some([*ends.get(a)?, *ends.get(b)?]));
     let sites: Vec<Site> = atoms.iter().map(|atom| atom.site).collect();
     let (perceived, crowded) = perceive(&sites);
     if let Some(&first) = crowded.first() {

@@ -1,4 +1,5 @@
-//! The columns of a PDB file (format 3.3): ATOM, HETATM, MODEL, ENDMDL and CONECT.
+//! The columns of a PDB file (format 3.3): ATOM, HETATM, MODEL, ENDMDL, END and CONECT. Atoms behind
+//! an END begin a model of their own, because programs of dynamics end their frames so.
 //!
 //! Columns are those of the format's description, counted from 1. What drawing does not need is
 //! not read, so that files that leave it out or bend its rules are welcome: serial numbers may be
@@ -31,13 +32,15 @@ pub(super) fn parse<'a>(
             }
             // Some programs leave ENDMDL out, or let atoms without a MODEL follow it.
             "MODEL" => next_model = Some(columns(line, 7, 80).trim()),
-            "ENDMDL" => next_model = next_model.or(Some("without a number")),
+            "ENDMDL" | "END" => next_model = next_model.or(Some("without a number")),
             "CONECT" => {
                 let from = columns(line, 7, 11).trim();
                 for first in [12, 17, 22, 27] {
                     let to = columns(line, first, first + 4).trim();
                     if !from.is_empty() && !to.is_empty() {
-                        parsed.bonds.push([End::Serial(from), End::Serial(to)]);
+                        parsed
+                            .bonds
+                            .push((number, [End::Serial(from), End::Serial(to)]));
                     }
                 }
             }

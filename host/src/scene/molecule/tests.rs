@@ -322,3 +322,48 @@ fn mmcif_faults_name_line_and_cause() {
         "t.cif: the atoms have no Cartesian coordinates, as in CIF files of small molecules"
     );
 }
+
+#[test]
+fn frames_that_end_alone_separates_are_models() {
+    let atom = |x: f64| format!("ATOM      1  C   UNK A   1    {x:8.3}   0.000   0.000\n");
+    let text: String = (1..=100).map(|x| atom(f64::from(x)) + "END\n").collect();
+    for model in [1, 100] {
+        let options = MoleculeOptions {
+            model,
+            ..MoleculeOptions::default()
+        };
+        let imported = read("t.pdb", &text, &options).unwrap();
+        assert_eq!(imported.scene.objects.len(), 1);
+        let Shape::Sphere { center, .. } = imported.scene.objects[0].shape else {
+            panic!()
+        };
+        assert_eq!(center.x, model as f64);
+        let line = if model == 1 { 3 } else { 1 };
+        assert_eq!(
+            imported.warnings,
+            [format!(
+                "t.pdb:{line}: the file has 100 models, of which model {model} is drawn; `--model N` \
+                 chooses another"
+            )]
+        );
+    }
+}
+
+#[test]
+fn bonds_to_atoms_that_the_file_lacks_are_warned_of() {
+    let atoms = "ATOM      1  C   UNK A   1       1.000   0.000   0.000\n\
+                 ATOM      2  C   UNK A   1       2.500   0.000   0.000\n";
+    for (connections, expected) in [
+        ("CONECT    1    2\n", &[][..]),
+        (
+            "CONECT    1    2\nCONECT    1    9    8\nCONECT    7    1\n",
+            &[
+                "t.pdb:4: CONECT names the atom 9, which the file lacks; the bond is left out (and 2 times more)",
+            ],
+        ),
+    ] {
+        let text = format!("{atoms}{connections}");
+        let imported = read("t.pdb", &text, &MoleculeOptions::default()).unwrap();
+        assert_eq!(imported.warnings, expected);
+    }
+}

@@ -1,16 +1,18 @@
 //! Reads NFF, the Neutral File Format of Eric Haines's Standard Procedural Databases (version
 //! 3.1 of its text, 1992).
 //!
-//! What the format leaves open is settled so:
-//! * A light without a colour has intensity 1 / sqrt(n), n being the number of lights, as the
-//!   databases' notes suggest but for the factor: nothing is kept back for ambient light, of
-//!   which the format knows nothing.
+//! What the format leaves open is settled as the databases' reference pictures show it:
+//! * Colours and lights are display values: they are added up and shown as they are.
+//! * A light without a colour has intensity 1 / sqrt(n), n being the number of lights.
+//! * Ambient light, of which the format knows nothing, is what materials leave of 1 beside Kd, Ks
+//!   and T, relative to Kd: the mean of all materials that objects have, each at most 1.
 //! * `angle` is the full vertical field of view. `hither` is not needed.
-//! * Of `f`, Kd weighs the colour, Ks is the white highlight and the grey mirror, T the
-//!   transmittance.
-//! * The normals of `pp` smooth the shading elsewhere; geometry is exact here, so they are passed
-//!   over. A negative radius (only the inside is visible) counts as its absolute value, since
-//!   both sides are drawn.
+//! * Of `f`, Kd (1 - T) weighs the colour, Ks is the grey mirror and, up to 1 - Ks, the white
+//!   highlight, and T filters by the colour what is transmitted. Shine is the exponent of Phong's
+//!   cosine, between the view and the mirrored light; the halfway vector leans half as far, which
+//!   four times the exponent makes up for.
+//! * The normals of `pp` are ignored, with a warning. A negative radius (only the inside is
+//!   visible) counts as its absolute value, since both sides are drawn.
 //! * Polygons and patches are one mesh each, every other primitive one object, in file order.
 
 mod reader;
@@ -21,8 +23,11 @@ use super::text::{Source, Warnings};
 use super::{Color, Diffuse, Imported, Light, Material, Scene, SceneError};
 use glam::DVec3;
 use reader::{Line, Lines};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
+
+/// What turns the exponent of Phong's cosine into that of the halfway vector's.
+const PHONG_TO_HALFWAY: f64 = 4.0;
 
 /// Reads an NFF file.
 ///
@@ -50,6 +55,8 @@ struct Importer<'a> {
     /// Index of a material by the bits of its eight numbers.
     materials: HashMap<[u64; 8], usize>,
     material: Option<usize>,
+    /// Ambient light that a material calls for.
+    ambient: HashMap<usize, f64>,
     /// How many spheres, cones and polygons there are, for their names.
     counts: [usize; 3],
 }
@@ -58,11 +65,15 @@ impl<'a> Importer<'a> {
     fn new(source: &'a Source) -> Self {
         Self {
             source,
-            scene: Scene::default(),
+            scene: Scene {
+                display_values: true,
+                ..Scene::default()
+            },
             warnings: Warnings::default(),
             plain_lights: Vec::new(),
             materials: HashMap::new(),
             material: None,
+            ambient: HashMap::new(),
             counts: [0; 3],
         }
     }
@@ -197,15 +208,18 @@ impl<'a> Importer<'a> {
         let index = self.scene.materials.len();
         self.scene.materials.push(Material {
             name: format!("fill {}", index + 1),
-            diffuse: Diffuse::Plain([kd * r, kd * g, kd * b]),
-            highlight: [ks; 3],
-            shininess: shine.round().clamp(1.0, 1024.0) as u16,
+            diffuse: Diffuse::Plain([r, g, b].map(|c| c * kd * (1.0 - transmit).max(0.0))),
+            highlight: [ks.min((1.0 - ks).max(0.0)); 3],
+            shininess: (PHONG_TO_HALFWAY * shine).round().clamp(1.0, 1024.0) as u16,
             mirror: [ks; 3],
-            transmit: [transmit; 3],
+            transmit: [r, g, b].map(|c| c * transmit),
             ior: ior.clamp(1.0, 4.0),
             absorption: [0.0; 3],
         });
         self.materials.insert(key, index);
+        let left = (1.0 - kd - ks - transmit).max(0.0);
+        self.ambient
+            .insert(index, if kd > 0.0 { (left / kd).min(1.0) } else { 0.0 });
         self.material = Some(index);
         Ok(())
     }
@@ -223,6 +237,10 @@ impl<'a> Importer<'a> {
                 *color = [intensity; 3];
             }
         }
+        let used: BTreeSet<usize> = self.scene.objects.iter().map(|o| o.material).collect();
+        let called_for = |index| self.ambient.get(index).copied().unwrap_or(0.0);
+        let ambient = used.iter().map(called_for).sum::<f64>() / used.len() as f64;
+        self.scene.ambient = [ambient; 3];
         Ok(Imported {
             scene: self.scene,
             warnings: self.warnings.into_sentences(),

@@ -117,6 +117,13 @@ impl<'a> Importer<'a> {
                 .source
                 .error_at(line.text, cause, "give it at least 3 vertices"));
         }
+        if numbers == 6 {
+            self.warnings.add(
+                self.source,
+                line.number,
+                "the normals of a patch are ignored; its surface is shaded flat",
+            );
+        }
         // Nothing is reserved for the count before its lines are there: it may be a lie.
         let mut vertices = Vec::new();
         while vertices.len() < count {

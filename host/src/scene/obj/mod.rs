@@ -6,19 +6,21 @@
 //! of a file would have had to be parsed before it was handed over.
 //!
 //! Every `o`, `g` and change of `usemtl` starts a new mesh, in file order, which holds only the
-//! vertices that it uses. Faces are cut into triangles in file order; normals, texture
-//! coordinates, smoothing groups and vertex colours are passed over, since geometry is exact here
-//! and colours come from materials. Zero-area triangles are kept for the compiler to report.
+//! vertices that it uses. Faces are cut into triangles in file order. Normals, smoothing groups,
+//! textures and vertex colours are ignored, with a warning each. Zero-area triangles are kept for
+//! the compiler to report.
 
 mod mtl;
 mod parser;
 
+use super::access::Access;
 use super::polygon::{self, MAX_CONCAVE};
+use super::size::Size;
 use super::text::{Source, Warnings};
 use super::{Imported, Material, Object, Scene, SceneError, Shape};
 use glam::DVec3;
 use parser::{Parsed, Part};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// Reads an OBJ file and the material files it names, which lie beside it. It has no camera and
@@ -26,11 +28,11 @@ use std::path::Path;
 ///
 /// # Errors
 /// If the file cannot be read, has no faces, or its content is broken; the error names the line.
-pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
-    import(&Source::read(path)?)
+pub(super) fn load(path: &Path, access: &Access) -> Result<Imported, SceneError> {
+    import(&Source::read(path)?, access)
 }
 
-fn import(source: &Source) -> Result<Imported, SceneError> {
+fn import(source: &Source, access: &Access) -> Result<Imported, SceneError> {
     let mut warnings = Warnings::default();
     let parsed = parser::parse(source, &mut warnings)?;
     if parsed.parts.is_empty() {
@@ -39,7 +41,8 @@ fn import(source: &Source) -> Result<Imported, SceneError> {
             "export the surfaces as polygons (f lines)",
         ));
     }
-    let library = read_libraries(source, &parsed, &mut warnings)?;
+    check_size(source, &parsed)?;
+    let library = read_libraries(source, &parsed, access, &mut warnings)?;
     let mut materials = Materials {
         library,
         used: Vec::new(),
@@ -73,25 +76,57 @@ fn import(source: &Source) -> Result<Imported, SceneError> {
     })
 }
 
+/// Rejects files whose parts repeat a long name until no memory holds it.
+fn check_size(source: &Source, parsed: &Parsed<'_>) -> Result<(), SceneError> {
+    let mut size = Size::default();
+    for part in &parsed.parts {
+        size = size.plus(Size {
+            objects: 1,
+            names: part.name.len() as u64,
+            triangles: (part.corners.len() - 2 * part.faces.len()) as u64,
+        });
+        if let Some(excess) = size.excess() {
+            return Err(source
+                .error(
+                    format!("up to this part the file takes {excess}"),
+                    "give objects and groups shorter names, or export a part of the scene",
+                )
+                .at_line(part.line));
+        }
+    }
+    Ok(())
+}
+
 /// Reads the files that `mtllib` names. One that is missing is worth a warning alone: it was
 /// often left behind, and the geometry is all there.
 fn read_libraries(
     source: &Source,
     parsed: &Parsed<'_>,
+    access: &Access,
     warnings: &mut Warnings,
 ) -> Result<HashMap<String, Material>, SceneError> {
     let mut library = HashMap::new();
-    let folder = source.path.parent().unwrap_or(Path::new(""));
+    let mut seen = HashSet::new();
     for &(line, names) in &parsed.libraries {
+        let allowed = |name: &str| {
+            let path = access.resolve(&source.path, &name.replace('\\', "/"));
+            path.map_err(|[cause, remedy]| {
+                let cause = format!("the material file {cause}");
+                source.error(cause, remedy).at_line(line)
+            })
+        };
         // A name may contain spaces, and a line may contain several names.
-        let whole = folder.join(names);
-        let names: Vec<&str> = if whole.is_file() {
+        let names: Vec<&str> = if allowed(names).is_ok_and(|whole| whole.is_file()) {
             vec![names]
         } else {
             names.split_whitespace().collect()
         };
         for name in names {
-            match Source::read(&folder.join(name.replace('\\', "/"))) {
+            let path = allowed(name)?;
+            if !seen.insert(path.clone()) {
+                continue;
+            }
+            match Source::read(&path) {
                 Ok(file) => library.extend(mtl::read(&file, warnings)?),
                 Err(error) => {
                     let cause = format!(

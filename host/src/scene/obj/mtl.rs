@@ -3,7 +3,8 @@
 //! `Kd` is the diffuse colour. `Ks` and `Ns` are the highlight, unless `illum` is 0 or 1, which
 //! have none. `illum` 3, 5 and 8 mirror with `Ks`. `illum` 4, 6, 7 and 9 are glass of index `Ni`
 //! that lets `Tf` through. Otherwise `d` below 1 (or `Tr` above 0, of which `d` takes precedence)
-//! is a pane that does not bend light: glass of index 1. Textures, `Ka` and `Ke` are passed over.
+//! is a pane that does not bend light: glass of index 1. `Ka` is not needed, because ambient light
+//! takes the diffuse colour. Everything else is ignored, with a warning.
 
 use crate::scene::text::{Source, Warnings};
 use crate::scene::{Color, Diffuse, Material, SceneError};
@@ -76,14 +77,26 @@ pub(super) fn read(
             "d" => material.dissolve = Some(reader.number()?.clamp(0.0, 1.0)),
             "Tr" => material.transparency = Some(reader.number()?.clamp(0.0, 1.0)),
             "illum" => material.illumination = Some(reader.number()?.clamp(0.0, 255.0) as u32),
-            _ if keyword.starts_with("map_") => {
+            "Ke" if reader
+                .color(number, warnings)?
+                .is_none_or(|c| c != [0.0; 3]) =>
+            {
+                warnings.add(source, number, "Ke is ignored; the material does not glow");
+            }
+            "Ka" | "Ke" | "sharpness" => {}
+            _ if keyword.starts_with("map_")
+                || ["bump", "disp", "decal", "refl", "norm"].contains(&keyword) =>
+            {
                 warnings.add(
                     source,
                     number,
                     "textures are not drawn; the plain colours are used",
                 );
             }
-            _ => {}
+            _ => {
+                let sentence = format!("the statement {keyword:?} is unknown and ignored");
+                warnings.add(source, number, sentence);
+            }
         }
     }
     Ok(all

@@ -32,8 +32,8 @@ pub(super) struct Face {
 }
 
 /// Statements about what is not drawn, or not needed to draw it.
-const PASSED_OVER: [&str; 12] = [
-    "vt", "vn", "vp", "s", "mg", "bevel", "c_interp", "d_interp", "lod", "usemap", "maplib", "call",
+const PASSED_OVER: [&str; 9] = [
+    "vt", "vp", "mg", "bevel", "c_interp", "d_interp", "lod", "maplib", "call",
 ];
 
 /// Reads all lines.
@@ -68,7 +68,7 @@ pub(super) fn parse<'a>(
             .position(|word| word.starts_with('#'))
             .unwrap_or(words.len());
         match words.first() {
-            Some(&"v") => parser.vertex(line, &words[1..end])?,
+            Some(&"v") => parser.vertex(number, line, &words[1..end], warnings)?,
             Some(&"f") => parser.face(number, &words[1..end], warnings)?,
             _ => parser.statement(number, line.trim(), warnings),
         }
@@ -88,7 +88,13 @@ struct Parser<'a> {
 }
 
 impl<'a> Parser<'a> {
-    fn vertex(&mut self, line: &'a str, words: &[&'a str]) -> Result<(), SceneError> {
+    fn vertex(
+        &mut self,
+        number: usize,
+        line: &'a str,
+        words: &[&'a str],
+        warnings: &mut Warnings,
+    ) -> Result<(), SceneError> {
         if words.len() < 3 {
             return Err(self.source.error_at(
                 line.trim(),
@@ -104,6 +110,10 @@ impl<'a> Parser<'a> {
             )?;
         }
         // What may follow is a weight, which only curved surfaces use, or a colour.
+        if words.len() >= 6 {
+            let sentence = "vertex colours are ignored; the surface has its material's colour";
+            warnings.add(self.source, number, sentence);
+        }
         for word in &words[3..] {
             self.source
                 .number(word, "what follows the coordinates of a vertex")?;
@@ -195,7 +205,22 @@ impl<'a> Parser<'a> {
                 number,
                 "points and lines have no surface and are skipped",
             ),
-            "" => {}
+            "vn" => warnings.add(
+                self.source,
+                number,
+                "vertex normals are ignored; the surface is shaded flat",
+            ),
+            "s" if !["", "0", "off"].contains(&rest) => warnings.add(
+                self.source,
+                number,
+                "smoothing groups are ignored; the surface is shaded flat",
+            ),
+            "usemap" if !["", "off"].contains(&rest) => warnings.add(
+                self.source,
+                number,
+                "textures are not drawn; the plain colours are used",
+            ),
+            "" | "s" | "usemap" => {}
             _ if keyword.starts_with('#') || PASSED_OVER.contains(&keyword) => {}
             _ => {
                 let sentence = format!(

@@ -2,7 +2,15 @@ use super::*;
 use crate::scene::{Diffuse, test_scenes, test_scenes::mesh};
 
 fn read(text: &str) -> Result<Imported, SceneError> {
-    import(&Source::from_bytes(Path::new("t.obj"), text.as_bytes()))
+    let path = Path::new("t.obj");
+    import(
+        &Source::from_bytes(path, text.as_bytes()),
+        &Access::of(path, false),
+    )
+}
+
+fn load(path: &Path) -> Result<Imported, SceneError> {
+    super::load(path, &Access::of(path, false))
 }
 
 fn fault(text: &str) -> String {
@@ -63,7 +71,10 @@ fn weights_colours_and_lines_are_no_geometry() {
     assert_eq!(mesh(&scene.objects[0]).1.len(), 1);
     assert_eq!(
         warnings,
-        ["t.obj:4: points and lines have no surface and are skipped (and once more)"]
+        [
+            "t.obj:2: vertex colours are ignored; the surface has its material's colour",
+            "t.obj:4: points and lines have no surface and are skipped (and once more)"
+        ]
     );
 }
 
@@ -279,4 +290,75 @@ fn known_meshes() {
             "{name}"
         );
     }
+}
+
+#[test]
+fn what_smooths_or_colours_a_surface_is_warned_of_once_with_a_count() {
+    let colored = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\n";
+    let text = format!("{colored}vn 0 0 1\nvn 0 0 1\ns off\ns 0\ns 1\nusemap off\nf 1 2 3\n");
+    assert_eq!(
+        read(&text).unwrap().warnings,
+        [
+            "t.obj:1: vertex colours are ignored; the surface has its material's colour (and 2 \
+             times more)",
+            "t.obj:4: vertex normals are ignored; the surface is shaded flat (and once more)",
+            "t.obj:8: smoothing groups are ignored; the surface is shaded flat",
+        ]
+    );
+}
+
+#[test]
+fn material_files_outside_of_the_folder_are_rejected() {
+    let outer = tempfile::tempdir().unwrap();
+    let folder = outer.path().join("scene");
+    std::fs::create_dir(&folder).unwrap();
+    let secret = outer.path().join("secret.mtl");
+    std::fs::write(&secret, "newmtl a\nKd 1 0 0\n").unwrap();
+    let path = folder.join("t.obj");
+    for name in [
+        "../secret.mtl",
+        "..\\secret.mtl",
+        "/etc/passwd",
+        "C:\\secret.mtl",
+        &secret.display().to_string(),
+    ] {
+        std::fs::write(
+            &path,
+            format!("# 1\nmtllib {name}\n{CORNERS}usemtl a\nf 1 2 3\n"),
+        )
+        .unwrap();
+        let error = load(&path).unwrap_err();
+        assert_eq!(error.line, Some(2));
+        assert!(
+            error.cause.contains("outside of the scene's folder"),
+            "{name}: {error}"
+        );
+        assert!(error.remedy.contains("--allow-outside"));
+    }
+    std::fs::write(
+        &path,
+        format!("mtllib ../secret.mtl\n{CORNERS}usemtl a\nf 1 2 3\n"),
+    )
+    .unwrap();
+    let imported = super::load(&path, &Access::of(&path, true)).unwrap();
+    assert_eq!(imported.warnings, [] as [&str; 0]);
+    assert_eq!(
+        imported.scene.materials[0].diffuse,
+        Diffuse::Plain([1.0, 0.0, 0.0])
+    );
+}
+
+/// A long name is repeated for every part.
+#[test]
+fn parts_with_a_long_name_are_rejected_with_the_figure() {
+    let mut text = format!("{CORNERS}o {}\n", "n".repeat(1_000_000));
+    for _ in 0..1000 {
+        text.push_str("usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
+    }
+    let error = read(&text).unwrap_err();
+    assert!(
+        error.cause.contains("takes about 3.8 GB of memory"),
+        "{error}"
+    );
+    assert!(error.line.is_some());
 }

@@ -39,9 +39,10 @@ fn faces_become_triangles() {
     assert_eq!(vertices[2], DVec3::new(1.0, 1.5, 0.0));
     assert_eq!(triangles, [[0, 1, 2], [0, 2, 3]]);
     assert_eq!(imported.scene.objects[0].name, "thing");
-    assert_eq!(imported.warnings.len(), 2, "{:?}", imported.warnings);
-    assert!(imported.warnings[0].contains("elements \"wheel\" are passed over"));
-    assert!(imported.warnings[1].contains("1 faces have fewer than three vertices"));
+    assert_eq!(imported.warnings.len(), 3, "{:?}", imported.warnings);
+    assert!(imported.warnings[0].contains("thing.ply:8: the colour of a vertex is ignored; the surface has one colour (and 3 times more)"));
+    assert!(imported.warnings[1].contains("elements \"wheel\" are ignored"));
+    assert!(imported.warnings[2].contains("a face has fewer than three vertices"));
 }
 
 #[test]
@@ -101,7 +102,7 @@ fn faults_name_line_vertex_or_face() {
         (
             text("4 0 1 2 3", "2 1 0"),
             None,
-            "no face of the file has three vertices",
+            "no face and no triangle strip of the file has three vertices",
         ),
         (text("ply\n", "plx\n"), Some(1), "ply"),
     ] {
@@ -124,5 +125,56 @@ fn real_files() {
         let imported = load(&path).unwrap();
         let (vertices, triangles) = mesh(&imported.scene.objects[0]);
         assert!(vertices.len() > 100 && triangles.len() > 100, "{name}");
+    }
+}
+
+/// A header with these properties of vertices and faces, above three vertices and a face.
+fn with_properties(vertex: &str, face: &str) -> String {
+    format!(
+        "ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 3\nproperty float x\n\
+         property float y\nproperty float z\n{vertex}element face 1\n\
+         property list uchar int vertex_indices\n{face}end_header\n"
+    )
+}
+
+#[test]
+fn colours_normals_and_textures_are_warned_of() {
+    let text = with_properties(
+        "property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\n",
+        "property uchar red\n",
+    ) + "0 0 0 0 0 1 9\n1 0 0 0 0 1 9\n0 1 0 0 0 1 9\n3 0 1 2 7\n";
+    let warnings = read(text.as_bytes()).unwrap().warnings;
+    let ends: Vec<_> = warnings
+        .iter()
+        .map(|warning| warning.split_once("thing.ply:").unwrap().1)
+        .collect();
+    assert_eq!(
+        ends,
+        [
+            "11: the colour of a vertex is ignored; the surface has one colour (and 2 times more)",
+            "8: the normal of a vertex is ignored; the surface is shaded flat (and 2 times more)",
+            "14: the colour of a face is ignored; the surface has one colour",
+            "3: textures are not drawn; the plain colours are used",
+        ]
+    );
+}
+
+#[test]
+fn triangle_strips_are_read() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n\
+                property float z\nelement tristrips 1\nproperty list int int vertex_indices\n\
+                end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n10 0 1 2 3 3 4 -1 2 3 4\n";
+    let imported = read(text.as_bytes()).unwrap();
+    assert_eq!(imported.warnings, [] as [&str; 0]);
+    let (_, triangles) = mesh(&imported.scene.objects[0]);
+    assert_eq!(triangles, [[0, 1, 2], [2, 1, 3], [2, 3, 4]]);
+    for wrong in ["-1 2 3 5", "-1 2 3 -2"] {
+        let error = read(text.replace("-1 2 3 4", wrong).as_bytes()).unwrap_err();
+        assert!(
+            error
+                .cause
+                .contains("triangle strips 0 (from 0) use vertex"),
+            "{error}"
+        );
     }
 }

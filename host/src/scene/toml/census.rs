@@ -4,6 +4,7 @@
 use super::material::Palette;
 use super::object::{Content, Group, Item};
 use super::source::{Name, Source, Span, nearest};
+use crate::scene::size::Size;
 use crate::scene::{Object, SceneError, Shape};
 use std::collections::{BTreeMap, HashMap};
 
@@ -17,8 +18,27 @@ pub(super) const MAX_NESTING: usize = 64;
 struct Cost {
     /// Primitives, or as much memory as they would take.
     primitives: u64,
+    size: Size,
     /// How many groups are nested inside each other.
     nesting: usize,
+}
+
+impl Cost {
+    /// The cost of what an item holds, whose names begin with the item's.
+    fn inside(self, item: &Item) -> Self {
+        Self {
+            size: self.size.with_longer_names(item.name.len() + 1),
+            ..self
+        }
+    }
+}
+
+/// What the census found.
+pub(super) struct Taken {
+    /// How many objects the scene's own list comes to.
+    pub(super) objects: usize,
+    /// About groups that the scene does not use.
+    pub(super) warnings: Vec<String>,
 }
 
 /// Proves that the objects and groups of a scene can be placed: names refer to something, no
@@ -48,9 +68,9 @@ impl<'c> Census<'c> {
         }
     }
 
-    /// Proves it for a scene, and returns warnings about groups that it does not use.
-    pub(super) fn take(mut self, items: &'c [Item]) -> Result<Vec<String>, SceneError> {
-        self.items(items, 0)?;
+    /// Proves it for a scene.
+    pub(super) fn take(mut self, items: &'c [Item]) -> Result<Taken, SceneError> {
+        let objects = self.items(items, 0)?.size.objects;
         let used = |name: &String| self.known.contains_key(name.as_str());
         let unused: Vec<_> = self.groups.iter().filter(|(name, _)| !used(name)).collect();
         let mut warnings = Vec::new();
@@ -62,7 +82,10 @@ impl<'c> Census<'c> {
             self.items(&group.items, 1)?;
             self.open.pop();
         }
-        Ok(warnings)
+        Ok(Taken {
+            objects: objects as usize,
+            warnings,
+        })
     }
 
     fn items(&mut self, items: &'c [Item], nesting: usize) -> Result<Cost, SceneError> {
@@ -74,21 +97,25 @@ impl<'c> Census<'c> {
             let cost = match &item.content {
                 Content::Shape(shape) => Cost {
                     primitives: primitives(shape),
+                    size: Size::of(shape, item.name.len()),
                     nesting: 0,
                 },
                 // An import is weighed as at least 1, so that nothing can be repeated for free.
                 Content::Import { scene, .. } => Cost {
                     primitives: imported(&scene.objects).max(1),
+                    size: imported_size(&scene.objects).with_longer_names(item.name.len() + 1),
                     nesting: 0,
                 },
-                Content::Group(items) => self.nested(items, nesting, item)?,
-                Content::Instance(name) => self.instance(name, nesting, item)?,
+                Content::Group(items) => self.nested(items, nesting, item)?.inside(item),
+                Content::Instance(name) => self.instance(name, nesting, item)?.inside(item),
             };
+            total.size = total.size.plus(cost.size);
             total.primitives = total.primitives.saturating_add(cost.primitives);
             total.nesting = total.nesting.max(cost.nesting);
             if total.primitives > MAX_PRIMITIVES {
                 return Err(too_many(self.source, item));
             }
+            check_size(self.source, item, total.size)?;
         }
         Ok(total)
     }
@@ -158,6 +185,17 @@ pub(super) fn too_many(source: &Source, item: &Item) -> SceneError {
     )
 }
 
+pub(super) fn check_size(source: &Source, item: &Item, size: Size) -> Result<(), SceneError> {
+    let Some(excess) = size.excess() else {
+        return Ok(());
+    };
+    Err(source.error(
+        &item.span,
+        format!("with this object the scene takes {excess}"),
+        "use fewer instances, or simpler groups and meshes",
+    ))
+}
+
 /// The group that a name refers to.
 pub(super) fn find<'g>(
     groups: &'g BTreeMap<String, Group>,
@@ -178,6 +216,11 @@ pub(super) fn find<'g>(
             remedy,
         )
     })
+}
+
+fn imported_size(objects: &[Object]) -> Size {
+    let sizes = objects.iter().map(|it| Size::of(&it.shape, it.name.len()));
+    sizes.fold(Size::default(), Size::plus)
 }
 
 fn imported(objects: &[Object]) -> u64 {

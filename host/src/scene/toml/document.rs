@@ -57,13 +57,14 @@ pub(super) fn read(
     let groups = root.or("group", BTreeMap::new(), |tables| reader.groups(tables))?;
     let items = root.or("object", Vec::new(), |list| reader.items(list))?;
 
-    let warnings = Census::new(&source, &groups, &palette).take(&items)?;
-    imports.warnings.extend(warnings);
-    let objects = Placer::new(&source, &groups, &mut palette).place(&items)?;
+    let taken = Census::new(&source, &groups, &palette).take(&items)?;
+    imports.warnings.extend(taken.warnings);
+    let objects = Placer::new(&source, &groups, &mut palette, taken.objects).place(&items)?;
 
     let mut scene = Scene {
         camera,
         background: background.unwrap_or(BLACK),
+        display_values: false,
         ambient: ambient.unwrap_or(BLACK),
         lights,
         materials: palette.into_materials(),
@@ -80,6 +81,7 @@ pub(super) fn read(
             scene.render = render.unwrap_or(import.render);
         }
         if !lit {
+            scene.display_values |= import.display_values && !import.lights.is_empty();
             for light in &import.lights {
                 scene.lights.push(moved_light(&source, item, light)?);
             }

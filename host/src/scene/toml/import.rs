@@ -2,6 +2,7 @@
 
 use super::document;
 use super::source::{Name, Source};
+use crate::scene::access::Access;
 use crate::scene::{self, MoleculeOptions, Scene, SceneError};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -11,8 +12,9 @@ use std::rc::Rc;
 const MAX_OPEN: usize = 16;
 
 /// The files that were imported, and those that are being read right now.
-#[derive(Default)]
 pub(super) struct Imports {
+    /// Which files may be imported.
+    access: Access,
     /// Canonical paths, the outermost file first.
     open: Vec<PathBuf>,
     /// How many groups are open inside each other, in all open files together.
@@ -25,6 +27,17 @@ pub(super) struct Imports {
 }
 
 impl Imports {
+    pub(super) fn new(access: &Access) -> Self {
+        Self {
+            access: access.clone(),
+            open: Vec::new(),
+            nesting: 0,
+            done: HashMap::new(),
+            warnings: Vec::new(),
+            molecules: false,
+        }
+    }
+
     /// Reads the scene file from which everything starts.
     pub(super) fn root(
         &mut self,
@@ -55,8 +68,10 @@ impl Imports {
         file: &Name,
         options: &MoleculeOptions,
     ) -> Result<Rc<Scene>, SceneError> {
-        let folder = source.path.parent().unwrap_or(Path::new(""));
-        let path = folder.join(&file.text);
+        let allowed = self.access.resolve(&source.path, &file.text);
+        let path = allowed.map_err(|[cause, remedy]| {
+            source.error(&file.span, format!("the import {cause}"), remedy)
+        })?;
         let canonical = std::fs::canonicalize(&path).map_err(|error| {
             source.error(
                 &file.span,
@@ -88,7 +103,7 @@ impl Imports {
         let scene = if is_toml {
             self.nested(&path, canonical.clone(), options)
         } else {
-            scene::load(&path, options).map(|imported| {
+            scene::load_within(&path, options, &self.access).map(|imported| {
                 self.warnings.extend(imported.warnings);
                 self.molecules |= imported.molecules;
                 imported.scene

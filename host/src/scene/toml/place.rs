@@ -5,6 +5,7 @@ use super::material::Palette;
 use super::object::{Content, Group, Item};
 use super::source::Source;
 use super::transform;
+use crate::scene::size::Size;
 use crate::scene::{Object, SceneError, Shape};
 use glam::DAffine3;
 use std::collections::BTreeMap;
@@ -17,6 +18,7 @@ pub(super) struct Placer<'p> {
     objects: Vec<Object>,
     /// Counted again, because boxes that are turned become twelve triangles.
     primitives: u64,
+    size: Size,
 }
 
 /// Where the objects of a list go.
@@ -34,13 +36,15 @@ impl<'p> Placer<'p> {
         source: &'p Source,
         groups: &'p BTreeMap<String, Group>,
         palette: &'p mut Palette,
+        objects: usize,
     ) -> Self {
         Self {
             source,
             groups,
             palette,
-            objects: Vec::new(),
+            objects: Vec::with_capacity(objects),
             primitives: 0,
+            size: Size::default(),
         }
     }
 
@@ -124,6 +128,8 @@ impl<'p> Placer<'p> {
         if self.primitives > MAX_PRIMITIVES {
             return Err(census::too_many(self.source, item));
         }
+        self.size = self.size.plus(Size::of(&shape, name.len()));
+        census::check_size(self.source, item, self.size)?;
         Ok(shape)
     }
 }

@@ -1,5 +1,6 @@
 //! The text of a TOML file, and errors and places in it.
 
+use crate::scene::text::check_encoding;
 use crate::scene::{Place, SceneError};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -35,6 +36,7 @@ impl Source {
                 "check the path and the permissions of the file",
             )
         })?;
+        check_encoding(path, &bytes)?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let good = error.utf8_error().valid_up_to();
             let line = 1 + error.as_bytes()[..good]

@@ -46,12 +46,12 @@ fn bytes_that_are_no_text() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, b"background = 0\n# \xff\xfe\n").unwrap();
-    let error = crate::scene::toml::load(&path, &Default::default()).unwrap_err();
+    let error = crate::scene::load(&path, &Default::default()).unwrap_err();
     assert_eq!(
         (error.cause.as_str(), error.line),
         ("the text is not UTF-8", Some(2))
     );
-    let missing = crate::scene::toml::load(&folder.path().join("none.toml"), &Default::default());
+    let missing = crate::scene::load(&folder.path().join("none.toml"), &Default::default());
     assert!(
         missing
             .unwrap_err()
@@ -86,10 +86,8 @@ fn tower(floors: usize, times: usize, ground: &str) -> String {
 #[test]
 fn groups_that_multiply_beyond_all_memory_are_refused_before() {
     let error = refusal(&tower(40, 10, DOT));
-    assert!(
-        error.cause.contains("more than 16777216 primitives"),
-        "{error}"
-    );
+    assert!(error.cause.contains("GB of memory, for"), "{error}");
+    assert!(error.cause.contains("the limit is 3.8 GB"), "{error}");
     assert!(error.line.is_some());
     assert_eq!(
         load(&tower(4, 10, DOT)).unwrap().scene.objects.len(),
@@ -108,6 +106,27 @@ fn vertices_without_faces_do_not_multiply_for_free() {
         error.cause.contains("more than 16777216 primitives"),
         "{error}"
     );
+}
+
+/// As many spheres as fit into a blob, and more than fit into 4 GB.
+#[test]
+fn two_to_the_23_instances_are_rejected_with_the_figure() {
+    let error = refusal(&tower(23, 2, DOT));
+    assert!(
+        error
+            .cause
+            .starts_with("with this object the scene takes about "),
+        "{error}"
+    );
+    assert!(
+        error.cause.contains(" objects with 0 triangles and "),
+        "{error}"
+    );
+    assert!(error.remedy.contains("use fewer instances"));
+    // Long names multiply as well.
+    let named = DOT.replace("kind", &format!("name = \"{}\", kind", "n".repeat(100_000)));
+    let error = refusal(&tower(4, 10, &named));
+    assert!(error.cause.contains("of memory, for"), "{error}");
 }
 
 #[test]

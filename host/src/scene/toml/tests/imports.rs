@@ -244,3 +244,49 @@ fn other_formats_are_imported_by_their_extension() {
         "{error}"
     );
 }
+
+#[test]
+fn imports_outside_of_the_scenes_folder_are_rejected() {
+    let outer = tempfile::tempdir().unwrap();
+    let folder = outer.path().join("scene");
+    std::fs::create_dir_all(folder.join("sub")).unwrap();
+    let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    for place in ["secret.obj", "scene/near.obj"] {
+        std::fs::write(outer.path().join(place), mesh).unwrap();
+    }
+    let import = |file: &str| format!("[[object]]\nkind = \"import\"\nfile = '{file}'\n");
+    let absolute = outer.path().join("secret.obj").display().to_string();
+    let path = folder.join("scene.toml");
+    for name in [
+        "../secret.obj",
+        "sub/../../secret.obj",
+        "..\\secret.obj",
+        "/etc/passwd",
+        &absolute,
+    ] {
+        std::fs::write(&path, import(name)).unwrap();
+        let error = crate::scene::load(&path, &Default::default()).unwrap_err();
+        assert_eq!(error.line, Some(3));
+        assert!(
+            error.cause.contains("outside of the scene's folder"),
+            "{name}: {error}"
+        );
+        assert!(error.remedy.contains("--allow-outside"));
+    }
+    // A nested file may name what lies in the folder of the outermost one, and no more.
+    std::fs::write(&path, import("sub/nested.toml")).unwrap();
+    std::fs::write(folder.join("sub/nested.toml"), import("../near.obj")).unwrap();
+    assert!(crate::scene::load(&path, &Default::default()).is_ok());
+    std::fs::write(folder.join("sub/nested.toml"), import("../../secret.obj")).unwrap();
+    let error = crate::scene::load(&path, &Default::default()).unwrap_err();
+    assert!(
+        error.cause.contains("outside of the scene's folder"),
+        "{error}"
+    );
+    let allowed = crate::scene::ImportOptions {
+        allow_outside: true,
+        ..Default::default()
+    };
+    let scene = crate::scene::load_with(&path, &allowed).unwrap().scene;
+    assert_eq!(scene.objects.len(), 1);
+}

@@ -21,7 +21,7 @@ fn load(text: &str) -> Result<Imported, SceneError> {
 fn load_in(folder: &Path, text: &str) -> Result<Imported, SceneError> {
     let path = folder.join("scene.toml");
     std::fs::write(&path, text).unwrap();
-    super::load(&path, &MoleculeOptions::default())
+    crate::scene::load(&path, &MoleculeOptions::default())
 }
 
 fn scene(text: &str) -> Scene {

@@ -1,0 +1,178 @@
+//! Which files a scene file may name: those in its own folder and below, unless more is allowed.
+//!
+//! The folder is that of the file from which everything starts, so that a scene may keep imports in
+//! folders and these may name each other. What counts is where a file lies when all links are
+//! followed, so a link that leads outside is outside. Backslashes separate folders as slashes do,
+//! on every system.
+
+use std::path::{Component, Path, PathBuf};
+
+/// What the files of a scene may name.
+#[derive(Clone, Debug)]
+pub(super) struct Access {
+    /// The scene's folder, all links followed; `None` where every file is allowed.
+    folder: Option<PathBuf>,
+}
+
+impl Access {
+    /// For the scene that begins with this file.
+    pub(super) fn of(scene: &Path, allow_outside: bool) -> Self {
+        let folder = folder(scene);
+        // A folder that cannot be resolved cannot be read from either, and reading says why.
+        let resolved = || folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+        Self {
+            folder: (!allow_outside).then(resolved),
+        }
+    }
+
+    /// The path of the file that `name` stands for in `file`.
+    ///
+    /// # Errors
+    /// If it lies outside of the scene's folder: the cause, which names the folder, and the remedy.
+    pub(super) fn resolve(&self, file: &Path, name: &str) -> Result<PathBuf, [String; 2]> {
+        let Some(root) = &self.folder else {
+            return Ok(beside(file, name));
+        };
+        let outside = || {
+            [
+                format!(
+                    "{name:?} lies outside of the scene's folder, {}",
+                    root.display()
+                ),
+                String::from(
+                    "move the file into that folder, or allow such files with `--allow-outside`",
+                ),
+            ]
+        };
+        let slashed = name.replace('\\', "/");
+        let drive = slashed.as_bytes();
+        if drive.len() >= 2 && drive[0].is_ascii_alphabetic() && drive[1] == b':' && !cfg!(windows)
+        {
+            return Err(outside());
+        }
+        let here = folder(file);
+        let here = here.canonicalize().unwrap_or_else(|_| here.to_owned());
+        for name in [name, &slashed] {
+            let path = here.join(name);
+            if !lexical(&path).starts_with(root) {
+                return Err(outside());
+            }
+            // A file that is not there lies nowhere; reading says so.
+            if path
+                .canonicalize()
+                .is_ok_and(|real| !real.starts_with(root))
+            {
+                return Err(outside());
+            }
+        }
+        Ok(beside(file, name))
+    }
+}
+
+fn beside(file: &Path, name: &str) -> PathBuf {
+    file.parent().unwrap_or(Path::new("")).join(name)
+}
+
+fn folder(file: &Path) -> &Path {
+    match file.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// The path without `.` and `..`.
+fn lexical(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for component in path.components() {
+        match component {
+            Component::CurDir => {}
+            Component::ParentDir => {
+                plain.pop();
+            }
+            other => plain.push(other),
+        }
+    }
+    plain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_that_leave_the_folder_are_rejected() {
+        let outer = tempfile::tempdir().unwrap();
+        let folder = outer.path().join("scene");
+        std::fs::create_dir_all(folder.join("sub")).unwrap();
+        std::fs::write(outer.path().join("secret.obj"), "").unwrap();
+        std::fs::write(folder.join("near.obj"), "").unwrap();
+        let file = folder.join("scene.toml");
+        let nested = folder.join("sub/nested.toml");
+        let access = Access::of(&file, false);
+        let near = folder.join("near.obj").display().to_string();
+        for name in [
+            "near.obj",
+            "./near.obj",
+            "sub/../near.obj",
+            "none.obj",
+            "..near",
+            &near,
+        ] {
+            assert!(access.resolve(&file, name).is_ok(), "{name}");
+        }
+        assert!(access.resolve(&nested, "../near.obj").is_ok());
+        for name in [
+            "../secret.obj",
+            "../none.obj",
+            "sub/../../secret.obj",
+            "..\\secret.obj",
+            "sub\\..\\..\\secret.obj",
+            "/etc/passwd",
+            "\\\\server\\share\\a.obj",
+            "\\etc\\passwd",
+            "C:\\a.obj",
+            "c:/a.obj",
+            "../scene2/near.obj",
+        ] {
+            let [cause, remedy] = access.resolve(&file, name).unwrap_err();
+            assert!(cause.contains(&format!("{name:?}")), "{cause}");
+            assert!(cause.contains(&folder.canonicalize().unwrap().display().to_string()));
+            assert!(remedy.contains("--allow-outside"));
+            assert!(Access::of(&file, true).resolve(&file, name).is_ok());
+        }
+        assert!(access.resolve(&nested, "../../secret.obj").is_err());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_that_lead_outside_are_rejected() {
+        let outer = tempfile::tempdir().unwrap();
+        let folder = outer.path().join("scene");
+        std::fs::create_dir(&folder).unwrap();
+        std::fs::write(outer.path().join("secret.obj"), "").unwrap();
+        std::fs::write(folder.join("near.obj"), "").unwrap();
+        let link = |from: &Path, to: &str| std::os::unix::fs::symlink(from, folder.join(to));
+        link(&outer.path().join("secret.obj"), "out.obj").unwrap();
+        link(&folder.join("near.obj"), "in.obj").unwrap();
+        link(outer.path(), "up").unwrap();
+        let file = folder.join("scene.toml");
+        let access = Access::of(&file, false);
+        assert!(access.resolve(&file, "in.obj").is_ok());
+        assert!(access.resolve(&file, "out.obj").is_err());
+        assert!(access.resolve(&file, "up/secret.obj").is_err());
+        // The scene's own folder may be reached through a link.
+        let around = outer.path().join("around");
+        std::os::unix::fs::symlink(&folder, &around).unwrap();
+        let file = around.join("scene.toml");
+        assert!(Access::of(&file, false).resolve(&file, "near.obj").is_ok());
+    }
+
+    #[test]
+    fn a_scene_named_without_a_folder_has_the_current_one() {
+        let access = Access::of(Path::new("scene.toml"), false);
+        assert!(access.resolve(Path::new("scene.toml"), "a.obj").is_ok());
+        assert!(access.resolve(Path::new("scene.toml"), "../a.obj").is_err());
+        let path = access.resolve(Path::new("scene.toml"), "a.obj").unwrap();
+        assert_eq!(lexical(&path), Path::new("a.obj"));
+    }
+}

@@ -1,0 +1,129 @@
+//! How much memory a scene takes, told before it is made: a few lines of a file can stand for more
+//! objects than any machine holds.
+
+use super::Shape;
+use crate::report::grouped;
+
+/// The most bytes that a scene may take until its blob is made: room for as many triangles as a
+/// blob holds, and less than 4 GB.
+pub(super) const MOST_BYTES: u64 = 3_800_000_000;
+
+/// Bytes that an object takes while it is read and compiled, without its name and its triangles.
+/// Measured as the growth of `inspect`'s and `build`'s peak memory per sphere and per cone.
+const OBJECT: u64 = 512;
+/// Bytes that a triangle takes, with its share of the vertices; measured likewise, with the
+/// structure `wide`.
+const TRIANGLE: u64 = 224;
+/// How often a name is held: in the scene, and for messages.
+const NAMES: u64 = 2;
+
+/// What a scene holds, or a part of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Size {
+    pub(super) objects: u64,
+    /// Bytes of all objects' names.
+    pub(super) names: u64,
+    pub(super) triangles: u64,
+}
+
+impl Size {
+    /// One object; `name` is the length of its name.
+    pub(super) fn of(shape: &Shape, name: usize) -> Self {
+        let triangles = match shape {
+            Shape::Mesh {
+                vertices,
+                triangles,
+            } => triangles.len().max(vertices.len() / 3).max(1) as u64,
+            _ => 0,
+        };
+        Self {
+            objects: 1,
+            names: name as u64,
+            triangles,
+        }
+    }
+
+    #[must_use]
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self {
+            objects: self.objects.saturating_add(other.objects),
+            names: self.names.saturating_add(other.names),
+            triangles: self.triangles.saturating_add(other.triangles),
+        }
+    }
+
+    /// The same objects where each name has so many bytes more.
+    #[must_use]
+    pub(super) fn with_longer_names(self, by: usize) -> Self {
+        let more = self.objects.saturating_mul(by as u64);
+        Self {
+            names: self.names.saturating_add(more),
+            ..self
+        }
+    }
+
+    fn bytes(self) -> u64 {
+        let parts = [
+            (self.objects, OBJECT),
+            (self.names, NAMES),
+            (self.triangles, TRIANGLE),
+        ];
+        let parts = parts.map(|(count, bytes)| count.saturating_mul(bytes));
+        parts.into_iter().fold(0, u64::saturating_add)
+    }
+
+    /// What it takes in words, if that is too much.
+    pub(super) fn excess(self) -> Option<String> {
+        let gigabytes = |bytes: u64| bytes as f64 / 1e9;
+        (self.bytes() > MOST_BYTES).then(|| {
+            format!(
+                "about {:.1} GB of memory, for {} objects with {} triangles and {} bytes of names; \
+                 the limit is {:.1} GB",
+                gigabytes(self.bytes()),
+                grouped(self.objects),
+                grouped(self.triangles),
+                grouped(self.names),
+                gigabytes(MOST_BYTES)
+            )
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_many_triangles_as_a_blob_holds_fit() {
+        let mesh = Size {
+            objects: 1,
+            names: 100,
+            triangles: 1 << 24,
+        };
+        assert_eq!(mesh.excess(), None);
+        let more = mesh.plus(Size {
+            objects: 100_000,
+            ..Size::default()
+        });
+        let words = more.excess().unwrap();
+        assert!(
+            words.starts_with("about 3.8 GB of memory, for 100,001 objects"),
+            "{words}"
+        );
+    }
+
+    #[test]
+    fn sizes_beyond_all_numbers_are_too_much() {
+        let all = Size {
+            objects: u64::MAX,
+            names: 1,
+            triangles: u64::MAX,
+        };
+        assert!(
+            all.plus(all)
+                .with_longer_names(usize::MAX)
+                .excess()
+                .is_some()
+        );
+    }
+}
