@@ -41,7 +41,7 @@ pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
         .map_err(broken)?;
     let (mut vertices, mut faces, mut strips) = (Vec::new(), Vec::new(), Vec::new());
     let mut warnings = Warnings::default();
-    ignored(path, &bytes, &header.elements, &mut warnings);
+    ignored(path, &bytes, &mut warnings);
     for element in header.elements.values() {
         announced(path, element, bytes.len())?;
         match element.name.as_str() {
@@ -87,60 +87,60 @@ pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
     })
 }
 
+/// Properties that change a picture: what they are, and what the picture lacks.
+const IGNORED: [(&[&str], &str, &str); 2] = [
+    (
+        &[
+            "red",
+            "green",
+            "blue",
+            "diffuse_red",
+            "diffuse_green",
+            "diffuse_blue",
+        ],
+        "colour",
+        "the surface has one colour",
+    ),
+    (&["nx", "ny", "nz"], "normal", "the surface is shaded flat"),
+];
+
 /// Warns of what the header announces that changes the picture and is not drawn.
-fn ignored<'e>(
-    path: &Path,
-    bytes: &[u8],
-    elements: impl IntoIterator<Item = (&'e String, &'e ElementDef)>,
-    warnings: &mut Warnings,
-) {
-    let header: Vec<_> = bytes
+fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
+    let header = bytes
         .split(|&byte| byte == b'\n')
-        .map(|line| String::from_utf8_lossy(line))
-        .take_while(|line| line.trim() != "end_header")
-        .collect();
-    // The line of a word in the header; a property's name is the last word of its line.
-    let place = |is: &dyn Fn(&str) -> bool| {
-        let line = header.iter().position(|line| is(line.trim()));
-        Place {
-            line: line.map_or(0, |index| index + 1),
+        .map(String::from_utf8_lossy);
+    // The element whose properties follow, how many of it there are, and what it was warned of.
+    let (mut element, mut count, mut told) = (String::new(), 0, [false; IGNORED.len()]);
+    for (number, line) in (1..).zip(header) {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let place = Place {
+            line: number,
             ..Place::of(path)
-        }
-    };
-    let colors = [
-        "red",
-        "green",
-        "blue",
-        "diffuse_red",
-        "diffuse_green",
-        "diffuse_blue",
-    ];
-    for (_, element) in elements {
-        let (one, is_mesh) = match element.name.as_str() {
-            "vertex" => ("vertex", true),
-            "face" => ("face", true),
-            _ => ("", false),
         };
-        for (what, names, lacking) in [
-            ("colour", &colors[..], "the surface has one colour"),
-            ("normal", &["nx", "ny", "nz"], "the surface is shaded flat"),
-        ] {
-            let mut properties = element.properties.keys();
-            let first = properties.find(|property| names.contains(&property.as_str()));
-            let Some(first) = first.filter(|_| is_mesh && element.count > 0) else {
-                continue;
-            };
-            let is_it = |line: &str| {
-                line.starts_with("property") && line.split_whitespace().last() == Some(first)
-            };
-            let sentence = format!("the {what} of a {one} is ignored; {lacking}");
-            warnings.add_times(place(&is_it), element.count, sentence);
+        match words[..] {
+            ["end_header", ..] => return,
+            ["element", name, number] => {
+                element = name.to_owned();
+                count = number.parse().unwrap_or(0);
+                told = [false; IGNORED.len()];
+            }
+            ["comment", "TextureFile", ..] => {
+                let sentence = "textures are not drawn; the plain colours are used";
+                warnings.add_times(place, 1, sentence);
+            }
+            ["property", .., name] if ["vertex", "face"].contains(&&*element) && count > 0 => {
+                let is_it = |(names, ..): &(&[&str], _, _)| names.contains(&name);
+                let Some(kind) = IGNORED.iter().position(is_it) else {
+                    continue;
+                };
+                if !std::mem::replace(&mut told[kind], true) {
+                    let (_, what, lacking) = IGNORED[kind];
+                    let sentence = format!("the {what} of a {element} is ignored; {lacking}");
+                    warnings.add_times(place, count, sentence);
+                }
+            }
+            _ => {}
         }
-    }
-    let texture = |line: &str| line.starts_with("comment TextureFile");
-    if header.iter().any(|line| texture(line.trim())) {
-        let sentence = "textures are not drawn; the plain colours are used";
-        warnings.add_times(place(&texture), 1, sentence);
     }
 }
 

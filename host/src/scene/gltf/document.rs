@@ -5,7 +5,7 @@ use crate::scene::text::Warnings;
 use crate::scene::{Place, SceneError};
 use gltf::Document;
 use gltf::json::camera::Type;
-use gltf::json::validation::{Checked, Error};
+use gltf::json::validation::{Checked, Error, Validate};
 use gltf::json::{Root, Value};
 use std::path::Path;
 
@@ -29,70 +29,32 @@ pub(super) fn read(
     }
     leave_out_shapeless(path, &mut root, warnings);
     check_indices(path, &root)?;
-    let document = Document::from_json(root).map_err(|error| broken(path, error))?;
+    validate(path, &root)?;
+    let document = Document::from_json_without_validation(root);
     Ok((document, container.binary.map(<[u8]>::to_vec)))
 }
 
-/// Reads the JSON. Textures may name no image; the crate's do, and no image is read.
 fn parse(path: &Path, container: &Container<'_>) -> Result<Root, SceneError> {
-    let error = match gltf::json::deserialize::from_slice(container.text) {
-        Ok(root) => return Ok(root),
-        Err(error) => error,
-    };
-    let value: Option<Value> = gltf::json::deserialize::from_slice(container.text).ok();
-    if let Some(version) = value
-        .as_ref()
-        .and_then(|value| value["asset"]["version"].as_str())
-    {
-        check_version(path, version)?;
-    }
-    if let Some(value) = value.and_then(with_images)
-        && let Ok(root) = gltf::json::deserialize::from_value(value)
-    {
-        return Ok(root);
-    }
-    let cause = error.to_string();
-    // The line is told before the cause.
-    let cause = cause
-        .rsplit_once(" at line ")
-        .map_or(cause.as_str(), |(cause, _)| cause);
-    let wrong = SceneError::new(path, format!("the JSON is broken: {cause}"), AGAIN);
-    Err(match error.line() {
-        line if line > 0 && container.has_lines => wrong.at_line(line),
-        _ => wrong,
-    })
-}
-
-/// The document with an image for every texture that names none; `None` if there is no such one.
-fn with_images(mut value: Value) -> Option<Value> {
-    let images = value
-        .get("images")
-        .and_then(Value::as_array)
-        .map_or(0, Vec::len);
-    let textures = value.get_mut("textures")?.as_array_mut()?;
-    let mut changed = false;
-    for texture in textures.iter_mut().filter_map(Value::as_object_mut) {
-        if !texture.contains_key("source") {
-            texture.insert(String::from("source"), images.into());
-            changed = true;
+    gltf::json::deserialize::from_slice(container.text).map_err(|error| {
+        // Other versions have other types where this one has its own.
+        let value = gltf::json::deserialize::from_slice::<Value>(container.text).ok();
+        let version = value
+            .as_ref()
+            .and_then(|value| value["asset"]["version"].as_str());
+        if let Some(Err(wrong)) = version.map(|version| check_version(path, version)) {
+            return wrong;
         }
-    }
-    if !changed {
-        return None;
-    }
-    let empty = || {
-        Value::Object(
-            [(String::from("uri"), Value::from(""))]
-                .into_iter()
-                .collect(),
-        )
-    };
-    let root = value.as_object_mut()?;
-    let images = root
-        .entry("images")
-        .or_insert_with(|| Value::Array(Vec::new()));
-    images.as_array_mut()?.push(empty());
-    Some(value)
+        let cause = error.to_string();
+        // The line is told before the cause.
+        let cause = cause
+            .rsplit_once(" at line ")
+            .map_or(cause.as_str(), |(cause, _)| cause);
+        let wrong = SceneError::new(path, format!("the JSON is broken: {cause}"), AGAIN);
+        match error.line() {
+            line if line > 0 && container.has_lines => wrong.at_line(line),
+            _ => wrong,
+        }
+    })
 }
 
 fn check_version(path: &Path, version: &str) -> Result<(), SceneError> {
@@ -161,20 +123,28 @@ fn check_indices(path: &Path, root: &Root) -> Result<(), SceneError> {
     Ok(())
 }
 
-fn broken(path: &Path, error: gltf::Error) -> SceneError {
-    match error {
-        gltf::Error::Validation(problems) => match problems.into_iter().next() {
-            Some((place, Error::Unsupported)) => SceneError::new(
-                path,
-                format!("an extension that the file requires is not understood: {place}"),
-                "export without it; compressed and quantised meshes are not read",
-            ),
-            Some((place, error)) => {
-                let cause = error.to_string().to_lowercase();
-                SceneError::new(path, format!("{place}: {cause}"), AGAIN)
-            }
-            None => SceneError::new(path, "the file is no valid glTF", AGAIN),
-        },
-        error => SceneError::new(path, format!("the file is no glTF: {error}"), AGAIN),
+/// Proves the rest, but for what the crate asks for and the format does not: a texture may name no
+/// image, and an accessor without a view holds zeros.
+fn validate(path: &Path, root: &Root) -> Result<(), SceneError> {
+    let mut first = None;
+    root.validate(root, gltf::json::Path::new, &mut |place, error| {
+        let place = place().to_string();
+        let optional = place.starts_with("textures[") && place.ends_with("].source")
+            || place.starts_with("accessors[") && place.ends_with("].bufferView");
+        if !(optional && matches!(error, Error::Missing)) && first.is_none() {
+            first = Some((place, error));
+        }
+    });
+    match first {
+        None => Ok(()),
+        Some((place, Error::Unsupported)) => Err(SceneError::new(
+            path,
+            format!("an extension that the file requires is not understood: {place}"),
+            "export without it; compressed and quantised meshes are not read",
+        )),
+        Some((place, error)) => {
+            let cause = error.to_string().to_lowercase();
+            Err(SceneError::new(path, format!("{place}: {cause}"), AGAIN))
+        }
     }
 }

@@ -151,10 +151,10 @@ fn colours_normals_and_textures_are_warned_of() {
     assert_eq!(
         ends,
         [
-            "11: the colour of a vertex is ignored; the surface has one colour (and 2 times more)",
-            "8: the normal of a vertex is ignored; the surface is shaded flat (and 2 times more)",
-            "14: the colour of a face is ignored; the surface has one colour",
             "3: textures are not drawn; the plain colours are used",
+            "8: the normal of a vertex is ignored; the surface is shaded flat (and 2 times more)",
+            "11: the colour of a vertex is ignored; the surface has one colour (and 2 times more)",
+            "14: the colour of a face is ignored; the surface has one colour",
         ]
     );
 }
