@@ -125,7 +125,7 @@ fn two_to_the_23_instances_are_rejected_with_the_figure() {
     assert!(error.remedy.contains("use fewer instances"));
     // Long names multiply as well.
     let named = DOT.replace("kind", &format!("name = \"{}\", kind", "n".repeat(100_000)));
-    let error = refusal(&tower(4, 10, &named));
+    let error = refusal(&tower(5, 10, &named));
     assert!(error.cause.contains("of memory, for"), "{error}");
 }
 

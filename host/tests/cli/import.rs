@@ -1,0 +1,127 @@
+//! What is said of scene files that hold more than is drawn, name files elsewhere, or stand for more
+//! than memory holds.
+
+use crate::program::Folder;
+use std::fmt::Write;
+
+const NORMALS: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//2\n";
+
+#[test]
+fn ignored_data_are_in_the_json_of_every_verb() {
+    let folder = Folder::new();
+    folder.write("a.obj", NORMALS.as_bytes());
+    let told = "a.obj:4: vertex normals are ignored; the surface is shaded flat (and once more)";
+    let small = ["--size", "16x12"];
+    for arguments in [
+        &["build", "a.obj", "-o", "a.gridel"][..],
+        &[&["render", "a.obj", "-o", "a.png"], &small[..]].concat(),
+        &["inspect", "a.obj"],
+        &["verify", "a.obj", "--rays", "1000"],
+        &[&["explain", "a.obj", "--pixel", "1,1"], &small[..]].concat(),
+        &[
+            &["compare", "a.obj", "--accel", "bvh", "--repeat", "0"],
+            &small[..],
+        ]
+        .concat(),
+    ] {
+        let report = folder.json(arguments);
+        assert_eq!(
+            report["warnings"],
+            serde_json::json!([told]),
+            "{arguments:?}"
+        );
+        let run = folder.run(arguments);
+        assert!(
+            run.stderr.contains(&format!("warning: {told}")),
+            "{}",
+            run.stderr
+        );
+    }
+    let check = "[[check]]\nscene = \"a.obj\"\nbudget = { blob_bytes = 1_000_000 }\n";
+    folder.write("check.toml", check.as_bytes());
+    let report = folder.json(&["check", "check.toml"]).to_string();
+    assert!(report.contains("vertex normals are ignored"), "{report}");
+}
+
+#[test]
+fn files_outside_of_the_folder_need_a_flag_in_every_verb() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("in")).unwrap();
+    folder.write("out.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let import = "[[object]]\nkind = \"import\"\nfile = \"../out.obj\"\n";
+    folder.write("in/a.toml", import.as_bytes());
+    let words = ["in/a.toml:3", "../out.obj", "outside", "--allow-outside"];
+    let small = ["--size", "16x12"];
+    for arguments in [
+        &["build", "in/a.toml", "-o", "a.gridel"][..],
+        &[&["render", "in/a.toml", "-o", "a.png"], &small[..]].concat(),
+        &["inspect", "in/a.toml"],
+        &["verify", "in/a.toml", "--rays", "1000"],
+        &[&["explain", "in/a.toml", "--pixel", "1,1"], &small[..]].concat(),
+        &[
+            &["compare", "in/a.toml", "--accel", "bvh", "--repeat", "0"],
+            &small[..],
+        ]
+        .concat(),
+    ] {
+        folder.fails(1, arguments, &words);
+        folder.done(&[arguments, &["--allow-outside"]].concat());
+    }
+    for verb in ["trace", "accuracy"] {
+        assert!(
+            folder.done(&[verb, "--help"]).contains("--allow-outside"),
+            "{verb}"
+        );
+    }
+    let check = "[[check]]\nscene = \"in/a.toml\"\nbudget = { blob_bytes = 1_000_000 }\n";
+    folder.write("check.toml", check.as_bytes());
+    let run = folder.run(&["check", "check.toml"]);
+    assert_eq!(run.code, Some(1), "{}", run.stdout);
+    assert!(run.stdout.contains("outside"), "{}", run.stdout);
+    folder.write(
+        "check.toml",
+        format!("{check}allow_outside = true\n").as_bytes(),
+    );
+    folder.done(&["check", "check.toml"]);
+    // A blob names no files.
+    folder.fails(
+        2,
+        &["inspect", "a.gridel", "--allow-outside"],
+        &["--allow-outside is for scene files"],
+    );
+}
+
+/// A file of 2 KB that stands for 2^23 spheres, where there are 4 GB.
+#[cfg(target_os = "linux")]
+#[test]
+fn two_to_the_23_instances_are_rejected_under_4_gb() {
+    let folder = Folder::new();
+    let dot = "{ kind = \"sphere\", center = [0, 0, 0], radius = 1 },";
+    let mut text = format!("[group.g0]\nobject = [{dot}]\n");
+    for floor in 1..=23 {
+        let instance = format!("{{ kind = \"instance\", group = \"g{}\" }},", floor - 1);
+        writeln!(text, "[group.g{floor}]\nobject = [{instance}{instance}]").unwrap();
+    }
+    text.push_str("[[object]]\nkind = \"instance\"\ngroup = \"g23\"\n");
+    folder.write("many.toml", text.as_bytes());
+    let capped = "ulimit -v 4000000; exec \"$0\" build many.toml -o many.gridel";
+    let output = std::process::Command::new("sh")
+        .args(["-c", capped, env!("CARGO_BIN_EXE_gridel")])
+        .current_dir(folder.path(""))
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    let said = said
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
+        .replace("│ ", "");
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    for words in [
+        "GB of memory, for",
+        "the limit is 3.8 GB",
+        "use fewer instances",
+    ] {
+        assert!(said.contains(words), "no {words:?} in {said}");
+    }
+}
