@@ -20,10 +20,13 @@ use buffers::Buffers;
 use glam::{DMat4, DQuat, DVec3};
 use gltf::mesh::Mode;
 use gltf::scene::Transform;
-use gltf::{Document, Node, Primitive, Semantic};
+use gltf::{Accessor, Document, Node, Primitive, Semantic};
 use std::collections::HashMap;
 use std::path::Path;
 use view::View;
+
+/// Most elements of all accessors together: some for each vertex and triangle.
+const MOST_ELEMENTS: usize = 16 * MOST;
 
 /// Most vertices and triangles of a file, each instance counted: what a blob can hold.
 const MOST: usize = 1 << 24;
@@ -134,18 +137,37 @@ impl Importer<'_> {
                 "give every node one parent at most, and no circle",
             ));
         }
+        // Accessors may share their bytes, so that a short file can ask for any amount of work.
+        let stored = |it: &Accessor<'_>| it.view().is_some() || it.sparse().is_some();
+        let elements = document.accessors().filter(stored).map(|it| it.count());
+        if elements.fold(0, usize::saturating_add) > MOST_ELEMENTS {
+            return Err(self.error(
+                format!("the accessors of the file have more than {MOST_ELEMENTS} elements"),
+                "export a part of the scene",
+            ));
+        }
+        let mut highest: HashMap<usize, Option<u32>> = HashMap::new();
         for mesh in document.meshes() {
             for part in mesh.primitives() {
-                let place = place(&mesh, &part);
-                if let (Some(positions), Some(indices)) =
+                let (Some(positions), Some(indices)) =
                     (part.get(&Semantic::Positions), part.indices())
-                {
-                    let corners = self.buffers.indices(&indices)?;
-                    self.check_corners(&place, &corners, positions.count())?;
+                else {
+                    continue;
+                };
+                let highest = match highest.get(&indices.index()) {
+                    Some(&known) => known,
+                    None => {
+                        let found = self.buffers.indices(&indices)?.into_iter().max();
+                        highest.insert(indices.index(), found);
+                        found
+                    }
+                };
+                if let Some(highest) = highest {
+                    self.check_corner(&place(&mesh, &part), highest, positions.count())?;
                 }
             }
         }
-        for accessor in document.accessors() {
+        for accessor in document.accessors().filter(stored) {
             if let Some(element) = self.buffers.first_not_finite(&accessor)? {
                 self.warn(format!(
                     "element {element} of accessor {} is not a finite number",
@@ -156,19 +178,14 @@ impl Importer<'_> {
         Ok(())
     }
 
-    fn check_corners(
-        &self,
-        place: &str,
-        corners: &[u32],
-        vertices: usize,
-    ) -> Result<(), SceneError> {
-        match corners.iter().find(|&&corner| corner as usize >= vertices) {
-            None => Ok(()),
-            Some(corner) => Err(self.error(
-                format!("{place} uses vertex {corner}, and it has {vertices} vertices"),
-                "export the file again; vertices count from 0",
-            )),
+    fn check_corner(&self, place: &str, corner: u32, vertices: usize) -> Result<(), SceneError> {
+        if (corner as usize) < vertices {
+            return Ok(());
         }
+        Err(self.error(
+            format!("{place} uses vertex {corner}, and it has {vertices} vertices"),
+            "export the file again; vertices count from 0",
+        ))
     }
 
     /// Warns of what changes the picture and is not drawn.
@@ -353,7 +370,9 @@ impl Importer<'_> {
             Some(indices) => self.buffers.indices(&indices)?,
             None => (0..vertices.len() as u32).collect(),
         };
-        self.check_corners(place, &corners, vertices.len())?;
+        if let Some(&corner) = corners.iter().max() {
+            self.check_corner(place, corner, vertices.len())?;
+        }
         // A transform that mirrors would turn the mesh inside out.
         let mirrored = world.determinant() < 0.0;
         let triangles = triangles(part.mode(), &corners, mirrored);

@@ -645,3 +645,16 @@ fn nodes_that_multiply_beyond_all_memory_are_rejected_with_the_figure() {
     assert!(cause.contains("GB of memory, for"), "{cause}");
     assert!(cause.contains("the limit is 3.8 GB"), "{cause}");
 }
+
+/// Many accessors of the same bytes, which nothing uses.
+#[test]
+fn accessors_that_multiply_are_rejected() {
+    let mut document = document();
+    let accessors = document["accessors"].as_array_mut().unwrap();
+    let many =
+        json!({"bufferView": 0, "componentType": 5126, "count": 16_000_000, "type": "SCALAR"});
+    accessors.extend(vec![many; 20]);
+    assert!(
+        cause(&document).contains("the accessors of the file have more than 268435456 elements")
+    );
+}
