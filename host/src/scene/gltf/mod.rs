@@ -139,7 +139,10 @@ impl Importer<'_> {
         }
         // Accessors may share their bytes, so that a short file can ask for any amount of work.
         let stored = |it: &Accessor<'_>| it.view().is_some() || it.sparse().is_some();
-        let elements = document.accessors().filter(stored).map(|it| it.count());
+        let elements = document
+            .accessors()
+            .filter(stored)
+            .map(|it| it.count().min(MOST));
         if elements.fold(0, usize::saturating_add) > MOST_ELEMENTS {
             return Err(self.error(
                 format!("the accessors of the file have more than {MOST_ELEMENTS} elements"),
@@ -247,6 +250,7 @@ impl Importer<'_> {
         };
         open.reverse();
         let mut seen = vec![false; document.nodes().len()];
+        let mut placed = Vec::new();
         while let Some((node, outer)) = open.pop() {
             if std::mem::replace(&mut seen[node.index()], true) {
                 return Err(self.error(
@@ -262,10 +266,46 @@ impl Importer<'_> {
                     "export the file again, or repair the node",
                 ));
             }
-            self.node(&node, &world)?;
+            self.weigh(&node)?;
             let from = open.len();
             open.extend(node.children().map(|child| (child, world)));
             open[from..].reverse();
+            placed.push((node, world));
+        }
+        placed
+            .iter()
+            .try_for_each(|(node, world)| self.node(node, world))
+    }
+
+    /// Adds what a node will take to what others do, before any of it is made.
+    fn weigh(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        let Some(mesh) = node.mesh() else {
+            return Ok(());
+        };
+        let name = node.name().or(mesh.name()).map_or(0, str::len);
+        for part in mesh.primitives() {
+            let vertices = part.get(&Semantic::Positions).map_or(0, |it| it.count());
+            let corners = part.indices().map_or(vertices, |it| it.count());
+            let triangles = match part.mode() {
+                Mode::Triangles => corners / 3,
+                Mode::TriangleStrip | Mode::TriangleFan => corners.saturating_sub(2),
+                _ => continue,
+            };
+            self.size = self.size.plus(Size {
+                objects: 1,
+                names: name as u64,
+                triangles: triangles.max(vertices / 3) as u64,
+            });
+            if let Some(excess) = self.size.excess() {
+                let place = place(&mesh, &part);
+                return Err(self.error(
+                    format!(
+                        "up to node {}, {place}, instances counted, the file takes {excess}",
+                        node.index()
+                    ),
+                    "export a part of the scene, or coarser meshes",
+                ));
+            }
         }
         Ok(())
     }
@@ -314,13 +354,6 @@ impl Importer<'_> {
                 1 => name.clone(),
                 _ => format!("{name} {}", part.index()),
             };
-            self.size = self.size.plus(Size::of(&shape, name.len()));
-            if let Some(excess) = self.size.excess() {
-                return Err(self.error(
-                    format!("up to {place}, instances counted, the file takes {excess}"),
-                    "export a part of the scene, or coarser meshes",
-                ));
-            }
             let material = self.material(&part);
             self.scene.objects.push(Object {
                 name,
