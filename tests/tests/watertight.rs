@@ -4,7 +4,7 @@ use glam::DVec3;
 use gridel_core::{Bvh, Flagged, Format, Hit, Kind, NoCount, Number, Scene, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::scene::Shape;
-use gridel_tests::effort::part_of;
+use gridel_tests::effort::{part_of, step, third_of};
 use gridel_tests::every_format;
 use gridel_tests::query::{UnitRay, closest, held, through};
 use gridel_tests::random::Random;
@@ -157,7 +157,7 @@ fn closed_meshes_have_no_hole_and_no_double_edge() {
     for (name, (vertices, triangles)) in meshes {
         let blob = mesh(vertices, triangles, 24);
         let scene = blob.scene().expect("a scene");
-        let rays = part_of(60_000, 10_000_000);
+        let rays = part_of(third_of(60_000), 10_000_000);
         every_format!(no_leaks_anywhere(name, &scene, rays));
     }
 }
@@ -165,7 +165,7 @@ fn closed_meshes_have_no_hole_and_no_double_edge() {
 /// Counts leaks of a closed mesh; the list is asked for every `list_step`th ray.
 fn no_leaks<N: Number>(name: &str, scene: &Scene<'_>, from: [f64; 3], list_step: usize) {
     let targets = vertices_and_edges(scene);
-    let all = || targets.iter().copied();
+    let all = || targets.iter().copied().step_by(step());
     let listed = leaks::<N>(Structure::List, scene, from, all().step_by(list_step));
     let results = held(scene)
         .map(|structure| (structure, leaks::<N>(structure, scene, from, all())))
@@ -239,7 +239,7 @@ fn stretched_boxes_are_closed() {
 fn axis_parallel_rays_through_vertices_hit() {
     fn through_vertices<N: Number>(name: &str, scene: &Scene<'_>) {
         let (mut rays, mut rim) = (0, 0);
-        for target in vertices_and_edges(scene) {
+        for target in vertices_and_edges(scene).into_iter().step_by(step()) {
             // On the silhouette a ray may touch or pass.
             for axis in 0..3 {
                 for (sign, zero) in [(1.0, 0.0), (-1.0, -0.0), (1.0, -0.0)] {

@@ -2,8 +2,9 @@
 //!
 //! Needs `qemu-system-arm`, `qemu-system-riscv32`, Node, and the Rust targets of all boards
 //! (`rustup target add`). A test without what its board needs is ignored and says why; it fails if
-//! `GRIDEL_REQUIRE_BOARDS` is 1. The ordinary run has a picture of every board and a ray of every core;
-//! `GRIDEL_FULL=1` runs all. `fixtures/recorded/board.json` holds what was measured last: nothing may grow by more than 2 %.
+//! `GRIDEL_REQUIRE_BOARDS` is 1. The ordinary run has a picture of every board, `GRIDEL_FULL=1` all.
+//!
+//! `fixtures/recorded/board.json` holds what was measured last: nothing may grow by more than 2 %.
 //! `GRIDEL_RECORD_BOARDS=1` records anew; read the difference before it is committed.
 
 #[path = "../../firmware/src/casts.rs"]

@@ -31,6 +31,7 @@ pub fn plan(plan: &mut Plan) {
             .run(move || primary_rays_of_suzanne(board, format));
         plan.test_on("primary_rays_of_suzanne_in_16_bits", board, format)
             .with_scene(scenes::SUZANNE)
+            .in_full()
             .run(move || primary_rays_of_suzanne_in_16_bits(board, format));
         plan.test_on("rays_without_a_camera::torus", board, format)
             .in_full()
