@@ -195,7 +195,7 @@ impl Rows for Rows16 {
 
     #[inline(always)]
     fn measure<S: Simd>(&self, simd: S, axis: usize) -> S::F32x8 {
-        simd.from_i16(row(&self.0, axis))
+        simd.of_i16(row(&self.0, axis))
     }
 
     #[inline(always)]
@@ -220,7 +220,7 @@ impl Rows for Rows24 {
 
     #[inline(always)]
     fn measure<S: Simd>(&self, simd: S, axis: usize) -> S::F32x8 {
-        simd.from_i24(row(&self.low, axis), row(&self.high, axis))
+        simd.of_i24(row(&self.low, axis), row(&self.high, axis))
     }
 
     #[inline(always)]
@@ -348,7 +348,7 @@ impl Pack for Pack16 {
 
     #[inline(always)]
     fn radii<S: Simd>(&self, simd: S) -> S::F32x8 {
-        simd.from_u16(&self.radii)
+        simd.of_u16(&self.radii)
     }
 
     #[inline(always)]
@@ -368,7 +368,7 @@ impl Pack for Windowed24<'_> {
     #[inline(always)]
     fn radii<S: Simd>(&self, simd: S) -> S::F32x8 {
         let radii = array::from_fn(|lane| self.radius(lane));
-        simd.from_i32(&radii) * simd.splat(1.0 / 256.0)
+        simd.of_i32(&radii) * simd.splat(1.0 / 256.0)
     }
 
     #[inline(always)]

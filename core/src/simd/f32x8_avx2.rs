@@ -17,22 +17,22 @@ impl Simd for Avx2 {
     }
 
     #[inline(always)]
-    fn from_i16(self, lanes: &[i16; 8]) -> Self::F32x8 {
+    fn of_i16(self, lanes: &[i16; 8]) -> Self::F32x8 {
         Self::F32x8::from_i16(self, lanes)
     }
 
     #[inline(always)]
-    fn from_u16(self, lanes: &[u16; 8]) -> Self::F32x8 {
+    fn of_u16(self, lanes: &[u16; 8]) -> Self::F32x8 {
         Self::F32x8::from_u16(self, lanes)
     }
 
     #[inline(always)]
-    fn from_i32(self, lanes: &[i32; 8]) -> Self::F32x8 {
+    fn of_i32(self, lanes: &[i32; 8]) -> Self::F32x8 {
         Self::F32x8::from_i32(self, lanes)
     }
 
     #[inline(always)]
-    fn from_i24(self, low: &[u16; 8], high: &[u16; 4]) -> Self::F32x8 {
+    fn of_i24(self, low: &[u16; 8], high: &[u16; 4]) -> Self::F32x8 {
         Self::F32x8::from_i24(self, low, high)
     }
 

@@ -27,23 +27,23 @@ impl Simd for Portable {
     }
 
     #[inline(always)]
-    fn from_i16(self, lanes: &[i16; 8]) -> Vec4x2 {
+    fn of_i16(self, lanes: &[i16; 8]) -> Vec4x2 {
         self.lanes(&lanes.map(f32::from))
     }
 
     #[inline(always)]
-    fn from_u16(self, lanes: &[u16; 8]) -> Vec4x2 {
+    fn of_u16(self, lanes: &[u16; 8]) -> Vec4x2 {
         self.lanes(&lanes.map(f32::from))
     }
 
     #[inline(always)]
-    fn from_i32(self, lanes: &[i32; 8]) -> Vec4x2 {
+    fn of_i32(self, lanes: &[i32; 8]) -> Vec4x2 {
         self.lanes(&lanes.map(|lane| lane as f32))
     }
 
     #[inline(always)]
-    fn from_i24(self, low: &[u16; 8], high: &[u16; 4]) -> Vec4x2 {
-        self.from_u16(low) + from_signed_bytes(high) * self.splat(65_536.0)
+    fn of_i24(self, low: &[u16; 8], high: &[u16; 4]) -> Vec4x2 {
+        self.of_u16(low) + from_signed_bytes(high) * self.splat(65_536.0)
     }
 
     #[inline(never)]

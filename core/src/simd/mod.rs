@@ -81,14 +81,14 @@ pub trait Simd: Copy {
     /// Numbers from memory.
     fn lanes(self, lanes: &[f32; 8]) -> Self::F32x8;
     /// Integers as numbers; exact.
-    fn from_i16(self, lanes: &[i16; 8]) -> Self::F32x8;
+    fn of_i16(self, lanes: &[i16; 8]) -> Self::F32x8;
     /// Integers as numbers; exact.
-    fn from_u16(self, lanes: &[u16; 8]) -> Self::F32x8;
+    fn of_u16(self, lanes: &[u16; 8]) -> Self::F32x8;
     /// Integers as numbers; exact below 2^24.
-    fn from_i32(self, lanes: &[i32; 8]) -> Self::F32x8;
+    fn of_i32(self, lanes: &[i32; 8]) -> Self::F32x8;
     /// Integers of 24 bits as numbers, given by their low 16 bits, and by their high 8 as the bytes of
     /// words, the low ones in the first four lanes; exact.
-    fn from_i24(self, low: &[u16; 8], high: &[u16; 4]) -> Self::F32x8;
+    fn of_i24(self, low: &[u16; 8], high: &[u16; 4]) -> Self::F32x8;
     /// Calls a function, out of line, that is compiled for these instructions. Arguments are handed
     /// over one by one, so that they stay in registers.
     fn call<A, B, C, D, E, R>(

@@ -64,16 +64,16 @@ fn integers_convert_exactly() {
 
 fn check_integers<S: Simd>(simd: S) {
     let shorts = [0, 1, -1, i16::MAX, i16::MIN, 255, -256, 77];
-    assert_eq!(simd.from_i16(&shorts).to_array(), shorts.map(f32::from));
+    assert_eq!(simd.of_i16(&shorts).to_array(), shorts.map(f32::from));
     let words = [0, 1, u16::MAX, 0x7fff, 0x8000, 255, 256, 77];
-    assert_eq!(simd.from_u16(&words).to_array(), words.map(f32::from));
+    assert_eq!(simd.of_u16(&words).to_array(), words.map(f32::from));
     let bytes: [u8; 8] = [0, 1, 0x7f, 0x80, 0xff, 0xfe, 3, 200];
     let words = [[0, 0xff], [1, 0xfe], [0x7f, 3], [0x80, 200]].map(u16::from_le_bytes);
     let long = [0, 1, -1, 0xff_ffff, 1 << 24, -(1 << 24), 77, 65_536];
-    assert_eq!(simd.from_i32(&long).to_array(), long.map(|x| x as f32));
+    assert_eq!(simd.of_i32(&long).to_array(), long.map(|x| x as f32));
     let low: [u16; 8] = [0, 1, 0xffff, 0x8000, 0x7fff, 2, 3, 0xfffe];
     let expected: [f32; 8] = core::array::from_fn(|lane| {
         (i32::from(low[lane]) | i32::from(bytes[lane] as i8) << 16) as f32
     });
-    assert_eq!(simd.from_i24(&low, &words).to_array(), expected);
+    assert_eq!(simd.of_i24(&low, &words).to_array(), expected);
 }

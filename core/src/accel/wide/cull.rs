@@ -123,8 +123,8 @@ fn between<S: Simd>(
 ) -> (S::F32x8, S::F32x8) {
     let inverse = simd.splat(inverse);
     (
-        simd.from_i16(&rows[near]) * inverse + simd.splat(to_near),
-        simd.from_i16(&rows[near ^ 1]) * inverse + simd.splat(to_far),
+        simd.of_i16(&rows[near]) * inverse + simd.splat(to_near),
+        simd.of_i16(&rows[near ^ 1]) * inverse + simd.splat(to_far),
     )
 }
 
