@@ -35,8 +35,6 @@ pub mod boards {}
 pub mod accel;
 pub mod blob;
 pub mod count;
-#[cfg(feature = "wide")]
-mod eight;
 pub mod event;
 pub mod number;
 mod query;
@@ -46,6 +44,8 @@ pub mod render;
 pub mod selftest;
 pub mod shade;
 mod shape;
+#[cfg(feature = "wide")]
+mod simd;
 
 #[cfg(feature = "apex")]
 pub use accel::Apex;
@@ -85,6 +85,8 @@ pub use ray::{Pencil, Ray, RayError};
 pub use render::{Renderer, Rgb565, Rgb888, Settings, Workspace};
 pub use shade::Effects;
 pub use shape::Kind;
+#[cfg(feature = "wide")]
+pub use simd::SimdLevel;
 
 /// Whether code shall be small where that makes it slower; no bit of an answer depends on it.
 pub(crate) const SMALL: bool = cfg!(feature = "small");

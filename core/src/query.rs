@@ -20,6 +20,7 @@ use crate::{
     blob::cluster::{LANES, Pack, Strip},
     number::Format,
     shape::{Packs, Strips, pack, strip::StripRay},
+    simd::{Portable, Simd, SimdLevel, with_simd},
 };
 
 /// What a ray met.
@@ -175,13 +176,28 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             return;
         };
         count.objects(strip.members().count());
-        let mut met = self.strip_ray.met(strip);
+        let mut met = self.strip_met(strip);
         let missed = strip.members().places() & !met;
         self.tell_missed(missed, |place| Place::Strip(number, place), count);
         while met != 0 {
             let place = met.trailing_zeros();
             met &= met - 1;
             self.triangle_in_strip(strip, Place::Strip(number, place as u8), count);
+        }
+    }
+
+    /// The places of a strip whose triangles the ray meets.
+    #[cfg(feature = "wide")]
+    #[inline(always)]
+    fn strip_met<S: Strip>(&self, strip: &S) -> u32 {
+        match self.scene.simd {
+            SimdLevel::Portable => self.strip_ray.met(Portable, strip),
+            #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+            SimdLevel::Avx2(avx2) => avx2.call(
+                #[inline(always)]
+                |avx2, ray: &StripRay<N>, strip: &S, (), (), ()| ray.met(avx2, strip),
+                (&self.strip_ray, strip, (), (), ()),
+            ),
         }
     }
 
@@ -214,7 +230,11 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             }
             return;
         }
-        let met = pack::met(self.ray, self.recip_norm2, pack);
+        let met = with_simd!(self.scene.simd, |simd| simd.call(
+            #[inline(always)]
+            |simd, ray, recip_norm2, pack, (), ()| pack::met(simd, ray, recip_norm2, pack),
+            (self.ray, self.recip_norm2, pack, (), ()),
+        ));
         let missed = pack.lanes() & !met.lanes;
         self.tell_missed(missed, |lane| place(lane.into()), count);
         let mut lanes = met.lanes;

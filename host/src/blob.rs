@@ -1,5 +1,6 @@
 //! Blobs in memory and on disk.
 
+use crate::simd;
 use gridel_core::blob::record::{ALIGNMENT, MAGIC};
 use gridel_core::{Scene, Structure};
 use std::fs::{self, File};
@@ -45,9 +46,9 @@ impl Blob {
         &bytemuck::cast_slice(&self.words)[..self.length]
     }
 
-    /// The checked view.
+    /// The checked view, for queries with [these instructions](crate::simd::level).
     pub fn scene(&self) -> Result<Scene<'_>, gridel_core::BlobError> {
-        Scene::from_bytes(self.bytes())
+        Ok(Scene::from_bytes(self.bytes())?.with_simd(simd::level()))
     }
 }
 

@@ -36,5 +36,6 @@ pub mod render;
 pub mod report;
 pub mod sample;
 pub mod scene;
+pub mod simd;
 pub mod trace;
 pub mod verify;

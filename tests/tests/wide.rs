@@ -1,10 +1,11 @@
 //! The eight-wide hierarchy alone in a blob, where triangles and spheres lie in its clusters only.
 
 use glam::DVec3;
-use gridel_core::{Kind, List, NoCount, Number, Structure, Wide};
+use gridel_core::{Kind, List, NoCount, Number, SimdLevel, Structure, Wide};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, Quality, compile};
 use gridel_host::scene::{Scene, Shape};
+use gridel_host::trace::{Frame, Query, SceneHit, trace};
 use gridel_tests::query::{HitBits, any, closest};
 use gridel_tests::random::Random;
 use gridel_tests::{every_format, rays, scenes};
@@ -79,6 +80,54 @@ fn clusters_alone_give_the_answers_of_the_list() {
                 assert_eq!(ordinary.count(kind), own.count(kind), "{name}");
             }
             every_format!(agrees(&name, &ordinary, &own));
+        }
+    }
+}
+
+/// Hits through one scene with every level of instructions, and through the facade that users call.
+fn levels_agree<N: Number>(name: &str, scene: &gridel_core::Scene<'_>) {
+    let portable = scene.with_simd(SimdLevel::Portable);
+    for level in SimdLevel::available().filter(|level| *level != SimdLevel::Portable) {
+        let fast = scene.with_simd(level);
+        let (mut hits, mut queries) = (0, Vec::new());
+        for ray in rays::rays(scene, 29).take(4_000) {
+            let Some(ready) = ray.ready::<N>(scene) else {
+                continue;
+            };
+            let bits = |scene: &gridel_core::Scene<'_>| {
+                let hit: Option<gridel_core::Hit<N>> =
+                    closest::<N, Wide>(scene, &ready, &mut NoCount);
+                (hit.as_ref().map(HitBits::of), any::<N, Wide>(scene, &ready))
+            };
+            let (expected, found) = (bits(&portable), bits(&fast));
+            assert_eq!(expected, found, "{name}, {}: {ray:?}", N::FORMAT.name());
+            hits += usize::from(found.1);
+            queries.push(Frame::of(scene).scene_ray(&ray));
+        }
+        assert!(hits > 0, "{name}: no ray hits");
+        for any in [false, true] {
+            let query = Query {
+                format: N::FORMAT,
+                structure: Structure::Wide,
+                any,
+            };
+            let traced = [&portable, &fast].map(|scene| {
+                let mut hits = vec![SceneHit::MISS; queries.len()];
+                trace(scene, &queries, query, &mut hits);
+                hits
+            });
+            assert!(traced[0] == traced[1], "{name}, {}", N::FORMAT.name());
+        }
+    }
+}
+
+#[test]
+fn every_level_of_instructions_gives_the_same_bits() {
+    for (name, scene) in some_scenes() {
+        for bits in [24, 16] {
+            let blob = alone(&scene, bits, Quality::Good);
+            let scene = blob.scene().expect("sound");
+            every_format!(levels_agree(&name, &scene));
         }
     }
 }

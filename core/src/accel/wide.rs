@@ -21,9 +21,10 @@ use crate::blob::record::WideNode;
 use crate::blob::{BlobError, Scene, SectionKind, Sections};
 use crate::count::Count;
 use crate::event::{Event, Place};
-use crate::number::Number;
+use crate::number::{Format, Number};
 use crate::ray::Ray;
 use crate::shape::Kind;
+use crate::simd::{Simd, SimdLevel, with_simd};
 use cull::WideCulling;
 
 /// The hierarchy of eight children a node, for machines with SIMD registers.
@@ -121,36 +122,29 @@ impl Accel for Wide {
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
         let nodes = scene.held.wide.nodes;
+        let level = level::<N>(scene);
         let mut limit = N::WideCull::limit(ray.tmax);
         let mut current = Child::node(0);
         stack.clear();
         loop {
             if current.as_node().is_some() {
-                current = descend::<N, C>(nodes, cull, limit, current, stack, count);
+                let arguments = (nodes, cull, (current, limit), &mut *stack, &mut *count);
+                current = with_simd!(level, |simd| simd.call(descend::<_, N, C>, arguments));
             }
-            if current != Child::NONE {
-                if C::TELLS {
-                    count.tell(Event::Opened(current.place()));
-                }
-                let Some(tmax) = Leaf::from_word(current.0).and_then(|it| leaf(it, count)) else {
-                    return;
-                };
-                limit = N::WideCull::limit(tmax);
+            if current == Child::NONE {
+                return;
             }
-            loop {
-                let Some(entry) = stack.pop() else { return };
-                if entry.near <= limit {
-                    current = Child(entry.node);
-                    break;
-                }
-                if C::TELLS {
-                    let place = Child(entry.node).place();
-                    count.tell(Event::GivenUp {
-                        place,
-                        enters: N::WideCull::units(entry.near),
-                    });
-                }
+            if C::TELLS {
+                count.tell(Event::Opened(current.place()));
             }
+            let Some(tmax) = Leaf::from_word(current.0).and_then(|it| leaf(it, count)) else {
+                return;
+            };
+            limit = N::WideCull::limit(tmax);
+            let Some(next) = pop::<N, C>(stack, limit, count) else {
+                return;
+            };
+            current = next;
         }
     }
 
@@ -164,47 +158,88 @@ impl Accel for Wide {
         mut hits: impl FnMut(Leaf, &mut C) -> bool,
     ) {
         let nodes = scene.held.wide.nodes;
+        let level = level::<N>(scene);
         let limit = N::WideCull::limit(ray.tmax);
         let mut current = Child::node(0);
         stack.clear();
         loop {
             if current.as_node().is_some() {
-                current = descend_any::<N, C>(nodes, cull, limit, current, stack, count);
+                let arguments = (nodes, cull, (current, limit), &mut *stack, &mut *count);
+                current = with_simd!(level, |simd| simd.call(descend_any::<_, N, C>, arguments));
             }
-            if current != Child::NONE {
-                if C::TELLS {
-                    count.tell(Event::Opened(current.place()));
-                }
-                if Leaf::from_word(current.0).is_none_or(|it| hits(it, count)) {
-                    return;
-                }
+            if current == Child::NONE {
+                return;
             }
-            let next = stack.pop().and_then(|Entry { node, near, .. }| {
-                take(nodes.get(node as usize)?, node, near as u32, stack)
-            });
-            let Some(child) = next else { return };
-            current = child;
+            if C::TELLS {
+                count.tell(Event::Opened(current.place()));
+            }
+            if Leaf::from_word(current.0).is_none_or(|it| hits(it, count)) {
+                return;
+            }
+            let Some(next) = pop_any(nodes, stack) else {
+                return;
+            };
+            current = next;
         }
     }
 }
 
+/// The level for rays of a format: integers have no lanes.
+#[inline(always)]
+fn level<N: Number>(scene: &Scene<'_>) -> SimdLevel {
+    match N::FORMAT {
+        Format::Fixed => SimdLevel::Portable,
+        _ => scene.simd,
+    }
+}
+
+/// The next child that waits and is entered before the limit.
+#[inline(always)]
+fn pop<N: Number, C: Count>(stack: &mut StackView, limit: i32, count: &mut C) -> Option<Child> {
+    loop {
+        let entry = stack.pop()?;
+        if entry.near <= limit {
+            return Some(Child(entry.node));
+        }
+        if C::TELLS {
+            let place = Child(entry.node).place();
+            count.tell(Event::GivenUp {
+                place,
+                enters: N::WideCull::units(entry.near),
+            });
+        }
+    }
+}
+
+/// The next child that waits, of those that wait together.
+#[inline(always)]
+fn pop_any(nodes: &[WideNode], stack: &mut StackView) -> Option<Child> {
+    let Entry { node, near, .. } = stack.pop()?;
+    take(nodes.get(node as usize)?, node, near as u32, stack)
+}
+
 /// Goes down from a node, each time to the child that is met first, while the others are left to
-/// wait; to a leaf, or to none where nothing is met.
+/// wait; where nothing is met, goes on with the next that waits. Ends at a leaf, or at none.
 ///
-/// Out of line, because the ray's constants for nodes and those for leaves do not fit the registers
-/// together.
-#[inline(never)]
-fn descend<N: Number, C: Count>(
+/// Called out of line, because the ray's constants for nodes and those for leaves do not fit the
+/// registers together.
+#[inline(always)]
+fn descend<S: Simd, N: Number, C: Count>(
+    simd: S,
     nodes: &[WideNode],
     cull: &N::WideCull,
-    limit: i32,
-    mut current: Child,
+    (mut current, limit): (Child, i32),
     stack: &mut StackView,
     count: &mut C,
 ) -> Child {
     while let Some(number) = current.as_node() {
-        let Some((node, mut met, near)) = open::<N, C>(nodes, number, cull, limit, count) else {
-            return Child::NONE;
+        let opened = open::<S, N, C>(simd, nodes, number, cull, limit, count);
+        let Some((node, mut met, near)) = opened else {
+            let Some(next) = pop::<N, C>(stack, limit, count) else {
+                return Child::NONE;
+            };
+            current = next;
+            continue;
         };
         let first = take_lowest(&mut met);
         if met == 0 {
@@ -236,18 +271,23 @@ fn descend<N: Number, C: Count>(
 
 /// Goes down from a node, each time to one of the children that are met, to a leaf or to none: what
 /// [`descend`] does where any order will do, for less.
-#[inline(never)]
-fn descend_any<N: Number, C: Count>(
+#[inline(always)]
+fn descend_any<S: Simd, N: Number, C: Count>(
+    simd: S,
     nodes: &[WideNode],
     cull: &N::WideCull,
-    limit: i32,
-    mut current: Child,
+    (mut current, limit): (Child, i32),
     stack: &mut StackView,
     count: &mut C,
 ) -> Child {
     while let Some(number) = current.as_node() {
-        let Some((node, met, _)) = open::<N, C>(nodes, number, cull, limit, count) else {
-            return Child::NONE;
+        let opened = open::<S, N, C>(simd, nodes, number, cull, limit, count);
+        let Some((node, met, _)) = opened else {
+            let Some(next) = pop_any(nodes, stack) else {
+                return Child::NONE;
+            };
+            current = next;
+            continue;
         };
         let Some(first) = take(node, number, met, stack) else {
             // Only a forged blob is deeper than it says: the walk ends.
@@ -262,7 +302,8 @@ fn descend_any<N: Number, C: Count>(
 /// Opens a node and [tests](WideCulling::children) its children: the node, which of them are met and
 /// where they are entered. `None` where none is met.
 #[inline(always)]
-fn open<'n, N: Number, C: Count>(
+fn open<'n, S: Simd, N: Number, C: Count>(
+    simd: S,
     nodes: &'n [WideNode],
     number: u32,
     cull: &N::WideCull,
@@ -277,7 +318,7 @@ fn open<'n, N: Number, C: Count>(
         count.tell(Event::Opened(Child::node(number).place()));
         tell_tested::<N, C>(node, cull, limit, count);
     }
-    let (met, near) = cull.children(node, limit);
+    let (met, near) = cull.children(simd, node, limit);
     (met != 0).then_some((node, met, near))
 }
 

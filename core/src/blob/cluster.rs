@@ -14,7 +14,7 @@
 //! the section is one window, all packs share it; else the one of pack `p` begins at `8 p`.
 
 use super::record::{Vertex, Vertex16, Vertex24};
-use crate::eight::Eight;
+use crate::simd::Simd;
 use bytemuck::{Pod, Zeroable};
 use core::array;
 use core::mem::size_of;
@@ -181,9 +181,9 @@ pub(crate) trait Rows: Pod {
     /// One point.
     type Vertex: Vertex;
     /// One coordinate of every point in the steps of [`Vertex`]; exact.
-    fn measure(&self, axis: usize) -> Eight;
+    fn measure<S: Simd>(&self, simd: S, axis: usize) -> S::F32x8;
     /// One coordinate of every point in units; exact.
-    fn units(&self, axis: usize) -> Eight;
+    fn units<S: Simd>(&self, simd: S, axis: usize) -> S::F32x8;
     /// The point in a lane.
     fn vertex(&self, lane: usize) -> Self::Vertex;
     /// The point in a lane, in 1/256 unit.
@@ -194,13 +194,13 @@ impl Rows for Rows16 {
     type Vertex = Vertex16;
 
     #[inline(always)]
-    fn measure(&self, axis: usize) -> Eight {
-        Eight::from_i16(row(&self.0, axis))
+    fn measure<S: Simd>(&self, simd: S, axis: usize) -> S::F32x8 {
+        simd.of_i16(row(&self.0, axis))
     }
 
     #[inline(always)]
-    fn units(&self, axis: usize) -> Eight {
-        self.measure(axis)
+    fn units<S: Simd>(&self, simd: S, axis: usize) -> S::F32x8 {
+        self.measure(simd, axis)
     }
 
     #[inline(always)]
@@ -219,13 +219,13 @@ impl Rows for Rows24 {
     type Vertex = Vertex24;
 
     #[inline(always)]
-    fn measure(&self, axis: usize) -> Eight {
-        Eight::from_i24(row(&self.low, axis), row(&self.high, axis))
+    fn measure<S: Simd>(&self, simd: S, axis: usize) -> S::F32x8 {
+        simd.of_i24(row(&self.low, axis), row(&self.high, axis))
     }
 
     #[inline(always)]
-    fn units(&self, axis: usize) -> Eight {
-        self.measure(axis) * Eight::splat(1.0 / 256.0)
+    fn units<S: Simd>(&self, simd: S, axis: usize) -> S::F32x8 {
+        self.measure(simd, axis) * simd.splat(1.0 / 256.0)
     }
 
     #[inline(always)]
@@ -297,7 +297,7 @@ pub(crate) trait Pack {
     type Rows: Rows;
     fn rows(&self) -> &Self::Rows;
     /// All radii in units; exact.
-    fn radii(&self) -> Eight;
+    fn radii<S: Simd>(&self, simd: S) -> S::F32x8;
     /// The radius in a lane, in 1/256 unit.
     fn radius(&self, lane: usize) -> i32;
 
@@ -347,8 +347,8 @@ impl Pack for Pack16 {
     }
 
     #[inline(always)]
-    fn radii(&self) -> Eight {
-        Eight::from_u16(&self.radii)
+    fn radii<S: Simd>(&self, simd: S) -> S::F32x8 {
+        simd.of_u16(&self.radii)
     }
 
     #[inline(always)]
@@ -366,9 +366,9 @@ impl Pack for Windowed24<'_> {
     }
 
     #[inline(always)]
-    fn radii(&self) -> Eight {
+    fn radii<S: Simd>(&self, simd: S) -> S::F32x8 {
         let radii = array::from_fn(|lane| self.radius(lane));
-        Eight::from_i32(&radii) * Eight::splat(1.0 / 256.0)
+        simd.of_i32(&radii) * simd.splat(1.0 / 256.0)
     }
 
     #[inline(always)]

@@ -24,6 +24,8 @@ pub use vouch::Vouched;
 use crate::accel::{Held, Leaf, Structure};
 use crate::shade::Effects;
 use crate::shape::{Kind, Place, Shapes};
+#[cfg(feature = "wide")]
+use crate::simd::SimdLevel;
 use record::{Cone, Cuboid, Disc, Header, Light, Material, UnitBox, View};
 
 /// A checked view of a blob: a few hundred bytes that borrow from it.
@@ -47,6 +49,9 @@ pub struct Scene<'a> {
     /// What `Chosen` walks.
     #[cfg(feature = "all-structures")]
     pub(crate) chosen: Structure,
+    /// The instructions that `Wide` uses.
+    #[cfg(feature = "wide")]
+    pub(crate) simd: SimdLevel,
 }
 
 impl<'a> Scene<'a> {
@@ -134,6 +139,19 @@ impl<'a> Scene<'a> {
         })
     }
 
+    /// The scene with queries through [`Wide`](crate::Wide) at a level of instructions; at first they
+    /// are portable.
+    #[cfg(feature = "wide")]
+    pub fn with_simd(self, simd: SimdLevel) -> Self {
+        Self { simd, ..self }
+    }
+
+    /// The instructions that queries through [`Wide`](crate::Wide) use.
+    #[cfg(feature = "wide")]
+    pub fn simd(&self) -> SimdLevel {
+        self.simd
+    }
+
     /// Number of primitives of a kind.
     pub fn count(&self, kind: Kind) -> usize {
         self.shapes.count(kind)
@@ -177,7 +195,8 @@ impl<'a> Scene<'a> {
     }
 
     /// The number, in scene-file order, of a primitive that lies somewhere.
-    #[inline]
+    #[cfg_attr(feature = "wide", inline(always))]
+    #[cfg_attr(not(feature = "wide"), inline)]
     pub(crate) fn primitive_at(&self, place: Place) -> u32 {
         self.key(place).0
     }
@@ -185,7 +204,8 @@ impl<'a> Scene<'a> {
     /// What decides between hits at the same t: the primitive's number, and between primitives of
     /// one number, which only a forged blob has, kind and slot; so its answers do not depend on the
     /// structure either.
-    #[inline]
+    #[cfg_attr(feature = "wide", inline(always))]
+    #[cfg_attr(not(feature = "wide"), inline)]
     pub(crate) fn key(&self, place: Place) -> (u32, u8, u32) {
         match place {
             Place::Slot(kind, slot) => (self.in_slot(kind, slot), kind as u8, slot),
@@ -206,7 +226,7 @@ impl<'a> Scene<'a> {
     /// The key of a member of a cluster, by its number among those of its kind and the number of
     /// members before them.
     #[cfg(feature = "wide")]
-    #[inline]
+    #[inline(always)]
     fn member(&self, kind: Kind, number: u32, before: usize) -> (u32, u8, u32) {
         let clusters = &self.shapes.clusters;
         let member = clusters.members.get(before + number as usize).unwrap_or(0);

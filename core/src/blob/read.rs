@@ -74,6 +74,8 @@ pub(super) fn scene<'a>(
         needs_norm: shapes.count(Kind::Sphere) > 0 || shapes.count(Kind::Cone) > 0,
         #[cfg(feature = "all-structures")]
         chosen: Structure::List,
+        #[cfg(feature = "wide")]
+        simd: crate::simd::SimdLevel::Portable,
     })
 }
 

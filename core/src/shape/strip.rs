@@ -22,9 +22,9 @@ use super::Strips;
 use super::triangle::Projection;
 use crate::blob::cluster::{Rows, Strip};
 use crate::blob::record::{Vertex16, Vertex24};
-use crate::eight::Eight;
 use crate::number::{Format, Number};
 use crate::ray::Ray;
+use crate::simd::{F32x8, Simd};
 
 /// A ray as strips are tested with it.
 #[derive(Clone, Copy, Debug)]
@@ -74,11 +74,11 @@ impl<N: Number> StripRay<N> {
     ///
     /// Cost in `f32`: some 100 operations in four lanes.
     #[inline(always)]
-    pub(crate) fn met<S: Strip>(&self, strip: &S) -> u32 {
+    pub(crate) fn met<S: Simd, T: Strip>(&self, simd: S, strip: &T) -> u32 {
         if N::FORMAT != Format::F32 {
             return self.met_one_by_one(strip, strip.members().places());
         }
-        let (met, doubtful) = self.met_in_lanes(strip);
+        let (met, doubtful) = self.met_in_lanes(simd, strip);
         if doubtful == 0 {
             return met;
         }
@@ -87,14 +87,18 @@ impl<N: Number> StripRay<N> {
 
     /// The places that are met, and those of which lanes cannot say.
     #[inline(always)]
-    fn met_in_lanes<S: Strip>(&self, strip: &S) -> (u32, u32) {
+    fn met_in_lanes<S: Simd, T: Strip>(&self, simd: S, strip: &T) -> (u32, u32) {
         let Projection { sight, shear, .. } = &self.projection;
-        let all = |number: N| Eight::splat(number.to_f32());
-        let [first, second, last] =
-            [0, 1, 2].map(|role| strip.rows().measure(axis(self.axes, role)));
-        let depth = last + all(sight[2].offset);
-        let (right, up) = (first + all(sight[0].offset), second + all(sight[1].offset));
-        let (x, y) = (right + depth * all(shear[0]), up + depth * all(shear[1]));
+        // No closures, which need not be inlined.
+        let rows = strip.rows();
+        let last = rows.measure(simd, axis(self.axes, 2));
+        let depth = last + simd.splat(sight[2].offset.to_f32());
+        let first = rows.measure(simd, axis(self.axes, 0));
+        let right = first + simd.splat(sight[0].offset.to_f32());
+        let second = rows.measure(simd, axis(self.axes, 1));
+        let up = second + simd.splat(sight[1].offset.to_f32());
+        let x = right + depth * simd.splat(shear[0].to_f32());
+        let y = up + depth * simd.splat(shear[1].to_f32());
         let (x1, y1) = (x.next(), y.next());
         let (x2, y2) = (x1.next(), y1.next());
         // From each vertex to the next, and to the one after that.
@@ -122,32 +126,38 @@ impl<N: Number> StripRay<N> {
                 return (met, doubtful);
             }
         }
-        near &= self.behind([x, y, depth], side, across);
+        near &= self.behind(simd, [x, y, depth], side, across);
         (met & !near, doubtful)
     }
 
     /// The places that are certain to be met behind the ray's start alone, of those that are not
     /// doubtful and where some vertex lies behind it on every axis; see above.
     #[inline(always)]
-    fn behind(&self, [x, y, depth]: [Eight; 3], side: Eight, across: Eight) -> u32 {
+    fn behind<S: Simd>(
+        &self,
+        simd: S,
+        [x, y, depth]: [S::F32x8; 3],
+        side: S::F32x8,
+        across: S::F32x8,
+    ) -> u32 {
         let (depth1, side1) = (depth.next(), side.next());
         let volume = depth * side1 - depth1 * across + depth1.next() * side;
         let area = side + side1 - across;
         let reach = x.abs().max(y.abs()).max(depth.abs());
         let reach1 = reach.next();
         let reach = reach.max(reach1).max(reach1.next());
-        let area_error = reach * reach * Eight::splat(1.0 / 16_384.0);
+        let area_error = reach * reach * simd.splat(1.0 / 16_384.0);
         let certain = area_error.at_most(area.abs()) & (area_error * reach).at_most(volume.abs());
         certain & (volume.signs() ^ area.signs() ^ self.descends(2))
     }
 
     /// Tests triangles in a number format's own arithmetic.
     #[inline(never)]
-    fn met_one_by_one<S: Strip>(&self, strip: &S, places: u32) -> u32 {
+    fn met_one_by_one<T: Strip>(&self, strip: &T, places: u32) -> u32 {
         match axis(self.axes, 2) {
-            0 => met_along::<0, N, S>(&self.projection, strip, places),
-            1 => met_along::<1, N, S>(&self.projection, strip, places),
-            _ => met_along::<2, N, S>(&self.projection, strip, places),
+            0 => met_along::<0, N, T>(&self.projection, strip, places),
+            1 => met_along::<1, N, T>(&self.projection, strip, places),
+            _ => met_along::<2, N, T>(&self.projection, strip, places),
         }
     }
 }
@@ -158,9 +168,9 @@ fn axis(axes: u32, role: u32) -> usize {
     (axes >> (2 * role) & 3) as usize
 }
 
-fn met_along<const MAJOR: usize, N: Number, S: Strip>(
+fn met_along<const MAJOR: usize, N: Number, T: Strip>(
     projection: &Projection<N>,
-    strip: &S,
+    strip: &T,
     places: u32,
 ) -> u32 {
     let mut met = 0;
@@ -169,7 +179,7 @@ fn met_along<const MAJOR: usize, N: Number, S: Strip>(
         let place = rest.trailing_zeros();
         rest &= rest - 1;
         if let Some([a, b, c]) = strip.vertices(place) {
-            let meets = projection.meets::<MAJOR, <S::Rows as Rows>::Vertex>(&a, &b, &c);
+            let meets = projection.meets::<MAJOR, <T::Rows as Rows>::Vertex>(&a, &b, &c);
             met |= u32::from(meets) << place;
         }
     }

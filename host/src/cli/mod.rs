@@ -71,6 +71,9 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
     let program = Program::parse();
     // Without a handler an interrupt would only leave a temporary file behind.
     let _ = ctrlc::set_handler(|| gridel_host::output::abandon(130));
+    if let Err(cause) = gridel_host::simd::from_environment() {
+        return failure::Failure::usage(cause, "unset the variable for the fastest").report();
+    }
     let done = match program.verb {
         Verb::Build(arguments) => build::run(&arguments),
         Verb::Compare(arguments) => compare::run(&arguments, memory),

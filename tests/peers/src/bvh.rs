@@ -1,6 +1,6 @@
 //! The crate bvh.
 
-use crate::contender::Contender;
+use crate::contender::{Contender, Trace};
 use crate::workload::Answer;
 use ::bvh::aabb::{Aabb, Bounded};
 use ::bvh::bounding_hierarchy::BHShape;
@@ -52,7 +52,7 @@ pub fn contender(triangles: &[[Vec3; 3]]) -> Contender<'static> {
         name: String::from("bvh"),
         seconds,
         bytes,
-        trace: Box::new(move |queries, any, answers| {
+        trace: Trace::OfQueries(Box::new(move |queries, any, answers| {
             for (query, answer) in queries.iter().zip(answers) {
                 let direction = query.direction;
                 let ray = ::bvh::ray::Ray::new(
@@ -74,6 +74,6 @@ pub fn contender(triangles: &[[Vec3; 3]]) -> Contender<'static> {
                     t: t.unwrap_or(f32::INFINITY),
                 };
             }
-        }),
+        })),
     }
 }

@@ -1,17 +1,23 @@
 //! Who takes part, and Gridel's own structures among them.
 
-use crate::workload::{Answer, Query, Workload};
+use crate::workload::{Answer, Query, Rays, Workload};
 use glam::DVec3;
 use gridel_core::accel::MAX_STACK_DEPTH;
 use gridel_core::{
-    Accel, NoCount, Number, Ray, Scene, Stack, Structure, any_hit, closest_primitive,
+    Format, NoCount, Ray, Scene, Stack, Structure, Wide, any_hit, closest_primitive,
 };
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, Quality, compile};
+use gridel_host::trace::{SceneHit, SceneRay};
 use std::time::Instant;
 
-/// Traces rays: the queries, whether any hit will do, and where the answers go.
-pub type Trace<'c> = dyn Fn(&[Query], bool, &mut [Answer]) + 'c;
+/// How a contender traces rays: given them, whether any hit will do, and where the answers go.
+pub enum Trace<'c> {
+    /// A library's function for one ray, called for each.
+    OfQueries(Box<dyn Fn(&[Query], bool, &mut [Answer]) + 'c>),
+    /// Gridel's function for many rays, on the arrays that it takes.
+    OfSceneRays(Box<dyn Fn(&[SceneRay], bool, &mut [SceneHit]) + 'c>),
+}
 
 /// One way to trace rays.
 pub struct Contender<'c> {
@@ -20,7 +26,46 @@ pub struct Contender<'c> {
     pub seconds: f64,
     /// Everything that tracing reads.
     pub bytes: usize,
-    pub trace: Box<Trace<'c>>,
+    pub trace: Trace<'c>,
+}
+
+/// What a contender writes its answers to.
+pub enum Output {
+    Answers(Vec<Answer>),
+    Hits(Vec<SceneHit>),
+}
+
+impl Contender<'_> {
+    /// Room for the answers of so many rays.
+    pub fn output(&self, rays: usize) -> Output {
+        match self.trace {
+            Trace::OfQueries(_) => Output::Answers(vec![Answer { t: f32::INFINITY }; rays]),
+            Trace::OfSceneRays(_) => Output::Hits(vec![SceneHit::MISS; rays]),
+        }
+    }
+
+    /// Traces rays: what is timed.
+    pub fn trace(&self, rays: &Rays, output: &mut Output) {
+        match (&self.trace, output) {
+            (Trace::OfQueries(trace), Output::Answers(answers)) => {
+                trace(&rays.queries, rays.any, answers);
+            }
+            (Trace::OfSceneRays(trace), Output::Hits(hits)) => {
+                trace(&rays.scene_rays, rays.any, hits);
+            }
+            _ => unreachable!("the output is the contender's"),
+        }
+    }
+}
+
+impl Output {
+    /// The answers in one form.
+    pub fn answers(self) -> Vec<Answer> {
+        match self {
+            Self::Answers(answers) => answers,
+            Self::Hits(hits) => hits.iter().map(|hit| Answer { t: hit.t as f32 }).collect(),
+        }
+    }
 }
 
 /// A blob with one structure, and what building took, from the scene in memory on. Fails if the
@@ -43,57 +88,64 @@ pub fn built(
     Ok((compiled.blob, started.elapsed().as_secs_f64()))
 }
 
-/// Gridel through one structure. A rate counts everything from a ray's origin and direction in
-/// scene units on: Gridel's set-up on the lattice is in its time.
-pub fn gridel<'c, N: Number, A: Accel>(
+/// Gridel as users call it: its function for many rays in scene units, with the whole of each hit.
+pub fn gridel(
     name: String,
-    scene: Scene<'c>,
+    scene: Scene<'_>,
+    (format, structure): (Format, Structure),
     bytes: usize,
     seconds: f64,
-) -> Contender<'c> {
+) -> Contender<'_> {
     Contender {
         name,
         seconds,
         bytes,
-        trace: Box::new(move |queries, any, answers| {
-            trace::<N, A>(&scene, queries, any, answers);
-        }),
+        trace: Trace::OfSceneRays(Box::new(move |rays, any, hits| {
+            let query = gridel_host::trace::Query {
+                format,
+                structure,
+                any,
+            };
+            gridel_host::trace::trace(&scene, rays, query, hits);
+        })),
     }
 }
 
-fn trace<N: Number, A: Accel>(
-    scene: &Scene<'_>,
-    queries: &[Query],
-    any: bool,
-    answers: &mut [Answer],
-) {
+/// The core's query alone, in `f32` through `wide`, with no more of the hit than t: what
+/// [`gridel`]'s rate is compared with.
+pub fn kernel(name: String, scene: Scene<'_>, bytes: usize, seconds: f64) -> Contender<'_> {
+    Contender {
+        name,
+        seconds,
+        bytes,
+        trace: Trace::OfQueries(Box::new(move |queries, any, answers| {
+            trace(&scene, queries, any, answers);
+        })),
+    }
+}
+
+fn trace(scene: &Scene<'_>, queries: &[Query], any: bool, answers: &mut [Answer]) {
     let header = scene.header();
     let origin = DVec3::from_array(header.origin).as_vec3();
     let scale = f32::powi(2.0, -i32::from(header.unit_exponent));
     let back = f32::powi(2.0, header.unit_exponent.into());
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
-    let wide = |v: glam::Vec3| v.to_array().map(|x| N::far_from_f64(x.into()));
     for (query, answer) in queries.iter().zip(answers) {
         answer.t = f32::INFINITY;
         let start = (query.origin - origin) * scale;
-        let ray = Ray::<N>::new(
-            scene.bounds(),
-            wide(start),
-            wide(query.direction),
-            N::far_from_f64(0.0),
-            N::far_from_f64(f64::from(f32::MAX)),
-        );
+        let (start, direction) = (start.to_array(), query.direction.to_array());
+        let ray = Ray::<f32>::new(scene.bounds(), start, direction, 0.0, f32::MAX);
         let Ok(ray) = ray else { continue };
         if any {
-            if any_hit::<N, A, _>(scene, &ray, stack.as_view(), &mut NoCount) {
+            if any_hit::<f32, Wide, _>(scene, &ray, stack.as_view(), &mut NoCount) {
                 answer.t = 0.0;
             }
         } else if let Some(found) =
-            closest_primitive::<N, A, _>(scene, &ray, stack.as_view(), &mut NoCount)
+            closest_primitive::<f32, Wide, _>(scene, &ray, stack.as_view(), &mut NoCount)
         {
             // t is a length along the major axis, in units.
             let along = query.direction.abs().max_element();
-            answer.t = N::far_to_f64(found.t) as f32 * back / along;
+            answer.t = found.t * back / along;
         }
     }
 }

@@ -3,7 +3,7 @@
 //! It is loaded while the benchmark runs, so that nothing needs it to build. The declarations are
 //! those of `embree3/rtcore.h`, version 3.13.
 
-use crate::contender::Contender;
+use crate::contender::{Contender, Trace};
 use crate::workload::{Answer, Geometry, Query};
 use libloading::Library;
 use std::ffi::{c_char, c_int, c_uint, c_void};
@@ -144,9 +144,9 @@ pub fn contender(geometry: &Geometry) -> Option<Contender<'static>> {
             name: String::from("Embree 3 robust"),
             seconds,
             bytes,
-            trace: Box::new(move |queries, any, answers| {
+            trace: Trace::OfQueries(Box::new(move |queries, any, answers| {
                 trace(&functions, scene, queries, any, answers);
-            }),
+            })),
         })
     }
 }

@@ -1,9 +1,13 @@
 //! Gridel's structures against the crates that users would pick instead, and against Embree where
 //! it is installed, on identical rays, interleaved in one run, on one thread.
 //!
-//! `cargo run --release --manifest-path tests/peers/Cargo.toml [-- OPTION...]`; `--features simd` and
-//! `RUSTFLAGS='-C target-cpu=native'` for what this machine can do. `--help` tells of the options, and
-//! where scenes come from. What is recorded in `fixtures/recorded/peers.json` makes the README's table.
+//! `cargo run --release --manifest-path tests/peers/Cargo.toml [-- OPTION...]`. `--help` tells of the
+//! options, and where scenes come from. Gridel takes part as users have it: the default build, and the
+//! function that `gridel trace` calls. What is recorded in `fixtures/recorded/peers.json` makes the
+//! README's table.
+//!
+//! tinybvh takes part where its header `tiny_bvh.h` lies in the folder that `TINYBVH` names, or else in
+//! this one, when the benchmark is built; it is compiled for AVX2 and FMA.
 //!
 //! Only ratios within one run mean anything. A rate is the median over the repeats, in which the
 //! contenders take turns. An answer is wrong where it is a miss and Gridel's in double precision is
@@ -17,13 +21,15 @@ mod embree;
 mod obvhs;
 #[cfg(feature = "parry3d")]
 mod parry;
+#[cfg(tinybvh)]
+mod tinybvh;
 mod workload;
 
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
-use contender::{Contender, built, gridel};
+use contender::{Contender, built, gridel, kernel};
 use glam::Vec3;
-use gridel_core::{Bvh, Flagged, Structure, Wide};
+use gridel_core::{Format, SimdLevel, Structure};
 use gridel_host::compile::Quality;
 use gridel_host::output::{Files, write_whole};
 use gridel_host::report::{Align, Table, grouped};
@@ -31,7 +37,7 @@ use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
-use workload::{Answer, Geometry, Query, Rays, Workload};
+use workload::{Answer, Geometry, Rays, Workload};
 
 /// What one contender did on one scene.
 #[derive(Serialize)]
@@ -49,7 +55,7 @@ struct Line {
 /// A whole run.
 #[derive(Serialize)]
 struct Run {
-    build: &'static str,
+    build: String,
     repeats: u32,
     scenes: Vec<Figures>,
 }
@@ -115,13 +121,19 @@ fn run(settings: &Settings) -> Result<(), String> {
             .map_err(|error| format!("{} cannot be written: {error}", path.display()))?;
     }
     let repeats = settings.repeats;
-    let build = match (cfg!(target_feature = "avx2"), cfg!(feature = "simd")) {
-        (false, false) => "baseline x86-64",
-        (false, true) => "baseline x86-64 with the feature `simd`",
-        (true, false) => "AVX2 and FMA",
-        (true, true) => "AVX2 and FMA with the feature `simd`",
+    let target = if cfg!(target_feature = "avx2") {
+        "AVX2"
+    } else {
+        "the baseline of its architecture"
     };
-    println!("built for {build}; median of {repeats} repeats, one thread");
+    let build = format!(
+        "built for {target}; gridel uses {}",
+        gridel_host::simd::level().name()
+    );
+    println!("{build}; median of {repeats} repeats, one thread");
+    if !cfg!(tinybvh) {
+        println!("SKIPPED: tinybvh, whose header was not found when this was built");
+    }
     let mut scenes = Vec::new();
     for workload in workload::workloads()? {
         let wanted = settings
@@ -179,36 +191,30 @@ fn compare(workload: &Workload, settings: &Settings) -> Result<Figures, String> 
         .collect();
     let mut contenders = rivals(&workload.geometry);
     let double = blobs.len() - 1;
+    const GOOD: usize = 4;
     for ((name, structure, blob, seconds), scene) in blobs.iter().zip(&scenes) {
         let bytes = blob.bytes().len();
         let name = name.clone();
-        contenders.push(match structure {
-            Structure::Bvh => gridel::<f32, Bvh>(name, *scene, bytes, *seconds),
-            Structure::Flagged => gridel::<f32, Flagged>(name, *scene, bytes, *seconds),
-            _ => gridel::<f32, Wide>(name, *scene, bytes, *seconds),
-        });
+        let how = (Format::F32, *structure);
+        contenders.push(gridel(name, *scene, how, bytes, *seconds));
     }
-    let reference = gridel::<f64, Wide>(String::new(), scenes[double], 0, 0.0);
+    let (good, seconds) = (&blobs[GOOD].2, blobs[GOOD].3);
+    let name = String::from("gridel wide, 24 bits, good: its kernel alone");
+    contenders.push(kernel(name, scenes[GOOD], good.bytes().len(), seconds));
+    let portable = scenes[GOOD].with_simd(SimdLevel::Portable);
+    let name = String::from("gridel wide, 24 bits, good: without AVX2");
+    let how = (Format::F32, Structure::Wide);
+    contenders.push(gridel(name, portable, how, good.bytes().len(), seconds));
+    let how = (Format::F64, Structure::Wide);
+    let reference = gridel(String::new(), scenes[double], how, 0, 0.0);
 
-    let primary = workload.primary(settings.side.into());
+    let primary = Rays::new("primary", false, workload.primary(settings.side.into()));
     let hits = hits_of(&reference, &workload.geometry, &primary);
-    let bounces = workload.bounces(&primary, &hits);
+    let bounces = workload.bounces(&primary.queries, &hits);
     let kinds = [
-        Rays {
-            kind: "primary",
-            any: false,
-            queries: primary,
-        },
-        Rays {
-            kind: "bounce",
-            any: false,
-            queries: bounces.clone(),
-        },
-        Rays {
-            kind: "shadow",
-            any: true,
-            queries: bounces,
-        },
+        primary,
+        Rays::new("bounce", false, bounces.clone()),
+        Rays::new("shadow", true, bounces),
     ];
     let size = workload.size();
     let mut lines: Vec<Line> = contenders
@@ -225,19 +231,21 @@ fn compare(workload: &Workload, settings: &Settings) -> Result<Figures, String> 
     for rays in &kinds {
         let expected = answers(&reference, rays);
         let mut times = vec![Vec::new(); contenders.len()];
-        let mut found = vec![Vec::new(); contenders.len()];
+        let count = rays.queries.len();
+        let mut outputs: Vec<_> = contenders.iter().map(|it| it.output(count)).collect();
         for _ in 0..settings.repeats {
-            for (number, contender) in contenders.iter().enumerate() {
+            for ((contender, output), times) in contenders.iter().zip(&mut outputs).zip(&mut times)
+            {
                 let started = Instant::now();
-                found[number] = answers(contender, rays);
-                times[number].push(started.elapsed().as_secs_f64());
+                contender.trace(rays, output);
+                times.push(started.elapsed().as_secs_f64());
             }
         }
-        for ((line, times), found) in lines.iter_mut().zip(&mut times).zip(&found) {
+        for ((line, times), output) in lines.iter_mut().zip(&mut times).zip(outputs) {
             times.sort_by(f64::total_cmp);
             line.rates
                 .push(rays.queries.len() as f64 / times[times.len() / 2] / 1e6);
-            line.wrong.push(wrong(&expected, found, size));
+            line.wrong.push(wrong(&expected, &output.answers(), size));
         }
     }
     Ok(Figures {
@@ -253,6 +261,10 @@ fn compare(workload: &Workload, settings: &Settings) -> Result<Figures, String> 
 fn rivals(geometry: &Geometry) -> Vec<Contender<'static>> {
     let mut rivals = obvhs::contenders(geometry);
     rivals.extend(embree::contender(geometry));
+    #[cfg(tinybvh)]
+    if let Geometry::Triangles(triangles) = geometry {
+        rivals.extend(tinybvh::contenders(triangles));
+    }
     #[cfg(any(feature = "bvh", feature = "parry3d"))]
     if let Geometry::Triangles(triangles) = geometry {
         #[cfg(feature = "parry3d")]
@@ -264,9 +276,9 @@ fn rivals(geometry: &Geometry) -> Vec<Contender<'static>> {
 }
 
 fn answers(contender: &Contender<'_>, rays: &Rays) -> Vec<Answer> {
-    let mut answers = vec![Answer { t: f32::INFINITY }; rays.queries.len()];
-    (contender.trace)(&rays.queries, rays.any, &mut answers);
-    answers
+    let mut output = contender.output(rays.queries.len());
+    contender.trace(rays, &mut output);
+    output.answers()
 }
 
 fn wrong(expected: &[Answer], found: &[Answer], size: f32) -> usize {
@@ -280,11 +292,7 @@ fn wrong(expected: &[Answer], found: &[Answer], size: f32) -> usize {
 }
 
 fn leaks(contender: &Contender<'_>, workload: &Workload) -> usize {
-    let rays = Rays {
-        kind: "seams",
-        any: false,
-        queries: workload.at_seams(),
-    };
+    let rays = Rays::new("seams", false, workload.at_seams());
     let answers = answers(contender, &rays);
     answers
         .iter()
@@ -293,12 +301,11 @@ fn leaks(contender: &Contender<'_>, workload: &Workload) -> usize {
 }
 
 /// Where rays hit, and the normal there.
-fn hits_of(reference: &Contender<'_>, geometry: &Geometry, queries: &[Query]) -> Vec<(f32, Vec3)> {
+fn hits_of(reference: &Contender<'_>, geometry: &Geometry, rays: &Rays) -> Vec<(f32, Vec3)> {
     // A normal from three rays side by side would go wrong at edges; so from what lies nearest.
-    let mut answers = vec![Answer { t: f32::INFINITY }; queries.len()];
-    (reference.trace)(queries, false, &mut answers);
+    let answers = answers(reference, rays);
     let finder = obvhs::Nearest::of(geometry);
-    queries
+    rays.queries
         .iter()
         .zip(&answers)
         .map(|(query, answer)| {

@@ -1,6 +1,6 @@
 //! obvhs, as its documentation uses it.
 
-use crate::contender::Contender;
+use crate::contender::{Contender, Trace};
 use crate::workload::{Answer, Geometry, Query};
 use ::obvhs::bvh2::builder::{build_bvh2, build_bvh2_from_tris};
 use ::obvhs::cwbvh::builder::{build_cwbvh, build_cwbvh_from_tris};
@@ -39,7 +39,7 @@ macro_rules! obvhs {
             name: $name.to_owned(),
             seconds: $started,
             bytes: $bytes,
-            trace: Box::new(move |queries, any, answers| {
+            trace: Trace::OfQueries(Box::new(move |queries, any, answers| {
                 for (query, answer) in queries.iter().zip(answers) {
                     *answer = if any {
                         let miss = structure
@@ -55,7 +55,7 @@ macro_rules! obvhs {
                         Answer { t: hit.t }
                     };
                 }
-            }),
+            })),
         }
     }};
 }

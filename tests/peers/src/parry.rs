@@ -1,6 +1,6 @@
 //! parry3d's triangle mesh.
 
-use crate::contender::Contender;
+use crate::contender::{Contender, Trace};
 use crate::workload::Answer;
 use glam::Vec3;
 use parry3d::math::Vector;
@@ -36,7 +36,7 @@ pub fn contender(triangles: &[[Vec3; 3]]) -> Contender<'static> {
         name: String::from("parry3d TriMesh"),
         seconds,
         bytes,
-        trace: Box::new(move |queries, _, answers| {
+        trace: Trace::OfQueries(Box::new(move |queries, _, answers| {
             for (query, answer) in queries.iter().zip(answers) {
                 let ray = parry3d::query::Ray::new(vector(query.origin), vector(query.direction));
                 let t = mesh.cast_local_ray(&ray, f32::MAX, true);
@@ -44,6 +44,6 @@ pub fn contender(triangles: &[[Vec3; 3]]) -> Contender<'static> {
                     t: t.unwrap_or(f32::INFINITY),
                 };
             }
-        }),
+        })),
     }
 }

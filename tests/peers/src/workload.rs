@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use gridel_host::scene::{self, MoleculeOptions, Scene, Shape};
+use gridel_host::trace::SceneRay;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -21,6 +22,7 @@ pub struct Workload {
 
 /// A ray in scene units.
 #[derive(Clone, Copy)]
+#[repr(C)]
 pub struct Query {
     pub origin: Vec3,
     pub direction: Vec3,
@@ -28,6 +30,7 @@ pub struct Query {
 
 /// What a ray met.
 #[derive(Clone, Copy, PartialEq)]
+#[repr(transparent)]
 pub struct Answer {
     /// Infinite for a miss, and 0 where any hit was asked for and there is one.
     pub t: f32,
@@ -38,6 +41,25 @@ pub struct Rays {
     pub kind: &'static str,
     pub any: bool,
     pub queries: Vec<Query>,
+    /// The same as Gridel takes them.
+    pub scene_rays: Vec<SceneRay>,
+}
+
+impl Rays {
+    pub fn new(kind: &'static str, any: bool, queries: Vec<Query>) -> Self {
+        let scene_ray = |query: &Query| SceneRay {
+            origin: query.origin.as_dvec3(),
+            tmin: 0.0,
+            direction: query.direction.as_dvec3(),
+            tmax: f64::INFINITY,
+        };
+        Self {
+            kind,
+            any,
+            scene_rays: queries.iter().map(scene_ray).collect(),
+            queries,
+        }
+    }
 }
 
 /// The folder of scenes.

@@ -7,9 +7,9 @@ use crate::accel::cull::{self, Cull, Culling, PairCulling};
 use crate::accel::single::Single;
 use crate::blob::cluster::LANES;
 use crate::blob::record::{UnitBox, WideNode};
-use crate::eight::Eight;
 use crate::number::Number;
 use crate::ray::Ray;
+use crate::simd::{F32x8, Simd};
 use glam::Vec4;
 
 /// A form of a ray that culls eight boxes at once.
@@ -22,7 +22,7 @@ pub trait WideCulling<N: Number>: Culling<N> {
     fn span(&self, bounds: &UnitBox, limit: i32) -> [f64; 2];
     /// The children that the ray can meet up to a limit, a bit each, and where it enters them; what
     /// compares with a limit.
-    fn children(&self, node: &WideNode, limit: i32) -> (u32, [i32; LANES]);
+    fn children<S: Simd>(&self, simd: S, node: &WideNode, limit: i32) -> (u32, [i32; LANES]);
 }
 
 /// The culling form of a ray in eight lanes of `f32`: t in units.
@@ -91,31 +91,41 @@ impl<N: Number> WideCulling<N> for WideLanes {
     }
 
     #[inline(always)]
-    fn children(&self, node: &WideNode, limit: i32) -> (u32, [i32; LANES]) {
+    fn children<S: Simd>(&self, simd: S, node: &WideNode, limit: i32) -> (u32, [i32; LANES]) {
         let Self {
             inverse, near, far, ..
         } = self;
-        let axis = |axis: usize, inverse: f32, to_near: f32, to_far: f32| {
-            let (rows, near) = (&node.planes[axis], self.near_row(axis));
-            let inverse = Eight::splat(inverse);
-            (
-                Eight::from_i16(&rows[near]) * inverse + Eight::splat(to_near),
-                Eight::from_i16(&rows[near ^ 1]) * inverse + Eight::splat(to_far),
-            )
-        };
-        let (near_x, far_x) = axis(0, inverse.x, near.x, far.x);
-        let (near_y, far_y) = axis(1, inverse.y, near.y, far.y);
-        let (near_z, far_z) = axis(2, inverse.z, near.z, far.z);
+        // Each a function that is inlined for certain, as a closure is not.
+        let [x, y, z] = &node.planes;
+        let (near_x, far_x) = between(simd, x, self.near_row(0), [inverse.x, near.x, far.x]);
+        let (near_y, far_y) = between(simd, y, self.near_row(1), [inverse.y, near.y, far.y]);
+        let (near_z, far_z) = between(simd, z, self.near_row(2), [inverse.z, near.z, far.z]);
         let start = near.w;
         let limit = f32::from_bits(limit as u32);
-        let near = near_x.max(near_y).max(near_z.max(Eight::splat(start)));
-        let far = far_x.min(far_y).min(far_z.min(Eight::splat(limit)));
+        let near = near_x.max(near_y).max(near_z.max(simd.splat(start)));
+        let far = far_x.min(far_y).min(far_z.min(simd.splat(limit)));
         // Not below zero, so integers of the same bits have the same order.
         (
             near.at_most(far),
             near.to_array().map(|t| t.to_bits() as i32),
         )
     }
+}
+
+/// Where a ray passes the near and the far planes of one axis, given the rows of its lower and upper
+/// planes, the number of the near row, and the ray's constants.
+#[inline(always)]
+fn between<S: Simd>(
+    simd: S,
+    rows: &[[i16; LANES]; 2],
+    near: usize,
+    [inverse, to_near, to_far]: [f32; 3],
+) -> (S::F32x8, S::F32x8) {
+    let inverse = simd.splat(inverse);
+    (
+        simd.of_i16(&rows[near]) * inverse + simd.splat(to_near),
+        simd.of_i16(&rows[near ^ 1]) * inverse + simd.splat(to_far),
+    )
 }
 
 impl<N: Number> WideCulling<N> for Cull {
@@ -129,7 +139,7 @@ impl<N: Number> WideCulling<N> for Cull {
     }
 
     #[inline(always)]
-    fn children(&self, node: &WideNode, limit: i32) -> (u32, [i32; LANES]) {
+    fn children<S: Simd>(&self, _: S, node: &WideNode, limit: i32) -> (u32, [i32; LANES]) {
         let mut met = 0;
         let mut near = [0; LANES];
         for (lane, near) in near.iter_mut().enumerate() {

@@ -1,0 +1,122 @@
+//! Eight numbers of single precision at once, with the instructions that the processor has.
+//!
+//! Additions, subtractions and products are those of IEEE 754 in every lane, never fused, so a
+//! kernel gives the same bits here as one number at a time, and the same bits with any instructions.
+//!
+//! A kernel is generic over [`Simd`], whose values prove that the processor has the instructions, and
+//! [`Simd::call`] compiles it for them: every function that the kernel calls must be inlined into it.
+
+#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+mod f32x8_avx2;
+mod f32x8_portable;
+
+pub use f32x8_portable::Portable;
+
+use core::ops::{Add, Mul, Sub};
+#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+use gridel_x86::Avx2;
+
+/// The instructions that queries through [`Wide`](crate::Wide) use. No bit of an answer depends on
+/// them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SimdLevel {
+    /// Those that the program is built for, four lanes at a time.
+    #[default]
+    Portable,
+    /// AVX2, eight lanes at a time.
+    #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+    Avx2(Avx2),
+}
+
+impl SimdLevel {
+    /// The fastest level of this processor.
+    #[cfg(feature = "avx2")]
+    pub fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(avx2) = Avx2::detect() {
+            return Self::Avx2(avx2);
+        }
+        Self::Portable
+    }
+
+    /// All levels of this processor, the portable one first.
+    #[cfg(feature = "avx2")]
+    pub fn available() -> impl Iterator<Item = Self> {
+        let best = Some(Self::detect()).filter(|best| *best != Self::Portable);
+        core::iter::once(Self::Portable).chain(best)
+    }
+
+    /// The name that command lines and tables use.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Portable => "portable",
+            #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+            Self::Avx2(_) => "avx2",
+        }
+    }
+}
+
+/// Evaluates an expression with `$simd` being the proof of the level's instructions.
+macro_rules! with_simd {
+    ($level:expr, |$simd:ident| $body:expr) => {
+        match $level {
+            $crate::simd::SimdLevel::Portable => {
+                let $simd = $crate::simd::Portable;
+                $body
+            }
+            #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+            $crate::simd::SimdLevel::Avx2($simd) => $body,
+        }
+    };
+}
+pub(crate) use with_simd;
+
+/// A set of instructions: a value proves that the processor has them.
+pub trait Simd: Copy {
+    /// Eight lanes.
+    type F32x8: F32x8;
+
+    /// The same number in every lane.
+    fn splat(self, value: f32) -> Self::F32x8;
+    /// Numbers from memory.
+    fn lanes(self, lanes: &[f32; 8]) -> Self::F32x8;
+    /// Integers as numbers; exact.
+    fn of_i16(self, lanes: &[i16; 8]) -> Self::F32x8;
+    /// Integers as numbers; exact.
+    fn of_u16(self, lanes: &[u16; 8]) -> Self::F32x8;
+    /// Integers as numbers; exact below 2^24.
+    fn of_i32(self, lanes: &[i32; 8]) -> Self::F32x8;
+    /// Integers of 24 bits as numbers, given by their low 16 bits, and by their high 8 as the bytes of
+    /// words, the low ones in the first four lanes; exact.
+    fn of_i24(self, low: &[u16; 8], high: &[u16; 4]) -> Self::F32x8;
+    /// Calls a function, out of line, that is compiled for these instructions. Arguments are handed
+    /// over one by one, so that they stay in registers.
+    fn call<A, B, C, D, E, R>(
+        self,
+        function: impl FnOnce(Self, A, B, C, D, E) -> R,
+        arguments: (A, B, C, D, E),
+    ) -> R;
+}
+
+/// Eight numbers of single precision.
+pub trait F32x8: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    /// The lanes as numbers.
+    fn to_array(self) -> [f32; 8];
+    /// The smaller in every lane; which zero and which NaN is not specified.
+    fn min(self, other: Self) -> Self;
+    /// The larger in every lane; which zero and which NaN is not specified.
+    fn max(self, other: Self) -> Self;
+    /// Magnitudes.
+    fn abs(self) -> Self;
+    /// Every lane's neighbour above; the last stays.
+    fn next(self) -> Self;
+    /// A bit for each lane that is at most the other's.
+    fn at_most(self, other: Self) -> u32;
+    /// A bit for each lane whose sign is minus.
+    fn signs(self) -> u32;
+    /// A bit for each lane that is zero.
+    fn zero(self) -> u32;
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,151 @@
+//! Eight lanes.
+
+use crate::Avx2;
+use core::arch::x86_64::*;
+use core::ops::{Add, Mul, Sub};
+
+/// Eight numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct F32x8(__m256);
+
+/// One call of intrinsics.
+macro_rules! avx2 {
+    ($call:expr) => {
+        // SAFETY: an `Avx2` or an `F32x8` is at hand, either of which proves that the processor has
+        // AVX2. What is loaded from is an array of the size that is loaded.
+        unsafe { $call }
+    };
+}
+
+impl F32x8 {
+    /// The same number in every lane.
+    #[inline(always)]
+    pub fn splat(_: Avx2, value: f32) -> Self {
+        Self(avx2!(_mm256_set1_ps(value)))
+    }
+
+    /// Numbers from memory.
+    #[inline(always)]
+    pub fn new(_: Avx2, lanes: &[f32; 8]) -> Self {
+        Self(avx2!(_mm256_loadu_ps(lanes.as_ptr())))
+    }
+
+    /// Integers as numbers; exact.
+    #[inline(always)]
+    pub fn from_i16(_: Avx2, lanes: &[i16; 8]) -> Self {
+        Self(avx2!(_mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(
+            _mm_loadu_si128(lanes.as_ptr().cast())
+        ))))
+    }
+
+    /// Integers as numbers; exact.
+    #[inline(always)]
+    pub fn from_u16(_: Avx2, lanes: &[u16; 8]) -> Self {
+        Self(avx2!(_mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(
+            _mm_loadu_si128(lanes.as_ptr().cast())
+        ))))
+    }
+
+    /// Integers as numbers; exact below 2^24.
+    #[inline(always)]
+    pub fn from_i32(_: Avx2, lanes: &[i32; 8]) -> Self {
+        Self(avx2!(_mm256_cvtepi32_ps(_mm256_loadu_si256(
+            lanes.as_ptr().cast()
+        ))))
+    }
+
+    /// Integers of 24 bits as numbers, given by their low 16 bits, and by their high 8 as the bytes of
+    /// words, the low ones in the first four lanes; exact.
+    #[inline(always)]
+    pub fn from_i24(_: Avx2, low: &[u16; 8], high: &[u16; 4]) -> Self {
+        Self(avx2!({
+            let words = _mm_cvtepu16_epi32(_mm_loadl_epi64(high.as_ptr().cast()));
+            // The byte of each lane goes to the top, and back with its sign.
+            let shift = _mm256_setr_epi32(24, 24, 24, 24, 16, 16, 16, 16);
+            let top = _mm256_sllv_epi32(_mm256_broadcastsi128_si256(words), shift);
+            let high = _mm256_slli_epi32::<16>(_mm256_srai_epi32::<24>(top));
+            let low = _mm256_cvtepu16_epi32(_mm_loadu_si128(low.as_ptr().cast()));
+            _mm256_cvtepi32_ps(_mm256_or_si256(high, low))
+        }))
+    }
+
+    /// The lanes as numbers.
+    #[inline(always)]
+    pub fn to_array(self) -> [f32; 8] {
+        let mut lanes = [0.0; 8];
+        avx2!(_mm256_storeu_ps(lanes.as_mut_ptr(), self.0));
+        lanes
+    }
+
+    /// The smaller in every lane: `other` unless this one is smaller.
+    #[inline(always)]
+    pub fn min(self, other: Self) -> Self {
+        Self(avx2!(_mm256_min_ps(self.0, other.0)))
+    }
+
+    /// The larger in every lane: `other` unless this one is larger.
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
+        Self(avx2!(_mm256_max_ps(self.0, other.0)))
+    }
+
+    /// Magnitudes.
+    #[inline(always)]
+    pub fn abs(self) -> Self {
+        Self(avx2!(_mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0)))
+    }
+
+    /// Every lane's neighbour above; the last stays.
+    #[inline(always)]
+    pub fn next(self) -> Self {
+        let above = avx2!(_mm256_setr_epi32(1, 2, 3, 4, 5, 6, 7, 7));
+        Self(avx2!(_mm256_permutevar8x32_ps(self.0, above)))
+    }
+
+    /// A bit for each lane that is at most the other's.
+    #[inline(always)]
+    pub fn at_most(self, other: Self) -> u32 {
+        let at_most = avx2!(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0));
+        Self(at_most).signs()
+    }
+
+    /// A bit for each lane whose sign is minus.
+    #[inline(always)]
+    pub fn signs(self) -> u32 {
+        avx2!(_mm256_movemask_ps(self.0)) as u32
+    }
+
+    /// A bit for each lane that is zero.
+    #[inline(always)]
+    pub fn zero(self) -> u32 {
+        let zero = avx2!(_mm256_cmp_ps::<_CMP_EQ_OQ>(self.0, _mm256_setzero_ps()));
+        Self(zero).signs()
+    }
+}
+
+impl Add for F32x8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(avx2!(_mm256_add_ps(self.0, other.0)))
+    }
+}
+
+impl Sub for F32x8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(avx2!(_mm256_sub_ps(self.0, other.0)))
+    }
+}
+
+impl Mul for F32x8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self(avx2!(_mm256_mul_ps(self.0, other.0)))
+    }
+}
