@@ -3,7 +3,7 @@
 use crate::SMALL;
 use crate::blob::record::UnitBox;
 use crate::event::Event;
-use crate::number::{Number, pick};
+use crate::number::{Format, Number, pick};
 use core::cmp::Ordering;
 use core::fmt;
 
@@ -17,7 +17,21 @@ use core::fmt;
 ///
 /// An origin before the scene's box is moved along the ray to the plane in which the box begins,
 /// and `t` is counted from there inside the kernels; [`Hit::t`](crate::Hit) is counted from the
-/// origin that was given. So origins may be arbitrarily far away.
+/// origin that was given.
+///
+/// # Limits
+/// - **Origin:** each coordinate is at most 2^37 units ([`FARTHEST`]), or the ray is rejected with
+///   [`RayError::Distance`]. A scene's box is at most 2^16 units wide, so rays from 2^20 times its width
+///   are answered. The origin is moved in twice the format's precision, by the direction as it is given
+///   and not by its rounded slopes: from any distance the ray starts where it comes to the box, within two
+///   roundings of the largest coordinate there (in `f32`: of the largest coordinate of a scene, 2^15
+///   units).
+/// - **Direction:** any finite length but 0, down to the smallest denormal number and up to the largest
+///   finite one.
+/// - **`tmin`, `tmax`:** anything but NaN; infinite ones are endless.
+/// - **`t` of a hit** is rounded to the format: in `f32` it is off by up to 2^-24 of itself, in `f64` by
+///   2^-53, and in `fixed` by a sub-step, 2^-13 of a unit. [`Hit::point`](crate::Hit::point) is not taken
+///   from it, and is as good as that of a ray from near by.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray<N: Number> {
     pub(crate) origin: [N; 3],
@@ -36,6 +50,8 @@ pub enum RayError {
     Direction,
     /// The origin is infinite or NaN.
     Origin,
+    /// The origin is farther than [`FARTHEST`] along an axis.
+    Distance,
     /// `tmin` is greater than `tmax`, or one of them is NaN.
     Interval,
 }
@@ -45,6 +61,10 @@ impl fmt::Display for RayError {
         f.write_str(match self {
             RayError::Direction => "the ray's direction is zero, infinite or NaN",
             RayError::Origin => "the ray's origin is infinite or NaN",
+            RayError::Distance => {
+                "the ray's origin is too far from the scene: more than 2^37 units, which is 2^21 times \
+                 the width of the largest scene; move it closer along the ray"
+            }
             RayError::Interval => "the ray's tmin is greater than its tmax, or one of them is NaN",
         })
     }
@@ -64,10 +84,11 @@ fn way_to_box<N: Number>(
     let zero = N::Wide::default();
     let [first, last] = pick(bounds.0, axis);
     let origin = pick(origin, axis);
+    // Of what is too far away it may be anything.
     let to_box = if forward {
-        N::from_unit(first).widen() - origin
+        N::difference(N::from_unit(first).widen(), origin)
     } else {
-        origin - N::from_unit(last).widen()
+        N::difference(origin, N::from_unit(last).widen())
     };
     if to_box > zero {
         to_box
@@ -81,24 +102,23 @@ fn way_to_box<N: Number>(
 /// An interval counted from where a ray was moved to.
 #[inline(always)]
 fn interval<N: Number>(tmin: N::Wide, tmax: N::Wide, moved: N::Wide) -> [N; 2] {
-    let zero = N::Wide::default();
-    let (tmin, tmax) = (tmin - moved, tmax - moved);
-    let far = N::FAR.widen();
-    let tmin = if tmin > zero {
-        N::narrow(if tmin < far { tmin } else { far })
+    let tmin = if tmin > moved {
+        N::excess(tmin, moved)
     } else {
         N::ZERO
     };
     // An interval that ends before it starts holds no hit.
-    let tmax = if tmax < zero {
+    let tmax = if tmax < moved {
         -N::ONE
-    } else if tmax < far {
-        N::narrow(tmax)
     } else {
-        N::FAR
+        N::excess(tmax, moved)
     };
     [tmin, tmax]
 }
+
+/// How far from the lattice's middle an origin may be along each axis: 2^37 units, with 13 fraction bits.
+/// Eyes and lights of a blob are no farther away.
+pub const FARTHEST: i64 = 1 << 50;
 
 /// How far from the lattice's middle a ray may start on any axis, with 13 fraction bits: on its way
 /// through the scene's box, which ends at 2^15 units, a ray rises by at most 2^16. Kernels keep their
@@ -130,38 +150,84 @@ fn near_start<N: Number>(origin: [N; 3], moved: N, slope: [N; 3]) -> [N; 3] {
     [start(0), start(1), start(2)]
 }
 
-/// Where a ray starts that is moved from an origin anywhere, and whether that lies within [`REACH`]:
-/// else it meets nothing.
+/// Where a ray starts that is moved from an origin anywhere, how far that is, and whether it lies within
+/// [`REACH`]: else it meets nothing. `EXACT` says that slopes and lengths are not rounded.
 #[cfg_attr(not(feature = "small"), inline(always))]
-fn far_start<N: Number>(origin: [N::Wide; 3], moved: N::Wide, slope: [N; 3]) -> ([N; 3], bool) {
-    let start = |axis: usize| far_coordinate(origin[axis], moved, slope[axis]);
-    let start = [start(0), start(1), start(2)];
+fn far_start<N: Number, const EXACT: bool>(
+    bounds: &UnitBox,
+    origin: [N::Wide; 3],
+    direction: [N::Wide; 3],
+    (slope, major): ([N; 3], usize),
+    moved: N::Wide,
+) -> ([N; 3], N::Wide, bool) {
     let reach = N::narrow(N::far(REACH));
-    if start.iter().all(|x| x.abs() <= reach) {
-        (start, true)
+    let (start, moved) = if EXACT || N::narrow(moved).abs() < reach {
+        let start = |axis: usize| far_coordinate(origin[axis], moved, slope[axis]);
+        ([start(0), start(1), start(2)], moved)
     } else {
-        ([N::ZERO; 3], false)
+        // Rounded slopes and lengths would lose the ray's place.
+        let [first, last] = pick(bounds.0, major);
+        let forward = pick(slope, major) > N::ZERO;
+        let plane = N::from_unit(if forward { first } else { last });
+        let (from, stride) = (pick(origin, major), pick(direction, major));
+        let start = |axis: usize| N::carry(origin[axis], from, plane, direction[axis], stride);
+        let depth = plane.widen() - from;
+        let moved = if forward { depth } else { -depth };
+        ([start(0), start(1), start(2)], moved)
+    };
+    if start.iter().all(|x| x.abs() <= reach) {
+        (start, moved, true)
+    } else {
+        ([N::ZERO; 3], moved, false)
     }
 }
 
-/// One coordinate of it, in a register: through memory all three would burden near rays too.
+/// [`far_start`] of a ray that is to run along its slopes as they are.
+#[inline(always)]
+fn far_start_along<N: Number>(
+    bounds: &UnitBox,
+    origin: [N::Wide; 3],
+    (slope, major): ([N; 3], usize),
+    moved: N::Wide,
+) -> ([N; 3], N::Wide, bool) {
+    let direction = slope.map(N::widen);
+    if N::FORMAT == Format::Fixed {
+        far_start::<N, true>(bounds, origin, direction, (slope, major), moved)
+    } else {
+        far_start::<N, false>(bounds, origin, direction, (slope, major), moved)
+    }
+}
+
+/// One coordinate of a start, in a register: through memory all three would burden near rays too.
 #[cold]
 #[inline(never)]
 fn far_coordinate<N: Number>(origin: N::Wide, moved: N::Wide, slope: N) -> N {
     N::settle(N::narrow(origin + N::wide_scale(moved, slope)))
 }
 
-/// An error unless the origin is finite and the interval is one.
-#[inline(always)]
-fn check<W: Copy + PartialOrd>(finite: bool, tmin: W, tmax: W) -> Result<(), RayError> {
-    if tmin.partial_cmp(&tmax).is_none_or(Ordering::is_gt) {
-        return Err(RayError::Interval);
-    }
-    if finite {
+/// An error unless every coordinate of an origin is a number of at most [`FARTHEST`].
+#[cold]
+#[inline(never)]
+fn check_origin<N: Number>(x: N::Wide, y: N::Wide, z: N::Wide) -> Result<(), RayError> {
+    let most = N::far(FARTHEST);
+    let origin = [x, y, z];
+    // Not so for NaN.
+    if origin.iter().all(|&x| -most <= x && x <= most) {
         Ok(())
+    } else if origin.into_iter().all(N::is_finite) {
+        Err(RayError::Distance)
     } else {
         Err(RayError::Origin)
     }
+}
+
+/// An error unless an interval is one.
+#[inline(always)]
+fn check_interval<W: Copy + PartialOrd>(tmin: W, tmax: W) -> Result<(), RayError> {
+    if tmin.partial_cmp(&tmax).is_none_or(Ordering::is_gt) {
+        return Err(RayError::Interval);
+    }
+    Ok(())
 }
 
 /// All rays without end from one point: what they share is computed once.
@@ -190,13 +256,14 @@ impl<N: Number> Pencil<N> {
     /// The rays from a point, with all `t` that are not negative: see [`Ray::new`].
     ///
     /// # Errors
-    /// If the origin is infinite or NaN.
+    /// If the origin is infinite or NaN, or farther than [`FARTHEST`].
     pub fn new(bounds: &UnitBox, origin: [N::Wide; 3]) -> Result<Self, RayError> {
-        check(is_finite::<N>(origin), N::Wide::default(), endless::<N>())?;
+        let [x, y, z] = origin;
+        check_origin::<N>(x, y, z)?;
         Ok(Self::of(bounds, origin))
     }
 
-    /// The rays from a finite point.
+    /// The rays from a point that is no farther than [`FARTHEST`].
     pub(crate) fn of(bounds: &UnitBox, origin: [N::Wide; 3]) -> Self {
         let zero = N::Wide::default();
         let moved = [0, 1, 2].map(|axis| {
@@ -225,12 +292,29 @@ impl<N: Number> Pencil<N> {
     #[inline(always)]
     pub fn ray(&self, direction: [N::Wide; 3]) -> Result<Ray<N>, RayError> {
         let (slope, major) = N::slopes(direction).ok_or(RayError::Direction)?;
-        Ok(self.ray_along(slope, major))
+        let toward = |bounds: &UnitBox, origin: &[N::Wide; 3], moved: N::Wide| {
+            far_start::<N, false>(bounds, *origin, direction, (slope, major), moved)
+        };
+        Ok(self.ray_from(slope, major, toward))
     }
 
     /// The ray along slopes, given with their major axis.
     #[inline(always)]
     pub(crate) fn ray_along(&self, slope: [N; 3], major: usize) -> Ray<N> {
+        let along = |bounds: &UnitBox, origin: &[N::Wide; 3], moved: N::Wide| {
+            far_start_along(bounds, *origin, (slope, major), moved)
+        };
+        self.ray_from(slope, major, along)
+    }
+
+    /// The ray along slopes, from a start that is found by a function where it is far.
+    #[inline(always)]
+    fn ray_from(
+        &self,
+        slope: [N; 3],
+        major: usize,
+        far: impl Fn(&UnitBox, &[N::Wide; 3], N::Wide) -> ([N; 3], N::Wide, bool),
+    ) -> Ray<N> {
         let forward = pick(slope, major) > N::ZERO;
         let (origin, moved, within) = match &self.0 {
             Origin::Near { origin, moved } => {
@@ -241,8 +325,7 @@ impl<N: Number> Pencil<N> {
             Origin::Far { origin, bounds } => {
                 let zero = N::Wide::default();
                 let moved = way_to_box::<N>(bounds, *origin, (major, forward), zero);
-                let (start, within) = far_start(*origin, moved, slope);
-                (start, moved, within)
+                far(bounds, origin, moved)
             }
         };
         Ray {
@@ -257,12 +340,9 @@ impl<N: Number> Pencil<N> {
 }
 
 /// A length beyond every scene, however far from it a ray begins.
+#[cfg(test)]
 fn endless<N: Number>() -> N::Wide {
     N::far(1 << 60)
-}
-
-fn is_finite<N: Number>(origin: [N::Wide; 3]) -> bool {
-    origin.into_iter().all(N::is_finite)
 }
 
 impl<N: Number> Ray<N> {
@@ -272,8 +352,8 @@ impl<N: Number> Ray<N> {
     /// reported for `tmin <= t <= tmax`, in lengths along the major axis; `tmin` may be negative.
     ///
     /// # Errors
-    /// If the direction is zero, or anything is NaN, or the origin or direction infinite, or
-    /// `tmin > tmax`. Queries for which no ray can be made have no hit.
+    /// If the direction is zero, or anything is NaN, or the origin or direction infinite, or the origin
+    /// farther than [`FARTHEST`] along an axis, or `tmin > tmax`: see the limits of [`Ray`].
     // Hosts have the room; through memory a ray would cost as much again.
     #[cfg_attr(feature = "wide", inline(always))]
     #[cfg_attr(not(feature = "wide"), inline)]
@@ -285,14 +365,16 @@ impl<N: Number> Ray<N> {
         tmax: N::Wide,
     ) -> Result<Self, RayError> {
         let (slope, major) = N::slopes(direction).ok_or(RayError::Direction)?;
-        check(is_finite::<N>(origin), tmin, tmax)?;
+        check_interval(tmin, tmax)?;
         let forward = pick(slope, major) > N::ZERO;
         let moved = way_to_box::<N>(bounds, origin, (major, forward), tmin);
         let single = (origin.map(N::narrow), N::narrow(moved));
-        let (start, within) = if is_near(single.0, major, single.1) {
-            (near_start(single.0, single.1, slope), true)
+        let (start, moved, within) = if is_near(single.0, major, single.1) {
+            (near_start(single.0, single.1, slope), moved, true)
         } else {
-            far_start(origin, moved, slope)
+            let [x, y, z] = origin;
+            check_origin::<N>(x, y, z)?;
+            far_start::<N, false>(bounds, origin, direction, (slope, major), moved)
         };
         let [tmin, tmax] = interval(tmin, tmax, moved);
         Ok(Self {
@@ -302,6 +384,35 @@ impl<N: Number> Ray<N> {
             moved,
             tmin,
             tmax: if within { tmax } else { -N::ONE },
+        })
+    }
+
+    /// A ray from a place in the scene, as hits tell places. `None` if the direction is zero, or `tmax`
+    /// negative.
+    #[cfg_attr(feature = "wide", inline(always))]
+    #[cfg_attr(not(feature = "wide"), inline)]
+    pub(crate) fn from_inside(
+        bounds: &UnitBox,
+        origin: [N; 3],
+        direction: [N::Wide; 3],
+        tmax: N::Wide,
+    ) -> Option<Self> {
+        let zero = N::Wide::default();
+        let (slope, major) = N::slopes(direction)?;
+        if tmax < zero {
+            return None;
+        }
+        let forward = pick(slope, major) > N::ZERO;
+        // A place beside the box at most: always near.
+        let moved = way_to_box::<N>(bounds, origin.map(N::widen), (major, forward), zero);
+        let [tmin, tmax] = interval(zero, tmax, moved);
+        Some(Self {
+            origin: near_start(origin, N::narrow(moved), slope),
+            slope,
+            major,
+            moved,
+            tmin,
+            tmax,
         })
     }
 
@@ -411,7 +522,8 @@ mod tests {
     fn same_start<N: Number>(origin: [f64; 3], direction: [f64; 3], tmin: f64) {
         let bounds = UnitBox([[-300, 400], [-32_768, 32_767], [5, 6]]);
         let origin = origin.map(N::far_from_f64);
-        let Some((slope, major)) = N::slopes(direction.map(N::far_from_f64)) else {
+        let direction = direction.map(N::far_from_f64);
+        let Some((slope, major)) = N::slopes(direction) else {
             return;
         };
         let forward = pick(slope, major) > N::ZERO;
@@ -420,14 +532,15 @@ mod tests {
         let single = (origin.map(N::narrow), N::narrow(moved));
         if is_near(single.0, major, single.1) {
             let near = near_start(single.0, single.1, slope);
-            assert_eq!((near, true), far_start(origin, moved, slope));
+            let far = far_start::<N, false>(&bounds, origin, direction, (slope, major), moved);
+            assert_eq!((near, moved, true), far);
         }
     }
 
     /// Three finite numbers may have a sum that is not.
     #[test]
-    fn every_finite_origin_is_one() {
-        fn origins<N: Number<Wide = N>>(most: N, infinite: N) {
+    fn origins_are_rejected_with_the_reason() {
+        fn origins<N: Number<Wide = N>>(largest: N, infinite: N) {
             let bounds = UnitBox([[-300, 400], [-1000, 32_000], [5, 6]]);
             let (zero, end) = (N::ZERO, N::FAR);
             let made = |origin: [N; 3]| {
@@ -437,13 +550,21 @@ mod tests {
                 assert_eq!(alone.err(), pencil.err());
                 alone.err()
             };
+            let most = N::far(FARTHEST);
             assert_eq!(made([most; 3]), None);
             assert_eq!(made([-most, -most, zero]), None);
+            assert_eq!(made([largest; 3]), Some(RayError::Distance));
             for axis in 0..3 {
-                for wrong in [infinite, -infinite, infinite - infinite] {
+                let with = |x: N| {
                     let mut origin = [zero; 3];
-                    origin[axis] = wrong;
-                    assert_eq!(made(origin), Some(RayError::Origin));
+                    origin[axis] = x;
+                    made(origin)
+                };
+                for far in [most + most, -most - most, largest, -largest] {
+                    assert_eq!(with(far), Some(RayError::Distance));
+                }
+                for wrong in [infinite, -infinite, infinite - infinite] {
+                    assert_eq!(with(wrong), Some(RayError::Origin));
                 }
             }
             // Nor does one that is not finite vanish beside its opposite.

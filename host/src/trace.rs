@@ -1,10 +1,17 @@
 //! Traces rays of the user's own through a blob.
 
+mod carry;
+mod rejection;
+mod stride;
+
+pub use rejection::{Rejection, Rejections};
+pub use stride::Stride;
+
 use glam::DVec3;
 use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
 use gridel_core::{
-    Accel, Bvh, Count, Counters, DualSplit, Fixed, Flagged, Format, NoCount, Number, Ray, RayKind,
-    Scene, Stack, Structure, Wide, any_hit, closest_primitive,
+    Accel, Bvh, Count, Counters, DualSplit, Fixed, Flagged, Format, NoCount, Number, Ray, RayError,
+    RayKind, Scene, Stack, Structure, Wide, any_hit, closest_primitive,
 };
 
 /// A ray in scene units; t counts multiples of the direction.
@@ -16,7 +23,7 @@ pub struct SceneRay {
     pub tmax: f64,
 }
 
-/// What a ray met; [`SceneHit::MISS`] for nothing.
+/// What a ray met; [`SceneHit::MISS`] for nothing, [`SceneHit::REJECTED`] for what is not answered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneHit {
     pub t: f64,
@@ -26,13 +33,18 @@ pub struct SceneHit {
 }
 
 impl SceneHit {
-    /// Nothing was met, or the ray was none: its direction was zero, infinite or NaN, its origin
-    /// infinite or NaN, or its tmin greater than its tmax.
+    /// Nothing was met.
     pub const MISS: Self = Self {
         t: f64::INFINITY,
         object: u32::MAX,
         primitive: u32::MAX,
         normal: [0.0; 3],
+    };
+
+    /// The ray was rejected: its t is NaN.
+    pub const REJECTED: Self = Self {
+        t: f64::NAN,
+        ..Self::MISS
     };
 
     /// Something was met, where any hit will do.
@@ -42,6 +54,11 @@ impl SceneHit {
         primitive: 0,
         normal: [0.0; 3],
     };
+
+    /// Whether the ray was rejected.
+    pub fn is_rejected(&self) -> bool {
+        self.t.is_nan()
+    }
 }
 
 /// How to trace.
@@ -53,8 +70,13 @@ pub struct Query {
     pub any: bool,
 }
 
-/// Traces rays one after the other on this thread.
-pub fn trace(scene: &Scene<'_>, rays: &[SceneRay], query: Query, hits: &mut [SceneHit]) {
+/// Traces rays one after the other on this thread. Returns which were rejected, and why.
+pub fn trace(
+    scene: &Scene<'_>,
+    rays: &[SceneRay],
+    query: Query,
+    hits: &mut [SceneHit],
+) -> Rejections {
     match query.format {
         Format::Fixed => with_format::<Fixed>(scene, rays, query, hits),
         Format::F32 => with_format::<f32>(scene, rays, query, hits),
@@ -69,9 +91,10 @@ pub fn trace_counted(
     query: Query,
     hits: &mut [SceneHit],
     counters: &mut Counters,
-) {
+) -> Rejections {
     let Some(scene) = scene.choose(query.structure) else {
-        return hits.fill(SceneHit::MISS);
+        hits.fill(SceneHit::MISS);
+        return Rejections::default();
     };
     let any = query.any;
     match query.format {
@@ -86,7 +109,7 @@ fn with_format<N: Number>(
     rays: &[SceneRay],
     query: Query,
     hits: &mut [SceneHit],
-) {
+) -> Rejections {
     let (any, count) = (query.any, &mut NoCount);
     // What hosts and boards trace with; the others are there to be compared.
     match query.structure {
@@ -96,7 +119,10 @@ fn with_format<N: Number>(
         Structure::Wide => through::<N, Wide, _>(scene, rays, any, hits, count),
         other => match scene.choose(other) {
             Some(scene) => through::<N, Chosen, _>(&scene, rays, any, hits, count),
-            None => hits.fill(SceneHit::MISS),
+            None => {
+                hits.fill(SceneHit::MISS);
+                Rejections::default()
+            }
         },
     }
 }
@@ -107,11 +133,11 @@ fn through<N: Number, A: Accel, C: Count>(
     any: bool,
     hits: &mut [SceneHit],
     count: &mut C,
-) {
+) -> Rejections {
     if any {
-        any_of_each::<N, A, C>(scene, rays, hits, count);
+        any_of_each::<N, A, C>(scene, rays, hits, count)
     } else {
-        closest_of_each::<N, A, C>(scene, rays, hits, count);
+        closest_of_each::<N, A, C>(scene, rays, hits, count)
     }
 }
 
@@ -121,22 +147,28 @@ fn any_of_each<N: Number, A: Accel, C: Count>(
     rays: &[SceneRay],
     hits: &mut [SceneHit],
     count: &mut C,
-) {
+) -> Rejections {
     let frame = Frame::of(scene);
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
-    for number in 0..rays.len().min(hits.len()) {
-        load_ahead(rays, hits, number);
-        let (ray, hit) = (&rays[number], &mut hits[number]);
-        let is_hit = frame.ray::<N>(scene, ray).is_some_and(|(ray, _)| {
-            count.ray(RayKind::Primary, &ray);
-            any_hit::<N, A, C>(scene, &ray, stack.as_view(), count)
-        });
-        *hit = if is_hit {
+    let mut rejections = Rejections::default();
+    for place in 0..rays.len().min(hits.len()) {
+        load_ahead(rays, hits, place);
+        let (ray, hit) = (&rays[place], &mut hits[place]);
+        let (ray, _) = match frame.ray::<N>(scene, ray) {
+            Ok(ready) => ready,
+            Err(why) => {
+                *hit = rejections.add(place, why);
+                continue;
+            }
+        };
+        count.ray(RayKind::Primary, &ray);
+        *hit = if any_hit::<N, A, C>(scene, &ray, stack.as_view(), count) {
             SceneHit::ANY
         } else {
             SceneHit::MISS
         };
     }
+    rejections
 }
 
 /// Finds what each ray meets first.
@@ -145,31 +177,38 @@ fn closest_of_each<N: Number, A: Accel, C: Count>(
     rays: &[SceneRay],
     hits: &mut [SceneHit],
     count: &mut C,
-) {
+) -> Rejections {
     let frame = Frame::of(scene);
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
-    for number in 0..rays.len().min(hits.len()) {
-        load_ahead(rays, hits, number);
-        let (ray, hit) = (&rays[number], &mut hits[number]);
-        // Each hit is written where it is known, and not put together elsewhere first.
-        let Some((ray, scale)) = frame.ray::<N>(scene, ray) else {
-            *hit = SceneHit::MISS;
-            continue;
+    let mut rejections = Rejections::default();
+    for place in 0..rays.len().min(hits.len()) {
+        load_ahead(rays, hits, place);
+        let (ray, hit) = (&rays[place], &mut hits[place]);
+        let (ray, stride) = match frame.ray::<N>(scene, ray) {
+            Ok(ready) => ready,
+            Err(why) => {
+                *hit = rejections.add(place, why);
+                continue;
+            }
         };
         count.ray(RayKind::Primary, &ray);
         let found = closest_primitive::<N, A, C>(scene, &ray, stack.as_view(), count);
-        // Inlined, so that nothing of the hit is computed but what is used here.
+        // Inlined, it computes what is used here, and nothing else.
         let Some(found) = found.and_then(|found| found.hit(scene, &ray)) else {
             *hit = SceneHit::MISS;
             continue;
         };
-        *hit = SceneHit {
-            t: N::far_to_f64(found.t) / scale,
-            object: found.object,
-            primitive: found.primitive,
-            normal: found.normal.map(|x| x.ratio_to_f64() as f32),
+        *hit = match stride.multiple(N::far_to_f64(found.t), || found.error.length_to_f64()) {
+            Ok(t) => SceneHit {
+                t,
+                object: found.object,
+                primitive: found.primitive,
+                normal: found.normal.map(|x| x.ratio_to_f64() as f32),
+            },
+            Err(why) => rejections.add(place, why),
         };
     }
+    rejections
 }
 
 /// Starts to load what comes some rays after the one of a number. A ray and a hit are 96 bytes, which a
@@ -215,8 +254,8 @@ impl Frame {
     /// A ray in scene units, from one in units.
     pub fn scene_ray(&self, ray: &crate::verify::UnitRay) -> SceneRay {
         let direction = DVec3::from_array(ray.direction);
-        let scale = direction.abs().max_element() / self.unit;
-        let along = |t: f64| if t == 0.0 { 0.0 } else { t / scale };
+        let (stride, _) = Stride::of(direction, self.unit);
+        let along = |t: f64| if t == 0.0 { 0.0 } else { stride.nearest(t) };
         SceneRay {
             origin: self.place(ray.origin),
             tmin: along(ray.tmin),
@@ -225,20 +264,62 @@ impl Frame {
         }
     }
 
-    /// A ray in the core's form, and by how much its t is larger: `None` for what is no ray.
+    /// A ray in the core's form, and by how much its t is larger.
+    ///
+    /// # Errors
+    /// As [`Ray::from_f64`].
     #[inline(always)]
-    pub fn ray<N: Number>(&self, scene: &Scene<'_>, ray: &SceneRay) -> Option<(Ray<N>, f64)> {
+    pub fn ray<N: Number>(
+        &self,
+        scene: &Scene<'_>,
+        ray: &SceneRay,
+    ) -> Result<(Ray<N>, Stride), Rejection> {
         // Multiples of the direction become lengths along its largest component.
-        let scale = ray.direction.abs().max_element() / self.unit;
-        let along = |t: f64| if t == 0.0 { 0.0 } else { t * scale };
+        let (stride, direction) = Stride::of(ray.direction, self.unit);
         let origin = (ray.origin - self.origin) / self.unit;
-        let ray = Ray::from_f64(
-            scene.bounds(),
-            origin.to_array(),
-            ray.direction.to_array(),
-            along(ray.tmin),
-            along(ray.tmax),
-        );
-        Some((ray.ok()?, scale))
+        let (tmin, tmax) = (stride.length(ray.tmin), stride.length(ray.tmax));
+        let direction = direction.to_array();
+        if origin.abs().max_element() > carry::FAR {
+            return self.far_ray(scene, ray, (tmin, tmax), stride, direction);
+        }
+        let made = Ray::from_f64(scene.bounds(), origin.to_array(), direction, tmin, tmax);
+        Ok((made?, stride))
+    }
+
+    /// [`ray`](Self::ray) from an origin far from the scene.
+    #[cold]
+    #[inline(never)]
+    fn far_ray<N: Number>(
+        &self,
+        scene: &Scene<'_>,
+        ray: &SceneRay,
+        (tmin, tmax): (f64, f64),
+        mut stride: Stride,
+        direction: [f64; 3],
+    ) -> Result<(Ray<N>, Stride), Rejection> {
+        let bounds = scene.bounds();
+        let origin = ((ray.origin - self.origin) / self.unit).to_array();
+        let whole = Ray::from_f64(bounds, origin, direction, tmin, tmax);
+        let whole = match whole {
+            Ok(whole) => whole,
+            // Infinite in units alone.
+            Err(RayError::Origin) if ray.origin.is_finite() => {
+                return Err(RayError::Distance.into());
+            }
+            Err(why) => return Err(why.into()),
+        };
+        let ends = [ray.origin, self.origin];
+        let carried = carry::carry(ends, self.unit, DVec3::from_array(direction));
+        let Some((place, along)) = carried else {
+            return Ok((whole, stride));
+        };
+        match Ray::from_f64(bounds, place, direction, tmin - along, tmax - along) {
+            Ok(ray) => {
+                stride.begin_at(along);
+                Ok((ray, stride))
+            }
+            // It passes by the scene so far away that it is not told from where.
+            Err(_) => Ok((whole, stride)),
+        }
     }
 }

@@ -13,6 +13,7 @@ mod documents;
 mod explain;
 mod fixed_point;
 mod grids;
+mod origins;
 mod reference;
 mod render;
 mod shading;

@@ -5,6 +5,7 @@ use super::record::{ALIGNMENT, Cone, Cuboid, Disc, ENDIANNESS, Header, MAGIC, VE
 use super::section::Sections;
 use super::{BlobError, Indices, Scene, SectionKind};
 use crate::accel::{Entry, Held, MAX_STACK_DEPTH, Structure};
+use crate::ray::FARTHEST;
 use crate::render::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use crate::shade::Effects;
 #[cfg(feature = "wide")]
@@ -13,7 +14,7 @@ use crate::shape::{Kind, Shapes, Spheres, Triangles, Vertices, WIDE_INDICES, WID
 use core::mem::size_of;
 
 /// Largest magnitude of a far coordinate, so that sums and products with ratios stay in 64 bits.
-pub(super) const FAR: i64 = 1 << 50;
+pub(super) const FAR: i64 = FARTHEST;
 /// The largest radiance.
 pub(super) const RADIANCE: i64 = i32::MAX as i64;
 

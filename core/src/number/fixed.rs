@@ -310,6 +310,25 @@ impl Number for Fixed {
         Product(q13)
     }
 
+    #[inline(always)]
+    fn difference(a: Product, b: Product) -> Product {
+        Product(a.0.wrapping_sub(b.0))
+    }
+
+    #[inline(always)]
+    fn excess(a: Product, b: Product) -> Self {
+        // Without a sign every difference has room.
+        let excess = a.0.wrapping_sub(b.0) as u64;
+        Fixed(excess.min(i32::MAX as u64) as i32)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn carry(origin: Product, from: Product, plane: Self, step: Product, stride: Product) -> Self {
+        let depth = plane.widen() - from;
+        Self::narrow(origin + depth.times_ratio(step, stride))
+    }
+
     #[cfg_attr(not(feature = "small"), inline(always))]
     fn from_wide(product: Product) -> Self {
         saturate(round_off(product.0, RATIO_BITS))

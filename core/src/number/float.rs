@@ -22,21 +22,50 @@ fn compare_products_f32(a: f32, b: f32, c: f32, d: f32) -> Ordering {
 fn compare_products_f64(a: f64, b: f64, c: f64, d: f64) -> Ordering {
     let rounded = (a * b).partial_cmp(&(c * d)).unwrap_or(Ordering::Equal);
     rounded.then_with(|| {
-        let (left, right) = (product_error(a, b), product_error(c, d));
+        let error = |a, b| product_error(a, b, SPLITTER_F64);
+        let (left, right) = (error(a, b), error(c, d));
         left.partial_cmp(&right).unwrap_or(Ordering::Equal)
     })
 }
 
-/// `a b` minus its rounded product.
-fn product_error(a: f64, b: f64) -> f64 {
-    let split = |x: f64| {
-        let scaled = x * 134_217_729.0;
+/// `a b` minus its rounded product; the splitter halves the digits of a factor.
+#[inline(always)]
+fn product_error<N: Number<Wide = N>>(a: N, b: N, splitter: N) -> N {
+    let split = |x: N| {
+        let scaled = x * splitter;
         let high = scaled - (scaled - x);
         (high, x - high)
     };
     let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
     let product = a * b;
     ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
+}
+
+/// `a + b`, rounded, and what that lacks to the sum (D. E. Knuth, "The Art of Computer Programming",
+/// volume 2, 4.2.2).
+#[inline(always)]
+fn two_sum<N: Number<Wide = N>>(a: N, b: N) -> (N, N) {
+    let sum = a + b;
+    let b_part = sum - a;
+    (sum, (a - (sum - b_part)) + (b - b_part))
+}
+
+/// 2^12 + 1 and 2^27 + 1: see [`product_error`].
+const SPLITTER_F32: f32 = 4097.0;
+const SPLITTER_F64: f64 = 134_217_729.0;
+
+/// `origin + depth * slope`, of depth and slope as pairs of numbers.
+#[inline(always)]
+fn carry<N: Number<Wide = N>>(
+    origin: N,
+    (depth, depth_low): (N, N),
+    (slope, slope_low): (N, N),
+    splitter: N,
+) -> N {
+    let rise = depth * slope;
+    let rise_low = product_error(depth, slope, splitter) + (depth * slope_low + depth_low * slope);
+    let (sum, sum_low) = two_sum(origin, rise);
+    (sum + (sum_low + rise_low)).settle()
 }
 
 /// [`Number::surround`] by the exact signs of the edges, given how two products compare.
@@ -57,6 +86,22 @@ fn surround_exactly<F: Copy>(
 const SMALLEST_F32: f32 = 1.0 / (1u64 << 60) as f32;
 const SMALLEST_F64: f64 = 1.0 / (1u64 << 50) as f64 / (1u64 << 50) as f64;
 
+/// A finite vector that is not 0, halved or doubled until its largest component lies between 1 and 2.
+fn near_one<N: Number<Wide = N>>(mut v: [N; 3]) -> [N; 3] {
+    let double = N::ONE + N::ONE;
+    for _ in 0..1100 {
+        let largest = extent(v);
+        if largest < N::ONE {
+            v = v.map(|component| component * double);
+        } else if largest > double {
+            v = v.map(N::half);
+        } else {
+            break;
+        }
+    }
+    v
+}
+
 /// One of the [`Number::slopes`] of a direction whose length is far from 1, by way of one that is
 /// not: magnitudes of \[2^-149, 2^128\] or \[2^-1074, 2^1024\] are halved or doubled until they
 /// fit. `None` where there are none.
@@ -71,22 +116,12 @@ fn slope_of_extremes<N: Number<Wide = N>>(
     axis: usize,
     major: usize,
 ) -> Option<N> {
-    let mut scaled = [x, y, z];
+    let scaled = [x, y, z];
     let ordinary = scaled.iter().all(|&component| N::is_finite(component));
     if !ordinary || extent(scaled) == N::ZERO {
         return None;
     }
-    let double = N::ONE + N::ONE;
-    for _ in 0..1100 {
-        let largest = extent(scaled);
-        if largest < N::ONE {
-            scaled = scaled.map(|component| component * double);
-        } else if largest > double {
-            scaled = scaled.map(N::half);
-        } else {
-            break;
-        }
-    }
+    let scaled = near_one(scaled);
     let component = pick(scaled, axis);
     Some(if axis != major {
         (component * N::ONE.over(extent(scaled)) + N::ZERO).settle()
@@ -132,7 +167,7 @@ fn parallel_axis(offset: i32, descending: bool) -> CullAxis {
 
 macro_rules! float_number {
     ($float:ident, $format:expr, $precision:expr, $smallest:expr, $sqrt:path, $exp:path,
-     $compare_products:path, $settle:expr, $direction:expr) => {
+     $compare_products:path, $splitter:expr, $settle:expr, $direction:expr) => {
         impl Number for $float {
             type Wide = $float;
             type Quotient = Self;
@@ -314,6 +349,31 @@ macro_rules! float_number {
             }
 
             #[inline(always)]
+            fn difference(a: Self, b: Self) -> Self {
+                a - b
+            }
+
+            #[inline(always)]
+            fn excess(a: Self, b: Self) -> Self {
+                (a - b).min(Self::FAR)
+            }
+
+            #[cold]
+            #[inline(never)]
+            fn carry(origin: Self, from: Self, plane: Self, step: Self, stride: Self) -> Self {
+                let is_ordinary = stride.abs() >= $smallest && stride.abs() <= 1.0 / $smallest;
+                let [step, stride, _] = if is_ordinary {
+                    [step, stride, 0.0]
+                } else {
+                    near_one([step, stride, 0.0])
+                };
+                let slope = step.over(stride);
+                let rest = (step - slope * stride) - product_error(slope, stride, $splitter);
+                let slope = (slope, rest.over(stride));
+                carry(origin, two_sum(plane, -from), slope, $splitter)
+            }
+
+            #[inline(always)]
             fn from_wide(product: Self) -> Self {
                 product
             }
@@ -487,6 +547,7 @@ float_number!(
     libm::sqrtf,
     libm::expf,
     compare_products_f32,
+    SPLITTER_F32,
     // No product of two coordinates in single precision underflows in double precision.
     |x: f32| x,
     |v: [i64; 3]| {
@@ -507,6 +568,7 @@ float_number!(
     libm::sqrt,
     libm::exp,
     compare_products_f64,
+    SPLITTER_F64,
     |x: f64| if x.abs() < SMALLEST_F64 { 0.0 } else { x },
     |v: [i64; 3]| v.map(|component| component as f64)
 );

@@ -228,6 +228,22 @@ pub trait Number:
     fn upper(wide: Self::Wide) -> Self;
     /// A far coordinate from an integer with 13 fraction bits.
     fn far(q13: i64) -> Self::Wide;
+    /// `a - b` of far coordinates that may be any: wraps in [`Fixed`].
+    fn difference(a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    /// `a - b` of far coordinates, of which `a` is not the smaller, as a length: at most
+    /// [`FAR`](Self::FAR).
+    fn excess(a: Self::Wide, b: Self::Wide) -> Self;
+    /// Where a line comes to a plane far away, on one axis: `origin + (plane - from) * step / stride`
+    /// in twice the precision of a far coordinate. `from` is the origin's coordinate on the plane's own
+    /// axis, `step` and `stride` are the direction's on this axis and on that; `stride` is not 0 and
+    /// `step` no larger. Coordinates are at most 2^37 units; saturates.
+    fn carry(
+        origin: Self::Wide,
+        from: Self::Wide,
+        plane: Self,
+        step: Self::Wide,
+        stride: Self::Wide,
+    ) -> Self;
     /// Three products added: `a . b`.
     #[cfg_attr(not(feature = "small"), inline(always))]
     fn dot(a: [Self; 3], b: [Self; 3]) -> Self::Wide {

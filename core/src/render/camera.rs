@@ -6,8 +6,22 @@
 
 use super::sample::SUBPIXELS;
 use crate::blob::record::{UnitBox, View};
-use crate::number::{Number, pick};
+use crate::number::{Format, Number, pick};
 use crate::ray::{Pencil, Ray, RayError};
+
+/// Whether a format tells the directions of neighbouring pixels apart, each to an eighth of their distance
+/// or better. Other directions would be drawn than those that are asked for, through a lens as long as
+/// only a very distant eye needs it.
+pub(crate) fn resolves<N: Number>(view: &View, height: u16) -> bool {
+    // Components of directions have 24 bits in `f32`, and 30 or those of the blob's vectors elsewhere.
+    let bits = if N::FORMAT == Format::F32 { 21 } else { 26 };
+    let largest = |[x, y, z]: [i32; 3]| {
+        let [x, y, z] = [x, y, z].map(i32::unsigned_abs);
+        u64::from(x.max(y).max(z))
+    };
+    // Up reaches over half of the height. All are below 2^56.
+    largest(view.up) << (bits + 1) >= largest(view.forward) * u64::from(height)
+}
 
 /// Makes directions for the pixels of a picture.
 #[derive(Clone, Copy, Debug)]

@@ -1,16 +1,17 @@
 //! The renderer: pixels of one scene at one size, wherever and in whatever order they are wanted.
 
-use super::camera::Camera;
+use super::camera::{self, Camera};
 use super::cursor::{Cursor, Samples};
 use super::pixel::{Linear, Pixel, from_display};
 use super::sample::SUBPIXELS;
 use super::trace::{Loop, WorkspaceView};
 use super::{MAX_RAY_DEPTH, MAX_SAMPLES};
+use crate::SMALL;
 use crate::accel::{Accel, Structure};
 use crate::blob::Scene;
 use crate::count::Count;
 use crate::event::Event;
-use crate::number::Number;
+use crate::number::{Format, Number};
 use crate::ray::{Ray, RayError};
 use crate::shade::{Color, Effects};
 use core::fmt;
@@ -63,6 +64,9 @@ pub enum RenderError {
     Structure(Structure),
     /// The scene calls for effects that the renderer was not compiled for.
     Effects(Effects),
+    /// The pixels are too narrow for the number format to tell their directions apart. (Code of the
+    /// feature `small` is without this check.)
+    Resolution(Format),
     /// The workspace has fewer entries or places than it needs.
     Workspace {
         /// What is short: the stack, or the work list.
@@ -103,6 +107,12 @@ impl fmt::Display for RenderError {
                 f,
                 "the scene calls for the effects {effects}, which the renderer's type leaves out"
             ),
+            RenderError::Resolution(format) => write!(
+                f,
+                "the pixels are so narrow that `{name}` cannot tell their directions apart: use a wider \
+                 field of view or fewer pixels, move the eye closer, or use `fixed` or `f64`",
+                name = format.name()
+            ),
             RenderError::Workspace {
                 what,
                 found,
@@ -135,8 +145,8 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     /// A renderer for one scene and picture size.
     ///
     /// # Errors
-    /// If a setting is out of its range, the blob lacks the structure, or the scene calls for an
-    /// effect that is not in `EFFECTS`.
+    /// If a setting is out of its range, the blob lacks the structure, the scene calls for an effect that
+    /// is not in `EFFECTS`, or the number format cannot tell the pixels' directions apart.
     pub fn new(scene: &'s Scene<'a>, settings: Settings) -> Result<Self, RenderError> {
         let Settings {
             width,
@@ -161,6 +171,9 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         let missing = scene.effects().without(Effects(EFFECTS));
         if missing != Effects::NONE {
             return Err(RenderError::Effects(missing));
+        }
+        if !SMALL && !camera::resolves::<N>(scene.view(), height) {
+            return Err(RenderError::Resolution(N::FORMAT));
         }
         let camera = Camera::new(scene.bounds(), scene.view(), width, height);
         Ok(Self {

@@ -105,12 +105,12 @@ impl Loop<'_, '_> {
         let waiting = if causes_rays { space.work.pop() } else { None };
         let (ray, weight, depth, kind) = match waiting {
             Some(next) => {
-                let (origin, direction) = (next.origin.map(N::widen), next.direction.map(N::widen));
-                let (zero, far) = (N::Wide::default(), N::FAR.widen());
-                let ray = Ray::new(self.scene.bounds(), origin, direction, zero, far);
+                let (origin, direction) = (next.origin, next.direction.map(N::widen));
+                let far = N::FAR.widen();
+                let ray = Ray::from_inside(self.scene.bounds(), origin, direction, far);
                 (ray, next.weight, next.depth, next.kind)
             }
-            None => (camera(), Color::WHITE, 0, RayKind::Primary),
+            None => (camera().ok(), Color::WHITE, 0, RayKind::Primary),
         };
         // A direction that cannot be told brings nothing.
         if C::TELLS {
@@ -120,7 +120,7 @@ impl Loop<'_, '_> {
                 weight: weight.told_ratios(),
             });
         }
-        if let Ok(ray) = ray {
+        if let Some(ray) = ray {
             count.ray(kind, &ray);
             self.add::<N, A, C, EFFECTS>(&ray, weight, depth, radiance, space, count);
         }
@@ -388,8 +388,7 @@ impl Loop<'_, '_> {
         for _ in 0..SHADOW_SURFACES {
             // The light itself, and what touches it, casts no shadow.
             let end = distance.map_or(N::FAR.widen(), |distance| distance - error.widen());
-            let Ok(ray) = Ray::new(self.scene.bounds(), origin.map(N::widen), way, zero, end)
-            else {
+            let Some(ray) = Ray::from_inside(self.scene.bounds(), origin, way, end) else {
                 return left;
             };
             count.ray(RayKind::Shadow, &ray);
@@ -457,7 +456,8 @@ fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, outward: bool) -> [N; 3] {
 fn path_length<N: Number>(ray: &Ray<N>, hit: &Hit<N>) -> N {
     // |slope| lies between 1 and the square root of 3.
     let (_, norm) = N::normalize(ray.slope);
-    N::narrow(hit.t) * norm
+    // From far away it is longer than a length can be.
+    N::from_wide(N::narrow(hit.t).wide(norm))
 }
 
 /// A ratio in \[0, 1\] to the power of a positive integer.

@@ -6,7 +6,7 @@
 //! `g = cos r - sin y` and `e = sin d.y`. The axial parts are removed *before* anything is squared.
 //!
 //! The quadric `A s^2 + 2 B s + C` of that is judged at its vertex: the origin slides to `s = -B/A`
-//! (as far as the solid reaches), where `C = (cos |Q| - g) (cos |Q| + g)` decides alone whether the
+//! (as far as the line is between the caps), where `C = (cos |Q| - g) (cos |Q| + g)` decides alone whether the
 //! line meets the mantle, and where the roots' `B^2 - A C` is no difference of near equals. A root
 //! where the mantle is thin against the solid, at the tip, is taken again from an origin that slid
 //! there, because the quadric's error is that of the mantle's radius at its origin.
@@ -221,7 +221,9 @@ impl Cone {
             a: (d_norm * cos - e).wide(d_norm * cos + e),
             reach,
         };
-        let within = |s: N| s.max(-reach).min(reach);
+        // Between the caps and within reach: farther away, a line along the mantle has its vertex.
+        let (nearest, farthest) = (enter.0.max(-reach), leave.0.min(reach));
+        let within = |s: N| s.max(nearest).min(farthest);
         let (_, b) = mantle.terms(mantle.q, mantle.g);
         let mut cut = mantle.roots(within(N::divide(-b, mantle.a)))?;
         let mut thin = (widest.scale_up(bits) * cos).half();
@@ -359,3 +361,6 @@ fn upright<N: Number>(lean: [N; 3], axis: [N; 3]) -> [N; 3] {
         upright
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -113,8 +113,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn failure(error: &ExplainError) -> Failure {
     let remedy = match error {
         ExplainError::Render(_) => "change the option, or the scene file's `[render]`",
-        ExplainError::NoRay => {
-            "give six finite numbers, of which the last three are not all 0, and tmin before tmax"
+        ExplainError::Ray(_) => {
+            "give six finite numbers, of which the last three are not all 0, an origin near the scene, \
+             and tmin before tmax"
         }
     };
     Failure::usage(error.to_string(), remedy)

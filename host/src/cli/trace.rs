@@ -9,7 +9,7 @@ use clap::Args;
 use gridel_core::{Counters, Structure};
 use gridel_host::npy::{read_rays, write_hits};
 use gridel_host::report::grouped;
-use gridel_host::trace::{Frame, Query, SceneHit, SceneRay, trace, trace_counted};
+use gridel_host::trace::{Query, Rejections, SceneHit, SceneRay, trace, trace_counted};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -26,8 +26,10 @@ use std::time::Instant;
 /// 0xffffffff on a miss; counted in scene-file order) and normal (3 f4, of length 1, pointing
 /// outward; 0 on a miss).
 ///
-/// A ray whose direction is zero, or that holds a NaN or an infinite origin or direction, or whose
-/// tmin is greater than its tmax, is none: it misses, and is counted as invalid.
+/// A ray is rejected if its direction is zero, if it holds a NaN or an infinite origin or direction, if
+/// its tmin is greater than its tmax, if its origin is more than 2^20 times the scene's width away, or if
+/// t would not be a number of double precision. Its t is nan in the file. Rejected rays are counted apart
+/// from misses, and the first is printed with its row and the reason.
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
@@ -77,8 +79,10 @@ struct Traced {
     rays: usize,
     hits: usize,
     misses: usize,
-    /// Rays that are none; they are among the misses.
-    invalid: usize,
+    /// Rays that were not answered, neither among the hits nor the misses.
+    rejected: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    first_rejected: Option<Rejected>,
     format: &'static str,
     accel: &'static str,
     any: bool,
@@ -89,6 +93,14 @@ struct Traced {
     rays_per_second: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     counters: Option<Tests>,
+}
+
+/// A ray that was not answered.
+#[derive(Serialize)]
+struct Rejected {
+    /// Counted from 0, as NumPy counts.
+    row: usize,
+    reason: String,
 }
 
 /// What was tested for all rays.
@@ -144,25 +156,36 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             .iter()
             .fold(Counters::default(), |sum, part| sum.plus(part))
     });
+    // Of the last pass; all reject the same.
+    let mut parts: Vec<Rejections> = Vec::new();
     let seconds: Vec<f64> = (0..arguments.repeat)
         .map(|_| {
             let begun = Instant::now();
-            pass.run(&mut hits, |rays, hits| trace(&scene, rays, query, hits));
+            parts = pass.run(&mut hits, |rays, hits| trace(&scene, rays, query, hits));
             begun.elapsed().as_secs_f64()
         })
         .collect();
     drop(progress);
     write_file(&arguments.output, |out| write_hits(out, &hits))?;
 
-    let misses = hits.iter().filter(|hit| hit.primitive == u32::MAX).count();
-    let frame = Frame::of(&scene);
-    let is_none = |ray: &&SceneRay| frame.ray::<f64>(&scene, ray).is_none();
+    let places = (0..).step_by(CHUNK);
+    let rejections = places
+        .zip(parts)
+        .fold(Rejections::default(), |all, (place, part)| {
+            all.followed_by(place, part)
+        });
+    let unmet = hits.iter().filter(|hit| hit.primitive == u32::MAX).count();
+    let misses = unmet - rejections.count;
     let fastest = seconds.iter().copied().fold(f64::INFINITY, f64::min);
     let traced = Traced {
         rays: rays.len(),
-        hits: rays.len() - misses,
+        hits: rays.len() - unmet,
         misses,
-        invalid: rays.iter().filter(is_none).count(),
+        rejected: rejections.count,
+        first_rejected: rejections.first.map(|(row, why)| Rejected {
+            row,
+            reason: why.to_string(),
+        }),
         format: query.format.name(),
         accel: query.structure.name(),
         any: query.any,
@@ -234,10 +257,10 @@ impl Traced {
             self.format,
             self.accel
         );
-        if self.invalid > 0 {
+        if let Some(Rejected { row, reason }) = &self.first_rejected {
             text.push_str(&format!(
-                "{} of the misses are no rays: a direction of zero, a NaN, or tmin above tmax\n",
-                grouped(self.invalid)
+                "{} rejected; the first is row {row}: {reason}\n",
+                grouped(self.rejected)
             ));
         }
         for seconds in &self.seconds {

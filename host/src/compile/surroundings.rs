@@ -6,6 +6,7 @@ use crate::scene::{Camera, Color, Diffuse, Light, Material, Scene, Shape};
 use glam::DVec3;
 use gridel_core::Effects;
 use gridel_core::blob::record;
+use gridel_core::ray::FARTHEST;
 
 /// What is supplied with a light, so that shadows are not black.
 const AMBIENT: f64 = 0.15;
@@ -55,7 +56,7 @@ impl Surroundings {
         let far = |what: String, point: DVec3| -> Result<[i64; 3], CompileError> {
             let q13 = lattice.in_units(point) * 8192.0;
             let largest = q13.abs().max_element();
-            if largest.is_nan() || largest > f64::powi(2.0, 50) {
+            if largest.is_nan() || largest > FARTHEST as f64 {
                 let distance = (point - lattice.origin).length();
                 return Err(CompileError::FarAway {
                     what,

@@ -13,7 +13,7 @@ pub use text::{Names, Shown};
 pub use walk::{Candidate, Culled, Plane, Side, Step, Tested, Verdict, Walk};
 
 use crate::render::{ALL, OPAQUE, chosen};
-use crate::trace::{Frame, SceneRay};
+use crate::trace::{Frame, Rejection, SceneRay};
 use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
 use gridel_core::render::{MAX_RAY_DEPTH, RenderError};
 use gridel_core::{
@@ -35,11 +35,11 @@ pub enum Subject {
 pub enum ExplainError {
     #[error(transparent)]
     Render(#[from] RenderError),
-    #[error(
-        "this is no ray: its direction is zero, or a number is NaN or infinite, or tmin is above tmax"
-    )]
-    #[diagnostic(help("give a direction that is not 0 0 0, and tmin before tmax"))]
-    NoRay,
+    #[error(transparent)]
+    #[diagnostic(help(
+        "give a direction that is not 0 0 0, an origin near the scene, and tmin before tmax"
+    ))]
+    Ray(#[from] Rejection),
 }
 
 /// Tells the story of a pixel or of a ray.
@@ -96,8 +96,7 @@ fn watch<N: Number, const EFFECTS: u32>(
     let linear = match subject {
         Subject::Pixel([x, y]) => renderer.linear(x, y, &mut space, &mut recorder),
         Subject::Ray(ray) => {
-            let ready = Frame::of(scene).ray::<N>(scene, &ray);
-            let (ray, _) = ready.ok_or(ExplainError::NoRay)?;
+            let (ray, _) = Frame::of(scene).ray::<N>(scene, &ray)?;
             renderer.linear_along(&ray, &mut space, &mut recorder)
         }
     };

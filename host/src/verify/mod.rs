@@ -226,7 +226,7 @@ impl Work<'_> {
         random: &mut Random,
         tally: &mut Tally,
     ) {
-        let Some((ready, _)) = self.frame.ray::<N>(self.scene, ray) else {
+        let Ok((ready, _)) = self.frame.ray::<N>(self.scene, ray) else {
             return;
         };
         let heard = ask_all::<N>(self.scene, &ready);

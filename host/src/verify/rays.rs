@@ -231,7 +231,7 @@ fn at_a_vertex(targets: &Targets, random: &mut Random) -> UnitRay {
 
 fn from_afar(targets: &Targets, random: &mut Random) -> UnitRay {
     let target = targets.target(random);
-    let (distance, direction) = (random.magnitude(1e5, 1e12), random.direction());
+    let (distance, direction) = (random.magnitude(1e5, 1e11), random.direction());
     let origin = [0, 1, 2].map(|axis| target[axis] - distance * direction[axis]);
     UnitRay::new(origin, direction)
 }

@@ -154,7 +154,7 @@ fn any_hits_are_those_that_have_a_closest_one() {
 }
 
 #[test]
-fn what_is_no_ray_misses_and_is_counted() {
+fn rejected_rays_are_counted_apart_and_the_first_is_printed_with_its_reason() {
     let folder = Folder::with_quick();
     let ray = rows(1)[0];
     let with = |index: usize, value: f64| {
@@ -162,27 +162,72 @@ fn what_is_no_ray_misses_and_is_counted() {
         ray[index] = value;
         ray
     };
+    let scaled = |length: f64| {
+        let mut ray = ray;
+        // Straight down on the floor.
+        ray[..7].copy_from_slice(&[3.0, 9.0, 3.0, 0.0, 0.0, -length, 0.0]);
+        ray
+    };
     let mut zero = ray;
     zero[4..7].fill(0.0);
     let mut reversed = ray;
     (reversed[3], reversed[7]) = (2.0, 1.0);
     let nan = (0..8).map(|index| with(index, f64::NAN));
-    let mut rays: Vec<_> = nan.collect();
+    let mut rays = vec![scaled(1.0), scaled(5e-324)];
+    rays.extend(nan);
     rays.extend([
         zero,
         reversed,
         with(0, f64::INFINITY),
         with(4, f64::INFINITY),
-        ray,
+        with(1, 1e11),
+        with(2, -1e300),
+        scaled(1e-300),
+        scaled(1.7e308),
     ]);
     folder.write("rays.npy", &npy("<f8", &rays));
-    let report = folder.json(&TRACE);
-    assert_eq!(report["rays"], 13);
-    assert_eq!(report["invalid"], 12);
-    let found = hits(&folder.read("hits.npy"));
-    assert!(found[..12].iter().all(|hit| *hit == SceneHit::MISS));
+    for format in ["fixed", "f32", "f64"] {
+        let options = ["--format", format, "--threads", "2"];
+        let report = folder.json(&[&TRACE[..], &options].concat());
+        assert_eq!(
+            (&report["rays"], &report["rejected"]),
+            (&18.into(), &15.into())
+        );
+        assert_eq!((&report["hits"], &report["misses"]), (&3.into(), &0.into()));
+        assert_eq!(report["first_rejected"]["row"], 1);
+        let reason = report["first_rejected"]["reason"].as_str().unwrap();
+        assert!(reason.contains("the direction is too short"), "{reason}");
+        let found = hits(&folder.read("hits.npy"));
+        assert!(
+            found[1..16]
+                .iter()
+                .all(|hit| hit.t.is_nan() && hit.primitive == u32::MAX)
+        );
+        // On the floor from a height of 9, in multiples of each direction.
+        for (hit, length) in [(found[0], 1.0), (found[16], 1e-300), (found[17], 1.7e308)] {
+            assert_eq!((hit.object, hit.normal), (0, [0.0, 1.0, 0.0]), "{length:e}");
+            assert!((hit.t * length - 9.0).abs() < 1e-5, "{hit:?} {length:e}");
+        }
+    }
     let text = folder.done(&TRACE);
-    assert!(text.contains("12 of the misses are no rays"), "{text}");
+    assert!(
+        text.contains("15 rejected; the first is row 1: the ray's t"),
+        "{text}"
+    );
+    // Without t, any answer is one.
+    let report = folder.json(&[&TRACE[..], &["--any"]].concat());
+    assert_eq!(
+        (&report["rejected"], &report["hits"]),
+        (&14.into(), &4.into())
+    );
+    assert_eq!(report["first_rejected"]["row"], 2);
+
+    folder.write("rays.npy", &npy("<f8", &[with(1, 1e11)]));
+    let text = folder.done(&TRACE);
+    assert!(
+        text.contains("0 misses") && text.contains("too far from the scene"),
+        "{text}"
+    );
 }
 
 #[test]

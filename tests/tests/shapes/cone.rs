@@ -198,6 +198,55 @@ fn from_inside_a_cone() {
     every_format!(judge());
 }
 
+/// Solids and rays whose numbers are halves of small integers, so that rays often run along lines of the
+/// mantle, and quadrics have their vertex at infinity. The first is the frustum of issue 16, whose t was
+/// 2.01562786 in `f32`, off by 8.45 steps.
+#[test]
+fn frusta_of_small_integers() {
+    let mut random = Random(26);
+    let mut cases = vec![Case {
+        class: "issue 16",
+        solid: Solid::Cone {
+            base: [-2.0, 1.0, -3.0],
+            apex: [2.0, 1.0, -3.0],
+            base_radius: 8.0,
+            apex_radius: 4.0,
+        },
+        rays: vec![([4.0, 7.0, -2.5], [-1.0, -1.0, 0.0])],
+    }];
+    let half = |random: &mut Random, most: i32| 0.5 * f64::from(random.within(-most, most));
+    let place = |random: &mut Random| [0; 3].map(|_| half(random, 16));
+    while cases.len() < part_of(120, 25_000) {
+        let base = place(&mut random);
+        let mut apex = place(&mut random);
+        if random.one_in(2) {
+            // Along an axis of coordinates.
+            apex = base;
+            apex[random.below(3)] += half(&mut random, 16);
+        }
+        let radius = half(&mut random, 16).abs();
+        let other = [radius, 0.0, half(&mut random, 16).abs()][random.below(3)];
+        if base == apex || radius.max(other) == 0.0 {
+            continue;
+        }
+        let rays = (0..40).filter_map(|_| {
+            let way = DVec3::from_array([0; 3].map(|_| f64::from(random.within(-3, 3))));
+            (way != DVec3::ZERO).then(|| (place(&mut random), slope(way)))
+        });
+        cases.push(Case {
+            class: "small integers",
+            rays: rays.collect(),
+            solid: Solid::Cone {
+                base,
+                apex,
+                base_radius: radius,
+                apex_radius: other,
+            },
+        });
+    }
+    hold_all("small integers", "frustum", &cases);
+}
+
 /// Cases that went wrong once.
 #[test]
 fn literal_cones() {

@@ -25,6 +25,40 @@ impl Product {
         Self((low as i64).wrapping_add((high as i64) << 32))
     }
 
+    /// Times a ratio of at most 1, given as two products of one kind: exactly, then rounded to nearest.
+    pub(super) fn times_ratio(self, numerator: Self, denominator: Self) -> Self {
+        let (step, stride) = (numerator.0.unsigned_abs(), denominator.0.unsigned_abs());
+        // The magnitude bit by bit, as a quotient of strides and a rest below one.
+        let (mut quotient, mut rest) = (0_u64, 0_u64);
+        let add = |rest: u64, more: u64| {
+            let room = stride.wrapping_sub(more);
+            if rest >= room {
+                (1, rest.wrapping_sub(room))
+            } else {
+                (0, rest.wrapping_add(more))
+            }
+        };
+        let mut left = self.0.unsigned_abs();
+        for _ in 0..64 {
+            let (carry, twice) = add(rest, rest);
+            quotient = (quotient << 1).wrapping_add(carry);
+            rest = twice;
+            if left >> 63 != 0 {
+                let (carry, more) = add(rest, step);
+                quotient = quotient.wrapping_add(carry);
+                rest = more;
+            }
+            left <<= 1;
+        }
+        let (round_up, _) = add(rest, rest);
+        let quotient = quotient.wrapping_add(round_up) as i64;
+        Self(if self.0 ^ numerator.0 ^ denominator.0 < 0 {
+            quotient.wrapping_neg()
+        } else {
+            quotient
+        })
+    }
+
     /// [`Number::wide_over`](crate::number::Number::wide_over).
     // Only cameras are set up with it.
     #[inline(never)]

@@ -1,0 +1,43 @@
+//! Rays that are not answered, and why.
+
+use super::SceneHit;
+use gridel_core::RayError;
+
+/// Why a ray is not answered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Rejection {
+    #[error(transparent)]
+    Ray(#[from] RayError),
+    #[error(
+        "the ray's t, in multiples of its direction, is not a number of double precision: the direction \
+         is too {0} for this scene"
+    )]
+    Multiple(&'static str),
+}
+
+/// The rays that were rejected.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rejections {
+    pub count: usize,
+    /// The first, by its place among the rays, and why.
+    pub first: Option<(usize, Rejection)>,
+}
+
+impl Rejections {
+    /// Adds a ray, and returns what it met.
+    #[cold]
+    pub(super) fn add(&mut self, place: usize, why: Rejection) -> SceneHit {
+        self.count += 1;
+        self.first.get_or_insert((place, why));
+        SceneHit::REJECTED
+    }
+
+    /// Those of two runs of rays, of which the second begins at a place.
+    pub fn followed_by(self, place: usize, next: Self) -> Self {
+        let next_first = next.first.map(|(at, why)| (place + at, why));
+        Self {
+            count: self.count + next.count,
+            first: self.first.or(next_first),
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! From multiples of a direction to lengths in the core, and back.
+
+use super::Rejection;
+use glam::DVec3;
+
+/// The largest component of a direction in units, by which t is larger in the core: a factor and a
+/// power of two, because units and directions may be as small and as large as numbers are.
+#[derive(Clone, Copy, Debug)]
+pub struct Stride {
+    factor: f64,
+    exponent: i32,
+    /// The length at which the core's ray counts 0.
+    begin: f64,
+}
+
+impl Stride {
+    /// Powers of two up to which no product with a length leaves the range of numbers.
+    const ORDINARY: std::ops::Range<f64> = 1.0 / (1_u128 << 100) as f64..(1_u128 << 100) as f64;
+
+    /// The stride of a direction, and the direction with its length brought near 1 where it is extreme.
+    #[inline(always)]
+    pub(super) fn of(direction: DVec3, unit: f64) -> (Self, DVec3) {
+        let factor = direction.abs().max_element() / unit;
+        if Self::ORDINARY.contains(&factor) && Self::ORDINARY.contains(&(factor * unit)) {
+            let stride = Self {
+                factor,
+                exponent: 0,
+                begin: 0.0,
+            };
+            return (stride, direction);
+        }
+        Self::of_extremes(direction, unit)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn of_extremes(direction: DVec3, unit: f64) -> (Self, DVec3) {
+        let (factor, exponent) = libm::frexp(direction.abs().max_element());
+        let (_, one) = libm::frexp(unit);
+        // A unit is a power of two, which is half of two to its exponent.
+        let stride = Self {
+            factor,
+            exponent: exponent - (one - 1),
+            begin: 0.0,
+        };
+        let scaled = direction
+            .to_array()
+            .map(|component| libm::scalbn(component, -exponent));
+        (stride, DVec3::from_array(scaled))
+    }
+
+    /// From now on lengths of hits count from so far along the ray.
+    pub(super) fn begin_at(&mut self, begin: f64) {
+        self.begin = begin;
+    }
+
+    /// A length in units along the largest component, from multiples of the direction; infinite beyond all
+    /// numbers.
+    #[inline(always)]
+    pub(super) fn length(&self, t: f64) -> f64 {
+        if t == 0.0 {
+            0.0
+        } else if self.exponent == 0 {
+            t * self.factor
+        } else {
+            libm::scalbn(t * self.factor, self.exponent)
+        }
+    }
+
+    /// The nearest multiple of the direction to a length in units; infinite beyond all numbers.
+    pub(super) fn nearest(&self, length: f64) -> f64 {
+        libm::scalbn(length / self.factor, -self.exponent)
+    }
+
+    /// Multiples of the direction, from a length in units that is known within `error`.
+    ///
+    /// # Errors
+    /// If there is no such number, or the nearest is farther away than that.
+    #[inline(always)]
+    pub fn multiple(&self, length: f64, error: impl Fn() -> f64) -> Result<f64, Rejection> {
+        if self.exponent == 0 {
+            Ok((length + self.begin) / self.factor)
+        } else {
+            self.extreme_multiple(length, error())
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn extreme_multiple(&self, length: f64, error: f64) -> Result<f64, Rejection> {
+        let t = self.nearest(length + self.begin);
+        if t.is_infinite() {
+            return Err(Rejection::Multiple("short"));
+        }
+        // Denormal numbers are rounded to multiples of 2^-1074.
+        let rounding = libm::scalbn(self.factor, self.exponent.saturating_sub(1075));
+        if t.abs() < f64::MIN_POSITIVE && length != 0.0 && rounding > error {
+            return Err(Rejection::Multiple("long"));
+        }
+        Ok(t)
+    }
+}
