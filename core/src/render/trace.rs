@@ -5,7 +5,8 @@
 //! back only if the scene's depth allows and its weight is above the scene's cutoff.
 //!
 //! Secondary rays start beside the surface, on the side to which they go, at the distance of the
-//! hit's own error bound: close enough to lose no contact, and too far to meet the surface again.
+//! hit's own error bound (see [`Hit::error`]): close enough to lose no contact, and too far to meet
+//! the surface again.
 //! What goes on inside of a solid starts beneath all of its faces (see [`Hit::inside`]).
 //!
 //! Everything is compiled for a set of effects: what is not in it costs neither code nor time.
@@ -21,6 +22,7 @@ use crate::query::{Hit, any_hit, closest_hit};
 use crate::ray::{Ray, RayError};
 use crate::shade::glass::{self, Split};
 use crate::shade::{Color, Effects};
+use crate::shape::extent;
 use heapless::{Vec, VecView};
 
 /// A ray that waits for its turn.
@@ -106,8 +108,8 @@ impl Loop<'_, '_> {
         let (ray, weight, depth, kind) = match waiting {
             Some(next) => {
                 let (origin, direction) = (next.origin.map(N::widen), next.direction.map(N::widen));
-                let (zero, far) = (N::Wide::default(), N::FAR.widen());
-                let ray = Ray::new(self.scene.bounds(), origin, direction, zero, far);
+                let (first, far) = (first::<N>(), N::FAR.widen());
+                let ray = Ray::new(self.scene.bounds(), origin, direction, first, far);
                 (ray, next.weight, next.depth, next.kind)
             }
             None => (camera(), Color::WHITE, 0, RayKind::Primary),
@@ -357,7 +359,6 @@ impl Loop<'_, '_> {
                 way,
                 distance,
                 to_light,
-                error: hit.error,
             };
             let through = self.through::<N, A, C, EFFECTS>(shadow, stack, count);
             arriving = arriving.times(through);
@@ -382,14 +383,16 @@ impl Loop<'_, '_> {
             mut way,
             mut distance,
             to_light,
-            mut error,
         } = shadow;
         let mut left = Color::WHITE;
         for _ in 0..SHADOW_SURFACES {
             // The light itself, and what touches it, casts no shadow.
-            let end = distance.map_or(N::FAR.widen(), |distance| distance - error.widen());
-            let Ok(ray) = Ray::new(self.scene.bounds(), origin.map(N::widen), way, zero, end)
-            else {
+            let end = distance.map_or(N::FAR.widen(), |distance| {
+                let magnitude = extent(origin).max(N::narrow(distance));
+                distance - N::error_bound(magnitude).widen()
+            });
+            let origin_far = origin.map(N::widen);
+            let Ok(ray) = Ray::new(self.scene.bounds(), origin_far, way, first::<N>(), end) else {
                 return left;
             };
             count.ray(RayKind::Shadow, &ray);
@@ -419,7 +422,6 @@ impl Loop<'_, '_> {
                 return Color::BLACK;
             }
             origin = depart(self.scene, &hit, !hit.front);
-            error = hit.error;
             // The way goes on along the same slopes, so its largest component stays the measure.
             distance = distance.map(|distance| distance - hit.t);
             if distance.is_some_and(|rest| rest <= zero) {
@@ -438,7 +440,6 @@ struct Shadow<N: Number> {
     /// How far the light is along the largest component of `way`; `None` for infinitely far.
     distance: Option<N::Wide>,
     to_light: [N; 3],
-    error: N,
 }
 
 /// Where a ray starts that leaves a hit.
@@ -447,10 +448,16 @@ struct Shadow<N: Number> {
 #[inline(never)]
 fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, outward: bool) -> [N; 3] {
     if outward {
-        hit.outside()
+        hit.beside()
     } else {
         hit.inside(scene)
     }
+}
+
+/// The least t of a secondary ray: above 0, where it meets what it starts on.
+#[inline(always)]
+fn first<N: Number>() -> N::Wide {
+    N::step_beside(N::ZERO).widen()
 }
 
 /// The length of a ray up to its hit.
