@@ -1,7 +1,7 @@
 //! Contact shadows: what lies in the dark by `f64`, and what another format says of it.
 
 use super::check::{Fault, Promise, ask, depart};
-use super::judge::{RoundedRay, STEPS, step};
+use super::judge::{RoundedRay, step};
 use super::random::Random;
 use super::rays::UnitRay;
 use glam::DVec3;
@@ -108,8 +108,8 @@ fn blocker<N: Number>(scene: &Scene<'_>, light: &Light, from: DVec3) -> Option<H
     ask::<N, List>(scene, &ray.ok()?).hit
 }
 
-/// Shadows that a format loses where a ray strikes: `f64` has the place in the dark, and all about it as far
-/// as the format's numbers are apart there, and the format has it in the light.
+/// Shadows that a format loses where a ray strikes: `f64` has the place in the dark, and what is a step of the
+/// lattice beside it and above it, and the format has it in the light.
 pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
     let rounded = RoundedRay::of(ray);
     let (hit, right) = (
@@ -126,15 +126,10 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
     }
     let normal = DVec3::from_array(right.normal) * if right.front { 1.0 } else { -1.0 };
     let place = DVec3::from_array(depart(scene, &right, right.front));
-    let start = DVec3::from_array(rounded.start);
-    let magnitude = place
-        .abs()
-        .max(start.abs())
-        .max_element()
-        .max(right.t.abs());
-    let blur = STEPS * step(N::FORMAT, magnitude);
-    let (u, v) = normal.normalize().any_orthonormal_pair();
-    let about = [DVec3::ZERO, u, -u, v, -v].map(|aside| place + blur * aside);
+    let step = f64::powi(2.0, 16 - i32::from(scene.header().lattice_bits));
+    let normal = normal.normalize();
+    let (u, v) = normal.any_orthonormal_pair();
+    let about = [DVec3::ZERO, u, -u, v, -v, normal].map(|aside| place + step * aside);
     let found = scene.lights().iter().enumerate().filter_map(|(number, light)| {
         if normal.dot(to_light(light, place)?) <= 0.0 {
             return None;

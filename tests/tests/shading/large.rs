@@ -5,9 +5,11 @@ use glam::DVec3;
 use gridel_core::render::{Pixel, Rgb888};
 use gridel_core::{Format, Settings, Structure};
 use gridel_host::blob::Blob;
-use gridel_host::compile::{Options, compile};
+use gridel_host::compile::{Compiled, Options, compile};
 use gridel_host::render::{Job, render};
+use gridel_host::resolution::unresolved;
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Scene, Shape};
+use gridel_host::verify::{Promise, verify};
 use gridel_tests::scenes;
 
 /// Pixels as a screen has them.
@@ -125,14 +127,24 @@ fn box_on(ground: Ground, extent: f64) -> Scene {
 fn a_box_on_a_large_ground_keeps_its_shadow() {
     for ground in Ground::ALL {
         for extent in [1e3, 1e4, 1e5, 1e6] {
-            let blob = blob(&box_on(ground, extent));
+            let plain = box_on(ground, extent);
+            let Compiled { blob, report } = compile(&plain, &Options::default()).expect("compiles");
             let size = [640, 480];
             let right = picture(&blob, Format::F64, size);
             let off = |format| differing(&picture(&blob, format, size), &right);
-            eprintln!(
-                "{ground:?} {extent:e}: f32 {} fixed {}",
-                off(Format::F32),
-                off(Format::Fixed)
+            let (f32, fixed) = (off(Format::F32), off(Format::Fixed));
+            // What a step of the lattice changes is what the scene itself is known to.
+            let mut looked = plain.clone();
+            if let Some(camera) = &mut looked.camera {
+                camera.eye += report.step;
+            }
+            let looked = self::blob(&looked);
+            let moved = differing(&picture(&looked, Format::F64, size), &right);
+            eprintln!("{ground:?} {extent:e}: f32 {f32} fixed {fixed}, a step of the eye {moved}");
+            assert!(f32 <= 5, "{ground:?} {extent:e}: f32 {f32}");
+            assert!(
+                fixed <= moved,
+                "{ground:?} {extent:e}: fixed {fixed}, {moved}"
             );
         }
     }
@@ -193,17 +205,65 @@ fn a_glass_ball_differs_by_no_more_than_a_step_of_the_lattice() {
                 let moved = blob(&ball_on(ground, extent, shift * step));
                 differing(&picture(&moved, Format::F64, size), &right)
             };
-            let mut looked = plain.clone();
-            if let Some(camera) = &mut looked.camera {
-                camera.eye.x += step;
-            }
-            let looked = differing(&picture(&blob(&looked), Format::F64, size), &right);
+            let moved = DVec3::AXES.map(moved);
+            let (f32, fixed) = (off(Format::F32), off(Format::Fixed));
             eprintln!(
-                "{ground:?} {extent:e}: f32 {} fixed {}; moved by a step {:?}, camera {looked}",
-                off(Format::F32),
-                off(Format::Fixed),
-                DVec3::AXES.map(moved)
+                "{ground:?} {extent:e}: f32 {f32} fixed {fixed}, a step of the ball {moved:?}"
             );
+            let most = moved.into_iter().max().expect("three");
+            assert!(f32 <= most && fixed <= most, "{ground:?} {extent:e}");
         }
     }
+}
+
+/// A box of 0.6 on the top of a ball so large that single precision does not know where that is.
+fn box_on_a_ball() -> Scene {
+    let mut scene = box_on(Ground::Slab, 1e6);
+    scene.objects[0].shape = Shape::Sphere {
+        center: DVec3::new(0.0, -1e6, 0.0),
+        radius: 1e6,
+    };
+    scene
+}
+
+#[test]
+fn a_box_on_a_large_box_is_resolved_and_on_a_large_ball_it_is_not() {
+    let told = |scene: &Scene| {
+        let blob = blob(scene);
+        unresolved(&blob.scene().expect("a scene"))
+    };
+    for extent in [1e3, 1e4, 1e5, 1e6] {
+        assert_eq!(told(&box_on(Ground::Slab, extent)), [], "{extent:e}");
+    }
+    let [it] = &told(&box_on_a_ball())[..] else {
+        panic!("one object is not resolved");
+    };
+    assert_eq!(it.object, 1);
+    assert!((it.feature - 0.6).abs() < 0.15, "{it:?}");
+    assert!(it.formats.iter().any(|it| it.format == "f32"), "{it:?}");
+    assert!(it.resolved_by.contains(&"f64"), "{it:?}");
+}
+
+#[test]
+fn verify_reports_contact_shadows_that_single_precision_loses() {
+    let report = |scene: &Scene| {
+        let blob = blob(scene);
+        let report = verify(&blob.scene().expect("a scene"), 2000, &|| ());
+        let shadows = report.promises.into_iter();
+        let mut shadows = shadows.filter(|it| it.promise == Promise::Shadows);
+        shadows.next().expect("the promise")
+    };
+    let kept = report(&box_on(Ground::Slab, 1e6));
+    assert!(kept.checked > 50, "{kept:?}");
+    assert_eq!(kept.broken, 0, "{kept:?}");
+    let lost = report(&box_on_a_ball());
+    assert!(lost.broken > 0, "{lost:?}");
+    let example = &lost.examples[0];
+    assert_eq!(example.format, "f32", "{example:?}");
+    // As `explain --ray` takes it.
+    let numbers: Vec<_> = example.ray.split(',').map(str::parse::<f64>).collect();
+    assert!(
+        numbers.len() >= 6 && numbers.iter().all(Result::is_ok),
+        "{example:?}"
+    );
 }
