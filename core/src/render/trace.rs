@@ -275,7 +275,7 @@ impl Loop<'_, '_> {
     ) {
         let peak = weight.peak();
         if peak > N::ZERO && peak * N::radiance(1 << 20) > N::radiance(self.scene.view.cutoff) {
-            let origin = depart(self.scene, hit, outward);
+            let origin = depart(self.scene, hit, outward, false);
             // The list is as long as the depth asks for, so there is a place.
             let _ = space.work.push(Pending {
                 origin,
@@ -319,7 +319,7 @@ impl Loop<'_, '_> {
         count: &mut C,
     ) -> Color<N> {
         let effects = Effects(EFFECTS);
-        let origin = depart(self.scene, hit, hit.front);
+        let origin = depart(self.scene, hit, hit.front, true);
         let (way, distance) = light.seen_from(origin);
         let Some((slopes, _)) = N::slopes(way) else {
             return Color::BLACK;
@@ -421,7 +421,7 @@ impl Loop<'_, '_> {
             if left.peak() * N::radiance(1 << 20) <= N::radiance(self.scene.view.cutoff) {
                 return Color::BLACK;
             }
-            origin = depart(self.scene, &hit, !hit.front);
+            origin = depart(self.scene, &hit, !hit.front, false);
             // The way goes on along the same slopes, so its largest component stays the measure.
             distance = distance.map(|distance| distance - hit.t);
             if distance.is_some_and(|rest| rest <= zero) {
@@ -442,15 +442,16 @@ struct Shadow<N: Number> {
     to_light: [N; 3],
 }
 
-/// Where a ray starts that leaves a hit.
+/// Where a ray starts that leaves a hit. On its way to a light it may start on the surface itself, because it is
+/// known to lead away from it; what is mirrored may be rounded into the surface.
 ///
 /// Out of line, because copies of it took more of the call stack than the call.
 #[inline(never)]
-fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, outward: bool) -> [N; 3] {
-    if outward {
-        hit.beside()
-    } else {
-        hit.inside(scene)
+fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, outward: bool, to_light: bool) -> [N; 3] {
+    match (outward, to_light) {
+        (true, true) => hit.beside(),
+        (true, false) => hit.outside(),
+        _ => hit.inside(scene),
     }
 }
 
