@@ -2,8 +2,6 @@
 //! kept, lights do not shadow themselves. Laws of single surfaces are tested beside `glass` in the
 //! core, self-hits in `shapes`, pictures in `render`.
 
-mod large;
-
 use glam::DVec3;
 use gridel_core::{Flagged, Format, Hit, List, NoCount, Number, Scene, Settings, Structure};
 use gridel_host::render::{Job, render};
