@@ -43,10 +43,10 @@ pub struct Hit<N: Number> {
     ///
     /// | surface | bound | in `fixed` |
     /// |---|---|---|
-    /// | face of a box; triangle, disc or cap at right angles to an axis | the step from the coordinate on that axis, which is the surface's own, to the next number | 1 sub-step |
-    /// | other triangle, disc or cap, of normal `n`, with `r` from `p` to its first corner or centre | `16 u sum(abs(n r)) + 4 u sum(abs(n p))` | 4 sub-steps and `2^-28 sum(abs(r))` |
+    /// | face of a box; triangle or disc at right angles to an axis | the step from the coordinate on that axis, which is the surface's own, to the next number | 1 sub-step |
+    /// | other triangle or disc, of normal `n`, with `r` from `p` to its first corner or centre | `16 u sum(abs(n r)) + 4 u sum(abs(n p))` | 4 sub-steps and `2^-28 sum(abs(r))` |
     /// | sphere of radius `r` | `20 u r + 4 u sum(abs(n p))` | 8 sub-steps |
-    /// | mantle of a cylinder, cone or frustum, with `r` half its height and both radii | likewise | 8 sub-steps |
+    /// | cylinder, cone, frustum | `16 u` of the largest coordinate of the solid, the point and the ray's start | 8 sub-steps |
     ///
     /// No other object and no extent of the scene counts.
     pub error: N,

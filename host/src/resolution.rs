@@ -155,10 +155,12 @@ fn bound(format: Format, geometry: &Geometry, place: DVec3) -> f64 {
             DVec3::from_array(disc.normal.map(f64::from)),
             units(disc.center),
         ),
-        Geometry::Cone(cone) => {
-            let height = units(cone.base).distance(units(cone.apex));
-            let radii = length(cone.base_radius) + length(cone.apex_radius);
-            curved(0.5 * height + radii)
+        Geometry::Cone(_) => {
+            let largest = Extent::of(geometry).magnitude();
+            match format {
+                Format::Fixed => 8.0 * step(format, 1.0),
+                _ => 16.0 * u * largest,
+            }
         }
     }
 }

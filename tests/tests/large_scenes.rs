@@ -45,7 +45,6 @@ enum Ground {
     Cube,
     Triangles,
     Disc,
-    Cylinder,
     TiltedTriangles,
     TiltedDisc,
 }
@@ -53,12 +52,11 @@ enum Ground {
 const TILT: f64 = 1e-3;
 
 impl Ground {
-    const ALL: [Ground; 7] = [
+    const ALL: [Ground; 6] = [
         Ground::Slab,
         Ground::Cube,
         Ground::Triangles,
         Ground::Disc,
-        Ground::Cylinder,
         Ground::TiltedTriangles,
         Ground::TiltedDisc,
     ];
@@ -90,12 +88,6 @@ impl Ground {
             },
             Ground::Triangles => quad(0.0),
             Ground::Disc => disc(DVec3::Y),
-            Ground::Cylinder => Shape::Cone {
-                base: corner(0.0, -1.0, 0.0),
-                base_radius: extent,
-                apex: DVec3::ZERO,
-                apex_radius: extent,
-            },
             Ground::TiltedTriangles => quad(TILT),
             Ground::TiltedDisc => disc(DVec3::new(-TILT, 1.0, 0.0)),
         }

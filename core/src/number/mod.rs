@@ -215,8 +215,7 @@ pub trait Number:
     /// The error bound of a point of a plane: `normal` has the length 1, and `relative` leads from the
     /// point to that of the plane with which t is computed. Derived where it is implemented.
     fn plane_error(normal: [Self; 3], relative: [Self; 3], point: [Self; 3]) -> Self;
-    /// The error bound of a point of a curved solid, of a size that its kernel's lengths are below when a
-    /// ray starts next to it. Derived where it is implemented.
+    /// The error bound of a point of a sphere, whose radius is `size`. Derived where it is implemented.
     fn curve_error(size: Self, normal: [Self; 3], point: [Self; 3]) -> Self;
 
     // Wide products

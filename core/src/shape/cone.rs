@@ -20,7 +20,7 @@
 //! axis, so no point is farther than two reaches from the middle; and `cos |Q| + g` is at most that
 //! and a radius: three reaches, below 2^31. Squares are below 2^62.
 
-use super::{Crossing, Part, Surface, cross_plane, extent, plane};
+use super::{Crossing, Part, Surface, extent};
 use crate::blob::record::Cone;
 use crate::number::Number;
 use crate::ray::Ray;
@@ -248,63 +248,10 @@ impl Cone {
         let back = |(s, part): (N, Part)| (closest + s.scale_down(bits), part);
         // Ends beyond what counts are infinite. Written so that a NaN is no crossing.
         let (start, end) = (-reach - reach, reach + reach);
-        if enter.0 <= leave.0 && enter.0 > start && leave.0 < end {
-            self.cut_by_caps(ray, back(enter), back(leave))
-        } else {
-            None
-        }
-    }
-
-    /// The axis of any length, without rounding but for one a component.
-    #[inline(always)]
-    fn direction<N: Number>(&self) -> [N; 3] {
-        let along = |k: usize| i64::from(self.apex[k].wrapping_sub(self.base[k]));
-        N::direction([along(0), along(1), along(2)])
-    }
-
-    /// A crossing whose ends at caps are those of the caps' planes, and which lies between these.
-    ///
-    /// Seen from the middle a cap is only known to within the solid's reach. Its plane tells exactly on
-    /// which side of it a ray starts, however large it is.
-    #[inline(never)]
-    fn cut_by_caps<N: Number>(
-        &self,
-        ray: &Ray<N>,
-        enter: (N, Part),
-        leave: (N, Part),
-    ) -> Option<Crossing<N>> {
-        let normal = self.direction::<N>();
-        let approach = N::dot(normal, ray.slope);
-        let zero = N::Wide::default();
-        let relative = |cap: [i32; 3]| {
-            let axis = |k: usize| N::from_lattice(cap[k]) - ray.origin[k];
-            [axis(0), axis(1), axis(2)]
-        };
-        let (base, apex) = (relative(self.base), relative(self.apex));
-        let caps = (
-            cross_plane(normal, base, approach),
-            cross_plane(normal, apex, approach),
-        );
-        let (Some(base_t), Some(apex_t)) = caps else {
-            let between = N::dot(normal, base) <= zero && N::dot(normal, apex) >= zero;
-            return between.then_some(Crossing { enter, leave });
-        };
-        let (first, last) = if approach > zero {
-            ((base_t, BASE), (apex_t, APEX))
-        } else {
-            ((apex_t, APEX), (base_t, BASE))
-        };
-        let enter = if enter.1 != MANTLE || first.0 > enter.0 {
-            first
-        } else {
-            enter
-        };
-        let leave = if leave.1 != MANTLE || last.0 < leave.0 {
-            last
-        } else {
-            leave
-        };
-        (enter.0 <= leave.0).then_some(Crossing { enter, leave })
+        (enter.0 <= leave.0 && enter.0 > start && leave.0 < end).then(|| Crossing {
+            enter: back(enter),
+            leave: back(leave),
+        })
     }
 
     /// A point of the solid near a point of its surface, at least `depth` away from mantle and caps,
@@ -318,12 +265,6 @@ impl Cone {
             radius,
         } = self.frame::<N>();
         let middle = self.middle::<N>();
-        // Beneath all faces, whichever coordinates their normals weigh.
-        let depth = depth.max(N::curve_error(
-            half_height + radius + radius,
-            [N::ONE; 3],
-            point,
-        ));
         let k = |k: usize| point[k] - middle[k];
         let q = [k(0), k(1), k(2)];
         let mut along = N::from_wide(N::dot(q, axis));
@@ -356,46 +297,40 @@ impl Cone {
         point: [N; 3],
         toward: [N; 3],
     ) -> Surface<N> {
-        match part {
-            BASE => plane::surface(self.direction::<N>().map(|x| -x), self.base, point),
-            APEX => plane::surface(self.direction(), self.apex, point),
-            _ => self.mantle_surface(point, toward),
-        }
-    }
-
-    /// The mantle's surface: the point moves onto the plane that touches the mantle there.
-    fn mantle_surface<N: Number>(&self, point: [N; 3], toward: [N; 3]) -> Surface<N> {
         let frame = self.frame::<N>();
         let middle = self.middle::<N>();
-        let size = frame.half_height + frame.radius + frame.radius;
-        let axis = |k: usize| point[k] - middle[k];
-        let from_middle = [axis(0), axis(1), axis(2)];
-        let bits = N::headroom(extent(from_middle) + N::from_lattice(1));
-        let q = from_middle.map(|x| x.scale_up(bits));
-        let axial = N::from_wide(N::dot(q, frame.axis));
-        let axis = |k: usize| q[k] - axial * frame.axis[k];
-        let (outward, distance) = N::normalize([axis(0), axis(1), axis(2)]);
-        // What is left next to the axis is rounding in part, and leans; a ray that goes along the
-        // mantle would meet it again. On the axis any way is outward.
-        let mut outward = upright(outward, frame.axis);
-        let normal = |outward: [N; 3]| {
-            let axis = |k: usize| outward[k] * frame.cos + frame.axis[k] * frame.sin;
-            N::normalize([axis(0), axis(1), axis(2)]).0
+        let size = extent(middle) + frame.half_height + frame.radius + frame.radius;
+        let normal = match part {
+            BASE => frame.axis.map(|x| -x),
+            APEX => frame.axis,
+            _ => {
+                let axis = |k: usize| point[k] - middle[k];
+                let q = [axis(0), axis(1), axis(2)];
+                let bits = N::headroom(extent(q) + N::from_lattice(1));
+                let q = q.map(|x| x.scale_up(bits));
+                let axial = N::from_wide(N::dot(q, frame.axis));
+                let axis = |k: usize| q[k] - axial * frame.axis[k];
+                let (outward, distance) = N::normalize([axis(0), axis(1), axis(2)]);
+                // What is left next to the axis is rounding in part, and leans; a ray that goes along the
+                // mantle would meet it again. On the axis any way is outward.
+                let mut outward = upright(outward, frame.axis);
+                let normal = |outward: [N; 3]| {
+                    let axis = |k: usize| outward[k] * frame.cos + frame.axis[k] * frame.sin;
+                    N::normalize([axis(0), axis(1), axis(2)]).0
+                };
+                // So near the axis the point may lie on the wrong side of it. Every normal supports the
+                // tip; elsewhere one that is wrong by a little is levelled with the ray.
+                let astray = distance.scale_down(bits) <= N::error_bound(size);
+                if astray && N::from_wide(N::dot(normal(outward), toward)) < -N::ratio(1 << 22) {
+                    outward = upright(toward, frame.axis);
+                }
+                normal(outward)
+            }
         };
-        // So near the axis the point may lie on the wrong side of it. Every normal supports the
-        // tip; elsewhere one that is wrong by a little is levelled with the ray.
-        let astray = distance.scale_down(bits) <= N::error_bound(extent(middle) + size);
-        if astray && N::from_wide(N::dot(normal(outward), toward)) < -N::ratio(1 << 22) {
-            outward = upright(toward, frame.axis);
-        }
-        let normal = normal(outward);
-        let away = frame.radius * frame.cos - N::from_wide(N::dot(from_middle, normal));
-        let axis = |k: usize| point[k] + away * normal[k];
-        let point = [axis(0), axis(1), axis(2)];
         Surface {
             normal,
             point,
-            error: N::curve_error(size, normal, point),
+            error: N::error_bound(size),
             is_exact: false,
         }
     }

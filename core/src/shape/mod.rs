@@ -428,7 +428,7 @@ impl Shapes<'_> {
     ) -> Option<(Surface<N>, bool)> {
         let leaves = part & LEAVING != 0;
         let part = part & !LEAVING;
-        let surface = match place {
+        let mut surface = match place {
             #[cfg(feature = "wide")]
             Place::Strip(strip, place) => {
                 triangle::surface(self.clusters.strips.triangle(strip, place.into())?, point)
@@ -447,6 +447,11 @@ impl Shapes<'_> {
                 self.surface_in_slot(kind, slot as usize, part, [point, toward])?
             }
         };
+        if place.kind() == Kind::Cone {
+            // Its point is the ray's, which is off by what all coordinates round.
+            let magnitude = extent(ray.origin).max(extent(point));
+            surface.error = surface.error.max(N::error_bound(magnitude));
+        }
         let against = N::dot(surface.normal, ray.slope) < N::Wide::default();
         let front = match place.kind() {
             Kind::Triangle | Kind::Disc => against,
