@@ -74,6 +74,9 @@ pub(crate) fn surface<N: Number>(center: [i32; 3], radius: i32, point: [N; 3]) -
     let (normal, _) = N::normalize([axis(0), axis(1), axis(2)]);
     let axis = |k: usize| center[k] + radius * normal[k];
     let point = [axis(0), axis(1), axis(2)];
+    // That of the rounded point, which small spheres far from the lattice's middle turn away from.
+    let axis = |k: usize| point[k] - center[k];
+    let (normal, _) = N::normalize([axis(0), axis(1), axis(2)]);
     Surface {
         normal,
         point,
