@@ -108,7 +108,13 @@ fn no_self_hits<N: Number>(shape: usize, shapes: usize, rays_each: usize) {
 
 /// A ground as large as the lattice whose top lies about a height, level or nearly so.
 fn ground(random: &mut Random, shape: usize) -> (Solid, f64) {
-    let extent = lattice(random.magnitude(100.0, 15_000.0));
+    // Spheres and cones reach twice as far down.
+    let most = if matches!(SHAPES[shape], "triangle" | "box" | "disc") {
+        15_000.0
+    } else {
+        8000.0
+    };
+    let extent = lattice(random.magnitude(100.0, most));
     let height = lattice(random.signed() * [0.0, 100.0, 15_000.0][random.below(3)]);
     let mut tilt = || [0.0, lattice(extent * random.magnitude(1e-6, 1e-2))][random.below(2)];
     let (rise, turn) = (tilt(), tilt());
