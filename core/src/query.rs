@@ -13,7 +13,7 @@ use crate::shape::sphere;
 use crate::shape::triangle::{self, Projection};
 use crate::shape::{
     Crossing, Kind, Part, Place, Spheres, Triangles, Vertices, WIDE_INDICES, WIDE_LATTICE, accept,
-    accept_in_box, extent,
+    accept_in_box,
 };
 #[cfg(feature = "wide")]
 use crate::{
@@ -28,7 +28,7 @@ use crate::{
 pub struct Hit<N: Number> {
     /// Where on the ray: a length in units along the ray's major axis (see [`Ray`]).
     pub t: N::Wide,
-    /// The point, in units.
+    /// The point of the surface next to where `t` lies on the ray, in units.
     pub point: [N; 3],
     /// The geometric normal, of length 1: outward from solids, to the side from which a triangle's
     /// corners run counter-clockwise, along a disc's own.
@@ -39,8 +39,20 @@ pub struct Hit<N: Number> {
     pub object: u32,
     /// The primitive, counted in scene-file order over all objects.
     pub primitive: u32,
-    /// The surface lies within this length of `point`, measured along the normal.
+    /// The surface lies within this length of `point`, measured along the normal, and a ray that starts so
+    /// far away does not meet it again. With `u` = 2^-24 in `f32` and 2^-53 in `f64`, and `p` the point:
+    ///
+    /// | surface | bound | in `fixed` |
+    /// |---|---|---|
+    /// | face of a box; triangle or disc at right angles to an axis | the step from the coordinate on that axis, which is the surface's own, to the next number | 1 sub-step |
+    /// | other triangle or disc, of normal `n`, with `r` from `p` to its first corner or centre | `16 u sum(abs(n r)) + 4 u sum(abs(n p))` | 4 sub-steps and `2^-28 sum(abs(r))` |
+    /// | sphere of radius `r` | `20 u r + 4 u sum(abs(n p))` | 8 sub-steps |
+    /// | cylinder, cone, frustum | `16 u` of the largest coordinate of the solid, the point and the ray's start | 8 sub-steps |
+    ///
+    /// No other object and no extent of the scene counts.
     pub error: N,
+    /// Whether `point` lies on the surface exactly.
+    is_exact: bool,
     /// The primitive by kind and slot, as a leaf's word, whichever structure found it.
     place: u32,
 }
@@ -534,15 +546,15 @@ impl<N: Number> Found<N> {
         let best = self.best;
         let point = ray.at(best.t);
         let (surface, front) = scene.shapes.surface(best.place, best.part, ray, point)?;
-        let scale = extent(ray.origin).max(extent(point)).max(surface.extent);
         Some(Hit {
             t: self.t,
-            point,
+            point: surface.point,
             normal: surface.normal,
             front,
             object: scene.object(self.primitive),
             primitive: self.primitive,
-            error: N::error_bound(scale),
+            error: surface.error,
+            is_exact: surface.is_exact,
             place: Leaf {
                 kind: best.place.kind(),
                 first: scene.key(best.place).2,
@@ -562,7 +574,7 @@ impl<N: Number> Hit<N> {
     }
 
     /// Where a ray starts that goes on from here on the other side, `scene` being the one that was
-    /// asked. Of a solid that is beneath *all* of its faces by the hit's error bound, so that the ray
+    /// asked. Of a solid that is beneath *all* of its faces by their error bounds, so that the ray
     /// leaves the solid again; where the solid is thinner, halfway between them.
     pub fn inside(&self, scene: &Scene<'_>) -> [N; 3] {
         let surface = [self.point, self.normal];
@@ -573,6 +585,16 @@ impl<N: Number> Hit<N> {
                     .inside(kind, first as usize, surface, self.error)
             }
             None => self.point,
+        }
+    }
+
+    /// Where a ray starts on the normal's side that leads away from the surface and has a t above 0: without
+    /// any step where the point lies on the surface exactly.
+    pub(crate) fn beside(&self) -> [N; 3] {
+        if self.is_exact {
+            self.point
+        } else {
+            self.outside()
         }
     }
 

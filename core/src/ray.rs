@@ -387,8 +387,8 @@ impl<N: Number> Ray<N> {
         })
     }
 
-    /// A ray from a place in the scene, as hits tell places. `None` if the direction is zero, or `tmax`
-    /// negative.
+    /// A ray from a place in the scene, as hits give places, with `t` above 0, where it meets what it
+    /// starts on. `None` if the direction is zero, or no such `t` is at most `tmax`.
     #[cfg_attr(feature = "wide", inline(always))]
     #[cfg_attr(not(feature = "wide"), inline)]
     pub(crate) fn from_inside(
@@ -398,14 +398,15 @@ impl<N: Number> Ray<N> {
         tmax: N::Wide,
     ) -> Option<Self> {
         let zero = N::Wide::default();
+        let tmin = N::step_beside(N::ZERO).widen();
         let (slope, major) = N::slopes(direction)?;
-        if tmax < zero {
+        if tmax < tmin {
             return None;
         }
         let forward = pick(slope, major) > N::ZERO;
         // A place beside the box at most: always near.
         let moved = way_to_box::<N>(bounds, origin.map(N::widen), (major, forward), zero);
-        let [tmin, tmax] = interval(zero, tmax, moved);
+        let [tmin, tmax] = interval(tmin, tmax, moved);
         Some(Self {
             origin: near_start(origin, N::narrow(moved), slope),
             slope,

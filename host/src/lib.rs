@@ -17,6 +17,7 @@
 //! | measure what accuracy costs in time | [`accuracy`] |
 //! | hold a scene to what is promised | [`verify`] |
 //! | tell where bytes and work go | [`report`] |
+//! | find objects that a number format cannot resolve | [`resolution`] |
 //! | write a file whole or not at all | [`output`] |
 //!
 //! The program `gridel` is a thin layer over this library: what it does can be done from here.
@@ -34,6 +35,7 @@ pub mod output;
 pub mod picture;
 pub mod render;
 pub mod report;
+pub mod resolution;
 pub mod sample;
 pub mod scene;
 pub mod simd;

@@ -101,6 +101,14 @@ fn ask<N: Number>(structure: Structure, scene: &Scene<'_>, ray: &Ray<N>) -> Answ
     )
 }
 
+/// How far t is off at most, measured along the normal: the bound of the largest coordinate of ray and
+/// hit, which is more than that of the hit's point.
+pub fn t_bound<N: Number>(ray: &Ray<N>, hit: &Hit<N>) -> f64 {
+    let place = ray.start().into_iter().chain(hit.point);
+    let largest = place.fold(N::ZERO, |most, x| most.max(x.abs()));
+    N::error_bound(largest).length_to_f64()
+}
+
 /// A point in units, from a hit.
 pub fn point_of<N: Number>(hit: &Hit<N>) -> [f64; 3] {
     hit.point.map(N::length_to_f64)

@@ -13,6 +13,7 @@ mod documents;
 mod explain;
 mod fixed_point;
 mod grids;
+mod large_scenes;
 mod origins;
 mod reference;
 mod render;

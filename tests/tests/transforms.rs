@@ -8,7 +8,7 @@ use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Scene as SceneFile;
 use gridel_tests::effort::part_of;
 use gridel_tests::judge::lattice_soup;
-use gridel_tests::query::{HitBits, UnitRay, closest};
+use gridel_tests::query::{HitBits, UnitRay, closest, t_bound};
 use gridel_tests::{every_format, moved, rays, scenes};
 
 /// The hits of rays in units, which are the same for every place of the scene.
@@ -175,11 +175,12 @@ fn a_turned_scene_is_the_same_scene() {
                 (Some(a), Some(b)) if a.primitive == b.primitive => {
                     let apart = (N::far_to_f64(a.t) - N::far_to_f64(b.t)).abs();
                     // Head on, so that the surface's place is t's.
-                    let slope = ray.ready::<N>(plain).expect("a ray").slope();
+                    let ready = ray.ready::<N>(plain).expect("a ray");
+                    let slope = ready.slope();
                     let cosine: f64 = (0..3)
                         .map(|k| a.normal[k].ratio_to_f64() * slope[k].ratio_to_f64())
                         .sum();
-                    worst = worst.max(apart * cosine.abs() / a.error.length_to_f64());
+                    worst = worst.max(apart * cosine.abs() / t_bound(&ready, &a));
                 }
                 (None, None) => {}
                 _ => flags += 1,

@@ -1,12 +1,12 @@
 //! No ray slips through a closed mesh: aimed at vertices, at edges, and along the lattice.
 
 use glam::DVec3;
-use gridel_core::{Bvh, Flagged, Format, Hit, Kind, NoCount, Number, Scene, Structure};
+use gridel_core::{Bvh, Flagged, Format, Hit, Kind, NoCount, Number, Ray, Scene, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::scene::Shape;
 use gridel_tests::effort::{part_of, step, third_of};
 use gridel_tests::every_format;
-use gridel_tests::query::{UnitRay, closest, held, through};
+use gridel_tests::query::{UnitRay, closest, held, t_bound, through};
 use gridel_tests::random::Random;
 use gridel_tests::scenes;
 use rayon::prelude::*;
@@ -87,20 +87,22 @@ fn leaks<N: Number>(
         };
         // At an edge two triangles are met at one place, each known to within its error bound, which
         // a flat angle makes longer along the ray.
-        let blur = |hit: &Hit<N>| {
+        let blur = |ray: &Ray<N>, hit: &Hit<N>| {
             let cosine: f64 = (0..3)
                 .map(|k| hit.normal[k].ratio_to_f64() * ray.slope()[k].ratio_to_f64())
                 .sum();
-            hit.error.length_to_f64() / cosine.abs()
+            t_bound(ray, hit) / cosine.abs()
         };
         let t = N::far_to_f64(hit.t);
         let behind = UnitRay {
-            tmin: t + blur(&hit),
+            tmin: t + blur(&ray, &hit),
             ..UnitRay::new(from, direction)
         };
-        let again = behind.ready::<N>(scene).expect("a ray");
-        let again = through::<N>(structure, scene, &again).0;
-        let twice = again.is_some_and(|next| N::far_to_f64(next.t) - t > blur(&hit) + blur(&next));
+        let behind = behind.ready::<N>(scene).expect("a ray");
+        let again = through::<N>(structure, scene, &behind).0;
+        let twice = again.is_some_and(|next| {
+            N::far_to_f64(next.t) - t > blur(&ray, &hit) + blur(&behind, &next)
+        });
         (rays + 1, leaks + usize::from(twice))
     })
 }

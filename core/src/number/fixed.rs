@@ -271,6 +271,31 @@ impl Number for Fixed {
     }
 
     #[inline(always)]
+    fn step_beside(_: Self) -> Self {
+        Fixed(1)
+    }
+
+    // In sub-steps. A normal's components are cut off below 2^-30 of a vector whose length is at least 1/2,
+    // and once more when it is normalised: 3 parts in 2^30 of the way to `relative`'s point, which moves the
+    // point by .5 less than it should, and each coordinate is rounded by .5, so all three by .9. The start of
+    // a ray rounds by .9 more. The next test is exact but for the normal, the same one, and for t: it rounds
+    // to 0 what is within 1 of the plane. 3.3 in all, and 3 sum|r| / 2^30.
+    #[inline(always)]
+    fn plane_error(_: [Self; 3], relative: [Self; 3], _: [Self; 3]) -> Self {
+        let [x, y, z] = relative.map(|component| component.0.unsigned_abs());
+        // Three lengths within the scene: below 2^31.
+        Fixed((x.wrapping_add(y).wrapping_add(z) >> 28).wrapping_add(4) as i32)
+    }
+
+    // In sub-steps, for a sphere. The point is off by .8, 3 parts in 2^30 of a radius of up to 2^28, and by
+    // .9 for what rounds its coordinates; the start of a ray by .9 more. The next test's closest point is off
+    // by 1, half the chord by 1, and what lies across by .9. Together 5.5, and 1 for a t that is below 0.
+    #[inline(always)]
+    fn curve_error(_: Self, _: [Self; 3], _: [Self; 3]) -> Self {
+        Self::ABSOLUTE_ERROR
+    }
+
+    #[inline(always)]
     fn wide(self, other: Self) -> Product {
         Product(product(self.0, other.0))
     }

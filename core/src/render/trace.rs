@@ -5,7 +5,8 @@
 //! back only if the scene's depth allows and its weight is above the scene's cutoff.
 //!
 //! Secondary rays start beside the surface, on the side to which they go, at the distance of the
-//! hit's own error bound: close enough to lose no contact, and too far to meet the surface again.
+//! hit's own error bound (see [`Hit::error`]): close enough to lose no contact, and too far to meet
+//! the surface again.
 //! What goes on inside of a solid starts beneath all of its faces (see [`Hit::inside`]).
 //!
 //! Everything is compiled for a set of effects: what is not in it costs neither code nor time.
@@ -21,6 +22,7 @@ use crate::query::{Hit, any_hit, closest_hit};
 use crate::ray::{Ray, RayError};
 use crate::shade::glass::{self, Split};
 use crate::shade::{Color, Effects};
+use crate::shape::extent;
 use heapless::{Vec, VecView};
 
 /// A ray that waits for its turn.
@@ -273,7 +275,7 @@ impl Loop<'_, '_> {
     ) {
         let peak = weight.peak();
         if peak > N::ZERO && peak * N::radiance(1 << 20) > N::radiance(self.scene.view.cutoff) {
-            let origin = depart(self.scene, hit, outward);
+            let origin = depart(self.scene, hit, outward, false);
             // The list is as long as the depth asks for, so there is a place.
             let _ = space.work.push(Pending {
                 origin,
@@ -317,7 +319,7 @@ impl Loop<'_, '_> {
         count: &mut C,
     ) -> Color<N> {
         let effects = Effects(EFFECTS);
-        let origin = depart(self.scene, hit, hit.front);
+        let origin = depart(self.scene, hit, hit.front, true);
         let (way, distance) = light.seen_from(origin);
         let Some((slopes, _)) = N::slopes(way) else {
             return Color::BLACK;
@@ -357,7 +359,6 @@ impl Loop<'_, '_> {
                 way,
                 distance,
                 to_light,
-                error: hit.error,
             };
             let through = self.through::<N, A, C, EFFECTS>(shadow, stack, count);
             arriving = arriving.times(through);
@@ -382,12 +383,14 @@ impl Loop<'_, '_> {
             mut way,
             mut distance,
             to_light,
-            mut error,
         } = shadow;
         let mut left = Color::WHITE;
         for _ in 0..SHADOW_SURFACES {
             // The light itself, and what touches it, casts no shadow.
-            let end = distance.map_or(N::FAR.widen(), |distance| distance - error.widen());
+            let end = distance.map_or(N::FAR.widen(), |distance| {
+                let magnitude = extent(origin).max(N::narrow(distance));
+                distance - N::error_bound(magnitude).widen()
+            });
             let Some(ray) = Ray::from_inside(self.scene.bounds(), origin, way, end) else {
                 return left;
             };
@@ -417,8 +420,7 @@ impl Loop<'_, '_> {
             if left.peak() * N::radiance(1 << 20) <= N::radiance(self.scene.view.cutoff) {
                 return Color::BLACK;
             }
-            origin = depart(self.scene, &hit, !hit.front);
-            error = hit.error;
+            origin = depart(self.scene, &hit, !hit.front, false);
             // The way goes on along the same slopes, so its largest component stays the measure.
             distance = distance.map(|distance| distance - hit.t);
             if distance.is_some_and(|rest| rest <= zero) {
@@ -437,18 +439,18 @@ struct Shadow<N: Number> {
     /// How far the light is along the largest component of `way`; `None` for infinitely far.
     distance: Option<N::Wide>,
     to_light: [N; 3],
-    error: N,
 }
 
-/// Where a ray starts that leaves a hit.
+/// Where a ray starts that leaves a hit. On its way to a light it may start on the surface itself, because it is
+/// known to lead away from it; what is mirrored may be rounded into the surface.
 ///
 /// Out of line, because copies of it took more of the call stack than the call.
 #[inline(never)]
-fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, outward: bool) -> [N; 3] {
-    if outward {
-        hit.outside()
-    } else {
-        hit.inside(scene)
+fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, outward: bool, to_light: bool) -> [N; 3] {
+    match (outward, to_light) {
+        (true, true) => hit.beside(),
+        (true, false) => hit.outside(),
+        _ => hit.inside(scene),
     }
 }
 

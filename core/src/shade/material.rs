@@ -40,8 +40,11 @@ impl Material {
         let length = |q13: i32| N::narrow(N::far(q13.into()));
         let size = length(self.checker_size);
         let parity = (0..3).fold(0, |parity, axis| {
-            let beneath = hit.point[axis] - hit.error * hit.normal[axis];
-            parity ^ (beneath - length(self.checker_origin[axis])).cell(size)
+            let place = hit.point[axis] - length(self.checker_origin[axis]);
+            // Far enough for the difference and the quotient to be other numbers.
+            let step = N::step_beside(place);
+            let depth = hit.error.max(step + step);
+            parity ^ (place - depth * hit.normal[axis]).cell(size)
         });
         Color::ratios(if parity & 1 == 0 {
             self.diffuse

@@ -331,7 +331,9 @@ impl Cone {
         };
         Surface {
             normal,
-            extent: size,
+            point,
+            error: N::error_bound(size),
+            is_exact: false,
         }
     }
 }

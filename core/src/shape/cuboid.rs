@@ -8,9 +8,9 @@
 //! a coordinate and a t of less than 2^18 units are rounded, 2^-5 unit in `f32`, and culling widens boxes
 //! by more (see [`cull`](crate::accel)).
 
-use super::{Crossing, Part, Surface, extent};
+use super::{Crossing, Part, Surface, plane};
 use crate::blob::record::{Cuboid, UnitBox};
-use crate::number::Number;
+use crate::number::{Number, pick};
 use crate::ray::Ray;
 
 impl Cuboid {
@@ -59,30 +59,26 @@ impl Cuboid {
         })
     }
 
-    /// Outward.
-    pub(crate) fn surface<N: Number>(&self, part: Part) -> Surface<N> {
-        let outward = if part & 1 == 0 { -N::ONE } else { N::ONE };
-        let mut normal = [N::ZERO; 3];
-        if let Some(component) = normal.get_mut(usize::from(part / 2)) {
-            *component = outward;
-        }
-        let far = |corner: [i32; 3]| extent(corner.map(N::from_lattice));
-        Surface {
-            normal,
-            extent: far(self.lowest).max(far(self.highest)),
-        }
+    /// Outward. At an edge the point stays on the face: as far from the other faces as rays start beside
+    /// them.
+    pub(crate) fn surface<N: Number>(&self, part: Part, point: [N; 3]) -> Surface<N> {
+        let (axis, is_upper) = (usize::from(part / 2), part & 1 != 0);
+        let side = if is_upper { self.highest } else { self.lowest };
+        let coordinate = N::from_lattice(pick(side, axis));
+        plane::face(axis, is_upper, coordinate, self.inside(point))
     }
 
-    /// The point of the box that is nearest to a point, of those at least `depth` away from all
-    /// faces, or halfway between them.
-    pub(crate) fn inside<N: Number>(&self, point: [N; 3], depth: N) -> [N; 3] {
+    /// The point beneath all faces that is nearest to a point: a step beside them, or where the box is no
+    /// thicker than that, halfway between them.
+    pub(crate) fn inside<N: Number>(&self, point: [N; 3]) -> [N; 3] {
         let axis = |k: usize| {
-            let low = N::from_lattice(self.lowest[k]) + depth;
-            let high = N::from_lattice(self.highest[k]) - depth;
-            if low > high {
+            let low = N::from_lattice(self.lowest[k]);
+            let high = N::from_lattice(self.highest[k]);
+            let (first, last) = (low + N::step_beside(low), high - N::step_beside(high));
+            if first > last {
                 low.half() + high.half()
             } else {
-                point[k].max(low).min(high)
+                point[k].max(first).min(last)
             }
         };
         [axis(0), axis(1), axis(2)]

@@ -1,6 +1,6 @@
 //! Flat discs: the crossing of their plane, if it lies no farther than the radius from the centre.
 
-use super::{Crossing, Surface, cross_plane, extent};
+use super::{Crossing, Surface, cross_plane, plane};
 use crate::blob::record::Disc;
 use crate::number::Number;
 use crate::ray::Ray;
@@ -33,10 +33,7 @@ impl Disc {
     }
 
     /// The front is where the normal points.
-    pub(crate) fn surface<N: Number>(&self) -> Surface<N> {
-        Surface {
-            normal: N::normalize(self.normal()).0,
-            extent: extent(self.center.map(N::from_lattice)) + N::from_lattice(self.radius),
-        }
+    pub(crate) fn surface<N: Number>(&self, point: [N; 3]) -> Surface<N> {
+        plane::surface(self.normal(), self.center, point)
     }
 }

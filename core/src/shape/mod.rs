@@ -12,6 +12,7 @@ pub(crate) mod disc;
 mod kind;
 #[cfg(feature = "wide")]
 pub(crate) mod pack;
+pub(crate) mod plane;
 pub(crate) mod sphere;
 #[cfg(feature = "wide")]
 pub(crate) mod strip;
@@ -83,8 +84,13 @@ impl<N: Copy> Crossing<N> {
 pub(crate) struct Surface<N> {
     /// Outward, or to the front; of length 1.
     pub(crate) normal: [N; 3],
-    /// The largest magnitude of a coordinate that the kernel computed with, for the error bound.
-    pub(crate) extent: N,
+    /// The point of the surface next to the one that the ray's t gives.
+    pub(crate) point: [N; 3],
+    /// The surface lies within this length of `point`, and what starts so far away along the normal does
+    /// not meet it again.
+    pub(crate) error: N,
+    /// Whether `point` lies on the surface exactly, so that t is 0 for what starts there.
+    pub(crate) is_exact: bool,
 }
 
 impl<N: Number> Surface<N> {
@@ -101,7 +107,7 @@ impl<N: Number> Surface<N> {
         let opposite = self.normal.map(|x| -x);
         Self {
             normal: if length == N::ZERO { opposite } else { normal },
-            extent: self.extent,
+            ..self
         }
     }
 }
@@ -422,10 +428,10 @@ impl Shapes<'_> {
     ) -> Option<(Surface<N>, bool)> {
         let leaves = part & LEAVING != 0;
         let part = part & !LEAVING;
-        let surface = match place {
+        let mut surface = match place {
             #[cfg(feature = "wide")]
             Place::Strip(strip, place) => {
-                triangle::surface(self.clusters.strips.triangle(strip, place.into())?)
+                triangle::surface(self.clusters.strips.triangle(strip, place.into())?, point)
             }
             #[cfg(feature = "wide")]
             Place::Pack(pack, lane) => {
@@ -441,6 +447,11 @@ impl Shapes<'_> {
                 self.surface_in_slot(kind, slot as usize, part, [point, toward])?
             }
         };
+        if place.kind() == Kind::Cone {
+            // Its point is the ray's, which is off by what all coordinates round.
+            let magnitude = extent(ray.origin).max(extent(point));
+            surface.error = surface.error.max(N::error_bound(magnitude));
+        }
         let against = N::dot(surface.normal, ray.slope) < N::Wide::default();
         let front = match place.kind() {
             Kind::Triangle | Kind::Disc => against,
@@ -466,19 +477,19 @@ impl Shapes<'_> {
     ) -> Option<Surface<N>> {
         Some(match kind {
             _ if !kind.is_available() => return None,
-            Kind::Triangle => triangle::surface(self.indexed_triangle(index)?),
+            Kind::Triangle => triangle::surface(self.indexed_triangle(index)?, point),
             Kind::Sphere => {
                 let (center, radius) = self.spheres.get(index)?;
                 sphere::surface(center, radius, point)
             }
-            Kind::Box => self.boxes.get(index)?.surface(part),
-            Kind::Disc => self.discs.get(index)?.surface(),
+            Kind::Box => self.boxes.get(index)?.surface(part, point),
+            Kind::Disc => self.discs.get(index)?.surface(point),
             Kind::Cone => self.cones.get(index)?.surface(part, point, toward),
         })
     }
 
     /// A point beneath a point of a primitive's surface: `depth` away from it along the normal, and
-    /// in solids as far from all other faces, as far as they are thick enough.
+    /// in solids beneath all other faces by what is their bound, as far as they are thick enough.
     ///
     /// At an edge or a rim the way along the normal alone could lead out again.
     #[inline(never)]
@@ -491,7 +502,7 @@ impl Shapes<'_> {
     ) -> [N; 3] {
         match kind {
             Kind::Box if kind.is_available() => match self.boxes.get(index) {
-                Some(cuboid) => cuboid.inside(point, depth),
+                Some(cuboid) => cuboid.inside(point),
                 None => point,
             },
             Kind::Cone if kind.is_available() => match self.cones.get(index) {

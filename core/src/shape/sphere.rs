@@ -14,7 +14,7 @@
 //! .05; in `fixed` all is below 2^-7. Culling widens boxes by 1/4 unit, 2^-5 of which `f32` takes for
 //! itself (see [`cull`](crate::accel)).
 
-use super::{Crossing, Surface, extent};
+use super::{Crossing, Surface};
 use crate::blob::record::UnitBox;
 use crate::number::Number;
 use crate::ray::Ray;
@@ -66,12 +66,21 @@ pub(crate) fn bounds(center: [i32; 3], radius: i32) -> UnitBox {
     )
 }
 
-/// Outward.
+/// Outward. The point lies a radius from the centre, whatever t was rounded by.
 pub(crate) fn surface<N: Number>(center: [i32; 3], radius: i32, point: [N; 3]) -> Surface<N> {
     let center = center.map(N::from_lattice);
+    let radius = N::from_lattice(radius);
     let axis = |k: usize| point[k] - center[k];
+    let (normal, _) = N::normalize([axis(0), axis(1), axis(2)]);
+    let axis = |k: usize| center[k] + radius * normal[k];
+    let point = [axis(0), axis(1), axis(2)];
+    // That of the rounded point, which small spheres far from the lattice's middle turn away from.
+    let axis = |k: usize| point[k] - center[k];
+    let (normal, _) = N::normalize([axis(0), axis(1), axis(2)]);
     Surface {
-        normal: N::normalize([axis(0), axis(1), axis(2)]).0,
-        extent: extent(center) + N::from_lattice(radius),
+        normal,
+        point,
+        error: N::curve_error(radius, normal, point),
+        is_exact: false,
     }
 }

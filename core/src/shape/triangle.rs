@@ -8,7 +8,7 @@
 //! interpolated, which goes wrong on stretched triangles, but taken from the plane, whose normal is
 //! computed in integers without any rounding and is the same in every number format.
 
-use super::{Surface, cross_plane, extent};
+use super::{Surface, cross_plane, plane};
 use crate::blob::record::{UnitBox, Vertex};
 use crate::number::{Number, Sight, pick, product};
 use crate::ray::Ray;
@@ -135,10 +135,6 @@ pub(crate) fn bounds([a, b, c]: [[i32; 3]; 3]) -> UnitBox {
 
 /// The front is where the corners run counter-clockwise.
 #[cfg_attr(feature = "wide", inline(always))]
-pub(crate) fn surface<N: Number>(corners: [[i32; 3]; 3]) -> Surface<N> {
-    let extents = corners.map(|corner| extent(corner.map(N::from_lattice)));
-    Surface {
-        normal: N::normalize(normal(corners)).0,
-        extent: extents[0].max(extents[1]).max(extents[2]),
-    }
+pub(crate) fn surface<N: Number>(corners: [[i32; 3]; 3], point: [N; 3]) -> Surface<N> {
+    plane::surface(normal(corners), corners[0], point)
 }

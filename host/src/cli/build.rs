@@ -12,6 +12,7 @@ use gridel_host::board::Board;
 use gridel_host::compile::{self, Builder, Figures, LeftOut, Report, Tabled};
 use gridel_host::emit::{self, Emitted};
 use gridel_host::report::{Account, Align, Ledger, Table, counted, grouped, power_of_two};
+use gridel_host::resolution::Unresolved;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -105,6 +106,9 @@ struct Built<'r> {
     supplied: &'r [String],
     tables: &'r [Tabled],
     warnings: &'r [String],
+    /// Objects that some formats do not resolve.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    unresolved: &'r [Unresolved],
     /// Where a board is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     ledger: Option<&'r Ledger>,
@@ -202,8 +206,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     };
     let name = arguments.output.display().to_string();
+    let unresolved = source.warn_of_unresolved(&scene, None);
     let built = Built {
         ledger: ledger.as_ref(),
+        unresolved: &unresolved,
         ..Built::new(&name, &scene, report, &source.warnings)
     };
     if arguments.json {
@@ -265,6 +271,7 @@ impl<'r> Built<'r> {
             supplied: &report.supplied,
             tables: &report.tables,
             warnings,
+            unresolved: &[],
             ledger: None,
         }
     }

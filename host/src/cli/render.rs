@@ -11,6 +11,7 @@ use gridel_host::output::place;
 use gridel_host::picture::{Making, PictureFormat};
 use gridel_host::render::{Job, Picture, render};
 use gridel_host::report::{Align, HeatMap, Table, counted, grouped};
+use gridel_host::resolution::Unresolved;
 use serde::Serialize;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -88,6 +89,9 @@ struct Rendered {
     stats: Option<Stats>,
     #[serde(skip_serializing_if = "Option::is_none")]
     heat_map: Option<HeatMapFile>,
+    /// Objects that the format does not resolve.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    unresolved: Vec<Unresolved>,
 }
 
 #[derive(Serialize)]
@@ -122,6 +126,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     )?;
     let scene = source.scene()?;
     source.warn_of_collapsed();
+    let unresolved = source.warn_of_unresolved(&scene, Some(arguments.with.format));
     let job = job(arguments, &source, &scene)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads.unwrap_or(0))
@@ -175,6 +180,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         seconds: time.as_secs_f64(),
         stats: stats(arguments, &picture, time),
         heat_map,
+        unresolved,
     };
     if arguments.json {
         print_json_warned(&rendered, &source.warnings)

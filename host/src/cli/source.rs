@@ -5,11 +5,12 @@ use super::arguments::{SceneOptions, TraceOptions, check_quality};
 use super::failure::Failure;
 use super::output::warn;
 use super::progress::Progress;
-use gridel_core::{BlobError, Scene, Structure};
+use gridel_core::{BlobError, Format, Scene, Structure};
 use gridel_host::blob::{self, Blob};
 use gridel_host::compile::{self, CompileError, Compiled};
 use gridel_host::explain::Names;
-use gridel_host::report::{Ledger, counted, grouped};
+use gridel_host::report::{Ledger, counted, grouped, significant};
+use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
 use gridel_host::scene::{self, Imported};
 use std::path::{Path, PathBuf};
 
@@ -192,6 +193,43 @@ impl Source {
                 ));
             }
         }
+    }
+}
+
+/// Objects that a warning names; the rest are counted.
+const NAMED: usize = 5;
+
+impl Source {
+    /// Warns of objects that a format does not resolve, or without one any of them, and returns them.
+    pub fn warn_of_unresolved(&self, scene: &Scene<'_>, format: Option<Format>) -> Vec<Unresolved> {
+        let mut found = unresolved(scene);
+        if let Some(format) = format {
+            let is_coarse =
+                |it: &Unresolved| it.formats.iter().any(|it| it.format == format.name());
+            found.retain(is_coarse);
+        }
+        let file = self.path.display();
+        for it in found.iter().take(NAMED) {
+            let name = self.names.objects.get(it.object as usize);
+            let name = name.map_or(String::new(), |name| format!(" `{name}`"));
+            let bounds = it.formats.iter().map(|coarse| {
+                let bound = significant(coarse.bound);
+                format!("{} there ({bound} scene units)", coarse.format)
+            });
+            warn(format!(
+                "{file}: object {}{name}: its smallest feature, {} scene units, is less than {FACTOR} \
+                 error bounds of {}: contact shadows may be lost; render it with `--format {}`",
+                it.object,
+                significant(it.feature),
+                bounds.collect::<Vec<_>>().join(" and of "),
+                it.resolved_by.join("` or `--format "),
+            ));
+        }
+        if found.len() > NAMED {
+            let more = counted(found.len() - NAMED, "more object");
+            warn(format!("{file}: {more} likewise; --json names them"));
+        }
+        found
     }
 }
 

@@ -23,6 +23,8 @@ pub enum Promise {
     /// A ray that starts beside a hit does not meet the same surface again, and one that starts inside
     /// of a solid leaves it.
     SelfHits,
+    /// What lies in the dark by `f64` does not lie in the light of another format.
+    Shadows,
     /// No ray leaves a closed mesh unseen.
     Leaks,
 }
@@ -36,6 +38,7 @@ impl Promise {
             Promise::Answers => "hits are those of exact arithmetic",
             Promise::Numbers => "hits are finite, in the interval, with a normal of length 1",
             Promise::SelfHits => "secondary rays do not meet the surface that they leave",
+            Promise::Shadows => "no shadow is lost that double precision has",
             Promise::Leaks => "no ray leaves a closed mesh unseen",
         }
     }

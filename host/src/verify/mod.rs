@@ -11,6 +11,7 @@ pub mod exact;
 pub mod judge;
 pub mod random;
 pub mod rays;
+mod shadow;
 pub mod solid;
 
 pub use check::{Fault, Heard, Outcome, Promise, ask, ask_all, check, depart, leave, sealed};
@@ -143,6 +144,11 @@ pub fn verify(scene: &Scene<'_>, rays: u64, progress: &(dyn Fn() + Sync)) -> Rep
             work.ray::<Fixed>(&ray, control, &mut random, &mut tally);
             work.ray::<f32>(&ray, control, &mut random, &mut tally);
             work.ray::<f64>(&ray, control, &mut random, &mut tally);
+            if control && let Some(ray) = shadow::at_a_shadow(scene, &mut random) {
+                let ray = frame.scene_ray(&ray);
+                work.shadow::<Fixed>(&ray, &mut tally);
+                work.shadow::<f32>(&ray, &mut tally);
+            }
         }
         progress();
         tally
@@ -253,6 +259,17 @@ impl Work<'_> {
             for fault in leave(self.scene, self.judge, &hit, random) {
                 tally.fault(fault, ray);
             }
+        }
+    }
+
+    /// Looks at a place that lies in a shadow in one format.
+    fn shadow<N: Number>(&self, ray: &SceneRay, tally: &mut Tally) {
+        let Some((ready, _)) = self.frame.ray::<N>(self.scene, ray) else {
+            return;
+        };
+        tally.checked(Promise::Shadows, 1);
+        for fault in shadow::lost(self.scene, &ready) {
+            tally.fault(fault, ray);
         }
     }
 
@@ -395,6 +412,7 @@ impl Tally {
             Promise::Answers,
             Promise::Numbers,
             Promise::SelfHits,
+            Promise::Shadows,
             Promise::Leaks,
         ];
         let promises = promises.map(|promise| {

@@ -92,7 +92,9 @@ fn to(light: &Light, hit: Hit<N>, scene: &Scene<'static>) -> Option<Ray<N>> {
             let length = if part < N::far(0) { -part } else { part };
             if length > longest { length } else { longest }
         });
-        (way, longest - hit.error.widen())
+        let part = |axis: usize| N::narrow(start[axis]).abs();
+        let magnitude = part(0).max(part(1)).max(part(2)).max(N::narrow(longest));
+        (way, longest - N::error_bound(magnitude).widen())
     };
     let ray = Ray::new(scene.bounds(), start, way, N::far(0), end).ok()?;
     (N::from_wide(N::dot(normal, ray.slope())) > N::from_unit(0)).then_some(ray)

@@ -33,52 +33,145 @@ fn next_hit<N: Number>(scene: &Scene<'_>, from: [f64; 3], way: DVec3) -> Option<
     closest::<N, List>(scene, &ray.expect("a ray"), &mut NoCount)
 }
 
-fn no_self_hits<N: Number>(shape: usize, shapes: usize, rays_each: usize) {
-    let mut random = Random(77);
-    let (mut away, mut through, mut thin) = (0, 0, 0);
-    for case in cases(500 + shape as u64, shape, shapes, rays_each) {
-        let blob = blob_of([&case.solid]);
+/// How many rays left a solid, went on inside of it, and could not because it is too thin.
+#[derive(Default)]
+struct Left {
+    away: usize,
+    through: usize,
+    thin: usize,
+}
+
+impl Left {
+    /// Sends rays at the only solid of a scene, and lets others leave it on both sides where it is hit.
+    fn leave<N: Number>(
+        &mut self,
+        solid: &Solid,
+        rays: impl IntoIterator<Item = ([f64; 3], [f64; 3])>,
+        random: &mut Random,
+    ) {
+        let blob = blob_of([solid]);
         let scene = blob.scene().expect("a scene");
-        for (origin, slope) in case.rays {
-            let Some(hit) = next_hit::<N>(&scene, origin, DVec3::from_array(slope)) else {
+        for (origin, slope) in rays {
+            let hit = next_hit::<N>(&scene, origin, DVec3::from_array(slope));
+            let Some(hit) = hit.filter(|hit| hit.primitive == 0) else {
                 continue;
             };
-            if hit.primitive != 0 {
-                continue;
-            }
             for side in [1.0, -1.0] {
                 let normal = side * DVec3::from_array(hit.normal.map(N::ratio_to_f64));
-                let way = outward(&mut random, normal);
+                let way = outward(random, normal);
                 let from = depart(&scene, &hit, side > 0.0);
-                let outside = side > 0.0 || case.solid.is_flat();
-                if !outside && case.solid.excesses(from)[0] > -0.5 * hit.error.length_to_f64() {
-                    thin += 1;
+                let outside = side > 0.0 || solid.is_flat();
+                if !outside && solid.excesses(from)[0] > -0.5 * hit.error.length_to_f64() {
+                    self.thin += 1;
                     continue;
                 }
                 let again = next_hit::<N>(&scene, from, way).filter(|next| next.primitive == 0);
                 let about = || {
+                    let format = N::FORMAT.name();
                     format!(
-                        "{} {:?} {origin:?} {slope:?} {hit:?} {side} {way:?} {again:?}",
-                        N::FORMAT.name(),
-                        case.solid
+                        "{format} {solid:?} {origin:?} {slope:?} {hit:?} {side} {way:?} {again:?}"
                     )
                 };
                 if outside {
-                    away += 1;
+                    self.away += 1;
                     assert!(again.is_none(), "{}", about());
                 } else {
-                    through += 1;
+                    self.through += 1;
                     assert!(again.is_some_and(|again| !again.front), "{}", about());
                 }
             }
         }
     }
-    eprintln!(
-        "{:9} {:5}: {away} rays away and {through} rays through, no self-hit; {thin} where the \
-         solid is thinner than the error bound",
-        SHAPES[shape],
-        N::FORMAT.name()
-    );
+
+    fn told<N: Number>(&self, name: &str) {
+        let Self {
+            away,
+            through,
+            thin,
+        } = self;
+        eprintln!(
+            "{name:9} {:5}: {away} rays away and {through} rays through, no self-hit; {thin} where \
+             the solid is thinner than the error bound",
+            N::FORMAT.name()
+        );
+    }
+}
+
+fn no_self_hits<N: Number>(shape: usize, shapes: usize, rays_each: usize) {
+    let mut random = Random(77);
+    let mut left = Left::default();
+    for case in cases(500 + shape as u64, shape, shapes, rays_each) {
+        left.leave::<N>(&case.solid, case.rays, &mut random);
+    }
+    left.told::<N>(SHAPES[shape]);
+}
+
+/// A ground as large as the lattice whose top lies about a height, level or nearly so.
+fn ground(random: &mut Random, shape: usize) -> (Solid, f64) {
+    // Spheres and cones reach twice as far down.
+    let most = if matches!(SHAPES[shape], "triangle" | "box" | "disc") {
+        15_000.0
+    } else {
+        8000.0
+    };
+    let extent = lattice(random.magnitude(100.0, most));
+    let height = lattice(random.signed() * [0.0, 100.0, 15_000.0][random.below(3)]);
+    let mut tilt = || [0.0, lattice(extent * random.magnitude(1e-6, 1e-2))][random.below(2)];
+    let (rise, turn) = (tilt(), tilt());
+    let solid = match SHAPES[shape] {
+        "sphere" => Solid::Sphere {
+            center: [0.0, height - extent, 0.0],
+            radius: extent,
+        },
+        "box" => Solid::Box {
+            lowest: [-extent, height - 1.0, -extent],
+            highest: [extent, height, extent],
+        },
+        "disc" => Solid::Disc {
+            center: [0.0, height, 0.0],
+            normal: [(-rise * 256.0).round(), (extent * 256.0).round(), 0.0],
+            radius: extent,
+        },
+        "triangle" => Solid::Triangle([
+            [-extent, height - rise, -extent],
+            [0.0, height + turn, extent],
+            [extent, height + rise, -extent],
+        ]),
+        _ => Solid::Cone {
+            base: [-turn, height - extent, -rise],
+            apex: [0.0, height, 0.0],
+            base_radius: extent,
+            apex_radius: lattice(extent * [1.0, 0.5][random.below(2)]),
+        },
+    };
+    (solid, height)
+}
+
+/// What meets a ground as large as the scene from close by leaves it, though the bound is that of the place
+/// and not of the scene.
+#[test]
+fn rays_that_leave_a_large_ground_do_not_meet_it() {
+    fn judge<N: Number>(shape: usize) {
+        let mut random = Random(79);
+        let mut left = Left::default();
+        for _ in 0..part_of(300, 3000) {
+            let (solid, height) = ground(&mut random, shape);
+            let rays = (0..part_of(60, 300)).map(|_| {
+                let reach = random.magnitude(0.01, 1000.0);
+                let mut near = || reach * random.signed();
+                let target = [near(), height, near()];
+                let from = [near(), height + near().abs() + reach, near()];
+                (from, [0, 1, 2].map(|k| target[k] - from[k]))
+            });
+            let rays: Vec<_> = rays.collect();
+            left.leave::<N>(&solid, rays, &mut random);
+        }
+        assert!(left.away > 1000, "{}", left.away);
+        left.told::<N>(SHAPES[shape]);
+    }
+    for shape in 0..5 {
+        every_format!(judge(shape));
+    }
 }
 
 /// 1,000 shapes and 1,000 rays at each in the full run; the sizes of a shape span seven magnitudes

@@ -1,0 +1,163 @@
+//! Contact shadows: what lies in the dark by `f64`, and what another format says of it.
+
+use super::check::{Fault, Promise, ask, depart};
+use super::judge::{RoundedRay, step};
+use super::random::Random;
+use super::rays::UnitRay;
+use glam::DVec3;
+use gridel_core::blob::Geometry;
+use gridel_core::blob::record::Light;
+use gridel_core::{Effects, Format, Hit, Kind, List, Number, Ray, Scene, Structure};
+
+/// A ray at a place that an object keeps a light from: from somewhere above the place, in units. `None`
+/// where what was chosen at random throws its shadow on nothing.
+pub fn at_a_shadow(scene: &Scene<'_>, random: &mut Random) -> Option<UnitRay> {
+    if !scene.effects().contains(Effects::SHADOW) || scene.lights().is_empty() {
+        return None;
+    }
+    let count = |kind| scene.count(kind);
+    let mut slot = random.below(Kind::ALL.into_iter().map(count).sum::<usize>().max(1));
+    let kind = Kind::ALL.into_iter().find(|&kind| {
+        let is_here = slot < count(kind);
+        if !is_here {
+            slot -= count(kind);
+        }
+        is_here
+    })?;
+    let primitive = scene.primitive(kind, slot as u32);
+    let from = on(&scene.geometry(kind, slot)?, random);
+    let light = &scene.lights()[random.below(scene.lights().len())];
+    let travel = -to_light(light, from)?;
+    // What lies behind the object as the light sees it.
+    let mut ray = UnitRay::new(from.to_array(), travel.to_array());
+    let hit = (0..8).find_map(|_| {
+        let hit = ask::<f64, List>(scene, &ray.ready::<f64>(scene)?).hit?;
+        if hit.primitive != primitive {
+            return Some(Some(hit));
+        }
+        ray.tmin = hit.t + 4.0 * step(Format::F32, hit.t.max(1.0));
+        None
+    })??;
+    let place = DVec3::from_array(hit.point);
+    let normal = DVec3::from_array(hit.normal);
+    let towards = if normal.dot(travel) > 0.0 {
+        -normal
+    } else {
+        normal
+    };
+    let aside = DVec3::from_array(random.direction());
+    let away = (place.distance(from) + 1.0 / 256.0) * random.magnitude(0.5, 8.0);
+    let eye = place + away * (towards + 0.9 * aside);
+    Some(UnitRay::new(eye.to_array(), (place - eye).to_array()))
+}
+
+/// A point of a primitive, in units.
+fn on(geometry: &Geometry, random: &mut Random) -> DVec3 {
+    let units = |steps: [i32; 3]| DVec3::from_array(steps.map(|x| f64::from(x) / 256.0));
+    let length = |steps: i32| f64::from(steps) / 256.0;
+    let direction = DVec3::from_array(random.direction());
+    match geometry {
+        Geometry::Triangle([a, b, c]) => {
+            let (u, v) = (random.unit(), random.unit());
+            let (u, v) = if u + v > 1.0 {
+                (1.0 - u, 1.0 - v)
+            } else {
+                (u, v)
+            };
+            let (a, b, c) = (units(*a), units(*b), units(*c));
+            a + u * (b - a) + v * (c - a)
+        }
+        Geometry::Sphere { center, radius } => units(*center) + length(*radius) * direction,
+        Geometry::Box(cuboid) => {
+            let (low, high) = (units(cuboid.lowest), units(cuboid.highest));
+            let share = DVec3::from_array([0; 3].map(|_| random.unit()));
+            low + share * (high - low)
+        }
+        Geometry::Disc(disc) => {
+            let normal = DVec3::from_array(disc.normal.map(f64::from)).normalize();
+            let across = direction - direction.dot(normal) * normal;
+            units(disc.center) + length(disc.radius) * across
+        }
+        Geometry::Cone(cone) => {
+            let share = random.unit();
+            units(cone.base).lerp(units(cone.apex), share)
+        }
+    }
+}
+
+/// The way from a point to a light.
+fn to_light(light: &Light, from: DVec3) -> Option<DVec3> {
+    let vector = DVec3::from_array(light.vector.map(|x| x as f64 / 8192.0));
+    let way = if light.directional == 1 {
+        vector
+    } else {
+        vector - from
+    };
+    (way != DVec3::ZERO).then_some(way)
+}
+
+/// What keeps a light from a hit, seen from where a ray leaves it: the nearest opaque primitive.
+fn blocker<N: Number>(scene: &Scene<'_>, light: &Light, from: DVec3) -> Option<Hit<N>> {
+    let way = to_light(light, from)?;
+    let reach = if light.directional == 1 {
+        f64::INFINITY
+    } else {
+        way.abs().max_element()
+    };
+    let ray = Ray::<N>::from_f64(scene.bounds(), from.to_array(), way.to_array(), 0.0, reach);
+    ask::<N, List>(scene, &ray.ok()?).hit
+}
+
+/// Shadows that a format loses where a ray strikes: `f64` has the place in the dark, and what is a step of the
+/// lattice beside it and above it, and the format has it in the light.
+pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
+    let rounded = RoundedRay::of(ray);
+    let (hit, right) = (
+        ask::<N, List>(scene, ray).hit,
+        rounded
+            .in_f64(scene.bounds())
+            .and_then(|ray| ask::<f64, List>(scene, &ray).hit),
+    );
+    let (Some(hit), Some(right)) = (hit, right) else {
+        return Vec::new();
+    };
+    if hit.primitive != right.primitive || hit.front != right.front {
+        return Vec::new();
+    }
+    let normal = DVec3::from_array(right.normal) * if right.front { 1.0 } else { -1.0 };
+    let place = DVec3::from_array(depart(scene, &right, right.front));
+    let step = f64::powi(2.0, 16 - i32::from(scene.header().lattice_bits));
+    let normal = normal.normalize();
+    let (u, v) = normal.any_orthonormal_pair();
+    let about = [DVec3::ZERO, u, -u, v, -v, normal].map(|aside| place + step * aside);
+    let found = scene.lights().iter().enumerate().filter_map(|(number, light)| {
+        if normal.dot(to_light(light, place)?) <= 0.0 {
+            return None;
+        }
+        let is_opaque = |other: &Hit<f64>| {
+            let material = scene.material(other.object);
+            material.is_some_and(|material| material.transmit == [0; 3])
+        };
+        let mut nearest = None;
+        for from in about {
+            let other = blocker::<f64>(scene, light, from).filter(is_opaque)?;
+            nearest = nearest.or(Some(other));
+        }
+        let from = DVec3::from_array(depart(scene, &hit, hit.front));
+        if blocker::<N>(scene, light, from).is_some() {
+            return None;
+        }
+        let nearest = nearest?;
+        Some(Fault {
+            promise: Promise::Shadows,
+            format: N::FORMAT,
+            structure: Structure::List,
+            what: format!(
+                "has primitive {} in the light of light {number}, from which primitive {} keeps it, {:?} \
+                 units away",
+                hit.primitive, nearest.primitive, nearest.t
+            ),
+        })
+    });
+    found.collect()
+}
