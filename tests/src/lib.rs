@@ -5,6 +5,7 @@ pub mod bounds;
 pub mod cases;
 pub mod effort;
 pub mod exact_box;
+pub mod fuzz;
 pub mod judge;
 pub mod moved;
 pub mod query;

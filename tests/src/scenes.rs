@@ -153,6 +153,24 @@ pub fn soup(seed: u64, count: usize, size: f64) -> Scene {
     }))
 }
 
+/// A bent sheet of so many squares a side, as a mesh.
+pub fn sheet(squares: u32) -> Shape {
+    let row = squares + 1;
+    let corner = |number: u32| {
+        let (x, y) = (f64::from(number % row), f64::from(number / row));
+        DVec3::new(x, y, (x * y) % 1.75)
+    };
+    let square = |number: u32| {
+        let first = number / squares * row + number % squares;
+        let [a, b, c, d] = [0, 1, row, row + 1].map(|it| first + it);
+        [[a, b, c], [b, d, c]]
+    };
+    Shape::Mesh {
+        vertices: (0..row * row).map(corner).collect(),
+        triangles: (0..squares * squares).flat_map(square).collect(),
+    }
+}
+
 /// The icosphere of a number of subdivisions: 20 times 4 to that power triangles.
 pub fn icosphere(subdivisions: usize) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let golden = 0.5 + 1.25_f64.sqrt();

@@ -21,8 +21,16 @@ impl<'a> Table<'a> {
         gridels: SectionKind,
         kinds: &ListSections,
     ) -> Result<Self, BlobError> {
+        let records: &[Gridels] = sections.records(gridels)?;
+        if records.len() > 1 {
+            return Err(BlobError::Count {
+                section: gridels,
+                found: records.len(),
+                expected: 1,
+            });
+        }
         Ok(Self {
-            gridels: sections.records(gridels)?.first(),
+            gridels: records.first(),
             lists: Candidates::read(sections, kinds)?,
         })
     }

@@ -131,12 +131,24 @@ macro_rules! structures {
                 Structure::ALL.into_iter().any(|it| scene.holds(it) && uses(it))
             }
 
+            /// Proves that primitives have records of their own where a structure leads to these.
+            #[cfg(feature = "wide")]
+            fn check_records(scene: &Scene<'a>) -> Result<(), BlobError> {
+                let clusters = Structure::List.bit() | Structure::Wide.bit();
+                if scene.header.structures & !clusters == 0 {
+                    return Ok(());
+                }
+                super::wide::check_records(scene)
+            }
+
             /// Proves every structure whose code is here. Returns the deepest stack that one needs,
             /// and whether all that the scene holds were proved.
             pub(crate) fn check(scene: &Scene<'a>, sections: &Sections<'a>)
                 -> Result<(usize, bool), BlobError>
             {
                 let (mut depth, mut proved) = (0, 0);
+                #[cfg(feature = "wide")]
+                Self::check_records(scene)?;
                 $(
                     #[cfg($feature)]
                     {

@@ -14,6 +14,8 @@
 mod check;
 pub mod cull;
 
+pub(super) use check::check_records;
+
 use super::cull::Culling;
 use super::{Accel, Entry, Leaf, Records, StackView, Structure};
 use crate::blob::cluster::LANES;

@@ -51,6 +51,7 @@ fn check_lights(scene: &Scene<'_>) -> Result<(), BlobError> {
 fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
     let section = SectionKind::Materials;
     let (header, materials) = (scene.header, scene.materials);
+    let mut called = Effects::NONE;
     if materials.is_empty() && header.primitives > 0 {
         return Err(BlobError::Count {
             section,
@@ -92,8 +93,17 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
             0,
             0,
         )?;
+        called = called.with(material.effects());
     }
-    Ok(())
+    // A scene file may turn shadows off.
+    if !scene.lights.is_empty() && header.objects > 0 {
+        called = called.with(Effects::SHADOW);
+    }
+    exactly(
+        "set of effects that nothing calls for",
+        Effects(header.effects).without(called).0.into(),
+        0,
+    )
 }
 
 fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {

@@ -94,10 +94,12 @@ fn check_limits(header: &Header) -> Result<(), BlobError> {
     let known = Structure::ALL
         .iter()
         .fold(0, |bits, structure| bits | structure.bit());
+    // The list is always there.
+    let list = Structure::List.bit();
     exactly(
-        "set of structures beyond those known",
-        (header.structures & !known).into(),
-        0,
+        "set of the list and of unknown structures",
+        (header.structures & (!known | list)).into(),
+        list.into(),
     )?;
     at_most(
         "stack depth",

@@ -61,17 +61,37 @@ impl<'a> Vouched<'a> {
         Structure::DualSplit,
     ];
 
+    /// The bits of these in the header.
+    const BITS: u32 = {
+        let mut bits = 0;
+        let mut index = 0;
+        while index < Self::STRUCTURES.len() {
+            bits |= Self::STRUCTURES[index].bit();
+            index += 1;
+        }
+        bits
+    };
+
     /// Proves a blob. Linear in its length; of constant time in a program that has the compiler
     /// evaluate it.
     ///
     /// # Errors
     /// If the checksum does not fit, a hierarchy is not in breadth-first order or deeper than the
-    /// header says, or there are sections of structures that cannot be vouched for.
+    /// header says, or the header names, or there are sections of, structures that cannot be vouched
+    /// for.
     pub const fn of(blob: &'a [u8]) -> Result<Self, BlobError> {
         let expected = proved!(word(blob, offset_of!(Header, checksum)));
         let found = checksum(blob);
         if found != expected {
             return Err(BlobError::Checksum { found, expected });
+        }
+        let structures = proved!(word(blob, offset_of!(Header, structures)));
+        if structures & !Self::BITS != 0 {
+            return Err(BlobError::Header {
+                field: "set of structures, all of which are vouched for,",
+                found: structures as u64,
+                expected: Self::BITS as u64,
+            });
         }
         let sections = proved!(half(blob, offset_of!(Header, section_count))) as usize;
         let stack_depth = proved!(half(blob, offset_of!(Header, stack_depth))) as usize;

@@ -1,6 +1,6 @@
 //! All clusters of a blob: see [`blob::cluster`](crate::blob::cluster).
 
-use super::{sphere, triangle};
+use super::Kind;
 use crate::blob::Indices;
 use crate::blob::cluster::{
     LANES, Pack, Pack16, Pack24, RADII, Strip, Strip16, Strip24, StripMembers, Windowed24,
@@ -76,18 +76,6 @@ impl Strips<'_> {
         let members = last.and_then(|last| self.members(last));
         members.map_or(0, |last| (last.first() + last.count()) as usize)
     }
-
-    /// The box around a strip's triangles.
-    pub(crate) fn bounds(&self, strip: u32) -> Option<UnitBox> {
-        let places = self.members(strip)?.places();
-        (0..8).filter(|place| places >> place & 1 != 0).try_fold(
-            None,
-            |bounds: Option<UnitBox>, place| {
-                let next = triangle::bounds(self.triangle(strip, place)?);
-                Some(Some(bounds.map_or(next, |bounds| bounds.union(&next))))
-            },
-        )?
-    }
 }
 
 impl Packs<'_> {
@@ -121,14 +109,6 @@ impl Packs<'_> {
         };
         full * LANES + self.lanes(full as u32).count_ones() as usize
     }
-
-    /// The box around a pack's spheres.
-    pub(crate) fn bounds(&self, pack: u32) -> Option<UnitBox> {
-        (0..LANES as u32)
-            .filter_map(|lane| self.sphere(pack, lane))
-            .map(|(center, radius)| sphere::bounds(center, radius))
-            .reduce(|bounds, next| bounds.union(&next))
-    }
 }
 
 /// All clusters of a blob, and the primitives in them.
@@ -151,6 +131,42 @@ impl Clusters<'_> {
     /// Number of spheres.
     pub(crate) fn spheres(&self) -> usize {
         self.packs.spheres()
+    }
+
+    /// Whether a cluster holds primitives, and all of them lie in a box.
+    ///
+    /// In 1/256 unit, where no sum wraps: coordinates have 24 bits and radii 25.
+    pub(crate) fn inside(&self, kind: Kind, cluster: u32, outer: &UnitBox) -> bool {
+        let holds = |lowest: i32, highest: i32, axis: usize| {
+            let [low, high] = outer.0[axis].map(|side| i32::from(side) << 8);
+            low <= lowest && highest <= high
+        };
+        let mut places = match kind {
+            Kind::Triangle => self.strips.members(cluster).map_or(0, StripMembers::places),
+            _ => self.packs.lanes(cluster),
+        };
+        let mut inside = places != 0;
+        while places != 0 {
+            let place = places.trailing_zeros();
+            places &= places - 1;
+            inside &= match kind {
+                Kind::Triangle => self
+                    .strips
+                    .triangle(cluster, place)
+                    .is_some_and(|[a, b, c]| {
+                        let lowest = |k: usize| a[k].min(b[k]).min(c[k]);
+                        let highest = |k: usize| a[k].max(b[k]).max(c[k]);
+                        (0..3).all(|k| holds(lowest(k), highest(k), k))
+                    }),
+                _ => self
+                    .packs
+                    .sphere(cluster, place)
+                    .is_some_and(|(center, radius)| {
+                        (0..3).all(|k| holds(center[k] - radius, center[k] + radius, k))
+                    }),
+            };
+        }
+        inside
     }
 
     /// The strip and the place of a triangle by its number among the members.

@@ -1,6 +1,6 @@
 //! Headers, section tables and hierarchies that lie, with a checksum that fits.
 
-use super::{Fate, sealed, small_blob, speaks, works};
+use super::{Fate, small_blob, works};
 use glam::DVec3;
 use gridel_core::accel::Link;
 use gridel_core::accel::dual_split::Way;
@@ -10,6 +10,7 @@ use gridel_core::blob::record::{DualNode, FlaggedPair, Header, Pair, SectionEntr
 use gridel_core::{Number, Scene, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;
+use gridel_tests::fuzz::{sealed, speaks};
 use gridel_tests::query::{UnitRay, held, through};
 use gridel_tests::scenes;
 use std::mem::offset_of;

@@ -1,20 +1,23 @@
 //! Broken blobs: refused with words that name the place, or else a scene that works.
 
+mod claims;
 mod forged;
+mod fuzz;
+mod mutants;
+mod old;
 mod vouched;
 
 use glam::DVec3;
-use gridel_core::blob::record::Header;
-use gridel_core::blob::{BlobError, checksum};
+use gridel_core::blob::BlobError;
 use gridel_core::{Format, Hit, List, NoCount, Number, Scene, Settings};
 use gridel_host::blob::Blob;
 use gridel_host::render::{Job, render};
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Shape};
 use gridel_tests::effort::step;
+use gridel_tests::fuzz::{sealed, speaks};
 use gridel_tests::query::{UnitRay, any, closest, held, through};
 use gridel_tests::random::Random;
 use gridel_tests::{every_format, rays, scenes};
-use std::mem::offset_of;
 
 /// Every kind of record, every effect, and a hierarchy of a few levels.
 fn small_scene() -> gridel_host::scene::Scene {
@@ -71,50 +74,6 @@ fn small_blob(lattice_bits: u8) -> Vec<u8> {
     scenes::compact_blob(&small_scene(), lattice_bits)
         .bytes()
         .to_vec()
-}
-
-/// Gives changed bytes a length and a checksum that fit.
-fn sealed(bytes: &[u8]) -> Blob {
-    let mut bytes = bytes.to_vec();
-    let length = bytes.len() as u32;
-    let mut put = |offset: usize, word: u32| {
-        if let Some(place) = bytes.get_mut(offset..offset + 4) {
-            place.copy_from_slice(&word.to_le_bytes());
-        }
-    };
-    put(offset_of!(Header, blob_bytes), length);
-    let sum = checksum(&bytes);
-    let place = offset_of!(Header, checksum);
-    if let Some(place) = bytes.get_mut(place..place + 4) {
-        place.copy_from_slice(&sum.to_le_bytes());
-    }
-    Blob::new(&bytes)
-}
-
-/// Holds an error to what errors promise: words that say where.
-fn speaks(error: &BlobError) {
-    let text = error.to_string();
-    let named = match error {
-        BlobError::Header { field, .. } => text.contains(field),
-        BlobError::Table { index, what, .. } => {
-            text.contains(what) && text.contains(&index.to_string())
-        }
-        BlobError::Stride { section, .. } | BlobError::Count { section, .. } => {
-            text.contains(section.name())
-        }
-        BlobError::Record {
-            section,
-            index,
-            what,
-            ..
-        } => {
-            text.contains(section.name())
-                && text.contains(what)
-                && text.contains(&index.to_string())
-        }
-        _ => text.len() > 20,
-    };
-    assert!(named, "{error:?}: {text}");
 }
 
 /// Uses a scene that was accepted: all structures that loading proves agree, the others come to an

@@ -78,6 +78,14 @@ fn check_members(scene: &Scene<'_>) -> Result<(), BlobError> {
         next += count;
     }
     let section = SectionKind::Members;
+    let most = scene.header().primitives as usize;
+    if triangles + next > most {
+        return Err(BlobError::Count {
+            section,
+            found: triangles + next,
+            expected: most,
+        });
+    }
     for (found, expected) in [
         (clusters.members.len(), triangles + next),
         (scene.shapes.count(Kind::Triangle), triangles),
@@ -95,8 +103,7 @@ fn check_members(scene: &Scene<'_>) -> Result<(), BlobError> {
     let own = clusters.homes.is_empty();
     for index in 0..clusters.members.len() * usize::from(own) {
         let primitive = clusters.members.get(index).unwrap_or(u32::MAX);
-        if primitive >= scene.header().primitives {
-            let most = scene.header().primitives as usize;
+        if primitive as usize >= most {
             return Err(wrong(section, index, "primitive", primitive as usize, most));
         }
     }
@@ -143,6 +150,25 @@ fn check_radii(packs: &Packs<'_>) -> Result<(), BlobError> {
             for (index, &radius) in radii.iter().enumerate() {
                 within(section, index, radius, MOST << 8)?;
             }
+        }
+    }
+    Ok(())
+}
+
+/// Proves that triangles and spheres have records of their own: what any structure but the list and
+/// this one leads to.
+pub(crate) fn check_records(scene: &Scene<'_>) -> Result<(), BlobError> {
+    for (section, kind) in [
+        (SectionKind::Triangles, Kind::Triangle),
+        (SectionKind::Spheres, Kind::Sphere),
+    ] {
+        let (found, expected) = (scene.shapes.records(kind), scene.shapes.count(kind));
+        if found != expected {
+            return Err(BlobError::Count {
+                section,
+                found,
+                expected,
+            });
         }
     }
     Ok(())
@@ -261,6 +287,7 @@ fn check_homes(nodes: &[WideNode], scene: &Scene<'_>) -> Result<(), BlobError> {
         }
         return Ok(());
     }
+    check_records(scene)?;
     if homes.len() != shapes.total() {
         return Err(BlobError::Count {
             section,
@@ -345,11 +372,9 @@ fn check_boxes(nodes: &[WideNode], scene: &Scene<'_>) -> Result<usize, BlobError
                         let _ = waiting.push((number, bounds, after));
                         true
                     }
-                    (None, Some(leaf)) if leaf.count == 0 => match leaf.kind {
-                        Kind::Triangle => clusters.strips.bounds(leaf.first),
-                        _ => clusters.packs.bounds(leaf.first),
+                    (None, Some(leaf)) if leaf.count == 0 => {
+                        clusters.inside(leaf.kind, leaf.first, &bounds)
                     }
-                    .is_some_and(|inner| bounds.contains(&inner)),
                     (None, Some(leaf)) => scene.shapes.leaf_inside(leaf, &bounds),
                     (None, None) => false,
                 };
