@@ -4,7 +4,7 @@ use crate::random::Random;
 use glam::DVec3;
 use gridel_core::Structure;
 use gridel_host::blob::Blob;
-use gridel_host::compile::{Options, compile};
+use gridel_host::compile::{CompileError, Options, compile};
 use gridel_host::scene::{Material, MoleculeOptions, Object, Place, Scene, Shape, load};
 use std::path::{Path, PathBuf};
 
@@ -26,13 +26,21 @@ pub fn of(shapes: impl IntoIterator<Item = Shape>) -> Scene {
 /// A blob with every structure that is proved when it is loaded: tables of candidates take long to
 /// build and have tests of their own.
 pub fn blob(scene: &Scene, lattice_bits: u8) -> Blob {
+    blob_with_inside(scene, lattice_bits).expect("meshes with an inside")
+}
+
+/// The same, or `None` if the lattice leaves a closed mesh no inside.
+pub fn blob_with_inside(scene: &Scene, lattice_bits: u8) -> Option<Blob> {
     let all = Structure::ALL.into_iter();
     let options = Options {
         structures: all.filter(|structure| structure.is_proved()).collect(),
         lattice_bits,
         ..Options::default()
     };
-    compile(scene, &options).expect("compiles").blob
+    match compile(scene, &options) {
+        Err(CompileError::Flattened { .. }) => None,
+        compiled => Some(compiled.expect("compiles").blob),
+    }
 }
 
 /// A blob with every structure, the cylinder cubes with a number of gridels a side.

@@ -13,6 +13,8 @@ mod documents;
 mod explain;
 mod fixed_point;
 mod grids;
+#[path = "lattice/main.rs"]
+mod lattice;
 mod large_scenes;
 mod origins;
 mod reference;

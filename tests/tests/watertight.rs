@@ -222,13 +222,15 @@ fn stretched_boxes_are_closed() {
     for size in sizes {
         for lattice_bits in [16, 24] {
             let (vertices, triangles) = cut_box(DVec3::from_array(size), 8);
-            let blob = mesh(vertices, triangles, lattice_bits);
-            let scene = blob.scene().expect("a scene");
-            // Without a triangle the mesh is not closed.
-            if scene.count(Kind::Triangle) < 6 * 8 * 8 * 2 {
-                assert_eq!(lattice_bits, 16, "the lattice of 24 bits took triangles");
+            let shape = Shape::Mesh {
+                vertices,
+                triangles,
+            };
+            let Some(blob) = scenes::blob_with_inside(&scenes::of([shape]), lattice_bits) else {
+                assert_eq!(lattice_bits, 16, "the lattice of 24 bits left no inside");
                 continue;
-            }
+            };
+            let scene = blob.scene().expect("a scene");
             let name = format!("box {size:?}, {lattice_bits}");
             every_format!(no_leaks(&name, &scene, [0.0; 3], 1));
         }

@@ -188,7 +188,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The number, in scene-file order, of a primitive given by kind and slot. Below the number of
-    /// primitives; only a forged blob has two slots of one number.
+    /// primitives. Several slots have one number where a triangle was cut into pieces.
     #[inline]
     pub fn primitive(&self, kind: Kind, slot: u32) -> u32 {
         self.primitive_at(self.shapes.place(kind, slot))
@@ -201,9 +201,8 @@ impl<'a> Scene<'a> {
         self.key(place).0
     }
 
-    /// What decides between hits at the same t: the primitive's number, and between primitives of
-    /// one number, which only a forged blob has, kind and slot; so its answers do not depend on the
-    /// structure either.
+    /// What decides between hits at the same t: the primitive's number, and between pieces of one
+    /// primitive, kind and slot; so answers do not depend on the structure either.
     #[cfg_attr(feature = "wide", inline(always))]
     #[cfg_attr(not(feature = "wide"), inline)]
     pub(crate) fn key(&self, place: Place) -> (u32, u8, u32) {

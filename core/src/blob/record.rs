@@ -41,7 +41,7 @@ pub struct Header {
     /// Most primitives in a leaf.
     pub longest_leaf: u16,
     /// Number of primitives that the scene file has. Those that collapse on the lattice keep their
-    /// number and have no slot.
+    /// number and have no slot; triangles beside them may be cut into pieces, a slot each.
     pub primitives: u32,
     /// Number of objects.
     pub objects: u32,
@@ -245,7 +245,7 @@ pub struct Disc {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Cone {
-    /// Centre of the base in 1/256 unit.
+    /// Centre of the base in 1/256 unit, like all of the record perhaps finer than the lattice.
     pub base: [i32; 3],
     /// Centre of the other cap in 1/256 unit, not equal to `base`.
     pub apex: [i32; 3],

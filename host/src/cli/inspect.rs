@@ -129,7 +129,13 @@ fn limits(scene: &Scene<'_>) -> Limits {
 fn contents(scene: &Scene<'_>) -> Contents {
     let header = scene.header();
     let kinds = Kind::ALL.map(|kind| (kind.name(), scene.count(kind)));
-    let kept: usize = kinds.iter().map(|(_, count)| count).sum();
+    // A triangle that was cut has several slots.
+    let mut kept = vec![false; header.primitives as usize];
+    for kind in Kind::ALL {
+        for slot in 0..scene.count(kind) as u32 {
+            kept[scene.primitive(kind, slot) as usize] = true;
+        }
+    }
     Contents {
         structures: Structure::ALL
             .into_iter()
@@ -138,7 +144,7 @@ fn contents(scene: &Scene<'_>) -> Contents {
             .collect(),
         objects: header.objects,
         primitives: header.primitives,
-        collapsed: header.primitives as usize - kept,
+        collapsed: kept.into_iter().filter(|kept| !kept).count(),
         kinds: kinds.into_iter().filter(|&(_, count)| count > 0).collect(),
         lights: scene.lights().len(),
         materials: scene.materials().len(),

@@ -20,7 +20,7 @@ pub struct Source {
     pub blob: Blob,
     /// What compiling told, for a scene file.
     pub report: Option<compile::Report>,
-    /// What the importer told.
+    /// What the importer told, and of what the lattice moves far.
     pub warnings: Vec<String>,
     /// What a scene file calls its objects.
     pub names: Names,
@@ -100,11 +100,16 @@ impl Source {
         drop(progress);
         let Compiled { blob, report } =
             compiled.map_err(|error| Failure::compiling(path, error))?;
+        let mut warnings = imported.warnings;
+        if let Some(warning) = far_moved(&report, compiling.lattice_bits) {
+            warn(&warning);
+            warnings.push(warning);
+        }
         Ok(Self {
             path: path.to_owned(),
             blob,
             report: Some(report),
-            warnings: imported.warnings,
+            warnings,
             names: names(&imported.scene),
             made_by: Some((options.geometry.import.for_import(), compiling)),
         })
@@ -231,6 +236,23 @@ impl Source {
         }
         found
     }
+}
+
+/// Names the primitives that the lattice moves far.
+fn far_moved(report: &compile::Report, lattice_bits: u8) -> Option<String> {
+    const NAMED: usize = 3;
+    if report.far_moved.count() == 0 {
+        return None;
+    }
+    let remedy = if lattice_bits < *compile::LATTICE_BITS.end() {
+        "use more `--lattice-bits`"
+    } else {
+        "make them thicker, or discs"
+    };
+    Some(format!(
+        "the lattice moves the surfaces of solids whose axis is short, {}; {remedy}",
+        report.far_moved.names(NAMED).join(", ")
+    ))
 }
 
 /// Reads a scene file, warns of what its importer passed over, and changes what was asked for.

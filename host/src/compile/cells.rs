@@ -1,22 +1,19 @@
-//! Builds the regular grid and the octree: which primitives reach into which cells.
+//! Builds the regular grid, and what it shares with the octree: which primitives reach into which cells.
 
 use super::CompileError;
+use super::estimate::{Rays, ordinary_tests};
 use super::pairs::Flat;
 use super::writer::{Section, indices, section};
 use gridel_core::Structure;
 use gridel_core::accel::cells::{Divisions, cells_of, divide};
 use gridel_core::accel::grid::MARGIN;
-use gridel_core::accel::octree::{MOST_LEVELS, OctreeNode};
 use gridel_core::blob::SectionKind;
 use gridel_core::blob::record::{GridShape, UnitBox};
 
 /// Most bytes that a grid or an octree may take while it is built, its part of the blob included.
-const MOST_BYTES: u64 = 256 << 20;
+pub const MOST_BYTES: u64 = 256 << 20;
 /// Cells that a grid has for each primitive, where no other number is asked for.
 const CELLS_PER_PRIMITIVE: f64 = 4.0;
-/// Primitives in a cell of an octree that are not worth a split.
-const FEW: usize = 6;
-
 /// A grid or an octree as a blob holds it.
 #[derive(Debug, Default)]
 pub struct Cells {
@@ -28,7 +25,7 @@ pub struct Cells {
 }
 
 /// The longest of the lists that begin where one's start is and end where the next one begins.
-fn longest(starts: &[u32]) -> usize {
+pub fn longest(starts: &[u32]) -> usize {
     let lengths = starts.windows(2).map(|pair| pair[1] - pair[0]);
     lengths.max().unwrap_or(0) as usize
 }
@@ -66,8 +63,46 @@ pub fn slot_boxes(flat: &Flat, boxes: &[super::hierarchy::Primitive]) -> Vec<Uni
         .collect()
 }
 
+/// Divisions with which rays test fewer primitives than with `counts`, if that is more than in
+/// ordinary scenes: axes are halved or doubled as long as that saves tests.
+///
+/// Long primitives lie in many cells one behind the other, and a ray tests them in each.
+fn best_divisions(bounds: &UnitBox, boxes: &[UnitBox], mut counts: [u32; 3]) -> [u32; 3] {
+    let rays = Rays::new(boxes, bounds, 0.0);
+    let tests = |counts: [u32; 3]| {
+        let axes = divide(bounds, counts);
+        let ranges = boxes.iter().map(|bounds| cells_of(&axes, bounds, MARGIN));
+        let entries: u64 = ranges.map(|range| volume(&range)).sum();
+        entries as f64 * rays.share(counts)
+    };
+    let mut least = tests(counts);
+    if least <= ordinary_tests(boxes.len()) {
+        return counts;
+    }
+    loop {
+        let change = |axis: usize, how: u32| match how {
+            _ if bounds.0[axis][0] == bounds.0[axis][1] => 1,
+            0 => counts[axis].div_ceil(2),
+            1 => counts[axis],
+            _ => (2 * counts[axis]).min(Divisions::MOST),
+        };
+        let trials = (0..27).map(|trial| {
+            let counts = [
+                change(0, trial % 3),
+                change(1, trial / 3 % 3),
+                change(2, trial / 9),
+            ];
+            (tests(counts), counts)
+        });
+        match trials.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            Some((tests, changed)) if tests < least => (least, counts) = (tests, changed),
+            _ => return counts,
+        }
+    }
+}
+
 /// Builds a grid, with as many divisions as are asked for or as many cells as are usual; with fewer
-/// where these would exceed [`MOST_BYTES`].
+/// where these would exceed [`MOST_BYTES`], or rays would test the same primitives too often.
 ///
 /// # Errors
 /// If the divisions that are asked for exceed it.
@@ -88,6 +123,9 @@ pub fn grid(
             } else {
                 (*count).clamp(1, Divisions::MOST)
             };
+        }
+        if divisions.is_none() {
+            counts = best_divisions(bounds, boxes, counts);
         }
         let axes = divide(bounds, counts);
         let ranges = || boxes.iter().map(|bounds| cells_of(&axes, bounds, MARGIN));
@@ -153,58 +191,10 @@ fn fill<R: Iterator<Item = Range>>(
     }
 }
 
-/// Most bytes that are needed for each entry of an octree's finest cells while it is built: an inner
-/// node has more than [`FEW`] entries, so that there is hardly a child more than there are entries in
-/// its level, and arrays that grow may be twice as long as they are full.
-const OCTREE_ENTRY_BYTES: u64 = 192;
-
-/// Builds an octree.
-///
-/// # Errors
-/// If not even an octree of one cell keeps to [`MOST_BYTES`].
-pub fn octree(bounds: &UnitBox, boxes: &[UnitBox]) -> Result<Cells, CompileError> {
-    // Twice as fine as an octree of even leaves, and no finer than memory allows.
-    let mut levels = MOST_LEVELS.min((boxes.len().max(1).ilog2() / 3) + 2);
-    loop {
-        let axes = divide(bounds, [1 << levels; 3]);
-        let ranges: Vec<_> = boxes
-            .iter()
-            .map(|bounds| cells_of(&axes, bounds, 0))
-            .collect();
-        let entries: u64 = ranges.iter().map(volume).sum();
-        let needed = size_of_val(&ranges[..]) as u64 + OCTREE_ENTRY_BYTES * entries;
-        if needed > MOST_BYTES {
-            if levels > 0 {
-                levels -= 1;
-                continue;
-            }
-            return Err(CompileError::OverBudget {
-                structure: Structure::Octree.name(),
-                size: String::new(),
-                needed,
-                at_least: "at least ",
-                budget: MOST_BYTES,
-                remedy: "ask for another structure",
-            });
-        }
-        let octree = Nodes::build(&ranges, levels);
-        // The planes depend on the number of levels, so the deepest leaf decides it.
-        if octree.levels < levels {
-            levels = octree.levels;
-            continue;
-        }
-        return Ok(Cells {
-            sections: octree.sections(),
-            stack_depth: 7 * levels as usize + usize::from(levels > 0),
-            longest_list: longest(&octree.starts),
-        });
-    }
-}
-
 /// Cells along each axis, the first and the last.
-type Range = [[u32; 2]; 3];
+pub type Range = [[u32; 2]; 3];
 
-fn volume(range: &Range) -> u64 {
+pub fn volume(range: &Range) -> u64 {
     range
         .iter()
         .map(|[first, last]| u64::from(last - first) + 1)
@@ -220,79 +210,4 @@ fn for_each(range: &Range, mut cell: impl FnMut([u32; 3])) {
             }
         }
     }
-}
-
-/// An octree, level by level.
-#[derive(Default)]
-struct Nodes {
-    nodes: Vec<u32>,
-    starts: Vec<u32>,
-    slots: Vec<u32>,
-    levels: u32,
-}
-
-impl Nodes {
-    /// Builds an octree of at most so many levels over primitives that reach into ranges of the
-    /// finest cells.
-    fn build(ranges: &[Range], most_levels: u32) -> Self {
-        let mut octree = Self::default();
-        octree.starts.push(0);
-        if ranges.is_empty() {
-            return octree;
-        }
-        let all: Vec<u32> = (0..ranges.len() as u32).collect();
-        let mut level = vec![([0; 3], all)];
-        let mut size = 1 << most_levels;
-        while !level.is_empty() {
-            let mut below = Vec::new();
-            let next_level = octree.nodes.len() + level.len();
-            for (corner, slots) in level {
-                octree.nodes.push(if slots.is_empty() {
-                    OctreeNode::EMPTY.0
-                } else if slots.len() <= FEW || size == 1 {
-                    octree.slots.extend(&slots);
-                    octree.starts.push(octree.slots.len() as u32);
-                    OctreeNode::leaf(octree.starts.len() as u32 - 2).0
-                } else {
-                    let first = next_level + below.len();
-                    below.extend(split(corner, size / 2, &slots, ranges));
-                    first as u32
-                });
-            }
-            octree.levels += u32::from(!below.is_empty());
-            level = below;
-            size /= 2;
-        }
-        octree
-    }
-
-    fn sections(&self) -> Vec<Section> {
-        let some = !self.nodes.is_empty();
-        let starts = if some { &self.starts[..] } else { &[] };
-        vec![
-            section(SectionKind::OctreeNodes, &self.nodes),
-            indices(SectionKind::OctreeStarts, starts, 1),
-            indices(SectionKind::OctreeSlots, &self.slots, 1),
-        ]
-    }
-}
-
-/// The eight children of a node: their corners, and what reaches into them.
-fn split(
-    corner: [u32; 3],
-    half: u32,
-    slots: &[u32],
-    ranges: &[Range],
-) -> [([u32; 3], Vec<u32>); 8] {
-    std::array::from_fn(|sides| {
-        let corner = [0, 1, 2].map(|axis: usize| corner[axis] + half * (sides as u32 >> axis & 1));
-        let reaches = |slot: &&u32| {
-            let range = &ranges[**slot as usize];
-            let sides = range.iter().zip(corner);
-            sides
-                .into_iter()
-                .all(|([first, last], corner)| *first < corner + half && *last >= corner)
-        };
-        (corner, slots.iter().filter(reaches).copied().collect())
-    })
 }

@@ -19,8 +19,13 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// The finest lattice of a number of bits that holds the box from `lowest` to `highest`.
-    pub fn around(lowest: DVec3, highest: DVec3, bits: u8) -> Result<Self, CompileError> {
+    /// The finest lattice of a number of bits that holds the box from `lowest` to `highest`, or one
+    /// so many powers of two coarser.
+    pub fn around(
+        [lowest, highest]: [DVec3; 2],
+        bits: u8,
+        coarser: i32,
+    ) -> Result<Self, CompileError> {
         let half = ((highest - lowest) * 0.5).max_element();
         if !half.is_finite() {
             return Err(CompileError::Extent { size: 2.0 * half });
@@ -35,6 +40,7 @@ impl Lattice {
         while half > units * exp2(exponent) {
             exponent += 1;
         }
+        exponent += coarser;
         // Keeps steps and their inverses normal numbers.
         if !(-900..=900).contains(&exponent) {
             return Err(CompileError::Extent { size: 2.0 * half });
@@ -68,13 +74,23 @@ impl Lattice {
     }
 
     /// 1/256 units of one step.
-    fn fine_steps(&self) -> f64 {
+    pub fn fine_steps(&self) -> f64 {
         exp2(24 - i32::from(self.bits))
     }
 
     /// A point in units of the core, not snapped.
     pub fn in_units(&self, point: DVec3) -> DVec3 {
         (point - self.origin) / self.unit()
+    }
+
+    /// A point in 1/256 unit, not snapped.
+    pub fn in_fine(&self, point: DVec3) -> DVec3 {
+        self.in_units(point) * 256.0
+    }
+
+    /// A length in 1/256 unit, not snapped.
+    pub fn length_in_fine(&self, length: f64) -> f64 {
+        length / self.unit() * 256.0
     }
 
     /// A point in 1/256 unit, snapped.
@@ -86,11 +102,6 @@ impl Lattice {
     /// A length in 1/256 unit, snapped.
     pub fn snap_length(&self, length: f64) -> i32 {
         ((length / self.step()).round() * self.fine_steps()) as i32
-    }
-
-    /// Where a snapped point lies in the scene.
-    pub fn place(&self, snapped: [i32; 3]) -> DVec3 {
-        self.origin + DVec3::from_array(snapped.map(f64::from)) * (self.unit() / 256.0)
     }
 }
 

@@ -9,6 +9,7 @@ use super::candidates::{self, Budget, apex, ray_classes};
 use super::cells::{self, Cells, slot_boxes};
 use super::hierarchy::{Node, Primitive};
 use super::lattice::Lattice;
+use super::octree;
 use super::pairs::Flat;
 use super::primitives::Primitives;
 use super::surroundings::Surroundings;
@@ -147,7 +148,7 @@ impl Layout {
             }
             Structure::Octree => {
                 let boxes = slot_boxes(flat, ground.order);
-                Self::apart(structure, cells::octree(&ground.bounds, &boxes)?)
+                Self::apart(structure, octree::build(&ground.bounds, &boxes)?)
             }
             Structure::CylinderCube => {
                 let targets = ground.targets();

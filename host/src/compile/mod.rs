@@ -4,12 +4,19 @@ mod advice;
 mod builder;
 mod candidates;
 mod cells;
+mod cuts;
+mod direction;
+mod displacement;
 mod dual_split;
+mod estimate;
+mod flattened;
 mod hierarchy;
 mod lattice;
 mod layout;
+mod octree;
 mod pairs;
 mod primitives;
+mod solids;
 mod surroundings;
 mod volumes;
 mod wide;
@@ -98,8 +105,15 @@ pub struct Compiled {
 pub struct Report {
     /// Scene units of a lattice step.
     pub step: f64,
-    /// The farthest that snapping moved a point, in scene units.
+    /// The farthest that snapping moved a surface, in scene units: no point of the given surface of
+    /// any primitive is farther from its snapped one, and the other way round.
     pub largest_displacement: f64,
+    /// The same of each primitive in scene-file order, in steps of the lattice; 0 for those that are
+    /// left out.
+    #[serde(skip)]
+    pub displacements: Vec<f32>,
+    /// Primitives whose surface was moved by more than four steps of the lattice.
+    pub far_moved: LeftOut,
     /// Primitives that the lattice leaves nothing of; they keep their numbers.
     pub collapsed: LeftOut,
     /// Triangles that have no area in the scene file already; they keep their numbers, too.
@@ -145,6 +159,25 @@ pub enum CompileError {
     )]
     #[diagnostic(help("move the scene nearer to the origin"))]
     TooFar { middle: DVec3, size: f64 },
+    #[error(
+        "{object}: the closed mesh lies in one plane on the lattice, whose step is {step:e}, so it has \
+         no inside left"
+    )]
+    #[diagnostic(help(
+        "use more `--lattice-bits`, scale the mesh up across that plane, or put it into a scene of its \
+         own"
+    ))]
+    Flattened { object: String, step: f64 },
+    #[error(
+        "{collapsed} triangles collapse on the lattice; cutting their neighbours, so that meshes stay \
+         closed, makes {pieces} primitives of {most}"
+    )]
+    #[diagnostic(help("use more `--lattice-bits`, or scale the mesh less unevenly"))]
+    Slivers {
+        collapsed: usize,
+        pieces: usize,
+        most: usize,
+    },
     #[error("{bits} lattice bits are not possible")]
     #[diagnostic(help("use 10 to 24"))]
     LatticeBits { bits: u8 },
@@ -213,11 +246,10 @@ pub fn compile_telling(
     tell: Tell<'_>,
 ) -> Result<Compiled, CompileError> {
     check(scene, options)?;
-    let (lowest, highest) = primitives::extent(scene);
-    let lattice = Lattice::around(lowest, highest, options.lattice_bits)?;
-    let snapped = Primitives::snap(scene, &lattice)?;
+    let extent = primitives::extent(scene);
+    let (lattice, snapped) = snap(scene, extent, options.lattice_bits)?;
     let structures = held(&options.structures);
-    let surroundings = surroundings::Surroundings::of(scene, &lattice, (lowest, highest))?;
+    let surroundings = surroundings::Surroundings::of(scene, &lattice, extent)?;
     let started = Instant::now();
     let Hierarchies {
         root,
@@ -225,7 +257,11 @@ pub fn compile_telling(
         flat,
         wide,
     } = Hierarchies::build(scene, &snapped, &structures, options)?;
-    let bounds = hierarchy::bounds(&order);
+    let mut bounds = hierarchy::bounds(&order).unwrap_or(UnitBox([[0; 2]; 3]));
+    if structures.contains(&Structure::Octree) {
+        let boxes: Vec<_> = order.iter().map(|primitive| primitive.bounds).collect();
+        bounds = octree::bounds(&bounds, &boxes);
+    }
     let sah_cost = root.as_ref().map(hierarchy::sah_cost);
     let ground = Ground {
         scene,
@@ -235,7 +271,7 @@ pub fn compile_telling(
         wide: &wide,
         order: &order,
         primitives: &snapped,
-        bounds: bounds.unwrap_or(UnitBox([[0; 2]; 3])),
+        bounds,
         surroundings: &surroundings,
         options,
         tell,
@@ -271,9 +307,15 @@ pub fn compile_telling(
             advice,
         });
     }
+    let fine_steps = lattice.fine_steps() as f32;
+    let displacements = snapped.displacements.iter().map(|it| it / fine_steps);
+    let displacements: Vec<f32> = displacements.collect();
+    let largest_displacement = displacements.iter().copied().fold(0.0, f32::max);
     let report = Report {
         step: lattice.step(),
-        largest_displacement: snapped.largest_displacement,
+        largest_displacement: f64::from(largest_displacement) * lattice.step(),
+        displacements,
+        far_moved: snapped.far_moved.clone(),
         collapsed: snapped.collapsed.clone(),
         without_area: snapped.without_area.clone(),
         sah_cost,
@@ -285,6 +327,24 @@ pub fn compile_telling(
         tables,
     };
     Ok(Compiled { blob, report })
+}
+
+/// Snaps a scene of some extent to the finest lattice that holds it once it is snapped.
+fn snap(
+    scene: &Scene,
+    (lowest, highest): (DVec3, DVec3),
+    bits: u8,
+) -> Result<(Lattice, Primitives), CompileError> {
+    let mut coarser = 0;
+    loop {
+        let lattice = Lattice::around([lowest, highest], bits, coarser)?;
+        let primitives = Primitives::snap(scene, &lattice)?;
+        if !primitives.needs_room {
+            return Ok((lattice, primitives));
+        }
+        // A power of two makes as much room as the scene takes; no surface is moved that far.
+        coarser += 1;
+    }
 }
 
 /// That coordinates are numbers, and that there are as many lattice bits as can be.
@@ -381,9 +441,8 @@ impl Hierarchies {
 /// # Errors
 /// If the scene does not fit a lattice.
 pub fn cube_census(scene: &Scene, gridels: u32) -> Result<CubeCensus, CompileError> {
-    let (lowest, highest) = primitives::extent(scene);
-    let lattice = Lattice::around(lowest, highest, Options::default().lattice_bits)?;
-    let snapped = Primitives::snap(scene, &lattice)?;
+    let bits = Options::default().lattice_bits;
+    let (_, snapped) = snap(scene, primitives::extent(scene), bits)?;
     let mut order: Vec<Primitive> = snapped.boxes();
     let root = hierarchy::build(&mut order, Splits::Swept, Options::default().leaf_size);
     let flat = root.as_ref().map(|root| pairs::flatten(root, &order));

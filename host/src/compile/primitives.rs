@@ -1,8 +1,12 @@
 //! The scene's shapes as primitives on the lattice.
 
 use super::CompileError;
+use super::cuts::{self, Sliver};
+use super::displacement;
+use super::flattened;
 use super::hierarchy::Primitive;
 use super::lattice::Lattice;
+use super::solids::{self, Snapped, SnappedSphere, disc_reach};
 use crate::report::grouped;
 use crate::scene::{Object, Scene, Shape};
 use glam::{DVec3, IVec3};
@@ -13,15 +17,10 @@ use std::collections::HashMap;
 
 /// Most primitives in a blob.
 const MOST: usize = 1 << 24;
-/// Primitives that are left out and named; the rest are counted.
+/// Primitives that are left out or moved far and named; the rest are counted.
 const NAMED: usize = 20;
-
-/// A sphere in 1/256 unit.
-#[derive(Clone, Copy, Debug)]
-pub struct SnappedSphere {
-    pub center: [i32; 3],
-    pub radius: i32,
-}
+/// Steps of the lattice that a surface may be moved before that is worth a warning.
+const FAR_MOVED: f64 = 4.0;
 
 /// Primitives of all kinds, each in scene-file order.
 #[derive(Debug, Default)]
@@ -43,11 +42,19 @@ pub struct Primitives {
     pub collapsed: LeftOut,
     /// Triangles without area.
     pub without_area: LeftOut,
-    /// The farthest that a point was moved, in scene units.
-    pub largest_displacement: f64,
+    /// For each primitive in scene-file order, how far apart the given and the snapped surface are at
+    /// most, in 1/256 unit; 0 for those that are left out.
+    pub displacements: Vec<f32>,
+    /// Primitives whose surface was moved by more than [`FAR_MOVED`] steps.
+    pub far_moved: LeftOut,
+    /// Triangles that are no longer triangles on the lattice.
+    slivers: Vec<Sliver>,
+    /// A primitive reaches beyond the lattice, because it had to be moved that far.
+    pub needs_room: bool,
 }
 
-/// Primitives that a blob leaves out: the first of them by name, and how many there are.
+/// Primitives that a blob leaves out, or that were moved far: the first of them by name, and how many
+/// there are.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LeftOut {
     names: Vec<String>,
@@ -149,14 +156,6 @@ pub fn is_finite(shape: &Shape) -> bool {
     }
 }
 
-/// How far a unit disc with a normal reaches along each axis.
-fn disc_reach(normal: DVec3) -> DVec3 {
-    let normal = (normal / normal.abs().max_element()).normalize();
-    (DVec3::ONE - normal * normal)
-        .max(DVec3::ZERO)
-        .map(f64::sqrt)
-}
-
 impl Primitives {
     /// Snaps everything.
     pub fn snap(scene: &Scene, lattice: &Lattice) -> Result<Self, CompileError> {
@@ -166,7 +165,40 @@ impl Primitives {
             primitives.object_first.push(primitives.total);
             primitives.add(object, lattice, &mut vertex_numbers)?;
         }
+        primitives.cut(&mut vertex_numbers)?;
         Ok(primitives)
+    }
+
+    /// Cuts the neighbours of slivers at the slivers' corners.
+    fn cut(&mut self, vertex_numbers: &mut HashMap<[i32; 3], u32>) -> Result<(), CompileError> {
+        let cuts = cuts::Cuts::around(&self.slivers);
+        if cuts.is_empty() {
+            return Ok(());
+        }
+        let triangles = std::mem::take(&mut self.triangles);
+        let numbers = std::mem::take(&mut self.numbers[Kind::Triangle as usize]);
+        for (triangle, number) in triangles.into_iter().zip(numbers) {
+            let corners = triangle.map(|vertex| self.vertices[vertex as usize]);
+            for piece in cuts.pieces(corners) {
+                let piece = piece.map(|corner| {
+                    *vertex_numbers.entry(corner).or_insert_with(|| {
+                        self.vertices.push(corner);
+                        self.vertices.len() as u32 - 1
+                    })
+                });
+                self.triangles.push(piece);
+                self.numbers[Kind::Triangle as usize].push(number);
+            }
+        }
+        let pieces: usize = self.numbers.iter().map(Vec::len).sum();
+        if pieces > self.total as usize {
+            return Err(CompileError::Slivers {
+                collapsed: self.slivers.len(),
+                pieces,
+                most: self.total as usize,
+            });
+        }
+        Ok(())
     }
 
     /// The box of every primitive, for the builder.
@@ -221,13 +253,12 @@ impl Primitives {
                 vertices,
                 triangles,
             } => {
-                let snapped: Vec<_> = vertices.iter().map(|&v| self.point(v, lattice)).collect();
+                let snapped: Vec<_> = vertices.iter().map(|&v| lattice.snap(v)).collect();
                 // Their numbers among all distinct ones, as soon as they are looked up.
                 let mut numbers = vec![None; vertices.len()];
                 for (number, triangle) in triangles.iter().enumerate() {
                     let corners = triangle.map(|vertex| snapped[vertex as usize]);
                     if is_degenerate(corners) {
-                        self.total += 1;
                         let [a, b, c] = triangle.map(|vertex| vertices[vertex as usize]);
                         let name = format!("{} ({}, triangle {number})", object.name, object.place);
                         if (b - a).cross(c - a) == DVec3::ZERO {
@@ -235,7 +266,16 @@ impl Primitives {
                         } else {
                             self.collapsed.add(name);
                         }
+                        self.slivers.push(corners);
+                        self.leave_out();
                     } else {
+                        let displacement = triangle
+                            .map(|vertex| {
+                                let given = lattice.in_fine(vertices[vertex as usize]);
+                                displacement::point(given, snapped[vertex as usize])
+                            })
+                            .into_iter()
+                            .fold(0.0, f64::max);
                         let triangle = triangle.map(|vertex| {
                             *numbers[vertex as usize].get_or_insert_with(|| {
                                 let corner = snapped[vertex as usize];
@@ -246,51 +286,35 @@ impl Primitives {
                             })
                         });
                         self.triangles.push(triangle);
-                        self.keep(Kind::Triangle);
+                        self.keep(Kind::Triangle, displacement);
                     }
+                }
+                if flattened::is_flattened((vertices, &snapped), triangles) {
+                    return Err(CompileError::Flattened {
+                        object: format!("{} ({})", object.name, object.place),
+                        step: lattice.step(),
+                    });
                 }
             }
             Shape::Sphere { center, radius } => {
-                let center = self.point(*center, lattice);
-                let radius = self.length(*radius, lattice);
-                if radius == 0 {
-                    self.collapse(object);
-                } else {
-                    self.spheres.push(SnappedSphere { center, radius });
-                    self.keep(Kind::Sphere);
-                }
+                let sphere = solids::sphere(*center, *radius, lattice);
+                self.add_solid(object, Kind::Sphere, sphere, lattice, |all| {
+                    &mut all.spheres
+                });
             }
             Shape::Box { min, max } => {
-                let (lowest, highest) = (self.point(*min, lattice), self.point(*max, lattice));
-                self.boxes.push(Cuboid { lowest, highest });
-                self.keep(Kind::Box);
+                let cuboid = solids::cuboid([*min, *max], lattice);
+                self.add_solid(object, Kind::Box, Some(cuboid), lattice, |all| {
+                    &mut all.boxes
+                });
             }
             Shape::Disc {
                 center,
                 normal,
                 radius,
             } => {
-                let center = self.point(*center, lattice);
-                let radius = self.length(*radius, lattice);
-                // The direction to a part in 2^24.
-                let normal = *normal / normal.abs().max_element();
-                let normal = (normal * f64::from(1 << 24))
-                    .round()
-                    .to_array()
-                    .map(|x| x as i32);
-                if radius == 0 {
-                    self.collapse(object);
-                } else {
-                    let reach = disc_reach(DVec3::from_array(normal.map(f64::from)));
-                    let bounds = around(&[(center, reach * f64::from(radius))]);
-                    self.discs.push(Disc {
-                        center,
-                        normal,
-                        radius,
-                        bounds,
-                    });
-                    self.keep(Kind::Disc);
-                }
+                let disc = solids::disc(*center, *normal, *radius, lattice);
+                self.add_solid(object, Kind::Disc, disc, lattice, |all| &mut all.discs);
             }
             Shape::Cone {
                 base,
@@ -298,28 +322,9 @@ impl Primitives {
                 apex,
                 apex_radius,
             } => {
-                let (base, apex) = (self.point(*base, lattice), self.point(*apex, lattice));
-                let base_radius = self.length(*base_radius, lattice);
-                let apex_radius = self.length(*apex_radius, lattice);
-                if base == apex || base_radius + apex_radius == 0 {
-                    self.collapse(object);
-                } else {
-                    let axis = DVec3::from_array(apex.map(f64::from))
-                        - DVec3::from_array(base.map(f64::from));
-                    let reach = disc_reach(axis);
-                    let bounds = around(&[
-                        (base, reach * f64::from(base_radius)),
-                        (apex, reach * f64::from(apex_radius)),
-                    ]);
-                    self.cones.push(Cone {
-                        base,
-                        apex,
-                        base_radius,
-                        apex_radius,
-                        bounds,
-                    });
-                    self.keep(Kind::Cone);
-                }
+                let ends = [(*base, *base_radius), (*apex, *apex_radius)];
+                let cone = solids::cone(ends, lattice);
+                self.add_solid(object, Kind::Cone, cone, lattice, |all| &mut all.cones);
             }
         }
         if self.total as usize > MOST {
@@ -333,62 +338,66 @@ impl Primitives {
         Ok(())
     }
 
-    /// Gives the primitive that was just added its number.
-    fn keep(&mut self, kind: Kind) {
+    /// Adds a sphere, box, disc or cone, or passes over one that the lattice leaves nothing of.
+    fn add_solid<T>(
+        &mut self,
+        object: &Object,
+        kind: Kind,
+        solid: Option<Snapped<T>>,
+        lattice: &Lattice,
+        records: impl FnOnce(&mut Self) -> &mut Vec<T>,
+    ) {
+        let name = || format!("{} ({})", object.name, object.place);
+        let Some(Snapped {
+            record,
+            displacement,
+            fits,
+        }) = solid
+        else {
+            self.collapsed.add(name());
+            return self.leave_out();
+        };
+        records(self).push(record);
+        self.needs_room |= !fits;
+        let steps = displacement / lattice.fine_steps();
+        if steps > FAR_MOVED {
+            self.far_moved
+                .add(format!("{}: by {steps:.1} steps", name()));
+        }
+        self.keep(kind, displacement);
+    }
+
+    /// Gives the primitive that was just added its number; its surface was moved by so many 1/256
+    /// units.
+    fn keep(&mut self, kind: Kind, displacement: f64) {
         self.numbers[kind as usize].push(self.total);
+        self.displacements.push(rounded_up(displacement));
         self.total += 1;
     }
 
-    /// Passes over an object that the lattice leaves nothing of.
-    fn collapse(&mut self, object: &Object) {
+    /// Passes over a primitive that the lattice leaves nothing of.
+    fn leave_out(&mut self) {
+        self.displacements.push(0.0);
         self.total += 1;
-        self.collapsed
-            .add(format!("{} ({})", object.name, object.place));
     }
+}
 
-    fn point(&mut self, point: DVec3, lattice: &Lattice) -> [i32; 3] {
-        let snapped = lattice.snap(point);
-        self.displaced((lattice.place(snapped) - point).abs().max_element());
-        snapped
-    }
-
-    fn length(&mut self, length: f64, lattice: &Lattice) -> i32 {
-        let snapped = lattice.snap_length(length);
-        self.displaced((f64::from(snapped) * lattice.unit() / 256.0 - length).abs());
-        snapped
-    }
-
-    fn displaced(&mut self, distance: f64) {
-        self.largest_displacement = self.largest_displacement.max(distance);
+/// The least `f32` that is no less.
+fn rounded_up(x: f64) -> f32 {
+    let nearest = x as f32;
+    if f64::from(nearest) < x {
+        nearest.next_up()
+    } else {
+        nearest
     }
 }
 
 /// Whether the corners lie on a line, exactly.
-fn is_degenerate([a, b, c]: [[i32; 3]; 3]) -> bool {
+pub fn is_degenerate([a, b, c]: [[i32; 3]; 3]) -> bool {
     let edge = |to: [i32; 3]| [0, 1, 2].map(|k| i64::from(to[k]) - i64::from(a[k]));
     let (p, q) = (edge(b), edge(c));
     (0..3).all(|k| {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
         p[i] * q[j] == p[j] * q[i]
     })
-}
-
-/// The box around points with a reach along each axis, rounded outward by more than the reach can
-/// be off.
-fn around(points: &[([i32; 3], DVec3)]) -> UnitBox {
-    let ends = points.iter().map(|&(center, reach)| {
-        let center = DVec3::from_array(center.map(f64::from));
-        let slack = reach * 1e-9;
-        (
-            (center - reach - slack).floor(),
-            (center + reach + slack).ceil(),
-        )
-    });
-    let (lowest, highest) = ends
-        .reduce(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)))
-        .unwrap_or_default();
-    UnitBox::around(
-        lowest.to_array().map(|x| x as i32),
-        highest.to_array().map(|x| x as i32),
-    )
 }

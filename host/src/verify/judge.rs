@@ -94,35 +94,39 @@ pub enum Wrong {
 
 /// The primitives of a scene as exact shapes.
 pub struct Judge {
+    /// In ascending order of the primitives' numbers, which the pieces of a cut triangle share.
     solids: Vec<(u32, UnitBox, Solid)>,
-    /// The place of each primitive among them.
-    places: Vec<u32>,
 }
 
 impl Judge {
     pub fn of(scene: &Scene<'_>) -> Self {
         let mut solids = Vec::new();
-        let mut places = vec![u32::MAX; scene.header().primitives as usize];
         for kind in Kind::ALL {
             for slot in 0..scene.count(kind) {
                 let bounds = scene.primitive_bounds(kind, slot);
                 let solid = scene.geometry(kind, slot).map(solid);
                 let primitive = scene.primitive(kind, slot as u32);
                 if let (Some(bounds), Some(solid)) = (bounds, solid) {
-                    if let Some(place) = places.get_mut(primitive as usize) {
-                        *place = solids.len() as u32;
-                    }
                     solids.push((primitive, bounds, solid));
                 }
             }
         }
-        Self { solids, places }
+        solids.sort_by_key(|&(primitive, _, _)| primitive);
+        Self { solids }
     }
 
-    /// The shape of a primitive.
+    /// The shape of a primitive, or of a piece of it.
     pub fn solid(&self, primitive: u32) -> Option<&Solid> {
-        let &place = self.places.get(primitive as usize)?;
-        self.solids.get(place as usize).map(|(_, _, solid)| solid)
+        self.pieces(primitive).next()
+    }
+
+    /// The shapes of the pieces of a primitive: one, unless it is a triangle that was cut.
+    fn pieces(&self, primitive: u32) -> impl Iterator<Item = &Solid> {
+        let first = self.solids.partition_point(|it| it.0 < primitive);
+        let behind = self.solids.iter().skip(first);
+        behind
+            .take_while(move |it| it.0 == primitive)
+            .map(|(_, _, solid)| solid)
     }
 
     /// Whether an answer is right, within [`STEPS`].
@@ -137,10 +141,13 @@ impl Judge {
         let begin = Real::of(tmin);
         let mut end = Real::of(tmax.min(1e300));
         if let Some(answer) = answer {
-            let solid = self.solid(answer.primitive).ok_or(Wrong::NotThere)?;
-            let off = STEPS * step(format, ray.magnitude(answer.t).max(solid.extent()));
-            let there =
-                Crossings::new(solid, &line, off).may_be_met_at(&Real::of(answer.t), &begin);
+            let pieces = || self.pieces(answer.primitive);
+            let extent = pieces().map(Solid::extent).reduce(f64::max);
+            let extent = extent.ok_or(Wrong::NotThere)?;
+            let off = STEPS * step(format, ray.magnitude(answer.t).max(extent));
+            let there = pieces().any(|solid| {
+                Crossings::new(solid, &line, off).may_be_met_at(&Real::of(answer.t), &begin)
+            });
             if !there || answer.t < tmin - off || answer.t > tmax + off {
                 return Err(Wrong::NotThere);
             }
@@ -174,7 +181,7 @@ impl Judge {
         t: f64,
         within: f64,
     ) -> bool {
-        self.solid(primitive).is_some_and(|solid| {
+        self.pieces(primitive).any(|solid| {
             let off = within + STEPS * step(format, ray.magnitude(t).max(solid.extent()));
             let begin = Real::of(ray.interval[0]);
             Crossings::new(solid, &ray.line(), off).may_be_met_at(&Real::of(t), &begin)

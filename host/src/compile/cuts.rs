@@ -1,0 +1,142 @@
+//! Keeps closed meshes closed where triangles collapse on the lattice.
+//!
+//! A triangle whose corners a, b, c are rounded onto a line, b between a and c, is left out. What
+//! was its neighbour across the edge a-c then meets those across a-b and b-c, and has no vertex at b:
+//! a T-junction, and rays slip through, because only an edge that two triangles share is watertight.
+//! So the neighbour is cut at b into two triangles. b lies on the edge exactly, so the surface is the
+//! same.
+//!
+//! Slivers that share edges make up a cluster, which lies on one line. The edges that an odd number
+//! of its slivers share are its border: there a closed mesh has an odd number of other triangles. Each
+//! edge of the border is cut at all ends of others that lie on it. The border is a cycle, because it
+//! is that of the slivers; so its parts between neighbouring points are there an even number of
+//! times each, and the mesh is closed again.
+
+use std::collections::HashMap;
+
+/// The corners of a triangle on a line, in 1/256 unit.
+pub type Sliver = [Point; 3];
+
+/// A point in 1/256 unit. On a line, points lie in their order as arrays.
+type Point = [i32; 3];
+
+/// An edge, the lower end first.
+type Edge = [Point; 2];
+
+fn edge(a: Point, b: Point) -> Edge {
+    [a.min(b), a.max(b)]
+}
+
+fn edges([a, b, c]: [Point; 3]) -> impl Iterator<Item = Edge> {
+    let edges = [edge(a, b), edge(b, c), edge(c, a)];
+    edges.into_iter().filter(|[low, high]| low < high)
+}
+
+/// Where edges are cut.
+#[derive(Debug, Default)]
+pub struct Cuts {
+    /// For edges that are cut, the points between their ends, in ascending order.
+    points: HashMap<Edge, Vec<Point>>,
+}
+
+impl Cuts {
+    /// The cuts that slivers make necessary.
+    pub fn around(slivers: &[Sliver]) -> Self {
+        // Of each edge how often slivers have it, and a sliver that does.
+        let mut shared: HashMap<Edge, (usize, usize)> = HashMap::new();
+        let mut clusters = Clusters::new(slivers.len());
+        for (number, &sliver) in slivers.iter().enumerate() {
+            for edge in edges(sliver) {
+                let (count, first) = shared.entry(edge).or_insert((0, number));
+                *count += 1;
+                clusters.join(*first, number);
+            }
+        }
+        let mut border: Vec<(usize, Edge)> = shared
+            .into_iter()
+            .filter(|(_, (count, _))| count % 2 == 1)
+            .map(|(edge, (_, sliver))| (clusters.of(sliver), edge))
+            .collect();
+        border.sort_unstable();
+        let mut cuts = Self::default();
+        for cluster in border.chunk_by(|a, b| a.0 == b.0) {
+            let mut ends: Vec<Point> = cluster.iter().flat_map(|(_, edge)| *edge).collect();
+            ends.sort_unstable();
+            ends.dedup();
+            for &(_, edge) in cluster {
+                let [low, high] = edge;
+                let first = ends.partition_point(|end| *end <= low);
+                let last = ends.partition_point(|end| *end < high);
+                if first < last {
+                    cuts.points.insert(edge, ends[first..last].to_vec());
+                }
+            }
+        }
+        cuts
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// The pieces that a triangle is cut into, turned as it is: the triangle alone where no edge of
+    /// it is cut.
+    pub fn pieces(&self, corners: [Point; 3]) -> Vec<[Point; 3]> {
+        let cut_edges = [0, 1, 2].map(|side: usize| {
+            let (from, to) = (corners[side], corners[(side + 1) % 3]);
+            let mut points = self.points.get(&edge(from, to)).cloned();
+            if from > to {
+                points.iter_mut().for_each(|points| points.reverse());
+            }
+            points.unwrap_or_default()
+        });
+        let mut pieces = Vec::new();
+        divide(corners, cut_edges, &mut pieces);
+        pieces
+    }
+}
+
+/// Cuts a triangle at points of its edges, which are those from each corner to the next one.
+fn divide([a, b, c]: [Point; 3], [mut ab, bc, ca]: [Vec<Point>; 3], pieces: &mut Vec<[Point; 3]>) {
+    if ab.is_empty() {
+        if bc.is_empty() && ca.is_empty() {
+            pieces.push([a, b, c]);
+        } else {
+            divide([b, c, a], [bc, ca, ab], pieces);
+        }
+        return;
+    }
+    // In the middle, so that the pieces are few deep.
+    let behind = ab.split_off(ab.len() / 2);
+    let (middle, behind) = (behind[0], behind[1..].to_vec());
+    divide([a, middle, c], [ab, Vec::new(), ca], pieces);
+    divide([middle, b, c], [behind, bc, Vec::new()], pieces);
+}
+
+/// Slivers that share edges, one with the next.
+struct Clusters {
+    /// For each sliver another one of its cluster, or itself.
+    leads_to: Vec<usize>,
+}
+
+impl Clusters {
+    fn new(slivers: usize) -> Self {
+        Self {
+            leads_to: (0..slivers).collect(),
+        }
+    }
+
+    /// The sliver that stands for a sliver's cluster: the first one of it.
+    fn of(&mut self, mut sliver: usize) -> usize {
+        while self.leads_to[sliver] != sliver {
+            self.leads_to[sliver] = self.leads_to[self.leads_to[sliver]];
+            sliver = self.leads_to[sliver];
+        }
+        sliver
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.of(a), self.of(b));
+        self.leads_to[a.max(b)] = a.min(b);
+    }
+}
