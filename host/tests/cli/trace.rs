@@ -2,7 +2,7 @@
 
 use crate::program::Folder;
 use glam::DVec3;
-use gridel_core::{Format, NoCount, Structure};
+use gridel_core::{Format, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::trace::{Query, SceneHit, SceneRay, trace};
 
@@ -102,13 +102,7 @@ fn the_file_holds_what_the_library_finds() {
                 any: false,
             };
             let mut expected = vec![SceneHit::MISS; rows.len()];
-            trace(
-                &scene,
-                &scene_rays(&rows),
-                query,
-                &mut expected,
-                &mut NoCount,
-            );
+            trace(&scene, &scene_rays(&rows), query, &mut expected);
             assert!(expected.iter().any(|hit| hit.object == 2));
             for accel in ["list", "bvh", "flagged", "wide"] {
                 let found = traced(&folder, &["--format", format.name(), "--accel", accel]);
