@@ -16,6 +16,12 @@ pub fn part_of(quick: usize, full: usize) -> usize {
     if self::full() { full } else { quick }
 }
 
+/// Every how many of many like cases are tested by the longest tests: all where the environment says
+/// `GRIDEL_CI=1` or `GRIDEL_FULL=1`, or else each third.
+pub fn step() -> usize {
+    if third_of(3) == 3 { 1 } else { 3 }
+}
+
 /// `count` where the environment says `GRIDEL_CI=1` or `GRIDEL_FULL=1`, or else a third of it: for the
 /// longest tests.
 pub fn third_of(count: usize) -> usize {
