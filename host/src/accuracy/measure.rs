@@ -75,13 +75,23 @@ impl Cost {
         }
     }
 
-    /// The largest less the smallest, as a part of the median; `None` of a single repeat, which
-    /// tells nothing of it.
-    pub fn spread(&self) -> Option<f64> {
+    /// The least and the largest of the repeats; `None` of a single one, which tells nothing of others.
+    pub fn interval(&self) -> Option<[f64; 2]> {
         let largest = self.seconds.iter().copied().fold(0.0, f64::max);
         let least = self.seconds.iter().copied().fold(f64::INFINITY, f64::min);
-        let spread = (largest - least).max(0.0) / self.time().max(f64::MIN_POSITIVE);
-        (self.seconds.len() > 1).then_some(spread)
+        (self.seconds.len() > 1).then_some([least, largest])
+    }
+
+    /// Whether every repeat took less than every repeat of another.
+    pub fn is_below(&self, other: &Self) -> bool {
+        let both = self.interval().zip(other.interval());
+        both.is_some_and(|([_, largest], [least, _])| largest < least)
+    }
+
+    /// The largest less the smallest, as a part of the median.
+    pub fn spread(&self) -> Option<f64> {
+        let [least, largest] = self.interval()?;
+        Some((largest - least) / self.time().max(f64::MIN_POSITIVE))
     }
 
     /// The spread as tables show it.

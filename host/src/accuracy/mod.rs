@@ -37,14 +37,45 @@ impl Results {
     }
 }
 
-/// Which points nothing beats: no other is as fast and as right, and better in one of the two.
+/// Which points nothing beats: no other is as right at a cost that is surely no higher, and better in one
+/// of the two. Costs are those of [`Cost::is_below`].
 pub fn frontier(points: &[Point]) -> Vec<bool> {
+    frontier_by(points, |point| point.errors.rmse)
+}
+
+/// The same by another error.
+pub fn frontier_by(points: &[Point], error: impl Fn(&Point) -> f64) -> Vec<bool> {
     let beats = |a: &Point, b: &Point| {
-        let (time, error) = (a.cost.time() - b.cost.time(), a.errors.rmse - b.errors.rmse);
-        time <= 0.0 && error <= 0.0 && (time < 0.0 || error < 0.0)
+        let cheaper = a.is_cheaper(b);
+        let no_dearer = cheaper || a.does_the_work_of(b);
+        let (a, b) = (error(a), error(b));
+        no_dearer && a <= b && (cheaper || a < b)
     };
     let unbeaten = |b: &Point| !points.iter().any(|a| beats(a, b));
     points.iter().map(unbeaten).collect()
+}
+
+impl Point {
+    /// Whether it surely costs less: by time where the repeats of both tell them apart, else by rays and
+    /// tests, which repeat exactly and compare within a number format.
+    fn is_cheaper(&self, other: &Self) -> bool {
+        if self.cost.is_below(&other.cost) {
+            return true;
+        }
+        let (own, others) = (&self.cost, &other.cost);
+        self.setting.format == other.setting.format
+            && !others.is_below(own)
+            && own.rays <= others.rays
+            && own.tests <= others.tests
+            && !self.does_the_work_of(other)
+    }
+
+    /// Whether both cast the same rays and make the same tests in the same format, and times tell nothing
+    /// else.
+    fn does_the_work_of(&self, other: &Self) -> bool {
+        let work = |point: &Self| (point.setting.format, point.cost.rays, point.cost.tests);
+        work(self) == work(other) && !other.cost.is_below(&self.cost)
+    }
 }
 
 /// The cheapest point whose root mean square error is within a bound: by time on this machine, or
@@ -74,12 +105,16 @@ pub fn sentences(base: &Setting, points: &[Point]) -> Vec<String> {
     let mut sentences = Vec::new();
     for point in alone(Lever::Format) {
         if point.setting != *base {
+            let ratio = Ratio::of(&point.cost, &start.cost);
+            let time = match ratio.is_noise() {
+                true => format!("shows {}", ratio.noise_text()),
+                false => format!("takes {}", ratio.factor_text()),
+            };
             sentences.push(format!(
-                "`{}` instead of `{}` takes {} the time and makes the error {} as large.",
+                "`{}` instead of `{}` {time}, and {}.",
                 point.setting.format.name(),
                 base.format.name(),
-                factor(point.cost.time() / start.cost.time()),
-                factor(point.errors.rmse / start.errors.rmse),
+                error_text(start.errors.rmse, point.errors.rmse, |ratio| ratio),
             ));
         }
     }
@@ -126,15 +161,21 @@ pub fn sentences(base: &Setting, points: &[Point]) -> Vec<String> {
         let each = |ratio: f64| ratio.powf(step / (to - from));
         let bytes = last.cost.blob_bytes as f64 / first.cost.blob_bytes as f64;
         let memory = if lever == Lever::LatticeBits {
-            format!(", and {} of the blob", part(1.0 - each(bytes)))
+            let saved = 1.0 - each(bytes);
+            let verb = if saved < 0.0 { "adds" } else { "saves" };
+            format!(", {verb} {} of the blob", part(saved.abs()))
         } else {
             String::new()
         };
+        let ratio = Ratio::of(&last.cost, &first.cost).map(each);
+        let time = match ratio.is_noise() {
+            true => format!("shows {}", ratio.noise_text()),
+            false => ratio.saving_text(),
+        };
         sentences.push(format!(
-            "{what} saves {} of the time{memory}, and makes the error {} as large, on average from {} \
-             to {}; that is {} of display white at the first and {} at the last.",
-            part(1.0 - each(last.cost.time() / first.cost.time())),
-            factor(each(last.errors.rmse / first.errors.rmse)),
+            "{what} {time}{memory}, and {}, on average from {} to {}; that is {} of display white at the \
+             first and {} at the last.",
+            error_text(first.errors.rmse, last.errors.rmse, each),
             first.setting.value(lever),
             last.setting.value(lever),
             significant(round(first.errors.rmse)),
@@ -142,6 +183,83 @@ pub fn sentences(base: &Setting, points: &[Point]) -> Vec<String> {
         ));
     }
     sentences
+}
+
+/// A ratio of times, and between what it lies by the repeats of both; `None` where one was timed once.
+#[derive(Clone, Copy, Debug)]
+struct Ratio {
+    median: f64,
+    ends: Option<[f64; 2]>,
+}
+
+impl Ratio {
+    fn of(cost: &Cost, to: &Cost) -> Self {
+        let ends = cost.interval().zip(to.interval());
+        Self {
+            median: cost.time() / to.time(),
+            ends: ends.map(|([low, high], [least, most])| [low / most, high / least]),
+        }
+    }
+
+    /// The ratio after a function that grows.
+    fn map(self, function: impl Fn(f64) -> f64) -> Self {
+        Self {
+            median: function(self.median),
+            ends: self.ends.map(|ends| ends.map(&function)),
+        }
+    }
+
+    /// Whether it may as well be 1.
+    fn is_noise(&self) -> bool {
+        self.ends
+            .is_some_and(|[low, high]| low <= 1.0 && 1.0 <= high)
+    }
+
+    fn noise_text(&self) -> String {
+        let [low, high] = self.ends.unwrap_or([1.0; 2]);
+        let noise = (high - 1.0).max(1.0 - low);
+        format!("no difference in time beyond the noise of {}", part(noise))
+    }
+
+    fn factor_text(&self) -> String {
+        let within = match self.ends {
+            Some([low, high]) => format!("{low:.2} to {high:.2}"),
+            None => String::from(ONCE),
+        };
+        format!("{} the time ({within})", factor(self.median))
+    }
+
+    fn saving_text(&self) -> String {
+        let saves = self.median < 1.0;
+        let share = |ratio: f64| 100.0 * (1.0 - ratio).abs();
+        let within = match self.ends {
+            Some(ends) => {
+                let [mut low, mut high] = ends.map(share);
+                if saves {
+                    (low, high) = (high, low);
+                }
+                format!("{low:.0} to {high:.0} %")
+            }
+            None => String::from(ONCE),
+        };
+        let median = share(self.median);
+        match saves {
+            true => format!("saves {median:.0} % of the time ({within})"),
+            false => format!("takes {median:.0} % more time ({within})"),
+        }
+    }
+}
+
+/// What is said of times without repeats.
+const ONCE: &str = "timed once, so its noise is unknown";
+
+/// What becomes of an error, `each` step of the ratio.
+fn error_text(from: f64, to: f64, each: impl Fn(f64) -> f64) -> String {
+    match (from, to) {
+        (0.0, 0.0) => String::from("leaves the error at 0"),
+        (0.0, _) => format!("makes an error of {} out of none", significant(to)),
+        _ => format!("makes the error {} as large", factor(each(to / from))),
+    }
 }
 
 fn round(value: f64) -> f64 {
@@ -154,4 +272,138 @@ fn factor(ratio: f64) -> String {
 
 fn part(share: f64) -> String {
     format!("{:.0} %", 100.0 * share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gridel_core::Format;
+
+    const BASE: Setting = Setting {
+        format: Format::F32,
+        lattice_bits: 24,
+        samples: 16,
+        depth: 6,
+        cutoff: 0.0,
+    };
+
+    fn point(setting: Setting, rmse: f64, seconds: &[f64], work: u64) -> Point {
+        Point {
+            name: setting.name(),
+            setting,
+            errors: Errors {
+                rmse,
+                largest: rmse,
+                pixels_off: 0,
+                ssim: 1.0,
+                flip: 0.0,
+                other_objects: 0,
+                t_ulps: [0.0; 2],
+            },
+            cost: Cost {
+                seconds: seconds.to_vec(),
+                pixels: 100,
+                rays: work,
+                tests: 10 * work,
+                blob_bytes: 1000,
+                working_bytes: 100,
+            },
+        }
+    }
+
+    fn with(format: Format) -> Setting {
+        Setting { format, ..BASE }
+    }
+
+    #[test]
+    fn frontier_keeps_settings_whose_times_differ_by_noise() {
+        // As right, and now one, now the other is faster: neither beats the other.
+        let [slow, fast] = [&[1.0, 1.3, 4.9][..], &[1.1, 1.2, 1.25]];
+        let points = [
+            point(BASE, 0.1, slow, 100),
+            point(with(Format::F64), 0.1, fast, 100),
+        ];
+        assert_eq!(frontier(&points), [true, true]);
+        // A little more right, within noise: the times tell nothing, and formats' tests differ in cost.
+        let points = [
+            point(BASE, 0.1, slow, 100),
+            point(with(Format::F64), 0.09, fast, 90),
+        ];
+        assert_eq!(frontier(&points), [true, true]);
+    }
+
+    #[test]
+    fn frontier_drops_what_is_slower_beyond_the_spread() {
+        let points = [
+            point(BASE, 0.1, &[1.0, 1.1, 1.2], 100),
+            point(with(Format::F64), 0.1, &[1.3, 1.4, 9.0], 100),
+        ];
+        assert_eq!(frontier(&points), [true, false]);
+    }
+
+    #[test]
+    fn frontier_goes_by_rays_and_tests_where_times_tell_nothing() {
+        let fewer = Setting { depth: 5, ..BASE };
+        let more = |seconds| point(BASE, 0.1, seconds, 100);
+        let less = |seconds| point(fewer, 0.1, seconds, 90);
+        assert_eq!(
+            frontier(&[more(&[1.0, 1.5]), less(&[1.1, 1.6])]),
+            [false, true]
+        );
+        // A single repeat tells of no spread.
+        assert_eq!(frontier(&[more(&[1.0]), less(&[1.1])]), [false, true]);
+        // Where times do tell, they count.
+        assert_eq!(
+            frontier(&[more(&[1.0, 1.05]), less(&[1.1, 1.6])]),
+            [true, false]
+        );
+    }
+
+    #[test]
+    fn sentences_carry_the_spread_of_times() {
+        let half = Setting { samples: 8, ..BASE };
+        let told = |base: &[f64], fixed: &[f64], halved: &[f64]| {
+            let points = [
+                point(BASE, 0.1, base, 100),
+                point(with(Format::Fixed), 0.2, fixed, 100),
+                point(half, 0.15, halved, 50),
+            ];
+            sentences(&BASE, &points).join("\n")
+        };
+        let text = told(&[1.0, 1.0, 1.1], &[2.0, 2.1, 2.2], &[0.55, 0.56, 0.6]);
+        for part in [
+            "takes 2.10 times the time (1.82 to 2.20)",
+            "error 2.00 times as large",
+            "saves 44 % of the time (40 to 50 %)",
+        ] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+        let text = told(&[1.0, 1.0, 1.07], &[1.0, 1.02, 1.05], &[0.98, 1.02, 1.04]);
+        for part in [
+            "`fixed` instead of `f32` shows no difference in time beyond the noise of 7 %",
+            "shows no difference in time beyond the noise of 8 %",
+        ] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+        assert!(!text.contains("saves"), "{text}");
+        // More time is said to be more, and a single repeat to be one.
+        let text = told(&[1.0, 1.0], &[2.0, 2.0], &[1.5, 1.6]);
+        assert!(text.contains("takes 55 % more time (50 to 60 %)"), "{text}");
+        let text = told(&[1.0], &[2.0], &[0.5]);
+        let once = text.matches("timed once, so its noise is unknown").count();
+        assert_eq!(once, 2, "{text}");
+    }
+
+    #[test]
+    fn sentences_without_an_error_to_compare_name_it() {
+        let points = [
+            point(BASE, 0.0, &[1.0, 1.0], 100),
+            point(with(Format::Fixed), 0.25, &[2.0, 2.0], 100),
+            point(with(Format::F64), 0.0, &[2.0, 2.0], 100),
+        ];
+        let text = sentences(&BASE, &points).join("\n");
+        assert!(text.contains("an error of 0.25 out of none"), "{text}");
+        assert!(text.contains("leaves the error at 0"), "{text}");
+        assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+    }
 }

@@ -1,7 +1,7 @@
 //! A page that holds everything: plots, sentences, table, pictures. It loads nothing from anywhere.
 
 use super::boards;
-use super::{Point, Results, frontier, sentences};
+use super::{Point, Results, frontier, frontier_by, sentences};
 use crate::picture::write_png;
 use crate::report::{counted, grouped, significant};
 use base64::Engine;
@@ -52,9 +52,11 @@ pub fn page(
         let _ = writeln!(body, "<li>{}</li>", code(&escape(&sentence)));
     }
     body.push_str(
-        "</ul>\n<h2>Error against time</h2>\n<p>Nothing beats the settings on the red \
-        line: what is as fast is less right, and what is as right is slower. Numbers are those of \
-        the table; the pointer shows the names. Rings mark what nothing beats by RMSE.</p>\n",
+        "</ul>\n<h2>Error against time</h2>\n<p>Times are medians; a bar spans the repeats. Nothing \
+        beats the settings on the red line: no other is as right at a cost that is surely no higher. A \
+        cost is higher where all repeats of one take longer than all of the other, or, where repeats \
+        overlap, by rays and tests in the same number format. Numbers are those of the table; the \
+        pointer shows the names. Rings mark what nothing beats by RMSE.</p>\n",
     );
     for metric in METRICS {
         body.push_str(&plot(metric, results, &best)?);
@@ -127,12 +129,16 @@ fn plot((title, error): Metric, results: &Results, best: &[bool]) -> io::Result<
         .iter()
         .map(|point| (1e3 * point.cost.time().max(1e-9), error(point).max(1e-7)))
         .collect();
-    let ends = |of: fn(&(f64, f64)) -> f64| {
-        let low = places.iter().map(of).fold(f64::INFINITY, f64::min);
-        let high = places.iter().map(of).fold(0.0, f64::max);
+    let repeats = results.points.iter().flat_map(|point| &point.cost.seconds);
+    let repeats = repeats.map(|seconds| 1e3 * seconds.max(1e-9));
+    let ends = |all: &mut dyn Iterator<Item = f64>| {
+        let (low, high) = all.fold((f64::INFINITY, 0.0_f64), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
         (low / 1.25)..(high * 1.6)
     };
-    let (times, errors) = (ends(|place| place.0), ends(|place| place.1));
+    let times = ends(&mut repeats.chain(places.iter().map(|place| place.0)));
+    let errors = ends(&mut places.iter().map(|place| place.1));
     let (mut svg, mut names) = (String::new(), String::new());
     let mut fastest_first = Vec::new();
     let draw = |svg: &mut String| -> Result<(), Box<dyn std::error::Error>> {
@@ -153,15 +159,10 @@ fn plot((title, error): Metric, results: &Results, best: &[bool]) -> io::Result<
             .light_line_style(RGBColor(240, 240, 240))
             .draw()?;
         // The front goes by this plot's own error.
-        let mut front: Vec<(f64, f64)> = Vec::new();
-        let mut order: Vec<usize> = (0..places.len()).collect();
-        order.sort_by(|&a, &b| places[a].0.total_cmp(&places[b].0));
-        for &number in &order {
-            if front.last().is_none_or(|last| places[number].1 < last.1) {
-                front.push(places[number]);
-                fastest_first.push(number);
-            }
-        }
+        let unbeaten = frontier_by(&results.points, error);
+        fastest_first.extend((0..places.len()).filter(|&number| unbeaten[number]));
+        fastest_first.sort_by(|&a, &b| places[a].0.total_cmp(&places[b].0));
+        let front: Vec<(f64, f64)> = fastest_first.iter().map(|&number| places[number]).collect();
         chart.draw_series(LineSeries::new(front.iter().copied(), RGBColor(179, 0, 27)))?;
         for (number, (&place, point)) in places.iter().zip(&results.points).enumerate() {
             let turned = point.setting.differs(base).len();
@@ -170,6 +171,10 @@ fn plot((title, error): Metric, results: &Results, best: &[bool]) -> io::Result<
                 1 => RGBColor(31, 99, 180),
                 _ => RGBColor(130, 150, 130),
             };
+            if let Some(repeats) = point.cost.interval() {
+                let bar = repeats.map(|seconds| (1e3 * seconds.max(1e-9), place.1));
+                chart.draw_series(LineSeries::new(bar, color))?;
+            }
             chart.draw_series([Circle::new(place, 4, color.filled())])?;
             let color = if front.contains(&place) {
                 RGBColor(179, 0, 27)

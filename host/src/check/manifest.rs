@@ -1,5 +1,6 @@
 //! The manifest, read: every key is known, every value in its range.
 
+use crate::board::{self, BOARDS};
 use crate::output::place;
 use crate::scene::SceneError;
 use crate::scene::toml::source::{Source, Span, nearest};
@@ -41,6 +42,8 @@ pub struct Check {
     pub hash: Option<BTreeMap<String, String>>,
     pub reference: Option<Reference>,
     pub budget: Budget,
+    /// The board whose memory the scene must fit.
+    pub target: Option<&'static board::Board>,
     pub boards: Vec<Board>,
     /// Names for pictures of what is broken: of each format, and behind them of each board.
     pub(super) evidence: Vec<String>,
@@ -63,6 +66,10 @@ pub struct Budget {
     pub working_bytes: Option<u64>,
     pub stack_entries: Option<u64>,
     pub tests_per_ray: Option<f64>,
+    /// Bytes on the `target`, as are the following.
+    pub flash: Option<u64>,
+    pub ram: Option<u64>,
+    pub call_stack: Option<u64>,
 }
 
 /// A program on an emulated board.
@@ -224,9 +231,11 @@ impl Check {
             "reference",
             "tolerance",
             "budget",
+            "target",
             "board",
         ];
         let fields = table.fields("check", &[&keys])?;
+        let target = fields.or("target", None, |value| target(value).map(Some))?;
         let value = fields.require("scene")?;
         let scene = Named::read(value, folder)?;
         let stem = match scene.path.file_stem() {
@@ -268,7 +277,10 @@ impl Check {
             })?,
             hash: fields.or("hash", None, |value| hashes(value, &formats).map(Some))?,
             reference,
-            budget: fields.or("budget", Budget::default(), Budget::read)?,
+            budget: fields.or("budget", Budget::default(), |table| {
+                Budget::read(table, target.is_some())
+            })?,
+            target,
             boards: fields.or("board", Vec::new(), |list| {
                 list.items("`[[check.board]]` above the keys of each")?
                     .map(|table| Board::read(table, folder))
@@ -282,7 +294,7 @@ impl Check {
             return Err(table.error(
                 "this check expects nothing, so nothing could break it",
                 "add `hash = {}` and let `gridel check --bless` record it, or a `budget`, a \
-                 `reference` or a `board` with what it is held to",
+                 `reference`, a `target` or a `board` with what it is held to",
             ));
         }
         Ok(check)
@@ -295,6 +307,10 @@ impl Check {
             working_bytes,
             stack_entries,
             tests_per_ray,
+            // These need a target, which is an expectation by itself.
+            flash: _,
+            ram: _,
+            call_stack: _,
         } = self.budget;
         let bytes = [blob_bytes, working_bytes, stack_entries];
         let idle = |board: &Board| board.budget.is_empty() && board.picture.is_none();
@@ -302,6 +318,7 @@ impl Check {
             && self.reference.is_none()
             && bytes.iter().all(Option::is_none)
             && tests_per_ray.is_none()
+            && self.target.is_none()
             && self.boards.iter().all(idle)
     }
 }
@@ -328,14 +345,28 @@ impl Reference {
 }
 
 impl Budget {
-    fn read(table: Value<'_>) -> Result<Self, SceneError> {
+    fn read(table: Value<'_>, has_target: bool) -> Result<Self, SceneError> {
+        const OF_TARGET: [&str; 3] = ["flash", "ram", "call_stack"];
         let keys = [
             "blob_bytes",
             "working_bytes",
             "stack_entries",
             "tests_per_ray",
         ];
-        let fields = table.fields("budget", &[&keys])?;
+        let fields = table.fields("budget", &[&keys, &OF_TARGET])?;
+        let homeless = OF_TARGET.into_iter().find_map(|key| fields.get(key));
+        if let Some(value) = homeless.filter(|_| !has_target) {
+            return Err(value.error(
+                format!(
+                    "`{}` is a budget on a board, and this check has none",
+                    value.key
+                ),
+                format!(
+                    "add a line `target = ...` to the check, with one of {}",
+                    BOARDS.map(|board| board.name).join(", ")
+                ),
+            ));
+        }
         let count = |value: Value<'_>| value.count().map(Some);
         Ok(Self {
             blob_bytes: fields.or("blob_bytes", None, count)?,
@@ -344,6 +375,9 @@ impl Budget {
             tests_per_ray: fields.or("tests_per_ray", None, |value| {
                 value.number_in(0.0..=1e15).map(Some)
             })?,
+            flash: fields.or("flash", None, count)?,
+            ram: fields.or("ram", None, count)?,
+            call_stack: fields.or("call_stack", None, count)?,
         })
     }
 }
@@ -430,6 +464,11 @@ fn name_evidence(checks: &mut [Check]) {
         });
         check.evidence = names.collect();
     }
+}
+
+fn target(value: Value<'_>) -> Result<&'static board::Board, SceneError> {
+    let name = value.word(&BOARDS.map(|board| board.name))?;
+    Ok(board::Board::named(name).unwrap_or(&BOARDS[0]))
 }
 
 fn format(value: Value<'_>) -> Result<Format, SceneError> {

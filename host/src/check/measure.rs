@@ -33,10 +33,10 @@ pub fn run(manifest: &Manifest, progress: &dyn Fn()) -> Report {
 }
 
 /// One check that is being run.
-struct Run<'r> {
+pub(super) struct Run<'r> {
     manifest: &'r Manifest,
     index: usize,
-    check: &'r Check,
+    pub(super) check: &'r Check,
     findings: &'r mut Vec<Finding>,
     warnings: &'r mut Vec<String>,
 }
@@ -65,6 +65,7 @@ impl Run<'_> {
             entries,
             budget.stack_entries.map(Figure::Count),
         );
+        self.memory(&scene, blob.bytes());
         let mut names = check.evidence.iter();
         for (&format, name) in check.formats.iter().zip(&mut names) {
             self.format(&scene, structure, format, name)?;
@@ -312,7 +313,7 @@ impl Run<'_> {
                         Key::Name("budget".into()),
                     ];
                     let keys = keys.into_iter().chain([Key::Name(name.clone())]).collect();
-                    self.held_to(on(), name, found, most, keys);
+                    self.held_to(on(), name, found, most, keys, None);
                 }
                 (Some(None), _) => {
                     let why = format!("the program prints no figure {name:?}");
@@ -366,17 +367,19 @@ impl Run<'_> {
     fn budget(&mut self, on: Option<String>, what: &str, found: Figure, most: Option<Figure>) {
         if most.is_some() {
             let keys = vec![Key::Name("budget".into()), Key::Name(what.into())];
-            self.held_to(on, what, found, most, keys);
+            self.held_to(on, what, found, most, keys, None);
         }
     }
 
-    fn held_to(
+    /// Compares a figure with the most that is allowed; `help` says what would make it smaller.
+    pub(super) fn held_to(
         &mut self,
         on: Option<String>,
         what: &str,
         found: Figure,
         most: Option<Figure>,
         keys: Vec<Key>,
+        help: Option<String>,
     ) {
         let within = most.as_ref().is_none_or(|most| found.within(most));
         let record = (!within).then(|| self.value(keys, &found));
@@ -384,7 +387,10 @@ impl Run<'_> {
             Outcome::Held
         } else {
             let most = most.as_ref().map(Figure::to_string).unwrap_or_default();
-            Outcome::Broken(format!("{what} is {found}, and at most {most} is allowed"))
+            let help = help.map_or(String::new(), |help| format!("; what helps: {help}"));
+            Outcome::Broken(format!(
+                "{what} is {found}, and at most {most} is allowed{help}"
+            ))
         };
         self.push(on, what, Some(found), most, outcome).record = record;
     }
@@ -397,7 +403,7 @@ impl Run<'_> {
         }
     }
 
-    fn push(
+    pub(super) fn push(
         &mut self,
         on: Option<String>,
         what: &str,

@@ -4,7 +4,8 @@
 //! A manifest is TOML. A key that is not listed here is an error. Paths are relative to the
 //! manifest. Budgets are the most that is allowed; what has no budget is not measured.
 //!
-//! `[[check]]`, once for each scene, with at least one of `hash`, `reference`, `budget` and `board`
+//! `[[check]]`, once for each scene, with at least one of `hash`, `reference`, `budget`, `target` and
+//! `board`
 //!
 //! | key | type | default |
 //! |---|---|---|
@@ -20,6 +21,7 @@
 //! | `reference` | path of a PNG with 8 bits a channel that pictures must look like; where there is none yet, [`bless()`] makes it | none |
 //! | `tolerance` | `{ channel, pixels }`: how many codes of 255 a channel may differ from the reference, and how many pixels may differ by more | 0, 0 |
 //! | `budget` | table, below | no budget |
+//! | `target` | name of a board whose memory the scene must fit, by the memory report of `gridel inspect --target`: nothing is run | none |
 //! | `board` | array of tables, below | none |
 //!
 //! `[check.budget]`
@@ -30,6 +32,13 @@
 //! | `working_bytes` | bytes that must be writable beside the call stack to render on a board of 32 bits, in each format |
 //! | `stack_entries` | entries of the traversal stack |
 //! | `tests_per_ray` | boxes and primitives that are tested for a ray of the picture, in the mean; may have a fraction |
+//! | `flash` | bytes of flash on the `target`: blob and code |
+//! | `ram` | bytes of RAM on the `target`: working memory, a row of pixels, and the call stack |
+//! | `call_stack` | bytes of the call stack on the `target` |
+//!
+//! The last three need a `target`. They are figures of the memory report in each of `formats` that the
+//! board computes itself, or in the board's own format if it computes none of them. A figure that is
+//! unknown, because no such program was measured, is within no budget and fits no board.
 //!
 //! `[[check.board]]`: a program that runs on an emulated board and prints its figures, a name and
 //! a whole number a line, as the programs in `tests/firmware` do
@@ -81,6 +90,7 @@ mod image;
 mod junit;
 mod manifest;
 mod measure;
+mod memory;
 mod report;
 
 #[cfg(test)]

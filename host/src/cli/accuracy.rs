@@ -44,6 +44,10 @@ const MOST_PIXELS: usize = 1 << 22;
 ///   t              error of the distance of the others, in units of the last place of single
 ///                  precision: the median and the largest
 ///
+/// A star marks a setting if no other is as right at a cost that is surely no higher. A cost is higher
+/// where all repeats of one setting take longer than all of the other; where repeats overlap, rays and
+/// tests decide within a number format, because they are the same in every run.
+///
 /// Costs: milliseconds a frame on one thread, the median of repeats that take turns, and their spread;
 /// rays a pixel; boxes and primitives tested a ray; bytes of the blob, and of the workspace on a 32-bit
 /// board; instructions a pixel on boards, estimated as the rays times the least and the most that a
@@ -126,7 +130,7 @@ struct Told<'t> {
     folder: String,
     size: [u16; 2],
     points: &'t [Point],
-    /// Which points nothing beats in time and RMSE.
+    /// Which points nothing beats in cost and RMSE.
     frontier: Vec<bool>,
     sentences: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -138,6 +142,9 @@ struct Told<'t> {
 struct Choice {
     name: String,
     rmse: f64,
+    /// How surely it is the cheapest, where time on this machine decides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    noise: Option<String>,
     build: String,
     render: String,
 }
@@ -427,6 +434,10 @@ fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Option<Choice
     Some(Choice {
         name: point.name.clone(),
         rmse: point.errors.rmse,
+        noise: arguments
+            .board
+            .is_none()
+            .then(|| noise(point, &results.points, most)),
         build: format!(
             "gridel build {}{} -o {blob} --accel {}{quality} --lattice-bits {}{cutoff}",
             quoted(&arguments.scene.to_string_lossy()),
@@ -441,6 +452,24 @@ fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Option<Choice
             setting.depth
         ),
     })
+}
+
+/// How surely a point is the fastest within a bound.
+fn noise(fastest: &Point, points: &[Point], most: f64) -> String {
+    let Some(repeats) = fastest.cost.interval() else {
+        return String::from(", timed once, so its noise is unknown");
+    };
+    let within = points.iter().filter(|point| point.errors.rmse <= most);
+    let others = within.filter(|point| !fastest.cost.is_below(&point.cost));
+    let [least, largest] = repeats.map(|seconds| 1e3 * seconds);
+    let took = format!(" in {least:.2} to {largest:.2} ms");
+    match others.count().saturating_sub(1) {
+        0 => took,
+        others => format!(
+            "{took}; {} within the bound differ from it by no more than the noise",
+            counted(others, "other setting")
+        ),
+    }
 }
 
 fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Choice>) -> String {
@@ -483,7 +512,7 @@ fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Choice
         ]);
     }
     let mut text = format!(
-        "{}, {} x {} pixels; * nothing is as fast and as right\n{table}\n",
+        "{}, {} x {} pixels; * no other is as right at a cost that is surely no higher\n{table}\n",
         counted(results.points.len(), "setting"),
         size[0],
         size[1]
@@ -500,9 +529,10 @@ fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Choice
     if let Some(choice) = choice {
         let _ = writeln!(
             text,
-            "\nThe cheapest within the bound is {}, with an RMSE of {}:\n  {}\n  {}",
+            "\nThe cheapest within the bound is {}, with an RMSE of {}{}:\n  {}\n  {}",
             choice.name,
             significant(choice.rmse),
+            choice.noise.as_deref().unwrap_or_default(),
             choice.build,
             choice.render
         );

@@ -173,10 +173,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let blob = source.blob.bytes();
     let write_blob: Content<'_> = &|out| out.write_all(blob);
     if let Some(folder) = &arguments.emit_rust {
-        let room = ledger.as_ref().zip(target).map(|(ledger, target)| {
-            let code = ledger.flash.used - blob.len() as u64;
-            (target.flash - code, target.board)
-        });
+        let remains = ledger.as_ref().and_then(|ledger| ledger.flash.remains());
+        let room = remains
+            .zip(target)
+            .map(|(remains, target)| (remains + blob.len() as u64, target.board));
         let emitted = Emitted {
             scene: &scene,
             structure: source.structure(&scene, None)?,
@@ -359,7 +359,8 @@ impl<'r> Built<'r> {
         if let Some(ledger) = self.ledger {
             let remains = |account: &Account| {
                 let rest = account.remains();
-                format!("{} of {}", grouped(rest), grouped(account.available))
+                let rest = rest.map_or(String::from("an unknown part"), grouped);
+                format!("{rest} of {}", grouped(account.available))
             };
             line(
                 ledger.board,

@@ -13,7 +13,8 @@ use std::path::{Path, PathBuf};
 ///
 /// A manifest lists scenes or blobs, the hashes of their pictures or pictures that they must look
 /// like, and the most that they may cost: bytes of the blob, working memory, entries of the stack,
-/// tests a ray, instructions on a board that QEMU emulates. `cargo doc` documents the manifest
+/// tests a ray, flash, RAM and call stack of a target board by the memory report, instructions on a
+/// board that QEMU emulates. `cargo doc` documents the manifest
 /// (`gridel_host::check`); the project's own is fixtures/check.toml.
 ///
 /// What cannot be run here, because an emulator or a Rust target is missing, is neither held nor

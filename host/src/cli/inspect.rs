@@ -245,7 +245,7 @@ impl Inspection {
     }
 }
 
-/// Flash and RAM on a board, and what remains of each.
+/// The memory report: flash and RAM on a board, and what remains of each.
 fn ledger_table(ledger: &Ledger) -> String {
     let title = format!(
         "{}, {}, {}, {}",
@@ -253,15 +253,16 @@ fn ledger_table(ledger: &Ledger) -> String {
     );
     let mut table = Table::new([(&title, Align::Left), ("bytes", Align::Right)]);
     let mut account = |name: &str, account: &Account| {
+        let bytes = |bytes: Option<u64>| bytes.map_or(String::from("unknown"), grouped);
         for item in &account.items {
-            table.row([format!("{name}  {}", item.what), grouped(item.bytes)]);
+            table.row([format!("{name}  {}", item.what), bytes(item.bytes)]);
         }
-        table.row([format!("{name}  in all"), grouped(account.used)]);
+        table.row([format!("{name}  in all"), bytes(account.used)]);
         let missing = account.missing();
         table.row(if missing > 0 {
             [format!("{name}  MISSING"), grouped(missing)]
         } else {
-            [format!("{name}  remains"), grouped(account.remains())]
+            [format!("{name}  remains"), bytes(account.remains())]
         });
     };
     account("flash", &ledger.flash);

@@ -9,7 +9,7 @@ use gridel_core::{BlobError, Format, Scene, Structure};
 use gridel_host::blob::{self, Blob};
 use gridel_host::compile::{self, CompileError, Compiled};
 use gridel_host::explain::Names;
-use gridel_host::report::{Ledger, counted, grouped, significant};
+use gridel_host::report::{Fit, Ledger, counted, grouped, significant};
 use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
 use gridel_host::scene::{self, Imported};
 use std::path::{Path, PathBuf};
@@ -117,12 +117,17 @@ impl Source {
 
     /// Refuses a scene that does not fit a board's memory, with what would help.
     pub fn check_fits(&self, scene: &Scene<'_>, ledger: &Ledger) -> Result<(), Failure> {
-        ledger.shortage().map_or(Ok(()), |shortage| {
-            Err(Failure::refused(
-                shortage,
-                ledger.advice(scene, || self.smaller()),
-            ))
-        })
+        match ledger.fit() {
+            Fit::Fits => Ok(()),
+            Fit::Short(why) => {
+                let advice = ledger.advice(scene, || self.smaller());
+                Err(Failure::refused(why, advice))
+            }
+            Fit::Undecided(why) => Err(Failure::refused(
+                why,
+                "build the program and measure it, or name another board with `--target`",
+            )),
+        }
     }
 
     /// What makes the blob of a scene file smaller: what is said where no byte is allowed.

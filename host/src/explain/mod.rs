@@ -62,7 +62,7 @@ pub fn explain(
         Format::F32 => with_format::<f32>(scene, settings, subject),
         Format::F64 => with_format::<f64>(scene, settings, subject),
     }?;
-    let mut story = Story::of(scene, &recorder.events);
+    let mut story = Story::of(scene, format, &subject, &recorder.events);
     if let Subject::Pixel(pixel) = subject {
         story.pixel = Some(pixel);
         story.picture = Some([settings.width, settings.height]);

@@ -1,9 +1,10 @@
 //! The rays of a pixel as a tree, and what each adds to it.
 
-use super::walk::Walk;
+use super::Subject;
+use super::walk::{Given, Walk};
 use crate::trace::Frame;
 use gridel_core::event::{Met, Source};
-use gridel_core::{Event, RayKind, Scene};
+use gridel_core::{Event, Format, RayKind, Scene};
 use serde::Serialize;
 
 /// A pixel, or a ray of one's own, explained. Colours are linear, 1 being display white.
@@ -74,8 +75,10 @@ pub struct Weighted {
 /// A hit, in scene units.
 #[derive(Clone, Debug, Serialize)]
 pub struct Hit {
-    /// From where the ray starts, along it.
+    /// From the ray's origin, along it.
     pub distance: f64,
+    /// `origin + distance * direction` lies within this of the point.
+    pub distance_error: f64,
     pub point: [f64; 3],
     pub normal: [f64; 3],
     /// Whether the ray came from the side to which the normal points.
@@ -135,9 +138,14 @@ fn kind_name(kind: RayKind) -> &'static str {
 
 impl Story {
     /// Puts events in order.
-    pub(super) fn of(scene: &Scene<'_>, events: &[Event]) -> Self {
+    pub(super) fn of(
+        scene: &Scene<'_>,
+        format: Format,
+        subject: &Subject,
+        events: &[Event],
+    ) -> Self {
         let mut story = Story::default();
-        let mut teller = Teller::new(scene);
+        let mut teller = Teller::new(scene, format, subject);
         for event in events {
             if let Event::Seen { place, radiance } = *event {
                 story.samples.push(teller.finish(place, radiance));
@@ -153,6 +161,9 @@ impl Story {
 struct Teller<'t> {
     scene: &'t Scene<'t>,
     frame: Frame,
+    format: Format,
+    /// The rays from the camera, or the one that was asked for.
+    first: Given,
     sample: Sample,
     /// The rays that wait, by who sent them: the last is taken up first.
     waiting: Vec<usize>,
@@ -161,10 +172,19 @@ struct Teller<'t> {
 }
 
 impl<'t> Teller<'t> {
-    fn new(scene: &'t Scene<'t>) -> Self {
+    fn new(scene: &'t Scene<'t>, format: Format, subject: &Subject) -> Self {
+        let frame = Frame::of(scene);
         Self {
             scene,
-            frame: Frame::of(scene),
+            frame,
+            format,
+            first: match subject {
+                Subject::Ray(ray) => Given::from(ray),
+                Subject::Pixel(_) => Given {
+                    origin: frame.place(scene.view().eye.map(|x| x as f64 / 8192.0)),
+                    direction: None,
+                },
+            },
             sample: Sample::default(),
             waiting: Vec::new(),
             light: false,
@@ -192,9 +212,18 @@ impl<'t> Teller<'t> {
                 if matches!(event, Event::Sent { .. }) {
                     self.waiting.push(current);
                 }
-                let light = &mut self.light;
+                let Self {
+                    scene,
+                    frame,
+                    format,
+                    light,
+                    ..
+                } = self;
+                // The first ray of a sample is the one from the camera, or the one that was asked for.
+                let given = (current == 0 && !*light).then_some(self.first);
                 if let Some(ray) = self.sample.rays.last_mut() {
-                    ray.take(self.scene, &self.frame, event, light);
+                    let begin = |event: &Event| Walk::begin(frame, *format, given, event);
+                    ray.take(scene, frame, begin, event, light);
                 }
             }
         }
@@ -227,10 +256,17 @@ impl<'t> Teller<'t> {
 }
 
 impl Ray {
-    fn take(&mut self, scene: &Scene<'_>, frame: &Frame, event: &Event, light: &mut bool) {
+    fn take(
+        &mut self,
+        scene: &Scene<'_>,
+        frame: &Frame,
+        begin: impl FnOnce(&Event) -> Option<Walk>,
+        event: &Event,
+        light: &mut bool,
+    ) {
         match *event {
             Event::Query { .. } => {
-                let walk = Walk::begin(frame, event);
+                let walk = begin(event);
                 match self.lights.last_mut().filter(|_| *light) {
                     Some(lighting) => lighting.shadow.extend(walk),
                     None => self.walk = walk,
@@ -284,14 +320,16 @@ impl Ray {
 
 impl Hit {
     fn of(frame: &Frame, walk: &Walk, met: &Met) -> Self {
+        let (distance, error) = (walk.distance(met.t), frame.length(met.error));
         Self {
-            distance: walk.distance(met.t),
+            distance,
+            distance_error: error + walk.rounding(distance, met.point),
             point: frame.place(met.point).to_array(),
             normal: met.normal,
             front: met.front,
             object: met.object,
             primitive: met.primitive,
-            error: frame.length(met.error),
+            error,
         }
     }
 }

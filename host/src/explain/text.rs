@@ -168,8 +168,8 @@ impl Shown<'_> {
             writeln!(
                 f,
                 "{indent}  from {} along {}: {} opened, {} left out, {} tested",
-                point(walk.origin),
-                point(walk.direction),
+                vector(walk.origin, |x| x.to_string()),
+                vector(walk.direction, |x| x.to_string()),
                 counted(walk.opened, "node"),
                 walk.culled,
                 counted(walk.candidates, "primitive"),
@@ -194,14 +194,15 @@ impl Shown<'_> {
             hit.primitive,
             self.names.object(hit.object),
             self.names.material(hit.object),
-            significant(hit.distance),
-            significant(hit.error)
+            precise(hit.distance, hit.distance_error),
+            bound(hit.distance_error)
         )?;
         writeln!(
             f,
-            "{indent}  at {}, normal {}",
-            point(hit.point),
-            point(hit.normal)
+            "{indent}  at {}, which is within {} of the surface, normal {}",
+            vector(hit.point, |x| precise(x, hit.distance_error)),
+            bound(hit.error),
+            vector(hit.normal, significant)
         )?;
         if let Some(weight) = ray.absorbed {
             writeln!(
@@ -273,38 +274,45 @@ impl Shown<'_> {
     }
 
     fn walk(&self, f: &mut Formatter<'_>, walk: &Walk) -> fmt::Result {
-        writeln!(
+        write!(
             f,
-            "  Distances count from {}, {} from the ray's start; it counts from {} to {}{}",
-            point(walk.origin),
-            significant(walk.moved),
-            significant(walk.interval[0]),
-            significant(walk.interval[1]),
+            "  The ray counts from {} to {}{}.",
+            along(walk, walk.interval[0]),
+            along(walk, walk.interval[1]),
             if walk.any {
                 ", and any hit will do"
             } else {
                 ""
             }
         )?;
+        if walk.moved != 0.0 {
+            write!(
+                f,
+                " It comes to the scene's box at {}, at distance {}.",
+                vector(walk.start, significant),
+                significant(walk.moved)
+            )?;
+        }
+        writeln!(f)?;
         for step in &walk.steps {
             match step {
                 Step::Opened { place } => writeln!(f, "  {place}")?,
-                Step::Tested(tested) => writeln!(f, "    {}", self.tested(tested))?,
+                Step::Tested(tested) => writeln!(f, "    {}", tested_text(walk, tested))?,
                 Step::GivenUp { place, enters, hit } => writeln!(
                     f,
                     "  {place} is given up: it begins at {}, behind the hit at {}",
-                    significant(*enters),
-                    significant(*hit)
+                    along(walk, *enters),
+                    along(walk, *hit)
                 )?,
                 Step::Candidate(candidate) => {
                     let crossing = candidate.crossing.map(|[enter, leave]| {
                         if enter == leave {
-                            format!("is met at {}", significant(enter))
+                            format!("is met at {}", along(walk, enter))
                         } else {
                             format!(
                                 "is met from {} to {}",
-                                significant(enter),
-                                significant(leave)
+                                along(walk, enter),
+                                along(walk, leave)
                             )
                         }
                     });
@@ -322,49 +330,55 @@ impl Shown<'_> {
         }
         Ok(())
     }
+}
 
-    fn tested(&self, tested: &Tested) -> String {
-        let place = format!("{}{}", tested.place, between(&tested.planes));
-        match tested.culled {
-            Some(Culled::Empty) => format!("{place} holds nothing"),
-            Some(Culled::NotInVolume) => {
-                format!("{place} is left out: the ray is not in it where it counts")
-            }
-            None => format!(
-                "{place}: the ray is in it from {} to {}",
-                significant(tested.span[0]),
-                significant(tested.span[1])
-            ),
-            Some(Culled::Beside { leaves, enters }) => format!(
-                "{place} is left out: past {} the ray comes only to {}",
-                plane(&leaves),
-                plane(&enters)
-            ),
-            Some(Culled::Outside { along }) => format!(
-                "{place} is left out: the ray runs outside of it, along {} = {}",
-                along.axis,
-                significant(along.at)
-            ),
-            Some(Culled::BehindHit { enters, hit }) => format!(
-                "{place} is left out: {} lies behind the hit at {}",
-                plane(&enters),
-                significant(hit)
-            ),
-            Some(Culled::NotInInterval) => {
-                format!("{place} is left out: the ray does not count there")
-            }
-            Some(Culled::NotInParent {
-                plane: crossed,
-                around: [enter, leave],
-            }) => format!(
-                "{place} is left out: {} is not where the ray is in the node around it, from {} to {}",
-                plane(&crossed),
-                significant(enter),
-                significant(leave)
-            ),
-            Some(Culled::Margin) => {
-                format!("{place} is left out by less than the margin of rounding")
-            }
+/// A node or cell that was tested, and what came of it.
+fn tested_text(walk: &Walk, tested: &Tested) -> String {
+    let along = |distance| along(walk, distance);
+    let plane = |plane: &Plane| {
+        let (axis, at) = (plane.axis, significant(plane.at));
+        format!("{axis} = {at} at {}", along(plane.distance))
+    };
+    let place = format!("{}{}", tested.place, between(&tested.planes));
+    match tested.culled {
+        Some(Culled::Empty) => format!("{place} holds nothing"),
+        Some(Culled::NotInVolume) => {
+            format!("{place} is left out: the ray is not in it where it counts")
+        }
+        None => format!(
+            "{place}: the ray is in it from {} to {}",
+            along(tested.span[0]),
+            along(tested.span[1])
+        ),
+        Some(Culled::Beside { leaves, enters }) => format!(
+            "{place} is left out: past {} the ray comes only to {}",
+            plane(&leaves),
+            plane(&enters)
+        ),
+        Some(Culled::Outside { along: plane }) => format!(
+            "{place} is left out: the ray runs outside of it, along {} = {}",
+            plane.axis,
+            significant(plane.at)
+        ),
+        Some(Culled::BehindHit { enters, hit }) => format!(
+            "{place} is left out: {} lies behind the hit at {}",
+            plane(&enters),
+            along(hit)
+        ),
+        Some(Culled::NotInInterval) => {
+            format!("{place} is left out: the ray does not count there")
+        }
+        Some(Culled::NotInParent {
+            plane: crossed,
+            around: [enter, leave],
+        }) => format!(
+            "{place} is left out: {} is not where the ray is in the node around it, from {} to {}",
+            plane(&crossed),
+            along(enter),
+            along(leave)
+        ),
+        Some(Culled::Margin) => {
+            format!("{place} is left out by less than the margin of rounding")
         }
     }
 }
@@ -386,15 +400,6 @@ fn between(planes: &[Plane]) -> String {
     format!(" ({axis}{})", bounds.concat())
 }
 
-fn plane(plane: &Plane) -> String {
-    format!(
-        "{} = {} at {}",
-        plane.axis,
-        significant(plane.at),
-        significant(plane.distance)
-    )
-}
-
 fn counted_were(number: usize, thing: &str) -> String {
     let verb = if number == 1 { "was" } else { "were" };
     format!("{} {verb}", counted(number, thing))
@@ -408,7 +413,33 @@ fn color([red, green, blue]: [f64; 3]) -> String {
     format!("{red:.5} {green:.5} {blue:.5}")
 }
 
-fn point(point: [f64; 3]) -> String {
-    let [x, y, z] = point.map(significant);
+fn vector(vector: [f64; 3], number: impl Fn(f64) -> String) -> String {
+    let [x, y, z] = vector.map(number);
     format!("({x}, {y}, {z})")
+}
+
+/// A number with all digits that count where it is known within an error, and two more.
+fn precise(number: f64, error: f64) -> String {
+    let digits = (number.abs().log10().floor() - error.log10().floor()).clamp(0.0, 14.0);
+    if !digits.is_finite() || !(1e-5..1e15).contains(&number.abs()) {
+        return number.to_string();
+    }
+    let decimals = (digits + 2.0 - number.abs().log10().floor()).max(0.0);
+    format!("{number:.*}", decimals as usize)
+}
+
+/// An error, rounded up.
+fn bound(error: f64) -> String {
+    match error {
+        0.0 => String::from("0"),
+        _ => format!("{:.1e}", 1.06 * error),
+    }
+}
+
+/// A distance, as precisely as it is told from where the kernels start.
+fn along(walk: &Walk, distance: f64) -> String {
+    match walk.moved {
+        0.0 => significant(distance),
+        moved => precise(distance, 1e-4 * (distance - moved).abs()),
+    }
 }

@@ -1,20 +1,26 @@
 //! A query's way through a structure, in scene units, and why it left out what it left out.
 
-use crate::trace::Frame;
-use gridel_core::Event;
+use crate::trace::{Frame, SceneRay};
+use crate::verify::judge;
+use glam::DVec3;
 use gridel_core::event::{Place, Sides};
+use gridel_core::{Event, Format};
 use serde::Serialize;
 
-/// One query: a ray and its way. Distances are scene units along the ray, counted from
-/// `origin`.
+/// One query: a ray and its way. Distances are scene units along the ray, counted from `origin`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Walk {
-    /// Where the ray starts; if it started far away, where it comes to the scene's box.
+    /// The origin as it was given: the caller's, the camera's, or the point that a secondary ray
+    /// starts from.
     pub origin: [f64; 3],
     /// Of length 1.
     pub direction: [f64; 3],
     /// What of the ray counts.
     pub interval: [f64; 2],
+    /// Where the kernels start: at `origin`, or where a ray from outside comes to the scene's box.
+    pub start: [f64; 3],
+    /// Distance of `start`: 0 unless the ray starts before the scene's box.
+    pub moved: f64,
     /// Whether any hit would do.
     pub any: bool,
     pub steps: Vec<Step>,
@@ -24,20 +30,50 @@ pub struct Walk {
     pub culled: usize,
     /// Primitives that were tested.
     pub candidates: usize,
-    /// How far `origin` is from where the ray starts: 0 unless it starts before the scene's box.
-    pub moved: f64,
     #[serde(skip)]
     ray: InUnits,
 }
 
-/// The ray in units, for the planes of boxes.
+/// A ray as it was given, in scene units.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Given {
+    pub origin: DVec3,
+    /// Of any length; `None` where the kernels' own is as it was given.
+    pub direction: Option<DVec3>,
+}
+
+impl From<&SceneRay> for Given {
+    fn from(ray: &SceneRay) -> Self {
+        Self {
+            origin: ray.origin,
+            direction: Some(ray.direction),
+        }
+    }
+}
+
+/// A direction, whatever its length, by its largest component, and the length of that.
+fn along_major(direction: DVec3) -> (DVec3, f64) {
+    let slope = direction / direction.abs().max_element();
+    (slope, slope.length())
+}
+
+/// The ray in units, for the planes of boxes; its t counts from where the kernels start.
 #[derive(Clone, Copy, Debug)]
 struct InUnits {
     frame: Frame,
-    origin: [f64; 3],
+    format: Format,
+    start: [f64; 3],
     slope: [f64; 3],
+    /// Distance of the start, in scene units.
+    moved: f64,
     /// Scene units of a unit of t.
     scale: f64,
+    /// How far the start is from the line of the ray as it was given, in scene units.
+    aside: f64,
+    /// How much further it is for every scene unit of distance.
+    turned: f64,
+    /// What counts.
+    interval: [f64; 2],
     /// The nearest hit so far.
     limit: f64,
     /// From where to where the ray is in the node that it went into last.
@@ -69,6 +105,9 @@ pub struct Tested {
     pub planes: Vec<Plane>,
     /// From where to where the ray is in it.
     pub span: [f64; 2],
+    /// The same as the kernels count it.
+    #[serde(skip)]
+    units: [f64; 2],
     /// Why the ray does not go into it; `None` if it may.
     pub culled: Option<Culled>,
 }
@@ -146,9 +185,14 @@ pub enum Verdict {
 
 impl Walk {
     /// A walk that begins with a query; `None` for other events.
-    pub(super) fn begin(frame: &Frame, event: &Event) -> Option<Self> {
+    pub(super) fn begin(
+        frame: &Frame,
+        format: Format,
+        given: Option<Given>,
+        event: &Event,
+    ) -> Option<Self> {
         let &Event::Query {
-            origin,
+            origin: start,
             slope,
             moved,
             interval,
@@ -157,52 +201,81 @@ impl Walk {
         else {
             return None;
         };
-        let norm = slope.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let rounded = DVec3::from_array(slope);
+        let given = given.unwrap_or_else(|| Given {
+            origin: frame.place((DVec3::from_array(start) - moved * rounded).to_array()),
+            direction: None,
+        });
+        let (exact, norm) = along_major(given.direction.unwrap_or(rounded));
+        let direction = exact / norm;
         let scale = norm * frame.length(1.0);
+        let moved = moved * scale;
+        let place = frame.place(start);
         Some(Self {
-            origin: frame.place(origin).to_array(),
-            direction: slope.map(|x| x / norm),
-            interval: interval.map(|t| t * scale),
+            origin: given.origin.to_array(),
+            direction: direction.to_array(),
+            interval: interval.map(|t| moved + t * scale),
+            start: place.to_array(),
+            moved,
             any,
             steps: Vec::new(),
             opened: 0,
             culled: 0,
             candidates: 0,
-            moved: moved * scale,
             ray: InUnits {
                 frame: *frame,
-                origin,
+                format,
+                start,
                 slope,
+                moved,
                 scale,
+                aside: (given.origin + moved * direction).distance(place),
+                turned: direction.distance(rounded.normalize()),
+                interval,
                 limit: interval[1],
                 around: interval,
             },
         })
     }
 
-    /// A length along the ray in scene units, from one along its major axis in units.
+    /// The distance of a parameter as the caller counts it, in units along the major axis.
     pub(super) fn distance(&self, t: f64) -> f64 {
         t * self.ray.scale
+    }
+
+    /// How far `origin + distance * direction` may be from the point that the kernels compute there:
+    /// what they round of the ray and of the point, and what double precision rounds of this sum.
+    pub(super) fn rounding(&self, distance: f64, point: [f64; 3]) -> f64 {
+        let ray = &self.ray;
+        let inside = (distance - self.moved).abs();
+        let largest = |v: [f64; 3]| v.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let units = largest(point)
+            .max(largest(ray.start))
+            .max(distance.abs() / ray.frame.length(1.0));
+        // Of start, t from either place, and point, on three axes.
+        let kernels = 8.0 * ray.frame.length(judge::step(ray.format, units));
+        let sum = largest(self.origin) + largest(self.start) + distance.abs();
+        ray.aside + ray.turned * inside + kernels + 8.0 * f64::EPSILON * sum
     }
 
     /// Takes a step, if the event is one.
     pub(super) fn take(&mut self, event: &Event) {
         let ray = self.ray;
-        let step = match *event {
+        let mut step = match *event {
             Event::Opened(place) => {
                 self.opened += 1;
                 let place = name(place);
                 let span = self.steps.iter().rev().find_map(|step| match step {
-                    Step::Tested(tested) if tested.place == place => Some(tested.span),
+                    Step::Tested(tested) if tested.place == place => Some(tested.units),
                     _ => None,
                 });
                 if let Some(span) = span {
-                    self.ray.around = span.map(|t| t / ray.scale);
+                    self.ray.around = span;
                 }
                 Step::Opened { place }
             }
             Event::Tested { place, sides, span } => {
-                let tested = ray.tested(place, sides, span, self.interval);
+                let tested = ray.tested(place, sides, span);
                 self.culled += usize::from(tested.culled.is_some());
                 Step::Tested(tested)
             }
@@ -232,7 +305,7 @@ impl Walk {
                     None => Verdict::Missed,
                     Some(_) if nearest => Verdict::Nearest,
                     Some([enter, leave]) => {
-                        let [first, last] = self.interval.map(|t| t / ray.scale);
+                        let [first, last] = ray.interval;
                         let counts = |t: f64| first <= t && t <= last;
                         if counts(enter) || counts(leave) {
                             Verdict::Farther
@@ -242,8 +315,11 @@ impl Walk {
                     }
                 };
                 if let (Verdict::Nearest, Some([enter, leave])) = (verdict, crossing) {
-                    let first = self.interval[0] / ray.scale;
-                    self.ray.limit = if enter >= first { enter } else { leave };
+                    self.ray.limit = if enter >= ray.interval[0] {
+                        enter
+                    } else {
+                        leave
+                    };
                 }
                 Step::Candidate(Candidate {
                     kind: kind.name(),
@@ -254,6 +330,7 @@ impl Walk {
             }
             _ => return,
         };
+        step.count_from(ray.moved);
         self.steps.push(step);
     }
 
@@ -266,29 +343,76 @@ impl Walk {
     }
 }
 
+impl Step {
+    /// Counts distances from the ray's origin, and no longer from where the kernels start.
+    fn count_from(&mut self, moved: f64) {
+        match self {
+            Self::Tested(tested) => {
+                for plane in &mut tested.planes {
+                    plane.distance += moved;
+                }
+                tested.span = tested.span.map(|t| t + moved);
+                if let Some(culled) = &mut tested.culled {
+                    culled.count_from(moved);
+                }
+            }
+            Self::GivenUp { enters, hit, .. } => {
+                *enters += moved;
+                *hit += moved;
+            }
+            Self::Opened { .. } => {}
+            Self::Candidate(candidate) => {
+                candidate.crossing = candidate.crossing.map(|c| c.map(|t| t + moved));
+            }
+        }
+    }
+}
+
+impl Culled {
+    fn count_from(&mut self, moved: f64) {
+        match self {
+            Self::Beside { leaves, enters } => {
+                leaves.distance += moved;
+                enters.distance += moved;
+            }
+            Self::Outside { along } => along.distance += moved,
+            Self::BehindHit { enters, hit } => {
+                enters.distance += moved;
+                *hit += moved;
+            }
+            Self::NotInParent { plane, around } => {
+                plane.distance += moved;
+                *around = around.map(|t| t + moved);
+            }
+            Self::NotInInterval | Self::Margin | Self::NotInVolume | Self::Empty => {}
+        }
+    }
+}
+
 fn name(place: Place) -> String {
     format!("{} {}", place.what, place.number)
 }
 
 impl InUnits {
-    fn tested(&self, place: Place, sides: Sides, span: [f64; 2], interval: [f64; 2]) -> Tested {
+    fn tested(&self, place: Place, sides: Sides, span: [f64; 2]) -> Tested {
         let mut planes = Vec::new();
         for (axis, sides) in sides.iter().enumerate() {
             for (side, plane) in sides.iter().enumerate() {
                 planes.extend(plane.map(|plane| self.plane(axis, side, plane)));
             }
         }
-        let culled = (span[0] > span[1]).then(|| self.reason(&planes, span, interval));
+        let culled = (span[0] > span[1]).then(|| self.reason(&planes, span));
         Tested {
             place: name(place),
             planes,
             span: span.map(|t| t * self.scale),
+            units: span,
             culled,
         }
     }
 
     fn plane(&self, axis: usize, side: usize, plane: i16) -> Plane {
-        let away = f64::from(plane) - self.origin[axis];
+        let away = f64::from(plane) - self.start[axis];
         let slope = self.slope[axis];
         // Along the plane the ray is inside of its slab for ever, or never.
         let inside = (side == 0) == (away <= 0.0) || away == 0.0;
@@ -310,7 +434,8 @@ impl InUnits {
     }
 
     /// Why a span is empty, by the planes that were tested.
-    fn reason(&self, planes: &[Plane], span: [f64; 2], interval: [f64; 2]) -> Culled {
+    fn reason(&self, planes: &[Plane], span: [f64; 2]) -> Culled {
+        let interval = self.interval.map(|t| t * self.scale);
         if planes.is_empty() {
             return Culled::NotInVolume;
         }

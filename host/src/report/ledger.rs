@@ -1,37 +1,27 @@
-//! What a scene takes on a board, in flash and in RAM: a line an item, and what remains.
+//! The memory report: what a scene takes on a board, in flash and in RAM, and what remains.
 //!
-//! Sizes of the blob and of working memory are exact. Code and call stack were measured on the
-//! boards by the project's tests (`fixtures/recorded/board.json`), for two builds: a fast one, and one
-//! with the feature `small`, both linked with `lto = "fat"` and `codegen-units = 1`. The call stack is
-//! the larger of both, with every shape and effect: a bound for a scene that calls for fewer. Code is
-//! that of the fast build, by shape and effect; what they take together beyond the sum of each is shared
-//! out among them.
+//! Sizes of the blob and of working memory are exact. Code and call stack are those of programs that the
+//! project's tests built for boards ([`Programs`]), in two profiles: a fast one, and one with the feature
+//! `small`, both linked with `lto = "fat"` and `codegen-units = 1`. Code is that of the fast program; the
+//! call stack is the larger of both. A program that was not built is bounded by the smallest with code
+//! for more, and the report says so.
 //!
-//! On one board of each kind of core every part and structure was measured alone. What was measured
-//! there stands for its kin, stretched by what everything, or a few parts, take here and there.
+//! On one board of each kind of core many programs were built. For other boards, and for structures other
+//! than dual-split nodes, the figures are scaled by programs that were built for both.
+//!
+//! What is not known is no 0: it makes the sum unknown, and whether the scene fits undecided.
 
+use super::programs::{Footprint, Known, Profile, Programs, parts};
 use super::{MemoryMap, grouped, working_memory};
 use crate::blob::best_structures;
 use crate::board::Board;
 use gridel_core::accel::Entry;
 use gridel_core::{Effects, Format, Kind, Rgb565, Scene, Structure, Vouched};
 use serde::Serialize;
-use std::collections::BTreeMap;
 
-/// What the tests measured, by the name of a build.
-const RECORDED: &str = include_str!("../../../fixtures/recorded/board.json");
-/// The scene of every shape and effect.
-const EVERYTHING: &str = "quick";
-/// What each part is added to: triangles in diffuse light without shadows.
-const BASE: &str = "base";
-/// A program of two parts beside it.
-const FEW: &str = "sphere, triangle, shadow";
-/// Forms of storage that are parts as well.
-const WIDER: [&str; 2] = ["wide-lattice", "wide-indices"];
+/// A program that was built for every board, beside that of all parts.
+const FEW: [&str; 3] = ["triangle", "sphere", "shadow"];
 
-/// How the names of builds end.
-const FAST: &str = "";
-const SMALL: &str = " small";
 /// How items of code begin.
 const CODE: &str = "code: ";
 
@@ -55,19 +45,31 @@ pub struct Ledger {
     pub structure: &'static str,
     /// The core and number format on which parts and structures were measured.
     pub measured_on: String,
+    /// Whether the scene's own program was built and measured, in both profiles.
+    pub measured: bool,
     pub flash: Account,
     pub ram: Account,
-    /// A program of every shape and effect, built for speed.
-    pub fast: Footprint,
+    /// The scene's program, built for speed.
+    pub fast: Sizes,
     /// The same with the feature `small`.
-    pub small: Footprint,
+    pub small: Sizes,
 }
 
-/// Bytes of a program that holds every shape and every effect.
+/// Bytes of a program; `None` for what is not known.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Footprint {
-    pub code: u64,
-    pub call_stack: u64,
+pub struct Sizes {
+    pub code: Option<u64>,
+    pub call_stack: Option<u64>,
+}
+
+/// Whether a scene fits.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Fit {
+    Fits,
+    /// What is short, and by how much.
+    Short(String),
+    /// What is not known.
+    Undecided(String),
 }
 
 /// A structure of which nothing was measured on boards.
@@ -78,8 +80,8 @@ pub struct NotMeasured(pub Structure);
 #[derive(Clone, Debug, Serialize)]
 pub struct Account {
     pub available: u64,
-    /// Bytes of all items.
-    pub used: u64,
+    /// Bytes of all items; `None` where one of them is not known.
+    pub used: Option<u64>,
     pub items: Vec<Item>,
 }
 
@@ -87,23 +89,43 @@ pub struct Account {
 #[derive(Clone, Debug, Serialize)]
 pub struct Item {
     pub what: String,
-    pub bytes: u64,
+    /// `None` where they are not known.
+    pub bytes: Option<u64>,
 }
 
 impl Account {
-    /// Bytes that are missing, 0 where all fits.
+    fn new(available: u64) -> Self {
+        Self {
+            available,
+            used: Some(0),
+            items: Vec::new(),
+        }
+    }
+
+    /// Bytes of the items that are known.
+    fn at_least(&self) -> u64 {
+        self.items.iter().filter_map(|item| item.bytes).sum()
+    }
+
+    /// Bytes that are missing at the least, 0 where what is known fits.
     pub fn missing(&self) -> u64 {
-        self.used.saturating_sub(self.available)
+        self.at_least().saturating_sub(self.available)
     }
 
-    /// Bytes that remain, 0 where it does not fit.
-    pub fn remains(&self) -> u64 {
-        self.available.saturating_sub(self.used)
+    /// Bytes that remain, 0 where it does not fit; `None` where that is not known.
+    pub fn remains(&self) -> Option<u64> {
+        self.used.map(|used| self.available.saturating_sub(used))
     }
 
-    fn add(&mut self, what: impl Into<String>, bytes: u64) {
+    /// The items that are not known.
+    pub fn unknown(&self) -> impl Iterator<Item = &str> {
+        let unknown = self.items.iter().filter(|item| item.bytes.is_none());
+        unknown.map(|item| item.what.as_str())
+    }
+
+    fn add(&mut self, what: impl Into<String>, bytes: Option<u64>) {
         let what = what.into();
-        self.used += bytes;
+        self.used = self.used.zip(bytes).map(|(sum, bytes)| sum + bytes);
         self.items.push(Item { what, bytes });
     }
 }
@@ -123,50 +145,77 @@ impl Ledger {
         target: &Target,
         format: Format,
     ) -> Result<Self, NotMeasured> {
+        Self::by(&Programs::recorded(), scene, blob, target, format)
+    }
+
+    /// The same, with figures of programs of one's own.
+    fn by(
+        programs: &Programs,
+        scene: &Scene<'_>,
+        blob: &[u8],
+        target: &Target,
+        format: Format,
+    ) -> Result<Self, NotMeasured> {
         let board = target.board;
         let structure = best_structures(scene).next().unwrap_or(Structure::List);
-        let measured = Measured::of(board, format, structure).ok_or(NotMeasured(structure))?;
-        let empty = |available| Account {
-            available,
-            used: 0,
-            items: Vec::new(),
+        if !Self::STRUCTURES.contains(&structure) {
+            return Err(NotMeasured(structure));
+        }
+        let called_for: Vec<&str> = scene.features().collect();
+        let program = ScenesProgram {
+            programs,
+            here: (board, format),
+            kin: board.kin(format),
+            structure,
+            parts: &called_for,
         };
-        let (mut flash, mut ram) = (empty(target.flash), empty(target.ram));
+        let (mut flash, mut ram) = (Account::new(target.flash), Account::new(target.ram));
         for part in MemoryMap::of(scene, blob).parts {
             if part.bytes > 0 {
-                flash.add(format!("blob: {}", part.kind), part.bytes as u64);
+                flash.add(format!("blob: {}", part.kind), Some(part.bytes as u64));
             }
         }
-        measured.code(scene, &mut flash);
+        program.list_code(&mut flash);
 
         let words = working_memory(scene);
         let need = words
             .iter()
             .find(|need| need.word_bits == 32 && need.format == format.name());
-        if let Some(need) = need {
-            ram.add(
-                format!("traversal stack, {} entries", scene.stack_depth()),
-                need.stack as u64,
-            );
-            ram.add("work list", (need.workspace - need.stack) as u64);
-        }
+        ram.add(
+            format!("traversal stack, {} entries", scene.stack_depth()),
+            need.map(|need| need.stack as u64),
+        );
+        ram.add(
+            "work list",
+            need.map(|need| (need.workspace - need.stack) as u64),
+        );
         let width = scene.view().width;
         let row = u64::from(width) * size_of::<Rgb565>() as u64;
-        ram.add(format!("row of {width} pixels, RGB565"), row);
-        let [fast, small] = [FAST, SMALL].map(|build| measured.everything(build));
-        let is_bound = structure == Structure::DualSplit || measured.kin.0.core == board.core;
-        let how = if is_bound { "at most" } else { "about" };
+        ram.add(format!("row of {width} pixels, RGB565"), Some(row));
+        let stacks = PROFILES.map(|profile| program.call_stack(profile));
+        let deepest = stacks[0].zip(stacks[1]);
+        let measured = |known: Option<Known>| known.is_some_and(|known| known.measured);
+        let all_measured = stacks.into_iter().all(measured);
+        let how = match all_measured {
+            true => "call stack",
+            false => "call stack, at most",
+        };
         ram.add(
-            format!("call stack, {how}"),
-            fast.call_stack.max(small.call_stack),
+            how,
+            deepest.map(|(fast, small)| fast.bytes.max(small.bytes)),
         );
-        let (kin, kins_format) = measured.kin;
+        let (kin, kins_format) = program.kin;
+        let [fast, small] = PROFILES.map(|profile| Sizes {
+            code: program.code(profile).map(|known| known.bytes),
+            call_stack: program.call_stack(profile).map(|known| known.bytes),
+        });
         Ok(Self {
             board: board.name,
             core: board.core,
             format: format.name(),
             structure: structure.name(),
             measured_on: format!("{} in {}", kin.core, kins_format.name()),
+            measured: all_measured && measured(program.code(Profile::Fast)),
             flash,
             ram,
             fast,
@@ -177,40 +226,76 @@ impl Ledger {
     /// The builds that the figures hold for.
     pub fn holds_for(&self) -> String {
         let Self { fast, small, .. } = self;
+        let bytes = |bytes: Option<u64>| bytes.map_or(String::from("unknown"), grouped);
         let own = format!("{} in {}", self.core, self.format);
-        let stretched = match &self.measured_on {
-            there if *there != own => {
-                format!("\nParts were measured on a {there}, and stretched to what all take here.")
+        let how = match (&self.measured_on, self.measured) {
+            (_, true) => String::from("\nThis program was built and measured."),
+            (there, false) if *there != own => {
+                format!("\nThe figures are scaled from those of a {there}.")
             }
-            _ => String::new(),
+            (_, false) => String::from(
+                "\nThis program was not built: the figures are those of a program with code for more, an \
+                 upper\nbound.",
+            ),
         };
         format!(
             "For programs linked with lto = \"fat\" and codegen-units = 1. Code is that of opt-level = 3. The \
              call stack\nis enough for that, which takes {} bytes, and for the feature `small` with \
-             opt-level = \"z\", which takes\n{}, and {} bytes of code at most. Other profiles were not \
-             measured and may take more.{stretched}",
-            grouped(fast.call_stack),
-            grouped(small.call_stack),
-            grouped(small.code)
+             opt-level = \"z\", which takes\n{}, and {} bytes of code. Other profiles were not \
+             measured and may take more.{how}",
+            bytes(fast.call_stack),
+            bytes(small.call_stack),
+            bytes(small.code)
         )
     }
 
-    /// Why the scene does not fit: what is short, and by how much. `None` where it fits.
-    pub fn shortage(&self) -> Option<String> {
+    /// Whether the scene fits, and why not.
+    pub fn fit(&self) -> Fit {
         let accounts = [("flash", &self.flash), ("RAM", &self.ram)];
         let short: Vec<_> = accounts
             .into_iter()
             .filter(|(_, account)| account.missing() > 0)
             .map(|(what, account)| {
+                let least = match account.used {
+                    Some(_) => "",
+                    None => "at least ",
+                };
                 format!(
-                    "{} bytes of {what}, {} more than the {} there are",
-                    grouped(account.used),
+                    "{least}{} bytes of {what}, {} more than the {} there are",
+                    grouped(account.at_least()),
                     grouped(account.missing()),
                     grouped(account.available)
                 )
             })
             .collect();
-        (!short.is_empty()).then(|| format!("the scene takes {}", short.join(", and ")))
+        if !short.is_empty() {
+            return Fit::Short(format!("the scene takes {}", short.join(", and ")));
+        }
+        match self.undecided() {
+            Some(why) => Fit::Undecided(format!("whether the scene fits is undecided: {why}")),
+            None => Fit::Fits,
+        }
+    }
+
+    /// What is not known, and why. `None` where all is.
+    pub fn undecided(&self) -> Option<String> {
+        let accounts = [("flash", &self.flash), ("RAM", &self.ram)];
+        let unknown: Vec<_> = accounts
+            .into_iter()
+            .flat_map(|(what, account)| {
+                let items = account.unknown();
+                items.map(move |item| format!("the bytes of {what} for `{item}`"))
+            })
+            .collect();
+        (!unknown.is_empty()).then(|| {
+            format!(
+                "{} are unknown, because no such program was built for a {} in {} through {}",
+                unknown.join(" and "),
+                self.core,
+                self.format,
+                self.structure
+            )
+        })
     }
 
     /// What would save memory of the kind that is short, by the scene's own figures; `smaller` tells
@@ -233,7 +318,8 @@ impl Ledger {
         steps.join("; ")
     }
 
-    fn ram_advice(&self, scene: &Scene<'_>) -> Vec<String> {
+    /// What makes RAM smaller.
+    pub fn ram_advice(&self, scene: &Scene<'_>) -> Vec<String> {
         let view = scene.view();
         let place = if self.format == Format::F64.name() {
             80
@@ -251,13 +337,7 @@ impl Ledger {
                 place * places
             ));
         }
-        let [fast, small] = [self.fast, self.small].map(|build| build.call_stack);
-        if fast < small {
-            steps.push(format!(
-                "without the feature `small` the call stack takes {} bytes less",
-                grouped(small - fast)
-            ));
-        }
+        steps.extend(self.small_advice());
         // Where flash is short, too, it is named there.
         if scene.stack_depth() > 0 && self.flash.missing() == 0 {
             steps.push(format!(
@@ -269,19 +349,34 @@ impl Ledger {
         steps
     }
 
-    fn flash_advice(&self, scene: &Scene<'_>) -> Vec<String> {
+    /// What makes the call stack smaller.
+    pub fn call_stack_advice(&self, scene: &Scene<'_>) -> Vec<String> {
+        let effects = scene.effects();
+        let effects = (effects != Effects::NONE)
+            .then(|| format!("a scene that does without some of its effects ({effects})"));
+        self.small_advice().into_iter().chain(effects).collect()
+    }
+
+    /// What the call stack takes less without the feature `small`.
+    fn small_advice(&self) -> Option<String> {
+        let stacks = self.fast.call_stack.zip(self.small.call_stack);
+        let (fast, small) = stacks.filter(|(fast, small)| fast < small)?;
+        Some(format!(
+            "without the feature `small` the call stack takes {} bytes less",
+            grouped(small - fast)
+        ))
+    }
+
+    /// What makes flash smaller, the blob apart.
+    pub fn flash_advice(&self, scene: &Scene<'_>) -> Vec<String> {
         let mut steps = Vec::new();
-        let items = self.flash.items.iter();
-        let code: u64 = items
-            .filter(|item| item.what.starts_with(CODE))
-            .map(|item| item.bytes)
-            .sum();
-        if self.small.code < code {
+        let code = self.fast.code.zip(self.small.code);
+        if let Some((fast, small)) = code.filter(|(fast, small)| small < fast) {
             steps.push(format!(
-                "with the feature `small` and opt-level = \"z\" code takes at most {} bytes in place of {}, \
+                "with the feature `small` and opt-level = \"z\" code takes {} bytes in place of {}, \
                  and rays take longer",
-                grouped(self.small.code),
-                grouped(code)
+                grouped(small),
+                grouped(fast)
             ));
         }
         if scene.vertices() > 1 << 16 {
@@ -301,101 +396,261 @@ impl Ledger {
     }
 }
 
-/// What was measured for programs that walk a structure on a board.
-struct Measured {
-    recorded: BTreeMap<String, BTreeMap<String, u64>>,
+/// The scene's own sizes (depth of the stack, width, waiting rays) are constants of its program, which add
+/// up to 0.8 % to code that was measured with others: this part is allowed for.
+const OWN_SIZES: u64 = 100;
+
+const PROFILES: [Profile; 2] = [Profile::Fast, Profile::Small];
+
+/// The program of a scene on a board, by what is known of programs.
+struct ScenesProgram<'p> {
+    programs: &'p Programs,
     here: (&'static Board, Format),
-    /// Where parts and structures were measured.
+    /// Where most programs were built.
     kin: (&'static Board, Format),
     structure: Structure,
+    parts: &'p [&'p str],
 }
 
-impl Measured {
-    /// `None` for a structure that was not measured.
-    fn of(board: &'static Board, format: Format, structure: Structure) -> Option<Self> {
-        Ledger::STRUCTURES.contains(&structure).then(|| Self {
-            recorded: serde_json::from_str(RECORDED).unwrap_or_default(),
-            here: (board, format),
-            kin: board.kin(format),
-            structure,
+impl ScenesProgram<'_> {
+    fn code(&self, profile: Profile) -> Option<Known> {
+        // What a structure adds to one program it adds to others.
+        let code = self.figure(
+            profile,
+            |it| it.code,
+            |bytes, [other, dual_split]| (bytes + other).saturating_sub(dual_split),
+        );
+        code.map(|code| Known {
+            bytes: code.bytes + code.bytes.div_ceil(OWN_SIZES),
+            ..code
         })
     }
 
-    /// A figure of a scene's program; 0 where it was not measured.
+    fn call_stack(&self, profile: Profile) -> Option<Known> {
+        self.figure(
+            profile,
+            |it| it.call_stack,
+            |bytes, [other, dual_split]| (bytes * other).div_ceil(dual_split.max(1)),
+        )
+    }
+
+    /// A figure of the program; `through` makes it one for another structure, by the figures of all
+    /// parts through that and through dual-split nodes.
     fn figure(
         &self,
-        scene: &str,
-        (board, format): (&Board, Format),
-        structure: Structure,
-        build: &str,
-        figure: &str,
-    ) -> u64 {
-        let (format, structure) = (format.name(), structure.name());
-        let key = format!("{scene} {} {format} {structure}{build}", board.name);
-        let figures = self.recorded.get(&key);
-        figures
-            .and_then(|figures| figures.get(figure))
-            .copied()
-            .unwrap_or(0)
-    }
-
-    /// What a program of every shape and effect takes here.
-    fn everything(&self, build: &str) -> Footprint {
-        let stretched = |figure| {
-            let everything =
-                |place, structure| self.figure(EVERYTHING, place, structure, build, figure);
-            let [here, there] =
-                [self.here, self.kin].map(|it| everything(it, Structure::DualSplit));
-            (everything(self.kin, self.structure) * here).div_ceil(there.max(1))
+        profile: Profile,
+        figure: fn(&Footprint) -> u64,
+        through: fn(u64, [u64; 2]) -> u64,
+    ) -> Option<Known> {
+        let Self {
+            programs,
+            here,
+            kin,
+            structure,
+            parts: called_for,
+        } = *self;
+        let of = |(board, format): (&Board, Format), structure, parts: &[&str]| {
+            programs.figure((board, format, structure), parts, profile, figure)
         };
-        Footprint {
-            code: stretched("code-bytes"),
-            call_stack: stretched("call-stack-bytes"),
+        let built = |place, structure, parts: &[&str]| {
+            let known = of(place, structure, parts).filter(|known| known.measured);
+            known.map(|known| known.bytes)
+        };
+        if let Some(bytes) = built(here, structure, called_for) {
+            return Some(Known {
+                bytes,
+                measured: true,
+            });
         }
+        let known = of(kin, Structure::DualSplit, called_for)?;
+        let everything: Vec<&str> = parts().collect();
+        let mut bytes = known.bytes;
+        if structure != Structure::DualSplit {
+            let both = [structure, Structure::DualSplit].map(|it| built(kin, it, &everything));
+            let [Some(other), Some(dual_split)] = both else {
+                return None;
+            };
+            bytes = through(bytes, [other, dual_split]);
+        }
+        if here != kin {
+            let ratios = [&everything[..], &FEW].into_iter().filter_map(|parts| {
+                let [here, there] = [here, kin].map(|it| built(it, Structure::DualSplit, parts));
+                Some(here? as f64 / there?.max(1) as f64)
+            });
+            let ratio = ratios.reduce(f64::max)?;
+            bytes = (bytes as f64 * ratio).ceil() as u64;
+        }
+        Some(Known {
+            bytes,
+            measured: known.measured && here == kin && structure == Structure::DualSplit,
+        })
     }
 
-    /// Lists the code that a scene calls for.
-    fn code(&self, scene: &Scene<'_>, flash: &mut Account) {
-        let code = |scene: &str, place, structure| {
-            self.figure(scene, place, structure, FAST, "code-bytes")
+    /// Lists the code of the fast program, by part as far as it can be told apart.
+    fn list_code(&self, flash: &mut Account) {
+        const COMMON: &str = "loading, diffuse light";
+        let (board, format) = self.kin;
+        let place = (board, format, Structure::DualSplit);
+        let Some(code) = self.code(Profile::Fast) else {
+            flash.add(format!("{CODE}{COMMON}, {}", self.parts.join(", ")), None);
+            return;
         };
-        let of_part = |part: &str| code(part, self.kin, Structure::DualSplit);
-        let (base, glass) = (of_part(BASE), of_part("glass"));
-        let alone = |part: &str| match part {
-            // It comes with glass.
-            "absorption" => of_part(part).saturating_sub(glass),
-            _ => of_part(part).saturating_sub(base),
+        let how = match code.measured {
+            true => "",
+            false => ", at most",
         };
-        let [here, there] =
-            [self.here, self.kin].map(|it| code(EVERYTHING, it, Structure::DualSplit));
-        let parts = Kind::ALL.map(Kind::name).into_iter().chain(WIDER);
-        let sum: u64 = parts.chain(Effects::ALL.names()).map(alone).sum();
-        // Together parts may take more than each alone: as much as they do where it was measured.
-        let few = alone("sphere") + alone("shadow");
-        let whole = |whole: u64, sum: u64| (whole.saturating_sub(base).max(sum), sum.max(1));
-        let (all, few) = (whole(there, sum), whole(of_part(FEW), few));
-        let (whole, sum) = if all.0 * few.1 > few.0 * all.1 {
-            all
-        } else {
-            few
-        };
-        let few_here = code(FEW, self.here, Structure::DualSplit);
-        let stretched = |bytes: u64| {
-            let most = [(here, there), (few_here, of_part(FEW))]
-                .map(|(here, there)| (bytes * here.max(there)).div_ceil(there.max(1)));
-            most[0].max(most[1])
-        };
-        // Whatever a dearer walk takes, every scene needs.
-        let walk = code(EVERYTHING, self.kin, self.structure).saturating_sub(there);
-        flash.add(
-            format!("{CODE}loading, triangles, diffuse light"),
-            stretched(base + walk),
-        );
-        for part in scene.features() {
-            let bytes = stretched((alone(part) * whole).div_ceil(sum));
-            if bytes > 0 {
-                flash.add(format!("{CODE}{part}"), bytes);
+        let mut rest = code.bytes;
+        let mut shares = Vec::new();
+        for &part in self.parts {
+            let share = self.programs.share(place, part, Profile::Fast);
+            if let Some(share) = share.filter(|&share| 0 < share && share < rest) {
+                rest -= share;
+                shares.push((part, share));
             }
         }
+        flash.add(format!("{CODE}{COMMON}{how}"), Some(rest));
+        for (part, share) in shares {
+            flash.add(format!("{CODE}{part}"), Some(share));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::board::BOARDS;
+    use crate::compile::{Options, compile};
+
+    const STRUCTURE: Structure = Structure::DualSplit;
+
+    /// A ball under a light, on the smallest board, with programs of one's own.
+    fn ledger(programs: &Programs, flash: u64) -> Ledger {
+        let text = "light = [{ kind = \"directional\", direction = [0, 0, -1] }]\n\
+                    object = [{ kind = \"sphere\", center = [0, 0, 0], radius = 1 }]\n";
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("ball.toml");
+        std::fs::write(&path, text).unwrap();
+        let imported = crate::scene::load(&path, &Default::default()).unwrap();
+        let compiled = compile(&imported.scene, &Options::default()).unwrap();
+        let scene = compiled.blob.scene().unwrap();
+        let features: Vec<&str> = scene.features().collect();
+        assert_eq!(features, PARTS);
+        let board = &BOARDS[0];
+        let target = Target {
+            board,
+            flash,
+            ram: board.ram,
+        };
+        Ledger::by(
+            programs,
+            &scene,
+            compiled.blob.bytes(),
+            &target,
+            Format::Fixed,
+        )
+        .unwrap()
+    }
+
+    const PARTS: [&str; 3] = ["sphere", "wide-lattice", "shadow"];
+    const SIZES: [Footprint; 2] = [
+        Footprint {
+            code: 30_000,
+            call_stack: 1000,
+        },
+        Footprint {
+            code: 20_000,
+            call_stack: 1500,
+        },
+    ];
+
+    fn programs(board: &'static Board, parts: &[&str], profiles: &[Profile]) -> Programs {
+        let mut programs = Programs::default();
+        for (profile, footprint) in PROFILES.into_iter().zip(SIZES) {
+            if profiles.contains(&profile) {
+                let place = (board, Format::Fixed, STRUCTURE);
+                programs.insert(place, parts, profile, footprint);
+            }
+        }
+        programs
+    }
+
+    fn bytes(account: &Account, word: &str) -> Option<u64> {
+        let items = account
+            .items
+            .iter()
+            .filter(|item| item.what.starts_with(word));
+        items.map(|item| item.bytes).sum()
+    }
+
+    #[test]
+    fn measured_program_is_told_exactly() {
+        let ledger = ledger(&programs(&BOARDS[0], &PARTS, &PROFILES), 128 << 10);
+        assert!(ledger.measured);
+        assert_eq!(bytes(&ledger.flash, CODE), Some(30_300));
+        assert_eq!(bytes(&ledger.ram, "call stack"), Some(1500));
+        assert_eq!(ledger.fit(), Fit::Fits);
+    }
+
+    #[test]
+    fn unknown_figures_are_unknown_and_leave_the_fit_undecided() {
+        let elsewhere = programs(&BOARDS[1], &PARTS, &PROFILES);
+        let fast = programs(&BOARDS[0], &PARTS, &PROFILES[..1]);
+        let fewer = programs(&BOARDS[0], &PARTS[..2], &PROFILES);
+        for (programs, code) in [
+            (Programs::default(), None),
+            (elsewhere, None),
+            (fewer, None),
+            (fast, Some(30_300)),
+        ] {
+            let ledger = ledger(&programs, 128 << 10);
+            assert!(!ledger.measured);
+            assert_eq!(bytes(&ledger.flash, CODE), code);
+            assert_eq!(bytes(&ledger.ram, "call stack"), None);
+            assert_eq!((ledger.ram.used, ledger.ram.remains()), (None, None));
+            assert_eq!(ledger.flash.used.is_some(), code.is_some());
+            match ledger.fit() {
+                Fit::Undecided(why) => assert!(why.contains("call stack"), "{why}"),
+                other => panic!("{other:?}"),
+            }
+            let json = serde_json::to_value(&ledger).unwrap();
+            assert!(json["ram"]["used"].is_null() && json["small"]["call_stack"].is_null());
+        }
+    }
+
+    /// What is known may be too much by itself.
+    #[test]
+    fn unknown_figures_do_not_hide_what_is_short() {
+        let ledger = ledger(&Programs::default(), 100);
+        match ledger.fit() {
+            Fit::Short(why) => assert!(why.contains("at least"), "{why}"),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// Other boards' figures are scaled by what was built on both, and unknown without.
+    #[test]
+    fn other_boards_are_scaled_or_unknown() {
+        let mut recorded = programs(&BOARDS[0], &PARTS, &PROFILES);
+        let program = |recorded: &Programs| {
+            let scenes = ScenesProgram {
+                programs: recorded,
+                here: (&BOARDS[3], Format::Fixed),
+                kin: BOARDS[3].kin(Format::Fixed),
+                structure: STRUCTURE,
+                parts: &PARTS,
+            };
+            scenes.code(Profile::Fast)
+        };
+        assert_eq!(program(&recorded), None);
+        for (board, code) in [(&BOARDS[0], 40_000), (&BOARDS[3], 44_000)] {
+            let place = (board, Format::Fixed, STRUCTURE);
+            let footprint = Footprint { code, ..SIZES[0] };
+            recorded.insert(place, &FEW, Profile::Fast, footprint);
+        }
+        let known = program(&recorded);
+        assert_eq!(
+            known.map(|it| (it.bytes, it.measured)),
+            Some((33_330, false))
+        );
     }
 }

@@ -1,9 +1,10 @@
 //! `gridel inspect`.
 
 use crate::program::{Folder, fixture};
-use gridel_core::{Fixed, Stack, Workspace};
-use gridel_host::board::BOARDS;
+use gridel_core::{Fixed, Format, Stack, Structure, Workspace};
+use gridel_host::board::{BOARDS, Board};
 use gridel_host::report::grouped;
+use gridel_host::report::programs::{Footprint, Programs, parts};
 use serde_json::{Value, json};
 
 #[test]
@@ -190,12 +191,20 @@ fn the_ledger_of_a_board_adds_up() {
     }
 }
 
-/// What the board tests recorded of a build.
-fn recorded(build: &str, figure: &str) -> u64 {
-    let recorded = include_str!("../../../fixtures/recorded/board.json");
-    let recorded: Value = serde_json::from_str(recorded).unwrap();
-    let figure = recorded[build][figure].as_u64();
-    figure.unwrap_or_else(|| panic!("{build}"))
+/// What was recorded of a program of all parts: fast, and with the feature `small`.
+fn everything(board: &str, format: &str, accel: &str) -> [Footprint; 2] {
+    program(board, format, accel, &parts().collect::<Vec<_>>())
+}
+
+/// The same of a program of some parts.
+fn program(board: &str, format: &str, accel: &str, parts: &[&str]) -> [Footprint; 2] {
+    let board = Board::named(board).unwrap();
+    let format = Format::ALL.into_iter().find(|it| it.name() == format);
+    let structure = Structure::ALL.into_iter().find(|it| it.name() == accel);
+    let place = (board, format.unwrap(), structure.unwrap());
+    let programs = Programs::recorded();
+    let program = programs.get(place, parts).unwrap();
+    [program.fast.unwrap(), program.small.unwrap()]
 }
 
 /// The bytes of all items of a ledger's account that begin with a word.
@@ -231,10 +240,17 @@ fn the_call_stack_of_a_ledger_is_enough_for_small_code() {
         ] {
             let inspect = ["inspect", "quick.gridel", "--target", board];
             let report = folder.json(&inspect);
-            let fast = format!("quick {board} {format} {accel}");
-            let small = format!("{fast} small");
-            let [fast, small] = [&fast, &small].map(|build| recorded(build, "call-stack-bytes"));
-            assert_eq!(sum(&report, "ram", "call stack, at most"), fast.max(small));
+            let [fast, small] = ["fast", "small"]
+                .map(|build| report["ledger"][build]["call_stack"].as_u64().unwrap());
+            let told = sum(&report, "ram", "call stack");
+            assert_eq!(told, fast.max(small));
+            // The scene calls for all but vertex indices of more than 16 bits.
+            let most = everything(board, format, accel).map(|build| build.call_stack);
+            let most = most[0].max(most[1]);
+            assert!(
+                10 * told > 9 * most && 10 * told < 11 * most,
+                "{board} {accel}: {told} of {most}"
+            );
             let text = folder.done(&inspect);
             for word in [
                 "lto = \"fat\"",
@@ -262,10 +278,9 @@ fn the_call_stack_of_a_ledger_is_enough_for_small_code() {
     assert!(refused.said().contains(&advice), "{}", refused.said());
 }
 
-/// What the parts of everything add up to is what a program takes that holds everything, or little more;
-/// indices of more than 16 bits the scene does not call for.
+/// The items of code add up to the program of the scene, and one part in a hundred more.
 #[test]
-fn the_ledger_is_a_bound() {
+fn memory_report_lists_the_code_of_the_scenes_program() {
     let folder = Folder::new();
     folder.write("quick.toml", &fixture("quick"));
     for (board, format) in [
@@ -275,16 +290,12 @@ fn the_ledger_is_a_bound() {
         ("mps2-an386", "f32"),
     ] {
         let report = folder.json(&["inspect", "quick.toml", "--target", board]);
-        let code = |scene: &str| {
-            let build = format!("{scene} {board} {format} dual-split");
-            recorded(&build, "code-bytes")
-        };
-        let listed = sum(&report, "flash", "code") + code("wide-indices") - code("base");
-        let measured = code("quick");
-        assert!(
-            listed >= measured && 10 * listed < 12 * measured,
-            "{board}: {listed}, {measured}"
-        );
+        let listed = sum(&report, "flash", "code");
+        assert_eq!(report["ledger"]["fast"]["code"], listed);
+        let parts: Vec<&str> = parts().filter(|&it| it != "wide-indices").collect();
+        let [fast, _] = program(board, format, "dual-split", &parts);
+        assert_eq!(listed, fast.code + fast.code.div_ceil(100), "{board}");
+        assert_eq!(report["ledger"]["measured"], true, "{board}");
     }
 }
 
@@ -302,8 +313,9 @@ fn little_is_asked_of_every_board_for_a_scene_that_calls_for_little() {
         let items = report["ledger"]["flash"]["items"].to_string();
         assert!(items.contains("code: sphere"), "{items}");
         assert!(!items.contains("cone"), "{items}");
-        let everything = report["ledger"]["fast"]["code"].as_u64().unwrap();
-        assert!(5 * code < 4 * everything, "{board}: {code} of {everything}");
+        let format = report["ledger"]["format"].as_str().unwrap();
+        let [most, _] = everything(board, format, "dual-split").map(|build| build.code);
+        assert!(5 * code < 4 * most, "{board}: {code} of {most}");
         folder.done(&[
             "build",
             "plain.toml",

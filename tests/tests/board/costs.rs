@@ -1,13 +1,14 @@
-//! What code, call stacks and pictures cost, by shape, effect and structure: what ledgers are added up from.
+//! What code, call stacks and pictures cost, by shape, effect and structure: programs that the memory
+//! report tells of, and the README's tables.
 
-use crate::figures::{self, Figures};
+use crate::figures::Figures;
 use crate::firmware::{Build, WASM, board};
 use crate::plan::Plan;
-use crate::scenes::{self, Compiled};
-use crate::{boards, elf, parts};
+use crate::programs::{Linked, footprint};
+use crate::scenes;
+use crate::{boards, measured_in_full, parts};
 use gridel_core::{Effects, Format, Structure, Vouched};
 use gridel_host::board::Board;
-use gridel_host::report::{Ledger, Target};
 use std::collections::BTreeMap;
 
 pub fn plan(plan: &mut Plan) {
@@ -36,44 +37,37 @@ pub fn plan(plan: &mut Plan) {
         .on(discovery)
         .in_full()
         .run(small_code_fits_in_16_kib);
-    plan.test("ledgers_are_enough_for_what_was_measured")
-        .run(ledgers_are_enough_for_what_was_measured);
 }
 
 /// What every shape and effect takes where all cores of its kind are measured: the README's table is
-/// that of the smallest board, and ledgers are added up from it.
+/// that of the smallest board.
 fn core_pays_for_parts_one_by_one(board: &'static Board, format: Format) {
-    let mut figures = Figures::new();
+    let mut linked = Linked::new();
     for scene in parts::scenes()
         .iter()
         .chain([&parts::sphere_and_triangle()])
     {
         let build = Build::new(board, format, Structure::DualSplit, scene);
         let elf = build.program("bare").elf();
-        figures.add(&build.to_string(), &footprint(&build, &elf, scene));
+        linked.add(&build, &scene.features(), scene, &elf);
     }
     for scene in &parts::wider_storage() {
         let build = Build::new(board, format, Structure::DualSplit, scene);
         let features = [&scene.features()[..], &[scene.name]].concat();
         let elf = build.program_with("bare", &features).elf();
-        figures.add(&build.to_string(), &footprint(&build, &elf, scene));
+        linked.add(&build, &features, scene, &elf);
     }
-    figures.check();
+    linked.check();
 }
 
-/// What some parts take on a board, by which the ledgers stretch what was measured for its kin.
+/// What some parts take on a board, by which the memory report scales the figures of a similar core.
 fn board_pays_for_few_parts(board: &'static Board, format: Format) {
     let scene = parts::sphere_and_triangle();
-    let mut figures = Figures::new();
+    let mut linked = Linked::new();
     let build = Build::new(board, format, Structure::DualSplit, &scene);
     let elf = build.program("bare").elf();
-    figures.add(&build.to_string(), &footprint(&build, &elf, &scene));
-    figures.check();
-}
-
-/// Boards on whose cores all is measured that others are told by.
-fn measured_in_full() -> impl Iterator<Item = (&'static Board, Format)> {
-    boards().filter(|&(board, format)| board.kin(format) == (board, format))
+    linked.add(&build, &scene.features(), &scene, &elf);
+    linked.check();
 }
 
 /// What every shape and effect costs rays on the smallest board: the README's table.
@@ -115,42 +109,20 @@ fn shapes_and_effects_are_paid_for_one_by_one() {
 }
 
 /// What a product with every shape and effect takes on a board, fast or small, and on one of each kind
-/// of core through every structure that boards vouch for: the ledgers' bounds.
+/// of core through every structure that boards vouch for: by which the memory report scales.
 fn everything_on_a_board(board: &'static Board, format: Format) {
     let scene = scenes::quick();
-    let mut figures = Figures::new();
+    let mut linked = Linked::new();
     let in_full = board.kin(format) == (board, format);
     let measured = |&it: &Structure| in_full || it == Structure::DualSplit;
     for structure in Vouched::STRUCTURES.into_iter().filter(measured) {
         let fast = || Build::new(board, format, structure, &scene);
         for build in [fast(), fast().small()] {
             let elf = build.program_with("bare", &["everything"]).elf();
-            figures.add(&build.to_string(), &footprint(&build, &elf, &scene));
+            linked.add(&build, &["everything"], &scene, &elf);
         }
     }
-    figures.check();
-}
-
-/// What parts add up to is enough for a program that holds some of them.
-fn ledgers_are_enough_for_what_was_measured() {
-    let scene = parts::sphere_and_triangle();
-    let view = scene.blob.scene().expect("the compiler's own blob");
-    for (board, format) in boards().filter(|&(board, _)| board != &WASM) {
-        let target = Target {
-            board,
-            flash: board.flash,
-            ram: board.ram,
-        };
-        let ledger = Ledger::of(&view, scene.blob.bytes(), &target, format);
-        let ledger = ledger.expect("it was measured");
-        let build = Build::new(board, format, Structure::DualSplit, &scene).to_string();
-        let code = ledger.flash.used - scene.blob.bytes().len() as u64;
-        let measured = figures::recorded(&build, "code-bytes");
-        assert!(
-            code >= measured,
-            "{build}: {code} bytes of code, {measured}"
-        );
-    }
+    linked.check();
 }
 
 /// Flash for all code that a diffuse scene of triangles and spheres with shadows needs, the vector table
@@ -162,13 +134,14 @@ fn small_code_fits_in_16_kib() {
     let discovery = board("stm32vldiscovery");
     let scene = parts::sphere_and_triangle();
     let fast = || Build::new(discovery, Format::Fixed, Structure::DualSplit, &scene);
-    let mut figures = Figures::new();
+    let (mut figures, mut linked) = (Figures::new(), Linked::new());
     for build in [fast(), fast().small()] {
         let elf = build.program("bare").elf();
-        let mut report = footprint(&build, &elf, &scene);
-        report.insert("vector-bytes".into(), elf.vector_bytes());
+        linked.add(&build, &scene.features(), &scene, &elf);
+        let mut report: BTreeMap<String, u64> =
+            [("vector-bytes".into(), elf.vector_bytes())].into();
         if build.is_small() {
-            let code = report["code-bytes"];
+            let code = footprint(&build, &elf, &scene).code;
             assert!(code <= SMALL_CODE, "{build}: {code} bytes of code");
         }
         let program = build.program("picture");
@@ -179,16 +152,5 @@ fn small_code_fits_in_16_kib() {
         figures.add(&build.to_string(), &report);
     }
     figures.check();
-}
-
-/// Flash for code, and the deepest call stack.
-fn footprint(build: &Build<'_>, elf: &elf::Elf, scene: &Compiled) -> BTreeMap<String, u64> {
-    let code = elf.flash_bytes() - scene.blob.bytes().len() as u64;
-    let path = elf.deepest_path();
-    let path = path.unwrap_or_else(|why| panic!("{build}: no bound on its stack: {why}"));
-    [
-        ("code-bytes".into(), code),
-        ("call-stack-bytes".into(), path.bytes),
-    ]
-    .into()
+    linked.check();
 }

@@ -76,13 +76,6 @@ impl Figures {
     }
 }
 
-/// A figure of a build, as it was measured last.
-pub fn recorded(build: &str, name: &str) -> u64 {
-    let recorded = fs::read(path()).expect("fixtures/recorded/board.json");
-    let recorded: Table = serde_json::from_slice(&recorded).expect("a table of integers");
-    recorded[build][name]
-}
-
 fn path() -> PathBuf {
     repository().join("fixtures/recorded/board.json")
 }

@@ -4,6 +4,7 @@ use crate::elf::Elf;
 use crate::scenes::{Compiled, repository};
 use gridel_core::{Format, Structure};
 use gridel_host::board::Board;
+use gridel_host::report::programs::{Place, Profile};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -152,6 +153,19 @@ impl<'b> Build<'b> {
         Self {
             small: true,
             ..self
+        }
+    }
+
+    /// The board, and what it computes in and through.
+    pub fn place(&self) -> Place<'b> {
+        (self.board, self.format, self.structure)
+    }
+
+    /// How it is built.
+    pub fn profile(&self) -> Profile {
+        match self.small {
+            true => Profile::Small,
+            false => Profile::Fast,
         }
     }
 

@@ -16,6 +16,7 @@ mod figures;
 mod firmware;
 mod parts;
 mod plan;
+mod programs;
 mod rays;
 mod scenes;
 mod stack;
@@ -43,6 +44,7 @@ fn main() {
     other_processors(&mut plan);
     linked(&mut plan);
     costs::plan(&mut plan);
+    programs::plan(&mut plan);
     emitted::plan(&mut plan);
     rays::plan(&mut plan);
     structures::plan(&mut plan);
@@ -51,6 +53,12 @@ fn main() {
     plan.test("loading_takes_less_than_40_instructions_a_byte")
         .run(figures::loading_takes_less_than_40_instructions_a_byte);
     libtest_mimic::run(&Arguments::from_args(), plan.trials).exit();
+}
+
+/// Boards on whose cores many programs are measured, by which other boards' are told.
+fn measured_in_full() -> impl Iterator<Item = (&'static Board, Format)> {
+    let boards = boards().filter(|&(board, _)| board != &WASM);
+    boards.filter(|&(board, format)| board.kin(format) == (board, format))
 }
 
 fn pictures(plan: &mut Plan) {

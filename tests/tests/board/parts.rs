@@ -15,60 +15,147 @@ type Shapes = [(&'static str, fn() -> Shape); 4];
 /// A part's name, and how to call for it.
 type Effects = [(&'static str, fn(&mut Scene)); 6];
 
+/// Beside triangles.
+const SHAPES: Shapes = [
+    ("sphere", || Shape::Sphere {
+        center: DVec3::new(0.0, 0.0, 1.0),
+        radius: 0.8,
+    }),
+    ("box", || Shape::Box {
+        min: DVec3::new(-0.7, -0.7, 0.3),
+        max: DVec3::new(0.7, 0.7, 1.7),
+    }),
+    ("disc", || Shape::Disc {
+        center: DVec3::new(0.0, 0.0, 1.0),
+        normal: DVec3::new(0.3, -1.0, 0.4),
+        radius: 0.9,
+    }),
+    ("cone", || Shape::Cone {
+        base: DVec3::new(0.0, 0.0, 0.2),
+        base_radius: 0.8,
+        apex: DVec3::new(0.0, 0.0, 1.8),
+        apex_radius: 0.3,
+    }),
+];
+
+const EFFECTS: Effects = [
+    ("shadow", |scene| scene.render.shadows = true),
+    ("highlight", |scene| scene.materials[0].highlight = [0.5; 3]),
+    ("mirror", |scene| scene.materials[0].mirror = [0.5; 3]),
+    ("glass", |scene| scene.materials[0].transmit = [0.9; 3]),
+    ("absorption", |scene| {
+        scene.materials[0].transmit = [0.9; 3];
+        scene.materials[0].absorption = [0.2; 3];
+    }),
+    ("checker", |scene| {
+        scene.materials[0].diffuse = Diffuse::Checker {
+            even: [0.8; 3],
+            odd: [0.2; 3],
+            size: 0.5,
+            origin: DVec3::splat(0.1),
+        }
+    }),
+];
+
 /// The base, and a scene for every shape and effect beside it. Scenes for shapes have no effects,
 /// and those for effects no other shapes; absorption comes with the glass that it is in.
 pub fn scenes() -> Vec<Compiled> {
-    let shapes: Shapes = [
-        ("sphere", || Shape::Sphere {
-            center: DVec3::new(0.0, 0.0, 1.0),
-            radius: 0.8,
-        }),
-        ("box", || Shape::Box {
-            min: DVec3::new(-0.7, -0.7, 0.3),
-            max: DVec3::new(0.7, 0.7, 1.7),
-        }),
-        ("disc", || Shape::Disc {
-            center: DVec3::new(0.0, 0.0, 1.0),
-            normal: DVec3::new(0.3, -1.0, 0.4),
-            radius: 0.9,
-        }),
-        ("cone", || Shape::Cone {
-            base: DVec3::new(0.0, 0.0, 0.2),
-            base_radius: 0.8,
-            apex: DVec3::new(0.0, 0.0, 1.8),
-            apex_radius: 0.3,
-        }),
-    ];
-    let effects: Effects = [
-        ("shadow", |scene| scene.render.shadows = true),
-        ("highlight", |scene| scene.materials[0].highlight = [0.5; 3]),
-        ("mirror", |scene| scene.materials[0].mirror = [0.5; 3]),
-        ("glass", |scene| scene.materials[0].transmit = [0.9; 3]),
-        ("absorption", |scene| {
-            scene.materials[0].transmit = [0.9; 3];
-            scene.materials[0].absorption = [0.2; 3];
-        }),
-        ("checker", |scene| {
-            scene.materials[0].diffuse = Diffuse::Checker {
-                even: [0.8; 3],
-                odd: [0.2; 3],
-                size: 0.5,
-                origin: DVec3::splat(0.1),
-            }
-        }),
-    ];
     let mut all = vec![compile(BASE, base())];
-    for (name, shape) in shapes {
+    for (name, shape) in SHAPES {
         let mut scene = base();
         scene.objects.push(object(shape()));
         all.push(compile(name, scene));
     }
-    for (name, call_for) in effects {
+    for (name, call_for) in EFFECTS {
         let mut scene = base();
         call_for(&mut scene);
         all.push(compile(name, scene));
     }
     all
+}
+
+/// What scenes often call for together: shapes, and effects.
+pub fn combinations() -> impl Iterator<Item = (Vec<&'static str>, Vec<&'static str>)> {
+    const ALL: [&str; 6] = [
+        "shadow",
+        "highlight",
+        "mirror",
+        "glass",
+        "absorption",
+        "checker",
+    ];
+    let shapes = [
+        "triangle",
+        "sphere",
+        "box",
+        "disc",
+        "cone",
+        "triangle sphere",
+        "triangle box",
+        "triangle cone",
+        "triangle disc",
+        "sphere disc",
+        "sphere box",
+        "sphere cone",
+        "triangle sphere box",
+        "sphere box disc cone",
+        "triangle sphere box disc cone",
+    ];
+    let split = |text: &'static str| text.split_whitespace().collect::<Vec<_>>();
+    let usual = shapes.into_iter().flat_map(move |shapes| {
+        let effects = [&ALL[..1], &ALL[..2], &ALL];
+        effects.map(|effects| (split(shapes), effects.to_vec()))
+    });
+    let effects = [
+        "",
+        "shadow mirror",
+        "shadow glass",
+        "shadow highlight mirror glass",
+    ];
+    let more = [shapes[0], shapes[1], shapes[14]]
+        .into_iter()
+        .flat_map(move |shapes| effects.map(|effects| (split(shapes), split(effects))));
+    // The glass chessboard and the Cornell box.
+    let fixtures = [
+        (
+            split(shapes[13]),
+            split("shadow highlight glass absorption checker"),
+        ),
+        (
+            split(shapes[12]),
+            split("shadow highlight mirror glass absorption"),
+        ),
+    ];
+    usual.chain(more).chain(fixtures)
+}
+
+/// A scene of some shapes and effects, with coordinates of 24 bits.
+pub fn combination(shapes: &[&str], effects: &[&str]) -> Compiled {
+    let mut scene = base();
+    if !shapes.contains(&"triangle") {
+        scene.objects.clear();
+    }
+    for (_, shape) in SHAPES.into_iter().filter(|(name, _)| shapes.contains(name)) {
+        scene.objects.push(object(shape()));
+    }
+    for (_, call_for) in EFFECTS
+        .into_iter()
+        .filter(|(name, _)| effects.contains(name))
+    {
+        call_for(&mut scene);
+    }
+    let options = Options {
+        lattice_bits: 24,
+        ..small()
+    };
+    let compiled = compile_with("combination", scene, [32, 32], options);
+    let expected = [shapes, effects, &["wide-lattice"]].concat();
+    let features = compiled.features();
+    assert!(
+        features.len() == expected.len() && features.iter().all(|it| expected.contains(it)),
+        "{features:?}, and not {expected:?}"
+    );
+    compiled
 }
 
 /// What the bar for flash is about: spheres and triangles, diffuse, with shadows.

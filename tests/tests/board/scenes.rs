@@ -221,7 +221,7 @@ fn fixture(name: &'static str, size: [u32; 2]) -> Compiled {
     compile(name, load(&fixture_path(name)), size)
 }
 
-fn fixture_path(name: &str) -> PathBuf {
+pub fn fixture_path(name: &str) -> PathBuf {
     let path = repository().join("fixtures").join(name);
     path.with_extension("toml")
 }
@@ -237,6 +237,15 @@ fn load(path: &Path) -> Scene {
     match scene::load(path, &Default::default()) {
         Ok(imported) => imported.scene,
         Err(error) => panic!("{}: {error}", path.display()),
+    }
+}
+
+/// A scene file as `gridel build` compiles it by default.
+pub fn by_default(name: &'static str, path: &Path) -> Compiled {
+    let compiled = compile::compile(&load(path), &Options::default());
+    Compiled {
+        name,
+        blob: compiled.expect("the scene compiles").blob,
     }
 }
 

@@ -1,8 +1,10 @@
 //! What the board tests recorded.
 
 use super::{holds_table, text};
+use gridel_core::{Format, Structure};
 use gridel_host::board::Board;
 use gridel_host::report::grouped;
+use gridel_host::report::programs::{Footprint, Programs};
 
 /// What the board tests recorded.
 pub fn boards() -> serde_json::Value {
@@ -100,11 +102,31 @@ fn the_readme_shows_what_boards_take() {
     holds_table("rays", &rays);
 }
 
+/// What programs with code for triangles and a part take on the smallest board: the fast one, and that
+/// of small code if it was built.
+fn program(part: &str) -> Vec<Footprint> {
+    let parts = match part {
+        "base" => vec!["triangle"],
+        "absorption" => vec!["triangle", "glass", "absorption"],
+        "sphere, triangle, shadow" => vec!["triangle", "sphere", "shadow"],
+        part => vec!["triangle", part],
+    };
+    let board = Board::named("stm32vldiscovery").expect("a board");
+    let programs = Programs::recorded();
+    let program = programs.get((board, Format::Fixed, Structure::DualSplit), &parts);
+    let program = program.unwrap_or_else(|| panic!("no program of {parts:?} is recorded"));
+    program.fast.into_iter().chain(program.small).collect()
+}
+
 /// What each shape and effect takes, as the board tests recorded it. `GRIDEL_BLESS=1` writes it anew.
 #[test]
 fn the_readme_shows_what_parts_cost() {
     let figure = |part: &str, figure: &str| {
-        let figure = on_board(part, "stm32vldiscovery", "fixed")(figure);
+        let figure = match figure {
+            "code-bytes" => program(part)[0].code,
+            "call-stack-bytes" => program(part)[0].call_stack,
+            _ => on_board(part, "stm32vldiscovery", "fixed")(figure),
+        };
         figure.cast_signed()
     };
     let parts = [
@@ -152,12 +174,20 @@ fn the_readme_shows_what_small_code_costs() {
         "| | code, bytes | the vector table among them | call stack, bytes | instructions to load | \
          a primary ray | a shadow ray | the picture |\n|---|---|---|---|---|---|---|---|\n",
     );
-    for (name, suffix) in [
+    let part = "sphere, triangle, shadow";
+    for ((name, suffix), footprint) in [
         ("`opt-level = 3`, all proofs at the start", ""),
         ("`small`, `opt-level = \"z\"`, vouched for", " small"),
-    ] {
-        let part = "sphere, triangle, shadow stm32vldiscovery fixed dual-split";
-        let figure = of_build(format!("{part}{suffix}"));
+    ]
+    .into_iter()
+    .zip(program(part))
+    {
+        let recorded = of_build(format!("{part} stm32vldiscovery fixed dual-split{suffix}"));
+        let figure = |name: &str| match name {
+            "code-bytes" => footprint.code,
+            "call-stack-bytes" => footprint.call_stack,
+            _ => recorded(name),
+        };
         let cells = [
             "code-bytes",
             "vector-bytes",

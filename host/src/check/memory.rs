@@ -1,0 +1,127 @@
+//! What a scene takes on a board that is not emulated: figures of the memory report, held to the board's
+//! memory and to budgets.
+
+use super::manifest::Budget;
+use super::measure::Run;
+use super::report::{Figure, Key, Outcome};
+use crate::board::Board;
+use crate::report::{Account, Ledger, NotMeasured, Target, grouped};
+use gridel_core::{Format, Scene, Structure};
+
+impl Run<'_> {
+    /// Holds the scene to its `target` in each number format that the board computes.
+    pub(super) fn memory(&mut self, scene: &Scene<'_>, blob: &[u8]) {
+        let Some(board) = self.check.target else {
+            return;
+        };
+        for format in formats(board, &self.check.formats) {
+            self.memory_in(board, format, scene, blob);
+        }
+    }
+
+    fn memory_in(&mut self, board: &'static Board, format: Format, scene: &Scene<'_>, blob: &[u8]) {
+        let on = || Some(format!("{} {}", board.name, format.name()));
+        let target = Target {
+            board,
+            flash: board.flash,
+            ram: board.ram,
+        };
+        let ledger = match Ledger::of(scene, blob, &target, format) {
+            Ok(ledger) => ledger,
+            Err(NotMeasured(structure)) => {
+                let why = format!(
+                    "nothing is known of the code and call stack of `{}` on boards; use one of {}",
+                    structure.name(),
+                    Ledger::STRUCTURES.map(Structure::name).join(", ")
+                );
+                self.push(on(), "target", None, None, Outcome::Broken(why));
+                return;
+            }
+        };
+        let unknown = ledger.undecided().unwrap_or_default();
+        for (what, account) in [("target flash", &ledger.flash), ("target ram", &ledger.ram)] {
+            let outcome = match account.used {
+                _ if account.missing() > 0 => {
+                    let help = help(&ledger, what, scene);
+                    Outcome::Broken(format!(
+                        "the scene takes {} bytes more than the {} of {}; what helps: {}",
+                        grouped(account.missing()),
+                        grouped(account.available),
+                        board.name,
+                        help
+                    ))
+                }
+                None => Outcome::Broken(format!("whether it fits is undecided: {unknown}")),
+                Some(_) => Outcome::Held,
+            };
+            let found = account.used.map(Figure::Count);
+            let available = Some(Figure::Count(account.available));
+            self.push(on(), what, found, available, outcome);
+        }
+        let Budget {
+            ram,
+            flash,
+            call_stack,
+            ..
+        } = self.check.budget;
+        let stack = ledger.fast.call_stack.zip(ledger.small.call_stack);
+        let used = |account: &Account| account.used;
+        let budgets = [
+            ("flash", flash, used(&ledger.flash)),
+            ("ram", ram, used(&ledger.ram)),
+            (
+                "call_stack",
+                call_stack,
+                stack.map(|(fast, small)| fast.max(small)),
+            ),
+        ];
+        for (what, most, found) in budgets {
+            let Some(most) = most else {
+                continue;
+            };
+            let allowed = Figure::Count(most);
+            let Some(found) = found else {
+                let why = format!("whether {what} is within its budget is undecided: {unknown}");
+                self.push(on(), what, None, Some(allowed), Outcome::Broken(why));
+                continue;
+            };
+            let keys = ["budget", what].map(|name| Key::Name(name.into()));
+            let help = help(&ledger, what, scene);
+            self.held_to(
+                on(),
+                what,
+                Figure::Count(found),
+                Some(allowed),
+                keys.into(),
+                Some(help),
+            );
+        }
+    }
+}
+
+/// What would make a figure smaller.
+fn help(ledger: &Ledger, what: &str, scene: &Scene<'_>) -> String {
+    let mut steps = match what {
+        "call_stack" => ledger.call_stack_advice(scene),
+        "ram" | "target ram" => ledger.ram_advice(scene),
+        _ => ledger.flash_advice(scene),
+    };
+    if what.ends_with("flash") {
+        let blob = "a smaller blob: `gridel build --max-bytes` says what makes it smaller";
+        steps.push(String::from(blob));
+    }
+    steps.join("; ")
+}
+
+/// The formats of a check that a board computes itself, or the board's own if it computes none of them.
+fn formats(board: &Board, asked: &[Format]) -> Vec<Format> {
+    let computed: Vec<Format> = asked
+        .iter()
+        .copied()
+        .filter(|format| board.formats.contains(format))
+        .collect();
+    match computed.is_empty() {
+        true => vec![board.format()],
+        false => computed,
+    }
+}

@@ -1,0 +1,271 @@
+//! Code and call stacks of linked programs, which the memory report is made of, and whether it is right.
+//!
+//! They are recorded in the package of the host, `host/src/report/programs.json`.
+
+use crate::elf::Elf;
+use crate::firmware::Build;
+use crate::measured_in_full;
+use crate::parts;
+use crate::plan::Plan;
+use crate::scenes::{self, Compiled, repository};
+use gridel_core::{Format, Structure};
+use gridel_host::board::Board;
+use gridel_host::report::programs::{Footprint, Place, Profile, Programs, parts as all_parts};
+use gridel_host::report::{Ledger, Target};
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::{env, fs};
+
+pub fn plan(plan: &mut Plan) {
+    for (board, format) in measured_in_full() {
+        plan.test_on("programs_take_what_is_recorded", board, format)
+            .in_full()
+            .run(move || programs_take_what_is_recorded(board, format));
+        if is_recording() {
+            // The report holds what was recorded when the host was compiled.
+            continue;
+        }
+        plan.test_on("memory_report_is_within_5_percent", board, format)
+            .with_scene(CRAMBIN)
+            .with_scene(SUZANNE)
+            .in_full()
+            .run(move || memory_report_is_within_5_percent(board, format));
+        plan.test_on("memory_report_bounds_programs_beyond", board, format)
+            .in_full()
+            .run(move || memory_report_bounds_programs_beyond(board, format));
+    }
+}
+
+/// Programs that were linked.
+#[derive(Default)]
+pub struct Linked(Vec<LinkedProgram>);
+
+struct LinkedProgram {
+    name: String,
+    place: Place<'static>,
+    parts: Vec<String>,
+    profile: Profile,
+    footprint: Footprint,
+}
+
+impl Linked {
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a program with code for some parts.
+    pub fn add(&mut self, build: &Build<'_>, features: &[&str], scene: &Compiled, elf: &Elf) {
+        let (board, format, structure) = build.place();
+        let board = Board::named(board.name).expect("a board of the host's");
+        let parts: Vec<&str> = match features {
+            ["everything"] => all_parts().collect(),
+            _ => features.to_vec(),
+        };
+        self.0.push(LinkedProgram {
+            name: build.to_string(),
+            place: (board, format, structure),
+            parts: parts.into_iter().map(String::from).collect(),
+            profile: build.profile(),
+            footprint: footprint(build, elf, scene),
+        });
+    }
+
+    /// Fails where a program takes 2 % more than is recorded, or is not recorded. With
+    /// `GRIDEL_RECORD_BOARDS=1` records them instead.
+    pub fn check(&self) {
+        if is_recording() {
+            return self.record();
+        }
+        let recorded = Programs::recorded();
+        let mut grown = Vec::new();
+        for program in &self.0 {
+            let before = recorded.get(program.place, &program.parts());
+            let before = before.and_then(|before| before.footprint(program.profile));
+            let within = before.is_some_and(|before| {
+                let grew = |found: u64, before: u64| found > before + before / 50;
+                let found = program.footprint;
+                !grew(found.code, before.code) && !grew(found.call_stack, before.call_stack)
+            });
+            if !within {
+                let (name, parts) = (&program.name, program.parts.join(" "));
+                let found = program.footprint;
+                grown.push(format!("{name}, {parts}: {found:?}, recorded {before:?}"));
+            }
+        }
+        assert!(
+            grown.is_empty(),
+            "grew by more than 2 % (GRIDEL_RECORD_BOARDS=1 records them):\n{}",
+            grown.join("\n")
+        );
+    }
+
+    fn record(&self) {
+        static FILE: Mutex<()> = Mutex::new(());
+        let _one_at_a_time = FILE.lock().unwrap_or_else(|poison| poison.into_inner());
+        let text = fs::read(path()).expect("a table of programs");
+        let mut recorded: Programs = serde_json::from_slice(&text).expect("a table of programs");
+        for program in &self.0 {
+            let (place, parts) = (program.place, program.parts());
+            recorded.insert(place, &parts, program.profile, program.footprint);
+        }
+        let text = serde_json::to_string_pretty(&recorded).expect("a table of integers");
+        fs::write(path(), text + "\n").expect("the table can be written to");
+    }
+}
+
+impl LinkedProgram {
+    fn parts(&self) -> Vec<&str> {
+        self.parts.iter().map(String::as_str).collect()
+    }
+}
+
+fn is_recording() -> bool {
+    env::var_os("GRIDEL_RECORD_BOARDS").is_some_and(|value| value == "1")
+}
+
+fn path() -> PathBuf {
+    repository().join("host/src/report/programs.json")
+}
+
+/// Flash for code, and the deepest call stack.
+pub fn footprint(build: &Build<'_>, elf: &Elf, scene: &Compiled) -> Footprint {
+    let path = elf.deepest_path();
+    let path = path.unwrap_or_else(|why| panic!("{build}: no bound on its stack: {why}"));
+    Footprint {
+        code: elf.flash_bytes() - scene.blob.bytes().len() as u64,
+        call_stack: path.bytes,
+    }
+}
+
+/// The fast program of a scene on a board, or that of small code.
+fn build<'s>(
+    board: &'static Board,
+    format: Format,
+    scene: &'s Compiled,
+    profile: Profile,
+) -> Build<'s> {
+    let build = Build::new(board, format, Structure::DualSplit, scene);
+    match profile {
+        Profile::Fast => build,
+        Profile::Small => build.small(),
+    }
+}
+
+/// What the usual scenes call for, with coordinates of 24 bits as they are by default.
+fn programs_take_what_is_recorded(board: &'static Board, format: Format) {
+    let mut linked = Linked::new();
+    for (shapes, effects) in parts::combinations() {
+        let scene = parts::combination(&shapes, &effects);
+        for profile in [Profile::Fast, Profile::Small] {
+            let build = build(board, format, &scene, profile);
+            let elf = build.program("bare").elf();
+            linked.add(&build, &scene.features(), &scene, &elf);
+        }
+    }
+    linked.check();
+}
+
+/// A protein, and a mesh.
+const CRAMBIN: &str = "molecules/1crn.pdb";
+const SUZANNE: &str = "meshes/suzanne.obj";
+
+/// The flash, the RAM and the call stack that the memory report tells are enough for the linked program,
+/// and at most 5 % more.
+fn memory_report_is_within_5_percent(board: &'static Board, format: Format) {
+    let mut all: Vec<Compiled> = ["quick", "glass-chess", "cornell"]
+        .map(|name| scenes::by_default(name, &scenes::fixture_path(name)))
+        .into();
+    let c60 = repository().join("fixtures/c60.pdb");
+    all.push(scenes::by_default("c60", &c60));
+    all.push(scenes::by_default("1crn", &scenes::real(CRAMBIN)));
+    all.push(scenes::by_default("suzanne", &scenes::real(SUZANNE)));
+    all.push(parts::combination(&["sphere"], &["shadow"]));
+    all.push(parts::combination(&["box"], &["shadow", "highlight"]));
+    all.push(parts::combination(
+        &["sphere", "cone"],
+        &["shadow", "highlight"],
+    ));
+    let mut wrong = Vec::new();
+    for scene in &all {
+        let (told, linked) = told_and_linked(board, format, scene);
+        let names = ["flash", "RAM", "call stack"];
+        for ((name, told), linked) in names.into_iter().zip(told).zip(linked) {
+            let line = format!(
+                "{} on {}: {told} bytes of {name} told, {linked} linked, {:+.1} %",
+                scene.name,
+                board.name,
+                100.0 * (told as f64 / linked as f64 - 1.0)
+            );
+            println!("{line}");
+            if told < linked || 100 * told > 105 * linked {
+                wrong.push(line);
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Programs that were not recorded are bounded. How far beyond the true figures the bounds lie stands in
+/// the host's documentation (`gridel_host::report::programs`).
+fn memory_report_bounds_programs_beyond(board: &'static Board, format: Format) {
+    let mut wrong = Vec::new();
+    for (shapes, effects) in [
+        (&["triangle", "disc", "cone"][..], &["shadow"][..]),
+        (&["box", "cone"], &["shadow", "mirror"]),
+        (&["triangle", "sphere", "cone"], &["shadow", "highlight"]),
+        (&["sphere"], &["glass"]),
+        (&["triangle", "box", "disc"], &["highlight", "checker"]),
+    ] {
+        let scene = parts::combination(shapes, effects);
+        let (told, linked) = told_and_linked(board, format, &scene);
+        let names = ["flash", "RAM", "call stack"];
+        for ((name, told), linked) in names.into_iter().zip(told).zip(linked) {
+            let line = format!(
+                "{} {} on {}: {told} bytes of {name} told, {linked} linked, {:+.1} %",
+                shapes.join(" "),
+                effects.join(" "),
+                board.name,
+                100.0 * (told as f64 / linked as f64 - 1.0)
+            );
+            println!("{line}");
+            if told < linked {
+                wrong.push(line);
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Flash, RAM and call stack of a scene: what the memory report tells, and what its linked programs take.
+/// Flash and static memory are those of the fast program, the call stack is the larger of both.
+fn told_and_linked(
+    board: &'static Board,
+    format: Format,
+    scene: &Compiled,
+) -> ([u64; 3], [u64; 3]) {
+    let view = scene.blob.scene().expect("the compiler's own blob");
+    let target = Target {
+        board,
+        flash: board.flash,
+        ram: board.ram,
+    };
+    let ledger = Ledger::of(&view, scene.blob.bytes(), &target, format).expect("dual-split nodes");
+    let sizes = [ledger.fast, ledger.small].map(|sizes| sizes.call_stack.expect("known"));
+    let told = [
+        ledger.flash.used.expect("known"),
+        ledger.ram.used.expect("known"),
+        sizes[0].max(sizes[1]),
+    ];
+    let [fast, small] = [Profile::Fast, Profile::Small].map(|profile| {
+        let build = build(board, format, scene, profile);
+        let elf = build.program("bare").elf();
+        (footprint(&build, &elf, scene), elf)
+    });
+    let call_stack = fast.0.call_stack.max(small.0.call_stack);
+    let linked = [
+        fast.1.flash_bytes(),
+        fast.1.static_bytes() + call_stack,
+        call_stack,
+    ];
+    (told, linked)
+}
