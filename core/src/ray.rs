@@ -72,18 +72,17 @@ impl fmt::Display for RayError {
 
 impl core::error::Error for RayError {}
 
-/// How far rays from a point are moved that run up or down one axis: to the plane in which the scene's
+/// How far rays are moved that run up or down one axis, from a coordinate on it: to the plane in which the scene's
 /// box begins, or towards it for hits behind the point.
 #[cfg_attr(not(feature = "small"), inline(always))]
 fn way_to_box<N: Number>(
     bounds: &UnitBox,
-    origin: [N::Wide; 3],
+    origin: N::Wide,
     (axis, forward): (usize, bool),
     tmin: N::Wide,
 ) -> N::Wide {
     let zero = N::Wide::default();
     let [first, last] = pick(bounds.0, axis);
-    let origin = pick(origin, axis);
     // Of what is too far away it may be anything.
     let to_box = if forward {
         N::difference(N::from_unit(first).widen(), origin)
@@ -107,13 +106,18 @@ fn interval<N: Number>(tmin: N::Wide, tmax: N::Wide, moved: N::Wide) -> [N; 2] {
     } else {
         N::ZERO
     };
+    [tmin, end_after(tmax, moved)]
+}
+
+/// The end of an interval, counted likewise.
+#[inline(always)]
+fn end_after<N: Number>(tmax: N::Wide, moved: N::Wide) -> N {
     // An interval that ends before it starts holds no hit.
-    let tmax = if tmax < moved {
+    if tmax < moved {
         -N::ONE
     } else {
         N::excess(tmax, moved)
-    };
-    [tmin, tmax]
+    }
 }
 
 /// How far from the lattice's middle an origin may be along each axis: 2^37 units, with 13 fraction bits.
@@ -267,7 +271,8 @@ impl<N: Number> Pencil<N> {
     pub(crate) fn of(bounds: &UnitBox, origin: [N::Wide; 3]) -> Self {
         let zero = N::Wide::default();
         let moved = [0, 1, 2].map(|axis| {
-            [false, true].map(|forward| way_to_box::<N>(bounds, origin, (axis, forward), zero))
+            [false, true]
+                .map(|forward| way_to_box::<N>(bounds, pick(origin, axis), (axis, forward), zero))
         });
         let single = (origin.map(N::narrow), moved.map(|ways| ways.map(N::narrow)));
         let near = |axis: usize| {
@@ -324,7 +329,7 @@ impl<N: Number> Pencil<N> {
             }
             Origin::Far { origin, bounds } => {
                 let zero = N::Wide::default();
-                let moved = way_to_box::<N>(bounds, *origin, (major, forward), zero);
+                let moved = way_to_box::<N>(bounds, pick(*origin, major), (major, forward), zero);
                 far(bounds, origin, moved)
             }
         };
@@ -367,7 +372,7 @@ impl<N: Number> Ray<N> {
         let (slope, major) = N::slopes(direction).ok_or(RayError::Direction)?;
         check_interval(tmin, tmax)?;
         let forward = pick(slope, major) > N::ZERO;
-        let moved = way_to_box::<N>(bounds, origin, (major, forward), tmin);
+        let moved = way_to_box::<N>(bounds, pick(origin, major), (major, forward), tmin);
         let single = (origin.map(N::narrow), N::narrow(moved));
         let (start, moved, within) = if is_near(single.0, major, single.1) {
             (near_start(single.0, single.1, slope), moved, true)
@@ -387,8 +392,8 @@ impl<N: Number> Ray<N> {
         })
     }
 
-    /// A ray from a place in the scene, as hits give places, with `t` above 0, where it meets what it
-    /// starts on. `None` if the direction is zero, or no such `t` is at most `tmax`.
+    /// A ray from a place in the scene, as hits give places, with all `t` up to `tmax` but 0, where it
+    /// meets what it starts on. `None` if the direction is zero.
     #[cfg_attr(feature = "wide", inline(always))]
     #[cfg_attr(not(feature = "wide"), inline)]
     pub(crate) fn from_inside(
@@ -397,23 +402,23 @@ impl<N: Number> Ray<N> {
         direction: [N::Wide; 3],
         tmax: N::Wide,
     ) -> Option<Self> {
-        let zero = N::Wide::default();
-        let tmin = N::step_beside(N::ZERO).widen();
         let (slope, major) = N::slopes(direction)?;
-        if tmax < tmin {
-            return None;
-        }
         let forward = pick(slope, major) > N::ZERO;
         // A place beside the box at most: always near.
-        let moved = way_to_box::<N>(bounds, origin.map(N::widen), (major, forward), zero);
-        let [tmin, tmax] = interval(tmin, tmax, moved);
+        let from = pick(origin, major).widen();
+        let zero = N::Wide::default();
+        let moved = way_to_box::<N>(bounds, from, (major, forward), zero);
         Some(Self {
             origin: near_start(origin, N::narrow(moved), slope),
             slope,
             major,
             moved,
-            tmin,
-            tmax,
+            tmin: if moved > zero {
+                N::ZERO
+            } else {
+                N::step_beside(N::ZERO)
+            },
+            tmax: end_after(tmax, moved),
         })
     }
 
@@ -529,7 +534,7 @@ mod tests {
         };
         let forward = pick(slope, major) > N::ZERO;
         let tmin = N::far_from_f64(tmin);
-        let moved = way_to_box::<N>(&bounds, origin, (major, forward), tmin);
+        let moved = way_to_box::<N>(&bounds, pick(origin, major), (major, forward), tmin);
         let single = (origin.map(N::narrow), N::narrow(moved));
         if is_near(single.0, major, single.1) {
             let near = near_start(single.0, single.1, slope);

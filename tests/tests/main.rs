@@ -13,9 +13,9 @@ mod documents;
 mod explain;
 mod fixed_point;
 mod grids;
+mod large_scenes;
 #[path = "lattice/main.rs"]
 mod lattice;
-mod large_scenes;
 mod origins;
 mod reference;
 mod render;

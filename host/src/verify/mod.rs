@@ -264,7 +264,7 @@ impl Work<'_> {
 
     /// Looks at a place that lies in a shadow in one format.
     fn shadow<N: Number>(&self, ray: &SceneRay, tally: &mut Tally) {
-        let Some((ready, _)) = self.frame.ray::<N>(self.scene, ray) else {
+        let Ok((ready, _)) = self.frame.ray::<N>(self.scene, ray) else {
             return;
         };
         tally.checked(Promise::Shadows, 1);
