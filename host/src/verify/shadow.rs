@@ -108,8 +108,12 @@ fn blocker<N: Number>(scene: &Scene<'_>, light: &Light, from: DVec3) -> Option<H
     ask::<N, List>(scene, &ray.ok()?).hit
 }
 
-/// Shadows that a format loses where a ray strikes: `f64` has the place in the dark, and what is a step of the
-/// lattice beside it and above it, and the format has it in the light.
+/// Roundings between a place and what keeps a light from it, as in the bound of a hit.
+const ROUNDINGS: f64 = 16.0;
+
+/// Shadows that a format loses where a ray strikes: `f64` has the place in the dark, and what is beside it and
+/// above it by a step of the lattice, or by what the format rounds between the place and the object that
+/// throws the shadow; and the format has it in the light. At the edge of a shadow formats may differ.
 pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
     let rounded = RoundedRay::of(ray);
     let (hit, right) = (
@@ -126,10 +130,9 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
     }
     let normal = DVec3::from_array(right.normal) * if right.front { 1.0 } else { -1.0 };
     let place = DVec3::from_array(depart(scene, &right, right.front));
-    let step = f64::powi(2.0, 16 - i32::from(scene.header().lattice_bits));
+    let lattice_step = f64::powi(2.0, 16 - i32::from(scene.header().lattice_bits));
     let normal = normal.normalize();
     let (u, v) = normal.any_orthonormal_pair();
-    let about = [DVec3::ZERO, u, -u, v, -v, normal].map(|aside| place + step * aside);
     let found = scene.lights().iter().enumerate().filter_map(|(number, light)| {
         if normal.dot(to_light(light, place)?) <= 0.0 {
             return None;
@@ -138,16 +141,16 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
             let material = scene.material(other.object);
             material.is_some_and(|material| material.transmit == [0; 3])
         };
-        let mut nearest = None;
-        for from in about {
-            let other = blocker::<f64>(scene, light, from).filter(is_opaque)?;
-            nearest = nearest.or(Some(other));
+        let nearest = blocker::<f64>(scene, light, place).filter(is_opaque)?;
+        let largest = place.abs().max(DVec3::from_array(nearest.point).abs());
+        let beside = lattice_step.max(ROUNDINGS * step(N::FORMAT, largest.max_element()));
+        for aside in [u, -u, v, -v, normal] {
+            blocker::<f64>(scene, light, place + beside * aside).filter(is_opaque)?;
         }
         let from = DVec3::from_array(depart(scene, &hit, hit.front));
         if blocker::<N>(scene, light, from).is_some() {
             return None;
         }
-        let nearest = nearest?;
         Some(Fault {
             promise: Promise::Shadows,
             format: N::FORMAT,
