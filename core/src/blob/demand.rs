@@ -38,6 +38,7 @@ pub struct Demand {
     sections: u64,
     wide_lattice: bool,
     wide_indices: bool,
+    display_values: bool,
 }
 
 impl Demand {
@@ -57,6 +58,7 @@ impl Demand {
             sections: 0,
             wide_lattice: lattice_bits > 16,
             wide_indices: false,
+            display_values: false,
         };
         let sections = proved!(half(blob, offset_of!(Header, section_count))) as usize;
         let mut index = 0;
@@ -74,6 +76,8 @@ impl Demand {
                 let size = proved!(word(blob, start.saturating_add(offset_of!(View, width))));
                 let rays = proved!(word(blob, start.saturating_add(offset_of!(View, samples))));
                 (demand.width, demand.height) = (size as usize & 0xffff, size as usize >> 16);
+                // The last byte of the word that begins with the depth.
+                demand.display_values = rays >> 24 != 0;
                 demand.work_depth = demand.effects.work_depth((rays >> 16) as u8);
             } else if kind == SectionKind::Triangles as u16 {
                 demand.wide_indices = stride > size_of::<[u16; 3]>();
@@ -115,6 +119,7 @@ impl Demand {
             self.has(Cones) => "cone",
             self.wide_lattice => "wide-lattice",
             self.wide_indices => "wide-indices",
+            self.display_values => "display-values",
             clusters_alone => "wide",
             effects.contains(Effects::SHADOW) => "shadow",
             effects.contains(Effects::HIGHLIGHT) => "highlight",

@@ -42,9 +42,9 @@ pub enum BlobError {
         /// The effects.
         missing: Effects,
     },
-    /// The scene holds primitives of a kind, or stored in a way, that this build was compiled
-    /// without.
-    MissingShape {
+    /// The scene holds primitives of a kind, or stored in a way, or colours, that this build was
+    /// compiled without.
+    MissingPart {
         /// The Cargo feature that is missing.
         missing: &'static str,
     },
@@ -147,9 +147,9 @@ impl fmt::Display for BlobError {
                 "the scene calls for the effects {missing}, which this build was compiled without: \
                  enable the Cargo features of the same names in gridel-core"
             ),
-            BlobError::MissingShape { missing } => write!(
+            BlobError::MissingPart { missing } => write!(
                 f,
-                "the scene's primitives call for `{missing}`, which this build was compiled without: \
+                "the scene calls for `{missing}`, which this build was compiled without: \
                  enable the Cargo feature of the same name in gridel-core"
             ),
             BlobError::MissingStructure { missing, needed_by } => write!(

@@ -6,6 +6,7 @@ use super::section::Sections;
 use super::{BlobError, Indices, Scene, SectionKind};
 use crate::accel::{Entry, Held, MAX_STACK_DEPTH, Structure};
 use crate::ray::FARTHEST;
+use crate::render::DISPLAY_VALUES;
 use crate::render::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use crate::shade::Effects;
 #[cfg(feature = "wide")]
@@ -175,6 +176,10 @@ fn check_view<'a>(sections: &Sections<'a>) -> Result<&'a View, BlobError> {
     )?;
     at.within("depth", view.depth.into(), 0, MAX_RAY_DEPTH as i64)?;
     at.within("display values", view.display_values.into(), 0, 1)?;
+    if !DISPLAY_VALUES && view.display_values != 0 {
+        let missing = "display-values";
+        return Err(BlobError::MissingPart { missing });
+    }
     Ok(view)
 }
 
@@ -199,11 +204,11 @@ fn read_shapes<'a>(sections: &Sections<'a>, header: &Header) -> Result<Shapes<'a
     let sole = holds(SectionKind::Strips) && triangles == 0
         || holds(SectionKind::Packs) && !holds(SectionKind::Spheres);
     if sole && cfg!(not(feature = "wide")) {
-        return Err(BlobError::MissingShape { missing: "wide" });
+        return Err(BlobError::MissingPart { missing: "wide" });
     }
     for (is_missing, missing) in kinds.into_iter().chain(stored) {
         if is_missing {
-            return Err(BlobError::MissingShape { missing });
+            return Err(BlobError::MissingPart { missing });
         }
     }
     Ok(Shapes {

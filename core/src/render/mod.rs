@@ -18,6 +18,7 @@ mod sample;
 mod trace;
 
 pub use cursor::Cursor;
+pub(crate) use pixel::DISPLAY_VALUES;
 pub use pixel::{Pixel, Rgb565, Rgb888};
 pub use renderer::{RenderError, Renderer, Settings};
 pub use trace::{Workspace, WorkspaceView, work_depth};

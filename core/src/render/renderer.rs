@@ -2,7 +2,7 @@
 
 use super::camera::{self, Camera};
 use super::cursor::{Cursor, Samples};
-use super::pixel::{Linear, Pixel, from_display};
+use super::pixel::{DISPLAY_VALUES, Linear, Pixel, from_display};
 use super::sample::SUBPIXELS;
 use super::trace::{Loop, WorkspaceView};
 use super::{MAX_RAY_DEPTH, MAX_SAMPLES};
@@ -274,9 +274,10 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     #[inline(always)]
     pub(super) fn to_linear(&self, seen: Color<N>) -> Linear {
         let values = seen.0.map(N::to_linear16);
-        match self.scene.view().display_values {
-            0 => values,
-            _ => from_display(values),
+        if DISPLAY_VALUES && self.scene.view().display_values != 0 {
+            from_display(values)
+        } else {
+            values
         }
     }
 

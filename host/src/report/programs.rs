@@ -17,8 +17,8 @@ use std::collections::BTreeMap;
 
 /// What the tests recorded.
 const RECORDED: &str = include_str!("programs.json");
-/// Forms of storage that programs have code for, or have not.
-const WIDER: [&str; 2] = ["wide-lattice", "wide-indices"];
+/// Forms of storage and of colours that programs have code for, or have not.
+const FORMS: [&str; 3] = ["wide-lattice", "wide-indices", "display-values"];
 
 /// Bytes of a linked program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -172,7 +172,7 @@ impl Programs {
 /// All that a program can have code for, in the order in which it is told.
 pub fn parts() -> impl Iterator<Item = &'static str> {
     let kinds = Kind::ALL.map(Kind::name);
-    kinds.into_iter().chain(WIDER).chain(Effects::ALL.names())
+    kinds.into_iter().chain(FORMS).chain(Effects::ALL.names())
 }
 
 /// How a program is called: its parts in their order.
