@@ -41,7 +41,7 @@ const PICTURE: usize = ROW * TinyBlob::SIZE[1] as usize;
 const fn expected(format: Format) -> u32 {
     match format {
         Format::Fixed => 3_640_373_502,
-        Format::F32 => 1_167_339_048,
+        Format::F32 => 3_865_380_085,
         Format::F64 => 606_617_004,
     }
 }

@@ -93,7 +93,11 @@ fn to(light: &Light, hit: Hit<N>, scene: &Scene<'static>) -> Option<Ray<N>> {
             if length > longest { length } else { longest }
         });
         let part = |axis: usize| N::narrow(start[axis]).abs();
-        let magnitude = part(0).max(part(1)).max(part(2)).max(N::narrow(longest));
+        let larger = |a: N, b: N| if a < b { b } else { a };
+        let magnitude = larger(
+            larger(part(0), part(1)),
+            larger(part(2), N::narrow(longest)),
+        );
         (way, longest - N::error_bound(magnitude).widen())
     };
     let ray = Ray::new(scene.bounds(), start, way, N::far(0), end).ok()?;
