@@ -11,12 +11,15 @@ use gridel_host::compile::{Options, Quality, compile};
 use gridel_host::trace::{SceneHit, SceneRay};
 use std::time::Instant;
 
+/// Traces rays `R`, or finds whether each meets anything, and writes answers `A`.
+type Tracer<'c, R, A> = Box<dyn Fn(&[R], bool, &mut [A]) + 'c>;
+
 /// How a contender traces rays: given them, whether any hit will do, and where the answers go.
 pub enum Trace<'c> {
     /// A library's function for one ray, called for each.
-    OfQueries(Box<dyn Fn(&[Query], bool, &mut [Answer]) + 'c>),
+    OfQueries(Tracer<'c, Query, Answer>),
     /// Gridel's function for many rays, on the arrays that it takes.
-    OfSceneRays(Box<dyn Fn(&[SceneRay], bool, &mut [SceneHit]) + 'c>),
+    OfSceneRays(Tracer<'c, SceneRay, SceneHit>),
 }
 
 /// One way to trace rays.

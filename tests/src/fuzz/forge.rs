@@ -44,7 +44,11 @@ impl Parts {
         let record = random.below(section.records().max(1));
         let width = [1, 2, 2, 4, 4, 8][random.below(6)].min(stride);
         // Records of three-byte integers have fields of odd sizes.
-        let width = if stride % width == 0 { width } else { 1 };
+        let width = if stride.is_multiple_of(width) {
+            width
+        } else {
+            1
+        };
         let offset = random.below(stride / width) * width;
         (record, offset, width)
     }
@@ -239,14 +243,18 @@ impl Forger {
                     return;
                 }
                 Err(BlobError::Header {
-                    field, expected, ..
-                }) if field == "stack depth" => {
+                    field: "stack depth",
+                    expected,
+                    ..
+                }) => {
                     parts.header.stack_depth = expected as u16;
                     parts.header.stack_bytes = 12 * expected as u32;
                 }
                 Err(BlobError::Header {
-                    field, expected, ..
-                }) if field == "longest leaf" => {
+                    field: "longest leaf",
+                    expected,
+                    ..
+                }) => {
                     parts.header.longest_leaf = expected as u16;
                 }
                 Err(_) => return,
