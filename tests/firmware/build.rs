@@ -50,6 +50,8 @@ fn main() {
     let memory = format!("src/board/memory/{board}.x");
     println!("cargo::rerun-if-changed={memory}");
     fs::copy(&memory, out.join("memory.x")).unwrap_or_else(|error| panic!("{memory}: {error}"));
+    // No interrupt has a handler of its own.
+    fs::write(out.join("device.x"), "").expect("OUT_DIR can be written to");
     println!("cargo::rustc-link-search={}", out.display());
     // Here rather than in Cargo's configuration, which RUSTFLAGS would override.
     if target.starts_with("riscv") {

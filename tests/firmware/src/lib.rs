@@ -32,6 +32,19 @@ pub use cortex_m_rt as rt;
 #[cfg(target_arch = "riscv32")]
 pub use riscv_rt as rt;
 
+#[cfg(all(target_arch = "arm", feature = "small"))]
+unsafe extern "C" {
+    /// What cortex-m-rt does with an interrupt that nobody handles.
+    fn DefaultHandler();
+}
+
+/// The interrupts of an STM32F100, as a crate for that chip would list them; none is used. Without such a
+/// list cortex-m-rt makes room for 240.
+#[cfg(all(target_arch = "arm", feature = "small"))]
+#[unsafe(link_section = ".vector_table.interrupts")]
+#[unsafe(no_mangle)]
+pub static __INTERRUPTS: [unsafe extern "C" fn(); 61] = [DefaultHandler; 61];
+
 /// Makes a function the whole program: it is given the program's memory, which lies beside the
 /// stack, so that the linker knows of it.
 #[macro_export]
