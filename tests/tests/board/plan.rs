@@ -23,6 +23,7 @@ pub struct Planned<'p> {
     tools: BTreeSet<String>,
     scenes: BTreeSet<String>,
     in_full: bool,
+    at_length: bool,
 }
 
 impl Plan {
@@ -34,6 +35,7 @@ impl Plan {
             tools: BTreeSet::new(),
             scenes: BTreeSet::new(),
             in_full: false,
+            at_length: false,
         }
     }
 
@@ -65,17 +67,24 @@ impl Planned<'_> {
         self
     }
 
+    /// Runs only with `GRIDEL_FULL=1`, or where boards are recorded.
+    pub fn at_length(mut self) -> Self {
+        self.at_length = true;
+        self
+    }
+
     /// Adds the test.
     pub fn run(self, test: impl FnOnce() + Send + 'static) {
         let is_set = |name: &str| env::var_os(name).is_some_and(|value| value == "1");
         let required = is_set("GRIDEL_REQUIRE_BOARDS");
         let missing = |what: &BTreeSet<String>| Vec::from_iter(what.clone()).join(", ");
-        let full = required || is_set("GRIDEL_FULL") || is_set("GRIDEL_RECORD_BOARDS");
+        let at_length = is_set("GRIDEL_FULL") || is_set("GRIDEL_RECORD_BOARDS");
+        let full = required || at_length;
         let reason = if !self.scenes.is_empty() {
             Some(format!("needs {}", missing(&self.scenes)))
         } else if !self.tools.is_empty() && !required {
             Some(format!("needs {}", missing(&self.tools)))
-        } else if self.in_full && !full {
+        } else if self.in_full && !full || self.at_length && !at_length {
             Some(String::from("runs with GRIDEL_FULL=1"))
         } else {
             None
