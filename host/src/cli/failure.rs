@@ -1,10 +1,24 @@
 //! Why a verb ends before its work is done, and the exit code that says so.
 
 use gridel_host::compile::CompileError;
-use miette::{Diagnostic, Report};
+use miette::{Diagnostic, MietteHandlerOpts, Report};
 use std::io;
 use std::path::Path;
 use std::process::ExitCode;
+use textwrap::{WordSeparator, WordSplitter};
+
+/// Keeps whole what one may want to copy: lines of an error break at spaces, not within a path or a flag.
+pub fn break_lines_at_spaces() {
+    let handler = |_: &dyn Diagnostic| {
+        let options = MietteHandlerOpts::new()
+            .word_separator(WordSeparator::AsciiSpace)
+            .word_splitter(WordSplitter::NoHyphenation)
+            .break_words(false);
+        Box::new(options.build()) as Box<dyn miette::ReportHandler>
+    };
+    // Fails only where a handler has been set before, and then lines break as that one has it.
+    let _ = miette::set_hook(Box::new(handler));
+}
 
 /// Why a verb ended early.
 #[derive(Debug)]

@@ -108,12 +108,13 @@ fn blocker<N: Number>(scene: &Scene<'_>, light: &Light, from: DVec3) -> Option<H
     ask::<N, List>(scene, &ray.ok()?).hit
 }
 
-/// Roundings between a place and what keeps a light from it, as in the bound of a hit.
-const ROUNDINGS: f64 = 16.0;
+/// Roundings of a shadow ray on its way past the edge of what casts the shadow.
+const ROUNDINGS: f64 = 4.0;
 
-/// Shadows that a format loses where a ray strikes: `f64` has the place in the dark, and what is beside it and
-/// above it by a step of the lattice, or by what the format rounds between the place and the object that
-/// throws the shadow; and the format has it in the light. At the edge of a shadow formats may differ.
+/// Shadows that a format loses where a ray strikes: `f64` has the place in the dark, and what is about it, and
+/// the format has it in the light. At the edge of a shadow formats may differ: what is about the place is as
+/// far from it as the format's shadow ray may start, but above it no more than a quarter of the way to what
+/// casts the shadow.
 pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
     let rounded = RoundedRay::of(ray);
     let (hit, right) = (
@@ -130,6 +131,7 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
     }
     let normal = DVec3::from_array(right.normal) * if right.front { 1.0 } else { -1.0 };
     let place = DVec3::from_array(depart(scene, &right, right.front));
+    let from = DVec3::from_array(depart(scene, &hit, hit.front));
     let lattice_step = f64::powi(2.0, 16 - i32::from(scene.header().lattice_bits));
     let normal = normal.normalize();
     let (u, v) = normal.any_orthonormal_pair();
@@ -142,12 +144,18 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
             material.is_some_and(|material| material.transmit == [0; 3])
         };
         let nearest = blocker::<f64>(scene, light, place).filter(is_opaque)?;
+        let offset = from - place;
+        let height = offset.dot(normal);
+        let aside = offset - height * normal;
         let largest = place.abs().max(DVec3::from_array(nearest.point).abs());
-        let beside = lattice_step.max(ROUNDINGS * step(N::FORMAT, largest.max_element()));
-        for aside in [u, -u, v, -v, normal] {
-            blocker::<f64>(scene, light, place + beside * aside).filter(is_opaque)?;
+        let rounded = ROUNDINGS * step(N::FORMAT, largest.max_element());
+        let beside = lattice_step.max(2.0 * aside.length() + rounded);
+        for offset in [u, -u, v, -v].map(|it| beside * it) {
+            blocker::<f64>(scene, light, place + offset).filter(is_opaque)?;
         }
-        let from = DVec3::from_array(depart(scene, &hit, hit.front));
+        let distance = place.distance(DVec3::from_array(nearest.point));
+        let above = lattice_step.max((2.0 * height.abs() + rounded).min(distance / 4.0));
+        blocker::<f64>(scene, light, place + above * normal).filter(is_opaque)?;
         if blocker::<N>(scene, light, from).is_some() {
             return None;
         }
