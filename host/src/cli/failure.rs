@@ -9,15 +9,14 @@ use textwrap::{WordSeparator, WordSplitter};
 
 /// Keeps whole what one may want to copy: lines of an error break at spaces, not within a path or a flag.
 pub fn break_lines_at_spaces() {
-    let handler = |_: &dyn Diagnostic| {
+    // Fails only where a handler has been set before, and then lines break as that one has it.
+    let _ = miette::set_hook(Box::new(|_| {
         let options = MietteHandlerOpts::new()
             .word_separator(WordSeparator::AsciiSpace)
             .word_splitter(WordSplitter::NoHyphenation)
             .break_words(false);
-        Box::new(options.build()) as Box<dyn miette::ReportHandler>
-    };
-    // Fails only where a handler has been set before, and then lines break as that one has it.
-    let _ = miette::set_hook(Box::new(handler));
+        Box::new(options.build())
+    }));
 }
 
 /// Why a verb ended early.

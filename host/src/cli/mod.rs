@@ -69,6 +69,7 @@ Exit codes:
 /// `memory` is the program's allocator, which knows how much is in use.
 pub fn run(memory: &PeakAlloc) -> ExitCode {
     let program = Program::parse();
+    failure::break_lines_at_spaces();
     // Without a handler an interrupt would only leave a temporary file behind.
     let _ = ctrlc::set_handler(|| gridel_host::output::abandon(130));
     if let Err(cause) = gridel_host::simd::from_environment() {

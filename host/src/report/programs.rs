@@ -4,11 +4,6 @@
 //! `programs.json` is written by the board tests. Code is not a sum: what a part takes depends on what
 //! the compiler makes of the rest, by some percent of the program. A program that was built is therefore
 //! told exactly; one that was not is bounded by the smallest that holds all of it and more.
-//!
-//! On a Cortex-M3 in `fixed`, 174 other programs were linked once (coordinates of 16 bits), 77 of them with
-//! shadows. The bounds of code lie 0.6 % to 33 % above those with shadows, 5.2 % in the middle, and up to
-//! 53 % above those without. The worst: boxes and discs, which are bounded by the program of boxes, spheres,
-//! discs and cones, because no smaller one with both was recorded.
 
 use crate::board::Board;
 use gridel_core::{Effects, Format, Kind, Structure};
