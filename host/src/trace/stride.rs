@@ -19,9 +19,10 @@ impl Stride {
 
     /// The stride of a direction, and the direction with its length brought near 1 where it is extreme.
     #[inline(always)]
-    pub(super) fn of(direction: DVec3, unit: f64) -> (Self, DVec3) {
-        let factor = direction.abs().max_element() / unit;
-        if Self::ORDINARY.contains(&factor) && Self::ORDINARY.contains(&(factor * unit)) {
+    pub(super) fn of(direction: DVec3, unit: f64, per_unit: f64) -> (Self, DVec3) {
+        let largest = direction.abs().max_element();
+        let factor = largest * per_unit;
+        if Self::ORDINARY.contains(&factor) && Self::ORDINARY.contains(&largest) {
             let stride = Self {
                 factor,
                 exponent: 0,
