@@ -19,6 +19,13 @@ fn main() {
     aligned[..bytes.len()].copy_from_slice(&bytes);
     let scene = Scene::from_bytes(&aligned[..bytes.len()])
         .unwrap_or_else(|error| panic!("{blob}: {error}"));
+    let target = env::var("TARGET").expect("cargo sets TARGET");
+    // Of an nRF51, and of an STM32F100.
+    let interrupts = if target.starts_with("thumbv6m") {
+        32
+    } else {
+        61
+    };
     let constants = format!(
         "/// Entries of the traversal stack.\n\
          pub const STACK_DEPTH: usize = {};\n\
@@ -27,7 +34,9 @@ fn main() {
          /// The effects that the scene calls for.\n\
          pub const EFFECTS: u32 = {};\n\
          /// Pixels of a row.\n\
-         pub const WIDTH: usize = {};\n",
+         pub const WIDTH: usize = {};\n\
+         /// Interrupts of the board's chip.\n\
+         pub const INTERRUPTS: usize = {interrupts};\n",
         scene.stack_depth(),
         scene.effects().work_depth(scene.view().depth),
         scene.effects().0,
@@ -36,7 +45,6 @@ fn main() {
     fs::write(out.join("limits.rs"), constants).expect("OUT_DIR can be written to");
     fs::write(out.join("scene.gridel"), &bytes).expect("OUT_DIR can be written to");
 
-    let target = env::var("TARGET").expect("cargo sets TARGET");
     println!("cargo::rerun-if-env-changed=GRIDEL_BOARD");
     if target.contains("linux") {
         return;

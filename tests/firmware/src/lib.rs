@@ -38,12 +38,13 @@ unsafe extern "C" {
     fn DefaultHandler();
 }
 
-/// The interrupts of an STM32F100, as a crate for that chip would list them; none is used. Without such a
-/// list cortex-m-rt makes room for 240.
+/// The interrupts of the board's chip, as a crate for that chip would list them; none is used. Without such
+/// a list cortex-m-rt makes room for 240.
 #[cfg(all(target_arch = "arm", feature = "small"))]
 #[unsafe(link_section = ".vector_table.interrupts")]
 #[unsafe(no_mangle)]
-pub static __INTERRUPTS: [unsafe extern "C" fn(); 61] = [DefaultHandler; 61];
+pub static __INTERRUPTS: [unsafe extern "C" fn(); scene::INTERRUPTS] =
+    [DefaultHandler; scene::INTERRUPTS];
 
 /// Makes a function the whole program: it is given the program's memory, which lies beside the
 /// stack, so that the linker knows of it.
