@@ -44,6 +44,8 @@ pub struct Ray<N: Number> {
 }
 
 /// Why something is not a ray.
+// As wide as a number in single precision: what shares its place in a `Result` is then loaded as it was stored.
+#[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RayError {
     /// The direction is zero, infinite or NaN.

@@ -13,6 +13,7 @@ use gridel_core::{
     Accel, Bvh, Count, Counters, DualSplit, Fixed, Flagged, Format, NoCount, Number, Ray, RayError,
     RayKind, Scene, Stack, Structure, Wide, any_hit, closest_primitive,
 };
+use std::ops::Range;
 
 /// A ray in scene units; t counts multiples of the direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -141,6 +142,12 @@ fn through<N: Number, A: Accel, C: Count>(
     }
 }
 
+/// Rays whose steps are taken together: those of several rays overlap, where those of one wait for each other.
+const BATCH: usize = 16;
+
+/// A ray that is ready to be traced, or why it is not.
+type Ready<N> = Result<(Ray<N>, Stride), Rejection>;
+
 /// Finds whether each ray meets anything.
 fn any_of_each<N: Number, A: Accel, C: Count>(
     scene: &Scene<'_>,
@@ -151,22 +158,26 @@ fn any_of_each<N: Number, A: Accel, C: Count>(
     let frame = Frame::of(scene);
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
     let mut rejections = Rejections::default();
-    for place in 0..rays.len().min(hits.len()) {
-        load_ahead(rays, hits, place);
-        let (ray, hit) = (&rays[place], &mut hits[place]);
-        let (ray, _) = match frame.ray::<N>(scene, ray) {
-            Ok(ready) => ready,
-            Err(why) => {
-                *hit = rejections.add(place, why);
-                continue;
-            }
-        };
-        count.ray(RayKind::Primary, &ray);
-        *hit = if any_hit::<N, A, C>(scene, &ray, stack.as_view(), count) {
-            SceneHit::ANY
-        } else {
-            SceneHit::MISS
-        };
+    let mut batch: Vec<Ready<N>> = Vec::with_capacity(BATCH);
+    for first in (0..rays.len().min(hits.len())).step_by(BATCH) {
+        load_ahead(rays, hits, first + BATCH..first + 2 * BATCH);
+        let rays = &rays[first..rays.len().min(first + BATCH)];
+        frame.fill(&mut batch, scene, rays);
+        for (place, (ready, hit)) in batch.iter().zip(&mut hits[first..]).enumerate() {
+            let (ray, _) = match ready {
+                Ok(ready) => ready,
+                Err(why) => {
+                    *hit = rejections.add(first + place, *why);
+                    continue;
+                }
+            };
+            count.ray(RayKind::Primary, ray);
+            *hit = if any_hit::<N, A, C>(scene, ray, stack.as_view(), count) {
+                SceneHit::ANY
+            } else {
+                SceneHit::MISS
+            };
+        }
     }
     rejections
 }
@@ -181,47 +192,53 @@ fn closest_of_each<N: Number, A: Accel, C: Count>(
     let frame = Frame::of(scene);
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
     let mut rejections = Rejections::default();
-    for place in 0..rays.len().min(hits.len()) {
-        load_ahead(rays, hits, place);
-        let (ray, hit) = (&rays[place], &mut hits[place]);
-        let (ray, stride) = match frame.ray::<N>(scene, ray) {
-            Ok(ready) => ready,
-            Err(why) => {
-                *hit = rejections.add(place, why);
-                continue;
-            }
-        };
-        count.ray(RayKind::Primary, &ray);
-        let found = closest_primitive::<N, A, C>(scene, &ray, stack.as_view(), count);
-        // Inlined, it computes what is used here, and nothing else.
-        let Some(found) = found.and_then(|found| found.hit(scene, &ray)) else {
-            *hit = SceneHit::MISS;
-            continue;
-        };
-        *hit = match stride.multiple(N::far_to_f64(found.t), || found.error.length_to_f64()) {
-            Ok(t) => SceneHit {
-                t,
-                object: found.object,
-                primitive: found.primitive,
-                normal: found.normal.map(|x| x.ratio_to_f64() as f32),
-            },
-            Err(why) => rejections.add(place, why),
-        };
+    let mut batch: Vec<Ready<N>> = Vec::with_capacity(BATCH);
+    let mut met = Vec::with_capacity(BATCH);
+    for first in (0..rays.len().min(hits.len())).step_by(BATCH) {
+        load_ahead(rays, hits, first + BATCH..first + 2 * BATCH);
+        let rays = &rays[first..rays.len().min(first + BATCH)];
+        frame.fill(&mut batch, scene, rays);
+        met.clear();
+        for ready in &batch {
+            met.push(ready.as_ref().ok().and_then(|(ray, _)| {
+                count.ray(RayKind::Primary, ray);
+                closest_primitive::<N, A, C>(scene, ray, stack.as_view(), count)
+            }));
+        }
+        for (place, ((ready, met), hit)) in
+            batch.iter().zip(&met).zip(&mut hits[first..]).enumerate()
+        {
+            let found = ready.as_ref().map_err(|why| *why);
+            let found = found.and_then(|(ray, stride)| {
+                // Inlined, it computes what is used here, and nothing else.
+                let Some(found) = met.and_then(|met| met.hit(scene, ray)) else {
+                    return Ok(SceneHit::MISS);
+                };
+                let error = || found.error.length_to_f64();
+                Ok(SceneHit {
+                    t: stride.multiple(N::far_to_f64(found.t), error)?,
+                    object: found.object,
+                    primitive: found.primitive,
+                    normal: found.normal.map(|x| x.ratio_to_f64() as f32),
+                })
+            });
+            *hit = found.unwrap_or_else(|why| rejections.add(first + place, why));
+        }
     }
     rejections
 }
 
-/// Starts to load what comes some rays after the one of a number. A ray and a hit are 96 bytes, which a
-/// processor loads ahead by itself too late: tracing a ray keeps it from running ahead.
+/// Starts to load what belongs to the rays of some places. A processor does so by itself too late: tracing a ray
+/// keeps it from running ahead.
 #[inline(always)]
-fn load_ahead(rays: &[SceneRay], hits: &[SceneHit], number: usize) {
+fn load_ahead(rays: &[SceneRay], hits: &[SceneHit], places: Range<usize>) {
     #[cfg(target_arch = "x86_64")]
-    if let (Some(ray), Some(hit)) = (rays.get(number + 20), hits.get(number + 20)) {
-        gridel_x86::prefetch(ray);
-        gridel_x86::prefetch_to_write(hit);
+    if let (Some(rays), Some(hits)) = (rays.get(places.clone()), hits.get(places)) {
+        rays.iter().for_each(gridel_x86::prefetch);
+        hits.iter().for_each(gridel_x86::prefetch_to_write);
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = (rays, hits, number);
+    let _ = (rays, hits, places);
 }
 
 /// How a scene's coordinates relate to the core's.
@@ -269,6 +286,16 @@ impl Frame {
         }
     }
 
+    /// Makes a batch of rays ready.
+    #[inline(always)]
+    fn fill<N: Number>(&self, batch: &mut Vec<Ready<N>>, scene: &Scene<'_>, rays: &[SceneRay]) {
+        batch.clear();
+        batch.extend(rays.iter().map(
+            #[inline(always)]
+            |ray| self.ray(scene, ray),
+        ));
+    }
+
     /// A ray in the core's form, and by how much its t is larger.
     ///
     /// # Errors
@@ -280,51 +307,69 @@ impl Frame {
         ray: &SceneRay,
     ) -> Result<(Ray<N>, Stride), Rejection> {
         // Multiples of the direction become lengths along its largest component.
-        let (stride, direction) = Stride::of(ray.direction, self.unit, self.per_unit);
-        let origin = (ray.origin - self.origin) * self.per_unit;
-        let (tmin, tmax) = (stride.length(ray.tmin), stride.length(ray.tmax));
-        let direction = direction.to_array();
-        if origin.abs().max_element() > carry::FAR {
-            return self.far_ray(scene, ray, (tmin, tmax), stride, direction);
+        let (mut stride, direction) = Stride::of(ray.direction, self.unit, self.per_unit);
+        let mut start = Start {
+            origin: (ray.origin - self.origin) * self.per_unit,
+            tmin: stride.length(ray.tmin),
+            tmax: stride.length(ray.tmax),
+            begin: 0.0,
+        };
+        // Here only numbers are chosen: a ray that is chosen goes through memory, and is waited for.
+        if start.origin.abs().max_element() > carry::FAR {
+            start = self.far_start::<N>(scene, ray, start, direction)?;
+            stride.begin_at(start.begin);
         }
-        let made = Ray::from_f64(scene.bounds(), origin.to_array(), direction, tmin, tmax);
-        Ok((made?, stride))
+        Ok((start.ray(scene, direction)?, stride))
     }
 
-    /// [`ray`](Self::ray) from an origin far from the scene.
+    /// The start of a ray from an origin far from the scene.
     #[cold]
     #[inline(never)]
-    fn far_ray<N: Number>(
+    fn far_start<N: Number>(
         &self,
         scene: &Scene<'_>,
         ray: &SceneRay,
-        (tmin, tmax): (f64, f64),
-        mut stride: Stride,
-        direction: [f64; 3],
-    ) -> Result<(Ray<N>, Stride), Rejection> {
-        let bounds = scene.bounds();
-        let origin = ((ray.origin - self.origin) / self.unit).to_array();
-        let whole = Ray::from_f64(bounds, origin, direction, tmin, tmax);
-        let whole = match whole {
-            Ok(whole) => whole,
+        start: Start,
+        direction: DVec3,
+    ) -> Result<Start, Rejection> {
+        match start.ray::<N>(scene, direction) {
+            Ok(_) => (),
             // Infinite in units alone.
             Err(RayError::Origin) if ray.origin.is_finite() => {
                 return Err(RayError::Distance.into());
             }
             Err(why) => return Err(why.into()),
-        };
-        let ends = [ray.origin, self.origin];
-        let carried = carry::carry(ends, self.unit, DVec3::from_array(direction));
-        let Some((place, along)) = carried else {
-            return Ok((whole, stride));
-        };
-        match Ray::from_f64(bounds, place, direction, tmin - along, tmax - along) {
-            Ok(ray) => {
-                stride.begin_at(along);
-                Ok((ray, stride))
-            }
-            // It passes by the scene so far away that it is not told from where.
-            Err(_) => Ok((whole, stride)),
         }
+        let ends = [ray.origin, self.origin];
+        let Some((place, along)) = carry::carry(ends, self.unit, direction) else {
+            return Ok(start);
+        };
+        let carried = Start {
+            origin: DVec3::from_array(place),
+            tmin: start.tmin - along,
+            tmax: start.tmax - along,
+            begin: along,
+        };
+        // Else it passes by the scene so far away that it is not told from where.
+        let is_ray = carried.ray::<N>(scene, direction).is_ok();
+        Ok(if is_ray { carried } else { start })
+    }
+}
+
+/// Where a ray starts, and its interval, in units.
+#[derive(Clone, Copy, Debug)]
+struct Start {
+    origin: DVec3,
+    tmin: f64,
+    tmax: f64,
+    /// The length at which the interval counts 0.
+    begin: f64,
+}
+
+impl Start {
+    #[inline(always)]
+    fn ray<N: Number>(&self, scene: &Scene<'_>, direction: DVec3) -> Result<Ray<N>, RayError> {
+        let (origin, direction) = (self.origin.to_array(), direction.to_array());
+        Ray::from_f64(scene.bounds(), origin, direction, self.tmin, self.tmax)
     }
 }

@@ -94,20 +94,20 @@ pub(crate) struct Surface<N> {
 }
 
 impl<N: Number> Surface<N> {
-    /// The surface as a ray sees it that only grazes it.
+    /// The normal as a ray sees it that only grazes the surface.
     ///
     /// What a ray enters or leaves is known better than the normal, which the point's rounding turns
     /// where a solid is as thin as an error bound; and a grazing ray's may turn too far by a bit.
     #[cold]
-    fn level_with(self, ray: &Ray<N>) -> Self {
+    fn level_with(&self, ray: &Ray<N>) -> [N; 3] {
         let turned = N::wide_scale(N::dot(self.normal, ray.slope), N::recip_norm2(ray.slope));
         let turned = N::from_wide(turned);
         let axis = |k: usize| self.normal[k] - turned * ray.slope[k];
         let (normal, length) = N::normalize([axis(0), axis(1), axis(2)]);
-        let opposite = self.normal.map(|x| -x);
-        Self {
-            normal: if length == N::ZERO { opposite } else { normal },
-            ..self
+        if length == N::ZERO {
+            self.normal.map(|x| -x)
+        } else {
+            normal
         }
     }
 }
@@ -457,11 +457,10 @@ impl Shapes<'_> {
             Kind::Triangle | Kind::Disc => against,
             Kind::Sphere | Kind::Box | Kind::Cone => !leaves,
         };
-        Some(if front == against {
-            (surface, front)
-        } else {
-            (surface.level_with(ray), front)
-        })
+        if front != against {
+            surface.normal = surface.level_with(ray);
+        }
+        Some((surface, front))
     }
 
     /// The surface of a primitive that has a record of its own, at a point, and the way towards where
