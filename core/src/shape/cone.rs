@@ -223,6 +223,9 @@ impl Cone {
         };
         // Between the caps and within reach: farther away, a line along the mantle has its vertex.
         let (nearest, farthest) = (enter.0.max(-reach), leave.0.min(reach));
+        if nearest > farthest {
+            return None;
+        }
         let within = |s: N| s.max(nearest).min(farthest);
         let (_, b) = mantle.terms(mantle.q, mantle.g);
         let mut cut = mantle.roots(within(N::divide(-b, mantle.a)))?;
