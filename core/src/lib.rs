@@ -22,7 +22,7 @@
 //!
 //! # Units
 //! The length unit of the core is the *unit*, one step of the 16-bit box lattice; see
-//! [`blob::record::Header`] for how units relate to scene coordinates.
+//! [`format::record::Header`] for how units relate to scene coordinates.
 #![cfg_attr(not(any(test, feature = "std")), no_std)]
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
@@ -33,17 +33,17 @@
 pub mod boards {}
 
 pub mod accel;
-pub mod blob;
-pub mod count;
-pub mod event;
+pub mod format;
+mod geometry;
 pub mod number;
+pub mod observe;
 mod query;
 pub mod ray;
 pub mod render;
+pub mod scene;
 #[cfg(feature = "selftest")]
 pub mod selftest;
 pub mod shade;
-mod shape;
 #[cfg(feature = "wide")]
 mod simd;
 
@@ -76,15 +76,16 @@ pub use accel::Spheres;
 #[cfg(feature = "wide")]
 pub use accel::Wide;
 pub use accel::{Accel, List, Stack, StackView, Structure, StructureVisitor};
-pub use blob::{Aligned, BlobError, Demand, Scene, Vouched};
-pub use count::{Count, Counters, NoCount, RayKind};
-pub use event::Event;
+pub use format::{BlobError, Demand};
+pub use geometry::Kind;
 pub use number::{Fixed, Format, Number};
+pub use observe::count::{Count, Counters, NoCount, RayKind};
+pub use observe::event::Event;
 pub use query::{Found, Hit, any_hit, closest_hit, closest_primitive};
 pub use ray::{Pencil, Ray, RayError};
 pub use render::{Renderer, Rgb565, Rgb888, Settings, Workspace};
+pub use scene::{Aligned, Scene, Vouched};
 pub use shade::Effects;
-pub use shape::Kind;
 #[cfg(feature = "wide")]
 pub use simd::SimdLevel;
 

@@ -3,25 +3,27 @@
 use crate::SMALL;
 use crate::accel::cull::Culling;
 use crate::accel::{Accel, Leaf, StackView};
-use crate::blob::Scene;
-use crate::blob::record::{Corners, Sphere, UnitBox, Vertex};
-use crate::count::Count;
-use crate::event::{Event, Met};
-use crate::number::Number;
-use crate::ray::Ray;
-use crate::shape::sphere;
-use crate::shape::triangle::{self, Projection};
-use crate::shape::{
+#[cfg(feature = "wide")]
+use crate::format::cluster::{LANES, Pack, Strip};
+use crate::format::record::{Corners, Sphere, UnitBox, Vertex};
+#[cfg(feature = "wide")]
+use crate::geometry::strip::StripRay;
+use crate::geometry::triangle::Projection;
+use crate::geometry::{
     Crossing, Kind, Part, Place, Spheres, Triangles, Vertices, WIDE_INDICES, WIDE_LATTICE, accept,
-    accept_in_box,
+    accept_in_box, sphere, triangle,
 };
 #[cfg(feature = "wide")]
-use crate::{
-    blob::cluster::{LANES, Pack, Strip},
-    number::Format,
-    shape::{Packs, Strips, pack, strip::StripRay},
-    simd::{Portable, Simd, SimdLevel, with_simd},
-};
+use crate::geometry::{Packs, Strips, pack};
+#[cfg(feature = "wide")]
+use crate::number::Format;
+use crate::number::Number;
+use crate::observe::count::Count;
+use crate::observe::event::{Event, Met};
+use crate::ray::Ray;
+use crate::scene::Scene;
+#[cfg(feature = "wide")]
+use crate::simd::{Portable, Simd, SimdLevel, with_simd};
 
 /// What a ray met.
 #[derive(Clone, Copy, Debug, PartialEq)]

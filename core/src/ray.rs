@@ -1,9 +1,9 @@
 //! Rays, in the one form that every kernel uses.
 
 use crate::SMALL;
-use crate::blob::record::UnitBox;
-use crate::event::Event;
+use crate::format::record::UnitBox;
 use crate::number::{Format, Number, pick};
+use crate::observe::event::Event;
 use core::cmp::Ordering;
 use core::fmt;
 

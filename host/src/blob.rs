@@ -1,7 +1,7 @@
 //! Blobs in memory and on disk.
 
 use crate::simd;
-use gridel_core::blob::record::{ALIGNMENT, MAGIC};
+use gridel_core::format::record::{ALIGNMENT, MAGIC};
 use gridel_core::{Scene, Structure};
 use std::fs::{self, File};
 use std::io::{self, Read};

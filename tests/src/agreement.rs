@@ -2,8 +2,9 @@
 
 use crate::query::{HitBits, UnitRay, any, closest, depart, held, through};
 use crate::random::Random;
+use gridel_core::accel::Leaf;
 use gridel_core::accel::cull::Cull;
-use gridel_core::accel::{Leaf, bvh};
+use gridel_core::accel::hierarchy::bvh;
 use gridel_core::{
     Accel, Count, Counters, Flagged, List, NoCount, Number, Ray, Scene, StackView, Structure,
 };

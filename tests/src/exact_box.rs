@@ -1,6 +1,6 @@
 //! Whether a ray meets a box, in integers, without any rounding.
 
-use gridel_core::blob::record::UnitBox;
+use gridel_core::format::record::UnitBox;
 
 /// Fraction bits of origins and limits here.
 pub const PLACE_BITS: u32 = 8;

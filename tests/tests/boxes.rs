@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 use gridel_core::accel::cull::{Culling, PairCulling};
-use gridel_core::blob::record::UnitBox;
+use gridel_core::format::record::UnitBox;
 use gridel_core::{Kind, NoCount, Number, Ray, Scene, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;

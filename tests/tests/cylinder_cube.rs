@@ -6,7 +6,7 @@
 //! gridel-tests --test cylinder_cube` writes it anew; the difference belongs into the same commit.
 
 use glam::DVec3;
-use gridel_core::blob::record::{Gridels, UnitBox};
+use gridel_core::format::record::{Gridels, UnitBox};
 use gridel_core::{Fixed, Number, Ray, Structure};
 use gridel_host::compile::{CompileError, CubeCensus, Options, compile, cube_census};
 use gridel_host::report::{Align, Table, grouped};

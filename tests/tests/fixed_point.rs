@@ -5,7 +5,7 @@
 //! this folder.
 
 use glam::DVec3;
-use gridel_core::blob::record::UnitBox;
+use gridel_core::format::record::UnitBox;
 use gridel_core::{Fixed, Kind, List, NoCount, Scene, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;

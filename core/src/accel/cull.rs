@@ -22,7 +22,7 @@
 //! Values are monotone in `p`, so a child's interval lies in its parent's, whatever was rounded. Hits lie
 //! in these intervals or are clamped to them; what cores walk with may be wider, never narrower.
 
-use crate::blob::record::{Gridels, Pair, UnitBox, plane_word};
+use crate::format::record::{Gridels, Pair, UnitBox, plane_word};
 use crate::number::{CullAxis, NARROW_PRODUCTS, Number, pick};
 use crate::ray::Ray;
 
@@ -160,7 +160,7 @@ impl<N: Number> Culling<N> for Deferred {
     }
 
     /// The box is widened by more than a hit can lie beside it ([`Gridels::SPARE`] units, see
-    /// [`gridels`](super::gridels)) and by what these few operations round, less than a unit. Seen along
+    /// [`gridels`](crate::accel::candidates::gridels)) and by what these few operations round, less than a unit. Seen along
     /// the major axis, on which a step is a step of t, the line moves on another axis by its slope
     /// there: what lies farther from the box's middle than half the box and half of that is beside it.
     ///
@@ -370,7 +370,7 @@ pub(crate) fn holds<N: Number>(ray: &Ray<N>, t: N, bounds: &UnitBox) -> bool {
     target_arch = "aarch64",
     all(target_arch = "wasm32", target_feature = "simd128")
 ))]
-pub(crate) type FloatCulling = super::lanes::Lanes;
+pub(crate) type FloatCulling = crate::accel::lanes::Lanes;
 /// The form in which rays of a float format cull on this machine.
 #[cfg(not(any(
     target_arch = "x86_64",

@@ -2,9 +2,10 @@
 //!
 //! Rule and margins are those of `single.rs`.
 
-use super::cull::{self, Cull, Culling, Interval, PairCulling};
-use super::single::Single;
-use crate::blob::record::{Pair, UnitBox};
+use crate::accel::cull;
+use crate::accel::cull::{Cull, Culling, Interval, PairCulling};
+use crate::accel::single::Single;
+use crate::format::record::{Pair, UnitBox};
 use crate::number::Number;
 use crate::ray::Ray;
 use glam::Vec4;

@@ -1,12 +1,13 @@
 //! The plain list: every primitive is tested. What all structures are measured against.
 
-use super::cull::Cull;
-use super::{Accel, Leaf, Records, StackView, Structure};
-use crate::blob::{BlobError, Scene, SectionKind, Sections};
-use crate::count::Count;
+use crate::accel::cull::Cull;
+use crate::accel::{Accel, Leaf, Records, StackView, Structure};
+use crate::format::{BlobError, SectionKind, Sections};
+use crate::geometry::Kind;
 use crate::number::Number;
+use crate::observe::count::Count;
 use crate::ray::Ray;
-use crate::shape::Kind;
+use crate::scene::Scene;
 
 /// Tests every primitive; needs no stack.
 #[derive(Clone, Copy, Debug)]

@@ -8,59 +8,17 @@
 //! that this box lies in the leaf's and every box in its parent's, and culling is monotone (see
 //! [`cull`]). Whatever was rounded on the way, a primitive that is met lies in boxes that are met.
 
-#[cfg(feature = "apex")]
-pub mod apex;
-#[cfg(feature = "bvh")]
-pub mod bvh;
-mod candidates;
-#[cfg(any(feature = "grid", feature = "octree"))]
+pub mod candidates;
 pub mod cells;
 pub mod cull;
-#[cfg(feature = "cylinder-cube")]
-pub mod cylinder_cube;
-#[cfg(feature = "cylinder-cube-entry")]
-pub mod cylinder_cube_entry;
-#[cfg(feature = "cylinder-cube-tight")]
-pub mod cylinder_cube_tight;
-#[cfg(feature = "dual-split")]
-pub mod dual_split;
-#[cfg(feature = "flagged")]
-pub mod flagged;
-#[cfg(feature = "flagged-slabs")]
-pub mod flagged_slabs;
-#[cfg(feature = "grid")]
-pub mod grid;
-mod gridel_table;
-pub mod gridels;
+pub mod hierarchy;
 #[cfg(any(
     target_arch = "x86_64",
     target_arch = "aarch64",
     all(target_arch = "wasm32", target_feature = "simd128")
 ))]
 mod lanes;
-mod line;
-#[cfg(any(
-    feature = "bvh",
-    feature = "flagged",
-    feature = "slabs",
-    feature = "spheres"
-))]
-mod link;
 pub mod list;
-#[cfg(feature = "octree")]
-pub mod octree;
-pub(crate) mod order;
-#[cfg(any(
-    feature = "bvh",
-    feature = "flagged",
-    feature = "slabs",
-    feature = "spheres"
-))]
-mod pairs;
-#[cfg(feature = "ray-classes")]
-pub mod ray_classes;
-#[cfg(any(feature = "slabs", feature = "spheres"))]
-pub mod reach;
 mod registry;
 #[cfg(any(
     feature = "wide",
@@ -69,60 +27,56 @@ mod registry;
     all(target_arch = "wasm32", target_feature = "simd128")
 ))]
 mod single;
-#[cfg(any(feature = "slabs", feature = "spheres"))]
-pub mod slabs;
-#[cfg(feature = "spheres")]
-pub mod spheres;
 #[cfg(feature = "wide")]
 pub mod wide;
 
 #[cfg(feature = "apex")]
-pub use apex::Apex;
-#[cfg(feature = "bvh")]
-pub use bvh::Bvh;
+pub use candidates::apex::Apex;
 #[cfg(feature = "cylinder-cube")]
-pub use cylinder_cube::CylinderCube;
+pub use candidates::cylinder_cube::CylinderCube;
 #[cfg(feature = "cylinder-cube-entry")]
-pub use cylinder_cube_entry::CylinderCubeEntry;
+pub use candidates::cylinder_cube_entry::CylinderCubeEntry;
 #[cfg(feature = "cylinder-cube-tight")]
-pub use cylinder_cube_tight::CylinderCubeTight;
-#[cfg(feature = "dual-split")]
-pub use dual_split::DualSplit;
-#[cfg(feature = "flagged")]
-pub use flagged::Flagged;
-#[cfg(feature = "flagged-slabs")]
-pub use flagged_slabs::FlaggedSlabs;
+pub use candidates::cylinder_cube_tight::CylinderCubeTight;
+#[cfg(feature = "ray-classes")]
+pub use candidates::ray_classes::RayClasses;
 #[cfg(feature = "grid")]
-pub use grid::Grid;
+pub use cells::grid::Grid;
+#[cfg(feature = "octree")]
+pub use cells::octree::Octree;
+#[cfg(feature = "bvh")]
+pub use hierarchy::bvh::Bvh;
+#[cfg(feature = "dual-split")]
+pub use hierarchy::dual_split::DualSplit;
+#[cfg(feature = "flagged")]
+pub use hierarchy::flagged::Flagged;
+#[cfg(feature = "flagged-slabs")]
+pub use hierarchy::flagged_slabs::FlaggedSlabs;
 #[cfg(any(
     feature = "bvh",
     feature = "flagged",
     feature = "slabs",
     feature = "spheres"
 ))]
-pub use link::Link;
+pub use hierarchy::link::Link;
+#[cfg(feature = "slabs")]
+pub use hierarchy::slabs::Slabs;
+#[cfg(feature = "spheres")]
+pub use hierarchy::spheres::Spheres;
 pub use list::List;
-#[cfg(feature = "octree")]
-pub use octree::Octree;
-#[cfg(feature = "ray-classes")]
-pub use ray_classes::RayClasses;
 #[cfg(feature = "all-structures")]
 pub use registry::Chosen;
 pub(crate) use registry::{Held, Records};
 pub use registry::{Structure, StructureVisitor};
-#[cfg(feature = "slabs")]
-pub use slabs::Slabs;
-#[cfg(feature = "spheres")]
-pub use spheres::Spheres;
 #[cfg(feature = "wide")]
 pub use wide::Wide;
 
 use crate::SMALL;
-use crate::blob::Scene;
-use crate::count::Count;
+use crate::geometry::Kind;
 use crate::number::Number;
+use crate::observe::count::Count;
 use crate::ray::Ray;
-use crate::shape::Kind;
+use crate::scene::Scene;
 use core::ops::Range;
 use cull::Culling;
 use heapless::{Vec, VecView};
@@ -133,7 +87,7 @@ pub trait Accel: Send + Sync {
     const STRUCTURE: Structure;
     /// The form in which its rays cull.
     type Cull<N: Number>: Culling<N>;
-    /// Whether its leaves can be [clusters](crate::blob::cluster): code for these is only compiled
+    /// Whether its leaves can be [clusters](crate::format::cluster): code for these is only compiled
     /// where they are.
     const HAS_CLUSTERS: bool = false;
     /// Whether one copy of a query's code serves the closest hit and any hit: less code, and a branch
@@ -215,7 +169,7 @@ pub const MAX_LEVELS: usize = 48;
 /// A range of slots, all of one kind of primitive: one word.
 ///
 /// Bits 0 to 23 are the first slot of that kind, 24 to 28 the number of slots (1 to 31), 29 to 31
-/// the kind. No slots stand for a [cluster](crate::blob::cluster) of the kind, by its number.
+/// the kind. No slots stand for a [cluster](crate::format::cluster) of the kind, by its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Leaf {
     /// The kind of its primitives.

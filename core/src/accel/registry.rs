@@ -4,12 +4,19 @@
 //! line in the table below. Its code is a Cargo feature of the same name; sections of structures
 //! that a build was compiled without are passed over.
 
-use super::Accel;
+use crate::accel::Accel;
 #[cfg(feature = "all-structures")]
-use super::{Leaf, StackView, cull::Culling};
-use crate::blob::{BlobError, Scene, SectionKind, Sections};
+use crate::accel::cull::Culling;
 #[cfg(feature = "all-structures")]
-use crate::{count::Count, number::Number, ray::Ray};
+use crate::accel::{Leaf, StackView};
+use crate::format::{BlobError, SectionKind, Sections};
+#[cfg(feature = "all-structures")]
+use crate::number::Number;
+#[cfg(feature = "all-structures")]
+use crate::observe::count::Count;
+#[cfg(feature = "all-structures")]
+use crate::ray::Ray;
+use crate::scene::Scene;
 
 /// What is done with a structure that is chosen while the program runs: see [`Structure::visit`].
 pub trait StructureVisitor {
@@ -45,7 +52,8 @@ pub(crate) trait Records<'a>: Copy {
 macro_rules! structures {
     ($(
         $(#[doc = $doc:literal])*
-        $variant:ident = $number:literal, $name:literal, $module:ident, if $feature:meta;
+        $variant:ident = $number:literal, $name:literal, $module:ident in $($family:ident)::+,
+            if $feature:meta;
     )*) => {
         /// The name of a structure.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -106,7 +114,7 @@ macro_rules! structures {
         /// The records of every structure in a scene.
         #[derive(Clone, Copy, Debug)]
         pub(crate) struct Held<'a> {
-            $(#[cfg($feature)] pub(crate) $module: super::$module::Held<'a>,)*
+            $(#[cfg($feature)] pub(crate) $module: super::$($family)::+::Held<'a>,)*
         }
 
         impl<'a> Held<'a> {
@@ -123,7 +131,7 @@ macro_rules! structures {
                 let uses = |structure| match structure {
                     $(
                         #[cfg($feature)]
-                        Structure::$variant => <super::$module::Held<'a> as Records>::USES_LEAVES,
+                        Structure::$variant => <super::$($family)::+::Held<'a> as Records>::USES_LEAVES,
                     )*
                     #[cfg(not(feature = "all-structures"))]
                     _ => true,
@@ -138,7 +146,7 @@ macro_rules! structures {
                 if scene.header.structures & !clusters == 0 {
                     return Ok(());
                 }
-                super::wide::check_records(scene)
+                crate::accel::wide::check_records(scene)
             }
 
             /// Proves every structure whose code is here. Returns the deepest stack that one needs,
@@ -166,38 +174,38 @@ macro_rules! structures {
 
 structures! {
     /// Every primitive, one after the other.
-    List = 0, "list", list, if all();
+    List = 0, "list", list in list, if all();
     /// A bounding volume hierarchy of pairs, 32 bytes each, traversed in the ordinary way.
-    Bvh = 1, "bvh", bvh, if feature = "bvh";
+    Bvh = 1, "bvh", bvh in hierarchy::bvh, if feature = "bvh";
     /// The same hierarchy without the sides that coincide with the parent's, 16 bytes a pair.
-    Flagged = 2, "flagged", flagged, if feature = "flagged";
+    Flagged = 2, "flagged", flagged in hierarchy::flagged, if feature = "flagged";
     /// A hierarchy of nodes with a split and at most two carves, 16 bytes each.
-    DualSplit = 3, "dual-split", dual_split, if feature = "dual-split";
+    DualSplit = 3, "dual-split", dual_split in hierarchy::dual_split, if feature = "dual-split";
     /// The paper's cylinder cube: for every pair of gridels what the cylinder between them meets.
-    CylinderCube = 4, "cylinder-cube", cylinder_cube, if feature = "cylinder-cube";
+    CylinderCube = 4, "cylinder-cube", cylinder_cube in candidates::cylinder_cube, if feature = "cylinder-cube";
     /// The cylinder cube with tight lists, sorted along the way from one gridel to the other.
-    CylinderCubeTight = 5, "cylinder-cube-tight", cylinder_cube_tight,
+    CylinderCubeTight = 5, "cylinder-cube-tight", cylinder_cube_tight in candidates::cylinder_cube_tight,
         if feature = "cylinder-cube-tight";
     /// Lists for the rays of the camera and of lights; other rays walk `bvh`.
-    Apex = 6, "apex", apex, if feature = "apex";
+    Apex = 6, "apex", apex in candidates::apex, if feature = "apex";
     /// The cylinder cube whose lists hold nodes of `bvh`, at which a ray enters it.
-    CylinderCubeEntry = 7, "cylinder-cube-entry", cylinder_cube_entry,
+    CylinderCubeEntry = 7, "cylinder-cube-entry", cylinder_cube_entry in candidates::cylinder_cube_entry,
         if feature = "cylinder-cube-entry";
     /// Lists for classes of rays by origin and direction; rays without one walk `bvh`.
-    RayClasses = 8, "ray-classes", ray_classes, if feature = "ray-classes";
+    RayClasses = 8, "ray-classes", ray_classes in candidates::ray_classes, if feature = "ray-classes";
     /// A hierarchy of eight children a node over strips of triangles and packs of spheres, for
     /// machines with SIMD registers.
-    Wide = 9, "wide", wide, if feature = "wide";
+    Wide = 9, "wide", wide in wide, if feature = "wide";
     /// A hierarchy of volumes between planes of 3, 7 or 13 directions, with all planes.
-    Slabs = 10, "slabs", slabs, if feature = "slabs";
+    Slabs = 10, "slabs", slabs in hierarchy::slabs, if feature = "slabs";
     /// The same hierarchy without the planes that coincide with the parent's.
-    FlaggedSlabs = 11, "flagged-slabs", flagged_slabs, if feature = "flagged-slabs";
+    FlaggedSlabs = 11, "flagged-slabs", flagged_slabs in hierarchy::flagged_slabs, if feature = "flagged-slabs";
     /// A hierarchy of bounding spheres.
-    Spheres = 12, "spheres", spheres, if feature = "spheres";
+    Spheres = 12, "spheres", spheres in hierarchy::spheres, if feature = "spheres";
     /// A regular grid, walked cell by cell.
-    Grid = 13, "grid", grid, if feature = "grid";
+    Grid = 13, "grid", grid in cells::grid, if feature = "grid";
     /// An octree, walked on integer coordinates.
-    Octree = 14, "octree", octree, if feature = "octree";
+    Octree = 14, "octree", octree in cells::octree, if feature = "octree";
 }
 
 impl Structure {

@@ -1,6 +1,6 @@
 //! A ray's culling form in single precision, for lanes.
 //!
-//! The rule is that of [`Cull`](super::cull::Cull), with wider margins: half a unit aside instead of
+//! The rule is that of [`Cull`](crate::accel::cull::Cull), with wider margins: half a unit aside instead of
 //! a quarter, and four units along the ray where the integers' three steps and roundings come to
 //! less than three. Rounding moves `p / s - o / s` by less than 2^-5 unit aside (coordinates are
 //! below 2^17), so a box's interval here holds its interval there. Hits are held to the latter, so

@@ -13,9 +13,9 @@ use self::halves::{leading_zeros, product_unsigned, quotient};
 use self::quotient::Quotient;
 use self::root::{nearest_root, scaled_root};
 use self::wide::Product;
-use super::{CullAxis, Format, NARROW_PRODUCTS, Number, Sight};
 use crate::SMALL;
 use crate::accel::cull::Cull;
+use crate::number::{CullAxis, Format, NARROW_PRODUCTS, Number, Sight};
 use core::ops::{Add, Mul, Neg, Sub};
 
 /// A number in fixed point. Where its binary point lies depends on what it stands for: a length

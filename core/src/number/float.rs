@@ -3,9 +3,9 @@
 //! Only operations whose result is the same on every machine: no fused multiply-add, no `min` and
 //! `max` of the standard library (they differ on signed zeros), square roots by libm.
 
-use super::{CullAxis, Format, Number, Sight, pick};
 use crate::accel::cull::FloatCulling;
-use crate::shape::extent;
+use crate::geometry::extent;
+use crate::number::{CullAxis, Format, Number, Sight, pick};
 use core::cmp::Ordering;
 
 /// How `a b` compares to `c d`, exactly: products of `f32` fit `f64`.

@@ -72,7 +72,7 @@ pub(crate) fn pick<T: Copy>(v: [T; 3], axis: usize) -> T {
 
 mod sealed {
     pub trait Sealed {}
-    impl Sealed for super::Fixed {}
+    impl Sealed for crate::Fixed {}
     impl Sealed for f32 {}
     impl Sealed for f64 {}
 }
@@ -272,7 +272,7 @@ pub trait Number:
     /// Square root of the product of two non-negative products, as the same kind of product.
     fn geometric_mean(a: Self::Wide, b: Self::Wide) -> Self::Wide;
 
-    // Projections along a ray: see `shape/triangle.rs`
+    // Projections along a ray: see `geometry/triangle.rs`
 
     /// How vertices whose coordinates count `2^bits` steps a unit are seen along an axis, from a ray's
     /// origin and with its slope there.
@@ -305,7 +305,7 @@ pub trait Number:
     }
     /// Whether the product of such a [`direction`](Self::direction) with a slope says that a ray comes at
     /// a surface of this normal steeply, where that is known to bound the error of t: at least 2^-8 in
-    /// [`Fixed`], see `shape/triangle.rs`.
+    /// [`Fixed`], see `geometry/triangle.rs`.
     #[inline(always)]
     fn is_steep(_: Self::Wide) -> bool {
         false

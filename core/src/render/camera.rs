@@ -4,10 +4,10 @@
 //! in square pictures of up to 90 degrees a slope is off by less than 2^-26; in wider ones by more,
 //! but by less than a thousandth of the distance of two pixels.
 
-use super::sample::SUBPIXELS;
-use crate::blob::record::{UnitBox, View};
+use crate::format::record::{UnitBox, View};
 use crate::number::{Format, Number, pick};
 use crate::ray::{Pencil, Ray, RayError};
+use crate::render::sample::SUBPIXELS;
 
 /// Whether a format tells the directions of neighbouring pixels apart, each to an eighth of their distance
 /// or better. Other directions would be drawn than those that are asked for, through a lens as long as

@@ -1,14 +1,14 @@
 //! Where rendering is: the sample of a pixel, the pixel of a rectangle. It can stop behind any ray
 //! and go on later, so a call takes a bounded time and the picture is the same bit for bit.
 
-use super::pixel::{Linear, Pixel};
-use super::renderer::Renderer;
-use super::sample::place;
-use super::trace::WorkspaceView;
 use crate::accel::Accel;
-use crate::count::Count;
-use crate::event::Event;
 use crate::number::Number;
+use crate::observe::count::Count;
+use crate::observe::event::Event;
+use crate::render::pixel::{Linear, Pixel};
+use crate::render::renderer::Renderer;
+use crate::render::sample::place;
+use crate::render::trace::WorkspaceView;
 use crate::shade::Color;
 use core::hint::black_box;
 

@@ -1,15 +1,15 @@
 //! Pictures on displays that `embedded-graphics` drives, whatever their colours.
 //!
 //! [`Renderer::draw`] streams a rectangle to the display without a buffer. With a
-//! [`Cursor`](super::Cursor), pixels go there as they become ready, a bounded number of rays at a
+//! [`Cursor`](crate::render::Cursor), pixels go there as they become ready, a bounded number of rays at a
 //! time: hand each to [`DrawTarget::draw_iter`] as a `Pixel`.
 
-use super::pixel::{Pixel, luminance, quantize};
-use super::renderer::Renderer;
-use super::trace::WorkspaceView;
 use crate::accel::Accel;
-use crate::count::Count;
 use crate::number::Number;
+use crate::observe::count::Count;
+use crate::render::pixel::{Pixel, luminance, quantize};
+use crate::render::renderer::Renderer;
+use crate::render::trace::WorkspaceView;
 use embedded_graphics_core::geometry::{Point, Size};
 use embedded_graphics_core::pixelcolor::{
     Bgr555, Bgr565, Bgr666, Bgr888, BinaryColor, Gray2, Gray4, Gray8, Rgb555, Rgb565, Rgb666,

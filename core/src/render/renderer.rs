@@ -1,18 +1,18 @@
 //! The renderer: pixels of one scene at one size, wherever and in whatever order they are wanted.
 
-use super::camera::{self, Camera};
-use super::cursor::{Cursor, Samples};
-use super::pixel::{DISPLAY_VALUES, Linear, Pixel, from_display};
-use super::sample::SUBPIXELS;
-use super::trace::{Loop, WorkspaceView};
-use super::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use crate::SMALL;
 use crate::accel::{Accel, Structure};
-use crate::blob::Scene;
-use crate::count::Count;
-use crate::event::Event;
 use crate::number::{Format, Number};
+use crate::observe::count::Count;
+use crate::observe::event::Event;
 use crate::ray::{Ray, RayError};
+use crate::render::camera::Camera;
+use crate::render::cursor::{Cursor, Samples};
+use crate::render::pixel::{DISPLAY_VALUES, Linear, Pixel, from_display};
+use crate::render::sample::SUBPIXELS;
+use crate::render::trace::{Loop, WorkspaceView};
+use crate::render::{MAX_RAY_DEPTH, MAX_SAMPLES, camera};
+use crate::scene::Scene;
 use crate::shade::{Color, Effects};
 use core::fmt;
 use core::marker::PhantomData;
@@ -131,7 +131,7 @@ impl core::error::Error for RenderError {}
 /// effects in `EFFECTS` (an [`Effects`] as its bits; those of the scene must be among them).
 ///
 /// Holds the camera for one picture size, some 200 bytes; everything that changes lies in the
-/// caller's [`Workspace`](super::Workspace). Pixels do not depend on each other, so any number of
+/// caller's [`Workspace`](crate::render::Workspace). Pixels do not depend on each other, so any number of
 /// renderers can share a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Renderer<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> {

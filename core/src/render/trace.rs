@@ -11,18 +11,18 @@
 //!
 //! Everything is compiled for a set of effects: what is not in it costs neither code nor time.
 
-use super::MAX_RAY_DEPTH;
 use crate::accel::{Accel, Stack, StackView};
-use crate::blob::Scene;
-use crate::blob::record::{Light, Material};
-use crate::count::{Count, RayKind};
-use crate::event::{Event, Source};
+use crate::format::record::{Light, Material};
+use crate::geometry::extent;
 use crate::number::Number;
+use crate::observe::count::{Count, RayKind};
+use crate::observe::event::{Event, Source};
 use crate::query::{Hit, any_hit, closest_hit};
 use crate::ray::{Ray, RayError};
-use crate::shade::glass::{self, Split};
-use crate::shade::{Color, Effects};
-use crate::shape::extent;
+use crate::render::MAX_RAY_DEPTH;
+use crate::scene::Scene;
+use crate::shade::glass::Split;
+use crate::shade::{Color, Effects, glass};
 use heapless::{Vec, VecView};
 
 /// A ray that waits for its turn.

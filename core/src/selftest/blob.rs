@@ -1,9 +1,9 @@
 //! `from_bytes` reads what was written and refuses what was damaged.
 
-use super::Checks;
-use super::scene::TinyBlob;
-use crate::blob::checksum;
-use crate::blob::record::Header;
+use crate::format::record::Header;
+use crate::scene::checksum;
+use crate::selftest::Checks;
+use crate::selftest::scene::TinyBlob;
 use crate::{BlobError, Effects, Kind, Scene, Structure};
 use core::fmt::{self, Write};
 use core::mem::offset_of;

@@ -1,8 +1,8 @@
 //! Every shape is hit where geometry says.
 
-use super::scene::TinyBlob;
-use super::{Checks, name};
-use crate::count::NoCount;
+use crate::observe::count::NoCount;
+use crate::selftest::scene::TinyBlob;
+use crate::selftest::{Checks, name};
 use crate::{Hit, List, Number, Ray, Scene, Stack, any_hit, closest_hit};
 
 /// What one ray must find.

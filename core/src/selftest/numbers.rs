@@ -1,7 +1,7 @@
 //! Arithmetic against wider integers, in which it is exact.
 
-use super::{Checks, FNV_START, Random, hash, name};
 use crate::number::{Fixed, Number};
+use crate::selftest::{Checks, FNV_START, Random, hash, name};
 
 type Product = <Fixed as Number>::Wide;
 

@@ -1,9 +1,9 @@
 //! Pixels are encoded as the display wants them, and a picture has the same bytes everywhere.
 
-use super::scene::TinyBlob;
-use super::{Checks, FNV_START, hash, name};
-use crate::count::NoCount;
+use crate::observe::count::NoCount;
 use crate::render::{Pixel, work_depth};
+use crate::selftest::scene::TinyBlob;
+use crate::selftest::{Checks, FNV_START, hash, name};
 use crate::{Effects, Format, List, Number, Renderer, Rgb565, Rgb888, Scene, Settings, Workspace};
 
 pub(super) fn encoding(checks: &mut Checks<'_>) {

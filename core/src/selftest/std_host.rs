@@ -1,6 +1,6 @@
 //! What a host with an operating system offers.
 
-use super::Host;
+use crate::selftest::Host;
 use core::ffi::CStr;
 use core::fmt;
 use std::path::PathBuf;
@@ -25,5 +25,5 @@ impl Host for StdHost {
 
 #[test]
 fn all_tests_pass_on_this_machine() {
-    assert_eq!(super::run(&mut StdHost), 0);
+    assert_eq!(crate::selftest::run(&mut StdHost), 0);
 }

@@ -3,9 +3,9 @@
 //! The index of refraction is kept as its inverse `k`, at most 1, and the refracted direction may
 //! have any length, so that every number here lies between -2 and 2.
 
-use super::Color;
-use crate::blob::record::Material;
+use crate::format::record::Material;
 use crate::number::Number;
+use crate::shade::Color;
 
 /// What a glass surface does with a ray.
 pub(crate) struct Split<N> {

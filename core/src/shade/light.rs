@@ -1,6 +1,6 @@
 //! Lights: where they are from a point, and what of them arrives.
 
-use crate::blob::record::Light;
+use crate::format::record::Light;
 use crate::number::Number;
 
 impl Light {

@@ -1,9 +1,9 @@
 //! What a material calls for, and its colour at a point.
 
-use super::{Color, Effects};
-use crate::blob::record::Material;
+use crate::format::record::Material;
 use crate::number::Number;
 use crate::query::Hit;
+use crate::shade::{Color, Effects};
 
 impl Material {
     /// The effects that this material calls for.

@@ -1,6 +1,6 @@
 //! Eight lanes in one register of AVX2.
 
-use super::{F32x8, Simd};
+use crate::simd::{F32x8, Simd};
 use gridel_x86::Avx2;
 
 impl Simd for Avx2 {

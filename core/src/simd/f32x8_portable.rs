@@ -1,6 +1,6 @@
 //! Eight lanes in two registers of four, on every machine.
 
-use super::{F32x8, Simd};
+use crate::simd::{F32x8, Simd};
 use core::ops::{Add, Mul, Sub};
 use glam::Vec4;
 

@@ -1,4 +1,4 @@
-use super::{F32x8, Portable, Simd};
+use crate::simd::{F32x8, Portable, Simd};
 
 const NUMBERS: [f32; 8] = [1.5, -0.0, 0.0, -3.25, 1e-40, f32::MAX, -1e30, 7.0];
 

@@ -9,11 +9,11 @@ use crate::render::{Job, Picture, chosen, render};
 use crate::report::working_memory_at;
 use crate::scene::Scene;
 use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
-use gridel_core::blob::checksum;
-use gridel_core::render::{MAX_RAY_DEPTH, RenderError};
+use gridel_core::render::{MAX_RAY_DEPTH, Pixel, RenderError};
+use gridel_core::scene::checksum;
 use gridel_core::{
     Effects, Fixed, Format, NoCount, Number, Renderer, Rgb888, Settings, Stack, Structure,
-    closest_hit, render::Pixel,
+    closest_hit,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;

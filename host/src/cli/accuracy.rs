@@ -7,7 +7,8 @@ use super::progress::Progress;
 use super::source::import;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use gridel_core::{Rgb888, Structure, render::Pixel};
+use gridel_core::render::Pixel;
+use gridel_core::{Rgb888, Structure};
 use gridel_host::accuracy::{
     Bench, Exhibit, MeasureError, Point, Results, Setting, boards, cheapest, difference_picture,
     frontier, least_reference_samples, page, sentences, sweep,

@@ -5,10 +5,10 @@ use super::estimate::{Rays, ordinary_tests};
 use super::pairs::Flat;
 use super::writer::{Section, indices, section};
 use gridel_core::Structure;
-use gridel_core::accel::cells::{Divisions, cells_of, divide};
-use gridel_core::accel::grid::MARGIN;
-use gridel_core::blob::SectionKind;
-use gridel_core::blob::record::{GridShape, UnitBox};
+use gridel_core::accel::cells::grid::MARGIN;
+use gridel_core::accel::cells::lists::{Divisions, cells_of, divide};
+use gridel_core::format::SectionKind;
+use gridel_core::format::record::{GridShape, UnitBox};
 
 /// Most bytes that a grid or an octree may take while it is built, its part of the blob included.
 pub const MOST_BYTES: u64 = 256 << 20;

@@ -6,8 +6,8 @@
 //! each choice looks ahead as far as the children's.
 
 use super::hierarchy::{Node, area};
-use gridel_core::accel::dual_split::Way;
-use gridel_core::blob::record::{DualNode, UnitBox, plane_word};
+use gridel_core::accel::hierarchy::dual_split::Way;
+use gridel_core::format::record::{DualNode, UnitBox, plane_word};
 use rayon::prelude::*;
 
 /// What steps cost, in instructions of a Cortex-M4F.

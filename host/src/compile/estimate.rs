@@ -4,7 +4,7 @@
 //! that it is once each axis is scaled: along a needle as well as across it. So long triangles count
 //! in every cell that they lie in one behind the other.
 
-use gridel_core::blob::record::UnitBox;
+use gridel_core::format::record::UnitBox;
 
 /// Tests per ray and cube root of the number of primitives that are no reason for fewer cells: a grid
 /// of ordinary scenes has about 2 for each, as rays pass through so many cells.

@@ -10,7 +10,7 @@
 
 use gridel_core::Kind;
 use gridel_core::accel::{Leaf, MAX_LEVELS};
-use gridel_core::blob::record::UnitBox;
+use gridel_core::format::record::UnitBox;
 
 /// A primitive as the builder sees it.
 #[derive(Clone, Copy, Debug)]

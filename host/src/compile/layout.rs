@@ -19,9 +19,9 @@ use super::writer::{self, Section, section};
 use super::{CompileError, Options, Tell};
 use crate::scene::Scene;
 use gridel_core::Structure;
-use gridel_core::accel::ray_classes::ClassPoint;
-use gridel_core::blob::SectionKind;
-use gridel_core::blob::record::UnitBox;
+use gridel_core::accel::candidates::ray_classes::ClassPoint;
+use gridel_core::format::SectionKind;
+use gridel_core::format::record::UnitBox;
 
 /// What one structure adds to a blob.
 #[derive(Clone, Debug)]

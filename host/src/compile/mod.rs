@@ -36,7 +36,7 @@ use candidates::target::Targets;
 use glam::DVec3;
 use gridel_core::Structure;
 use gridel_core::accel::Leaf;
-use gridel_core::blob::record::{Gridels, UnitBox};
+use gridel_core::format::record::{Gridels, UnitBox};
 use hierarchy::{Node, Primitive, Splits};
 use lattice::Lattice;
 use layout::{Ground, Layout};

@@ -1,8 +1,9 @@
 //! Lays a hierarchy out as pairs in breadth-first order, plain and flagged.
 
 use super::hierarchy::{Node, Primitive};
-use gridel_core::accel::{Leaf, Link};
-use gridel_core::blob::record::{DualNode, FlaggedPair, Pair, UnitBox, plane_word};
+use gridel_core::accel::Leaf;
+use gridel_core::accel::Link;
+use gridel_core::format::record::{DualNode, FlaggedPair, Pair, UnitBox, plane_word};
 
 /// A hierarchy as a blob holds it.
 #[derive(Debug, Default)]

@@ -5,7 +5,7 @@ use super::lattice::Lattice;
 use crate::scene::{Camera, Color, Diffuse, Light, Material, Scene, Shape};
 use glam::DVec3;
 use gridel_core::Effects;
-use gridel_core::blob::record;
+use gridel_core::format::record;
 use gridel_core::ray::FARTHEST;
 
 /// What is supplied with a light, so that shadows are not black.

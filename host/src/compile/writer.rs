@@ -7,11 +7,12 @@ use super::pairs::Flat;
 use super::primitives::Primitives;
 use crate::blob::Blob;
 use gridel_core::accel::Entry;
-use gridel_core::blob::record::{
+use gridel_core::format::SectionKind;
+use gridel_core::format::record::{
     ALIGNMENT, ENDIANNESS, Header, MAGIC, SectionEntry, Sphere16, Sphere24, VERSION, Vertex16,
     Vertex24,
 };
-use gridel_core::blob::{SectionKind, checksum};
+use gridel_core::scene::checksum;
 use gridel_core::{Kind, Structure};
 
 /// A section before it has a place.

@@ -15,10 +15,10 @@ pub use walk::{Candidate, Culled, Plane, Side, Step, Tested, Verdict, Walk};
 use crate::render::{ALL, OPAQUE, chosen};
 use crate::trace::{Frame, Rejection, SceneRay};
 use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
-use gridel_core::render::{MAX_RAY_DEPTH, RenderError};
+use gridel_core::render::{MAX_RAY_DEPTH, Pixel, RenderError};
 use gridel_core::{
     Count, Effects, Event, Fixed, Format, Number, Renderer, Rgb888, Scene, Settings, Structure,
-    Workspace, render::Pixel,
+    Workspace,
 };
 
 /// What to explain.

@@ -3,7 +3,7 @@
 use super::Subject;
 use super::walk::{Given, Walk};
 use crate::trace::Frame;
-use gridel_core::event::{Met, Source};
+use gridel_core::observe::event::{Met, Source};
 use gridel_core::{Event, Format, RayKind, Scene};
 use serde::Serialize;
 

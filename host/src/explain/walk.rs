@@ -3,7 +3,7 @@
 use crate::trace::{Frame, SceneRay};
 use crate::verify::judge;
 use glam::DVec3;
-use gridel_core::event::{Place, Sides};
+use gridel_core::observe::event::{Place, Sides};
 use gridel_core::{Event, Format};
 use serde::Serialize;
 

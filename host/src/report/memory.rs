@@ -1,8 +1,8 @@
 //! The memory map of a blob, and what must be writable beside it.
 
 use gridel_core::accel::Entry;
-use gridel_core::blob::SectionKind;
-use gridel_core::blob::record::{Header, SectionEntry};
+use gridel_core::format::SectionKind;
+use gridel_core::format::record::{Header, SectionEntry};
 use gridel_core::{Fixed, Format, Number, Scene, Workspace};
 use serde::Serialize;
 

@@ -1,7 +1,7 @@
 //! Rays of every sort that a structure can go wrong on, aimed at one scene.
 
 use super::random::Random;
-use gridel_core::blob::record::UnitBox;
+use gridel_core::format::record::UnitBox;
 use gridel_core::{Kind, Number, Ray, Scene};
 
 /// A ray in the core's units, not yet in a number format.

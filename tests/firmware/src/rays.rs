@@ -2,7 +2,7 @@
 
 use crate::scene::{Accel, Number as N, SceneRenderer};
 use core::hint::black_box;
-use gridel_core::blob::record::Light;
+use gridel_core::format::record::Light;
 use gridel_core::{Hit, NoCount, Number, Ray, Scene, StackView, any_hit, closest_primitive};
 
 /// What was traced.

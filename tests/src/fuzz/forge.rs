@@ -6,8 +6,8 @@
 
 use super::parts::{Base, Parts, Section};
 use crate::random::Random;
-use gridel_core::blob::record::Header;
-use gridel_core::blob::{BlobError, SectionKind};
+use gridel_core::format::record::Header;
+use gridel_core::format::{BlobError, SectionKind};
 use gridel_core::{Scene, Structure};
 use std::mem::offset_of;
 

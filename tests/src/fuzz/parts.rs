@@ -2,8 +2,8 @@
 
 use super::sealed;
 use gridel_core::accel::wide::Child;
-use gridel_core::blob::SectionKind;
-use gridel_core::blob::record::{
+use gridel_core::format::SectionKind;
+use gridel_core::format::record::{
     BallPair, DualNode, FlaggedPair, Header, Pair, SectionEntry, UnitBox, WideNode, plane_word,
 };
 use gridel_host::blob::Blob;

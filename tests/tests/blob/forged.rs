@@ -3,10 +3,10 @@
 use super::{Fate, small_blob, works};
 use glam::DVec3;
 use gridel_core::accel::Link;
-use gridel_core::accel::dual_split::Way;
-use gridel_core::blob::SectionKind;
-use gridel_core::blob::cluster::Pack24;
-use gridel_core::blob::record::{DualNode, FlaggedPair, Header, Pair, SectionEntry, WideNode};
+use gridel_core::accel::hierarchy::dual_split::Way;
+use gridel_core::format::SectionKind;
+use gridel_core::format::cluster::Pack24;
+use gridel_core::format::record::{DualNode, FlaggedPair, Header, Pair, SectionEntry, WideNode};
 use gridel_core::{Number, Scene, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;

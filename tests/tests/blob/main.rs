@@ -8,7 +8,7 @@ mod old;
 mod vouched;
 
 use glam::DVec3;
-use gridel_core::blob::BlobError;
+use gridel_core::format::BlobError;
 use gridel_core::{Format, Hit, List, NoCount, Number, Scene, Settings};
 use gridel_host::blob::Blob;
 use gridel_host::render::{Job, render};

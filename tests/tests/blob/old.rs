@@ -5,8 +5,8 @@
 //! was when the format had that version. These files stay as they are: when the format changes, its
 //! version rises, and the files of the new version are added.
 
-use gridel_core::blob::BlobError;
-use gridel_core::blob::record::{Header, VERSION};
+use gridel_core::format::BlobError;
+use gridel_core::format::record::{Header, VERSION};
 use gridel_core::{Number, Scene, Structure};
 use gridel_host::blob::Blob;
 use gridel_tests::query::{UnitRay, held, through};

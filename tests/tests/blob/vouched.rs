@@ -3,8 +3,8 @@
 use super::forged::section;
 use super::{render_small, small_scene};
 use gridel_core::accel::{Chosen, Leaf, MAX_STACK_DEPTH};
-use gridel_core::blob::SectionKind;
-use gridel_core::blob::record::{DualNode, FlaggedPair, Header, Pair, SectionEntry, View};
+use gridel_core::format::SectionKind;
+use gridel_core::format::record::{DualNode, FlaggedPair, Header, Pair, SectionEntry, View};
 use gridel_core::{
     BlobError, Counters, Demand, Number, Scene, Settings, Stack, Structure, Vouched, any_hit,
     closest_hit,

@@ -1,5 +1,5 @@
-use super::{Cull, Culling, PairCulling};
-use crate::blob::record::UnitBox;
+use crate::accel::cull::{Cull, Culling, PairCulling};
+use crate::format::record::UnitBox;
 use crate::number::{Fixed, Number};
 use crate::ray::Ray;
 use proptest::prelude::*;

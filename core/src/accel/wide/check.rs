@@ -1,11 +1,12 @@
 //! The proof that a blob's eight-wide hierarchy is sound.
 
-use super::Child;
+use crate::accel::wide::Child;
 use crate::accel::{Leaf, MAX_STACK_DEPTH};
-use crate::blob::cluster::{LANES, RADII};
-use crate::blob::record::{UnitBox, WideNode};
-use crate::blob::{BlobError, Scene, SectionKind};
-use crate::shape::{Clusters, Kind, Packs, Packs24};
+use crate::format::cluster::{LANES, RADII};
+use crate::format::record::{UnitBox, WideNode};
+use crate::format::{BlobError, SectionKind};
+use crate::geometry::{Clusters, Kind, Packs, Packs24};
+use crate::scene::Scene;
 use heapless::Vec;
 
 /// Proves that nodes and clusters are numbered breadth first, so that every one is reached once

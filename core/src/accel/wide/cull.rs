@@ -3,10 +3,11 @@
 //!
 //! In lanes, rule and margins are those of `single.rs`.
 
-use crate::accel::cull::{self, Cull, Culling, PairCulling};
+use crate::accel::cull;
+use crate::accel::cull::{Cull, Culling, PairCulling};
 use crate::accel::single::Single;
-use crate::blob::cluster::LANES;
-use crate::blob::record::{UnitBox, WideNode};
+use crate::format::cluster::LANES;
+use crate::format::record::{UnitBox, WideNode};
 use crate::number::Number;
 use crate::ray::Ray;
 use crate::simd::{F32x8, Simd};

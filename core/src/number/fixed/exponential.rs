@@ -1,6 +1,6 @@
 //! The exponential function, in integers.
 
-use super::{Fixed, RATIO_BITS};
+use crate::number::fixed::{Fixed, RATIO_BITS};
 
 /// [`Number::exp_neg`](crate::number::Number::exp_neg).
 pub(super) fn exp_neg(length: Fixed, coefficient_q32: u32) -> Fixed {

@@ -1,8 +1,8 @@
 //! Products and quotients by halves, with the same bits: for the Cortex-M0, which multiplies 32 bits to
 //! 32, does not divide and does not count bits.
 
-use super::Fixed;
 use crate::number::NARROW_PRODUCTS;
+use crate::number::fixed::Fixed;
 
 /// A product in 64 bits.
 #[inline(always)]

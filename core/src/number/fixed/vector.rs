@@ -1,9 +1,9 @@
 //! Vectors of any length, brought to the bits that there are: norms, directions and slopes.
 
-use super::halves::{leading_zeros, product_unsigned, wide_leading_zeros};
-use super::root::nearest_root;
-use super::{Fixed, Product, RATIO_BITS, reciprocal, with_sign};
 use crate::number::Number;
+use crate::number::fixed::halves::{leading_zeros, product_unsigned, wide_leading_zeros};
+use crate::number::fixed::root::nearest_root;
+use crate::number::fixed::{Fixed, Product, RATIO_BITS, reciprocal, with_sign};
 
 /// `v >> bits` on the magnitude, so that rounding does not depend on the sign.
 #[cfg_attr(not(feature = "small"), inline(always))]

@@ -1,8 +1,8 @@
 //! Wide numbers: products in 64 bits, and what they are multiplied with and divided by.
 
-use super::halves::{product_unsigned, wide_leading_zeros};
-use super::{Fixed, RATIO_BITS, keep, reciprocal, with_sign};
 use crate::number::NARROW_PRODUCTS;
+use crate::number::fixed::halves::{product_unsigned, wide_leading_zeros};
+use crate::number::fixed::{Fixed, RATIO_BITS, keep, reciprocal, with_sign};
 
 /// A product in 64 bits; its operators wrap like those of [`Fixed`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]

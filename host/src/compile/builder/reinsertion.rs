@@ -6,7 +6,7 @@
 
 use super::super::hierarchy::{Node, area};
 use super::tree::{Below, Tree};
-use gridel_core::blob::record::UnitBox;
+use gridel_core::format::record::UnitBox;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 

@@ -4,7 +4,7 @@ use super::super::hierarchy::{
     LEAF_SIZE, Node, Primitive, STEP_COST, area, build_halved, halvings,
 };
 use gridel_core::accel::MAX_LEVELS;
-use gridel_core::blob::record::UnitBox;
+use gridel_core::format::record::UnitBox;
 
 /// A node of a [`Tree`].
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ use super::lists::{List, Lists, Plan};
 use super::target::{Target, Targets};
 use glam::DVec3;
 use gridel_core::accel::Apex;
-use gridel_core::blob::record::{
+use gridel_core::format::record::{
     ApexDirection, ApexPoint, ApexWindow, Gridels, Light, UnitBox, View,
 };
 use rayon::prelude::*;

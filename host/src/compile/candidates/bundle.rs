@@ -4,7 +4,7 @@ use super::shaft::Shaft;
 use super::target::Target;
 use glam::DVec3;
 use gridel_core::accel::Apex;
-use gridel_core::blob::record::Gridels;
+use gridel_core::format::record::Gridels;
 
 /// Rays from a point along one major axis, or to it; or parallel rays, to a point infinitely far
 /// away.

@@ -3,7 +3,7 @@
 use super::cylinder_cube::{Cylinders, FACES, Form, Hulls, Pair};
 use super::lists::List;
 use super::target::Targets;
-use gridel_core::blob::record::Gridels;
+use gridel_core::format::record::Gridels;
 use rayon::prelude::*;
 
 /// The lists of one table, counted without building any.

@@ -7,7 +7,7 @@ use super::target::Targets;
 use super::{Budget, OverBudget, Tell};
 use glam::DVec3;
 use gridel_core::Structure;
-use gridel_core::blob::record::Gridels;
+use gridel_core::format::record::Gridels;
 
 /// A table over pairs of gridels.
 #[derive(Debug)]
@@ -290,7 +290,7 @@ pub fn sorted(mut met: Vec<(u32, [f64; 2])>, list: &mut List) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gridel_core::blob::record::UnitBox;
+    use gridel_core::format::record::UnitBox;
 
     /// The eight corners of a pair.
     fn corners(pair: &Pair) -> impl Iterator<Item = DVec3> + '_ {

@@ -10,7 +10,7 @@ use super::shaft::Shaft;
 use super::target::{Node, Targets};
 use gridel_core::Structure;
 use gridel_core::accel::CylinderCubeEntry;
-use gridel_core::blob::record::Gridels;
+use gridel_core::format::record::Gridels;
 use std::cell::OnceCell;
 
 /// The form whose lists hold nodes.

@@ -31,7 +31,7 @@ use crate::report::counted;
 use apex::Apexes;
 use cylinder_cube::Cube;
 use gridel_core::Structure;
-use gridel_core::blob::SectionKind;
+use gridel_core::format::SectionKind;
 use lists::{Array, Lists};
 use ray_classes::Classes;
 

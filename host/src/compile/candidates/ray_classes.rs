@@ -5,8 +5,8 @@ use super::shaft::Shaft;
 use super::target::Targets;
 use super::{Budget, OverBudget, Tell};
 use gridel_core::Structure;
-use gridel_core::accel::ray_classes::{ClassNode, ClassPoint, ClassRange};
-use gridel_core::blob::record::Gridels;
+use gridel_core::accel::candidates::ray_classes::{ClassNode, ClassPoint, ClassRange};
+use gridel_core::format::record::Gridels;
 use rayon::prelude::*;
 use std::collections::BinaryHeap;
 

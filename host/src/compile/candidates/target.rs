@@ -7,7 +7,7 @@ use crate::compile::primitives::Primitives;
 use glam::DVec3;
 use gridel_core::Kind;
 use gridel_core::accel::Leaf;
-use gridel_core::blob::record::{Gridels, Pair, UnitBox};
+use gridel_core::format::record::{Gridels, Pair, UnitBox};
 
 /// Units by which the surface of a primitive is widened where it is tested itself: kernels are off
 /// by less than a quarter.

@@ -5,7 +5,7 @@
 //! seven trees is known from its children's, and a node takes a forest of eight.
 
 use super::tree::Tree;
-use gridel_core::blob::cluster::LANES;
+use gridel_core::format::cluster::LANES;
 
 /// Most trees of a forest that costs are kept for.
 const FORESTS: usize = LANES - 1;

@@ -1,7 +1,7 @@
 //! Boxes as the builder wants them: whose union is a maximum in eight lanes.
 
-use gridel_core::blob::cluster::LANES;
-use gridel_core::blob::record::UnitBox;
+use gridel_core::format::cluster::LANES;
+use gridel_core::format::record::UnitBox;
 
 /// A box on the box lattice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 
 use super::super::hierarchy::Primitive;
 use super::hull::Hull;
-use gridel_core::blob::cluster::LANES;
+use gridel_core::format::cluster::LANES;
 
 /// A pack: the spheres' places among the compiler's.
 #[derive(Clone, Debug)]

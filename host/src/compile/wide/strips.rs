@@ -7,8 +7,8 @@
 //! others. Places between them hold no triangle.
 
 use super::hull::Hull;
-use gridel_core::blob::cluster::{LANES, STRIP_TRIANGLES, StripMembers};
-use gridel_core::blob::record::UnitBox;
+use gridel_core::format::cluster::{LANES, STRIP_TRIANGLES, StripMembers};
+use gridel_core::format::record::UnitBox;
 use heapless::Vec as Few;
 use rayon::prelude::*;
 

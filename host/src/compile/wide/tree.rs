@@ -7,7 +7,7 @@
 
 use super::hull::Hull;
 use super::inverse;
-use gridel_core::blob::record::UnitBox;
+use gridel_core::format::record::UnitBox;
 use std::cmp::Reverse;
 
 /// A binary tree: nodes below the number of items are the items, the others have two children.

@@ -5,7 +5,8 @@
 use core::ffi::CStr;
 use core::fmt;
 use core::panic::PanicInfo;
-use gridel_core::selftest::{self, Host};
+use gridel_core::selftest;
+use gridel_core::selftest::Host;
 use gridel_firmware::rt::entry;
 use semihosting::fs::File;
 use semihosting::io::Write;

@@ -1,0 +1,379 @@
+//! Lists for the rays of one point, an eye or a light, or of one direction, a light's far away.
+//!
+//! Where one of the cylinder cube's two gridels shrinks to a point, n^2 lists remain of n^4, and
+//! each is short. This is nearer to the light buffer of E. Haines and D. Greenberg ("The Light
+//! Buffer: A Shadow-Testing Accelerator", 1986) than to the paper, with a difference: it serves
+//! rays that start at the point as well as rays that end there.
+//!
+//! Around each point, the *apex*, lies a cube of directions. A face of it, the directions with one
+//! major axis and sign, has a *window*: a rectangle of slopes cut into cells, each with a list of
+//! what the rays of the cell can meet, sorted by where on the way from the apex that may begin. A
+//! ray whose line passes an apex closely, and that only looks for hits on one side of it, takes its
+//! list from there: rays from the eye, shadow rays to a light. All others walk the hierarchy
+//! ([`Bvh`]); so a camera that was moved is noticed by itself, and costs time alone.
+//!
+//! A directional light is an apex infinitely far away. Its rays differ by where they pass a *plane*
+//! across their major axis that lies beyond the scene, and its one window is a rectangle of that
+//! plane.
+//!
+//! **No candidate is lost.** Let a line in integers pass the apex, in the plane across its major
+//! axis, within four units on each of the other two axes; the ray itself then passes within a
+//! little more.
+//! The ray's
+//! point at a hit lies in the primitive's box widened by 17 units (see
+//! [`gridels`](crate::accel::candidates::gridels)), not more than a unit on the wrong side of that plane, and otherwise
+//! in the volume that a rectangle reaching [`Apex::REACH`] units around the apex sweeps when it moves
+//! along the major axis while its sides move by the least and the greatest slope of the cell. The
+//! builder lists what meets that volume.
+//!
+//! A line whose slopes lie within 2^-19 of a direction's moves away from it by less than an eighth
+//! of a unit between the plane and the scene's far end. So its points lie within a unit of the volume
+//! that the cell, a rectangle of the plane widened by [`Apex::REACH`], sweeps when it moves along the
+//! direction itself.
+//!
+//! **Lists may be cut.** What lies behind others is hardly ever asked for, and most of what lists would
+//! hold lies there. A last entry that is no slot stands for all that begins at its key or later: a
+//! ray that comes to it goes on in the hierarchy. So where a list is cut does not matter to an answer.
+//!
+//! Memory: 24 bytes an apex, 20 a direction, 32 a window, and the lists. Cost: three comparisons for
+//! each direction and two multiplications for each apex that is tried, two to four more for the
+//! cell, and one to four primitives.
+
+use crate::accel::candidates::line::Line;
+use crate::accel::candidates::lists::{Candidates, ListSections, look_up};
+use crate::accel::cull::{Culling, Deferred};
+use crate::accel::hierarchy::bvh::Bvh;
+use crate::accel::{Accel, Leaf, Records, StackView, Structure};
+use crate::format::record::{ApexDirection, ApexPoint, ApexWindow, Gridels};
+use crate::format::{BlobError, SectionKind, Sections};
+use crate::number::{Number, pick};
+use crate::observe::count::Count;
+use crate::ray::Ray;
+use crate::scene::Scene;
+
+/// Lists for the rays of the camera and of lights, and the hierarchy for all others.
+#[derive(Clone, Copy, Debug)]
+pub enum Apex {}
+
+impl Apex {
+    /// Units around an apex within which a line passes it closely, all rounding included.
+    pub const REACH: f64 = 6.0;
+    /// Units from the lattice's zero to an apex on an axis, at the most.
+    pub const FARTHEST: f64 = 2_097_152.0;
+    /// What stands for the window of a face that has none.
+    pub const NO_WINDOW: u16 = u16::MAX;
+    /// Most cells along a side of a window.
+    pub const MOST_CELLS: u16 = 1024;
+    /// The last of the levels that keys count.
+    pub const LAST_LEVEL: u8 = u8::MAX;
+    /// Units that a line in integers may pass an apex by, with 8 fraction bits.
+    const CLOSE: u32 = 4 << 8;
+    /// How far a line's slopes may lie from a direction's, with 30 fraction bits.
+    const PARALLEL: u32 = 1 << 11;
+}
+
+impl Accel for Apex {
+    const STRUCTURE: Structure = Structure::Apex;
+    type Cull<N: Number> = Deferred;
+
+    // Once, and not for every set of effects that the ray loop is compiled for.
+    #[inline(never)]
+    fn walk<N: Number, C: Count>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        _: &Deferred,
+        stack: &mut StackView,
+        count: &mut C,
+        mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+    ) {
+        let held = &scene.held.apex;
+        let mut tmax = ray.tmax;
+        if let Some(way) = held.way(ray) {
+            look_up(way.cell, count);
+            let mut end = if way.outward {
+                way.level(tmax.to_cull())
+            } else {
+                way.level(ray.tmin.to_cull())
+            };
+            let mut cut = false;
+            held.lists.ascend(way.cell, end, |slot| {
+                let single = scene.shapes.single(slot);
+                if single.count == 0 {
+                    cut = true;
+                    return None;
+                }
+                let limit = leaf(single, count)?;
+                if limit < tmax {
+                    tmax = limit;
+                    if way.outward {
+                        end = way.level(tmax.to_cull());
+                    }
+                }
+                Some(end)
+            });
+            if !cut {
+                return;
+            }
+        }
+        let rest = Ray { tmax, ..*ray };
+        let cull = Culling::new(&rest);
+        Bvh::walk(scene, &rest, &cull, stack, count, leaf);
+    }
+}
+
+/// How a ray lies to an apex.
+struct Way<'a> {
+    window: &'a ApexWindow,
+    cell: u32,
+    /// Whether the ray runs away from the apex.
+    outward: bool,
+    /// The ray's parameter at the apex, in culling steps.
+    apex: i32,
+}
+
+impl Way<'_> {
+    /// A level that is not below that of a place on the ray.
+    #[inline(always)]
+    fn level(&self, step: i32) -> u8 {
+        /// Steps that rounding may move a place by.
+        const SLACK: i32 = 4;
+        let from_apex = if self.outward {
+            step.saturating_sub(self.apex)
+        } else {
+            self.apex.saturating_sub(step)
+        };
+        self.window.level(from_apex.saturating_add(SLACK))
+    }
+}
+
+impl ApexWindow {
+    /// The level of a place along the major axis, in culling steps from the apex: 0 where the first
+    /// candidate of the window can begin.
+    #[inline(always)]
+    pub fn level(&self, step: i32) -> u8 {
+        let way = step.saturating_sub(self.start).max(0) as u64;
+        ((way * u64::from(self.a_step)) >> 24).min(Apex::LAST_LEVEL.into()) as u8
+    }
+
+    /// The column or row of a slope or place, by the side that it is counted along.
+    #[inline(always)]
+    fn column(&self, side: usize, value: i32) -> Option<u32> {
+        let low = self.low[side & 1];
+        if value < low {
+            return None;
+        }
+        let from_low = u64::from(value.wrapping_sub(low).cast_unsigned());
+        let column = ((from_low * u64::from(self.scale[side & 1])) >> 32) as u32;
+        (column < self.cells[side & 1].into()).then_some(column)
+    }
+
+    /// The cell of a ray by what it is sorted by; `None` beside the window.
+    #[inline(always)]
+    fn cell(&self, values: [i32; 2]) -> Option<u32> {
+        let (column, row) = (self.column(0, values[0])?, self.column(1, values[1])?);
+        let number = column.wrapping_mul(self.cells[1].into()).wrapping_add(row);
+        // One of the table's cells.
+        Some(self.first_cell.wrapping_add(number))
+    }
+
+    /// The first and the last slope or place of a column or row; exactly what rays are sorted by.
+    pub fn extent(&self, side: usize, place: u32) -> [i64; 2] {
+        let scale = u64::from(self.scale[side & 1]).max(1);
+        let first = |place: u32| {
+            i64::from(self.low[side & 1]) + (u64::from(place) << 32).div_ceil(scale) as i64
+        };
+        [first(place), first(place + 1)]
+    }
+}
+
+/// The apexes of a scene, and the lists of their windows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Held<'a> {
+    points: &'a [ApexPoint],
+    directions: &'a [ApexDirection],
+    windows: &'a [ApexWindow],
+    lists: Candidates<'a>,
+}
+
+impl<'a> Held<'a> {
+    /// The apex that a ray starts from or runs to, if it has a list there.
+    #[inline(always)]
+    fn way<N: Number>(&self, ray: &Ray<N>) -> Option<Way<'a>> {
+        let line = Line::of(ray);
+        self.way_along(&line).or_else(|| self.way_past(ray, &line))
+    }
+
+    /// The direction in which a ray runs.
+    #[inline(always)]
+    fn way_along(&self, line: &Line) -> Option<Way<'a>> {
+        let along = |direction: &&ApexDirection| {
+            let near = |axis: usize| {
+                let beside = pick(line.slope, axis).wrapping_sub(pick(direction.slope, axis));
+                beside.unsigned_abs() <= Apex::PARALLEL
+            };
+            near(0) && near(1) && near(2) && line.major == usize::from(direction.major)
+        };
+        let direction = self.directions.iter().find(along)?;
+        let window = self.windows.get(usize::from(direction.window))?;
+        let t = line.reach(direction.plane << 5);
+        // Within 2^19 units.
+        let at = |axis: usize| (line.at(axis, t) >> 5) as i32;
+        let [first, second] = Gridels::across(line.major);
+        Some(Way {
+            window,
+            cell: window.cell([at(first), at(second)])?,
+            outward: false,
+            apex: t >> 12,
+        })
+    }
+
+    /// The point that a ray starts from or runs to.
+    #[inline(always)]
+    fn way_past<N: Number>(&self, ray: &Ray<N>, line: &Line) -> Option<Way<'a>> {
+        let major = line.major;
+        let across = Gridels::across(major);
+        let rises = line.ascends(major);
+        let (tmin, tmax) = (ray.tmin.to_cull(), ray.tmax.to_cull());
+        for point in self.points {
+            // With 8 fraction bits, so that products fit with a point far away: both have less than
+            // 30 bits, and slopes at most 31.
+            let far = pick(point.at, major).wrapping_sub(pick(line.origin, major) >> 5);
+            let t = if rises { far } else { far.wrapping_neg() };
+            let passes = |axis: usize| {
+                let rise = (i64::from(pick(line.slope, axis)) * i64::from(t)) >> 30;
+                let place = i64::from(pick(line.origin, axis) >> 5) + rise;
+                (place - i64::from(pick(point.at, axis))).unsigned_abs() <= Apex::CLOSE.into()
+            };
+            if !(passes(across[0]) && passes(across[1])) {
+                continue;
+            }
+            let apex = t >> 7;
+            let outward = tmin >= apex - 1;
+            if !outward && tmax > apex + 1 {
+                continue;
+            }
+            let face = major << 1 | usize::from(rises == outward);
+            let number = point.windows.get(face).copied().unwrap_or(Apex::NO_WINDOW);
+            let Some(window) = self.windows.get(usize::from(number)) else {
+                continue;
+            };
+            let slope = |axis: usize| {
+                let slope = pick(line.slope, axis);
+                if outward { slope } else { slope.wrapping_neg() }
+            };
+            if let Some(cell) = window.cell([slope(across[0]), slope(across[1])]) {
+                return Some(Way {
+                    window,
+                    cell,
+                    outward,
+                    apex,
+                });
+            }
+        }
+        None
+    }
+}
+
+const LISTS: ListSections = ListSections {
+    cells: SectionKind::ApexCells,
+    starts: SectionKind::ApexStarts,
+    entries: SectionKind::ApexEntries,
+    keys: Some(SectionKind::ApexKeys),
+};
+
+impl<'a> Records<'a> for Held<'a> {
+    const SECTIONS: &'static [SectionKind] = &[
+        SectionKind::ApexPoints,
+        SectionKind::ApexWindows,
+        LISTS.cells,
+        LISTS.starts,
+        LISTS.entries,
+        SectionKind::ApexKeys,
+        SectionKind::ApexDirections,
+    ];
+    const USES_LEAVES: bool = false;
+
+    fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
+        Ok(Self {
+            points: sections.records(SectionKind::ApexPoints)?,
+            directions: sections.records(SectionKind::ApexDirections)?,
+            windows: sections.records(SectionKind::ApexWindows)?,
+            lists: Candidates::read(sections, &LISTS)?,
+        })
+    }
+
+    /// Proves that points and planes lie within reach, that windows follow each other in the table and
+    /// fill it, and the lists; and that the scene holds the hierarchy for all other rays.
+    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
+        Structure::Bvh.needed_by(Structure::Apex, scene)?;
+        const MOST: u32 = 1 << 29;
+        for (index, point) in self.points.iter().enumerate() {
+            let wrong = |what, found: i64, expected: i64| BlobError::Record {
+                section: SectionKind::ApexPoints,
+                index,
+                what,
+                found,
+                expected,
+            };
+            for coordinate in point.at {
+                if coordinate.unsigned_abs() > MOST {
+                    return Err(wrong("coordinate", coordinate.into(), MOST.into()));
+                }
+            }
+            for window in point.windows {
+                let exists = usize::from(window) < self.windows.len();
+                if !exists && window != Apex::NO_WINDOW {
+                    let last = self.windows.len() as i64 - 1;
+                    return Err(wrong("window", window.into(), last));
+                }
+            }
+        }
+        for (index, direction) in self.directions.iter().enumerate() {
+            const MOST: u32 = 1 << 24;
+            let wrong = |what, found: i64, expected: i64| BlobError::Record {
+                section: SectionKind::ApexDirections,
+                index,
+                what,
+                found,
+                expected,
+            };
+            if direction.plane.unsigned_abs() > MOST {
+                return Err(wrong("plane", direction.plane.into(), MOST.into()));
+            }
+            if direction.major > 2 {
+                return Err(wrong("major axis", direction.major.into(), 2));
+            }
+            if usize::from(direction.window) >= self.windows.len() {
+                let last = self.windows.len() as i64 - 1;
+                return Err(wrong("window", direction.window.into(), last));
+            }
+        }
+        let mut next: u32 = 0;
+        for (index, window) in self.windows.iter().enumerate() {
+            let wrong = |what, found: u32, expected: u32| BlobError::Record {
+                section: SectionKind::ApexWindows,
+                index,
+                what,
+                found: found.into(),
+                expected: expected.into(),
+            };
+            if window.first_cell != next {
+                return Err(wrong("first cell", window.first_cell, next));
+            }
+            for cells in window.cells {
+                if cells == 0 || cells > Apex::MOST_CELLS {
+                    let most = Apex::MOST_CELLS.into();
+                    return Err(wrong("number of cells along a side", cells.into(), most));
+                }
+            }
+            let cells = u32::from(window.cells[0]) * u32::from(window.cells[1]);
+            // A table has fewer cells than a blob bytes.
+            next = next.saturating_add(cells);
+        }
+        let ascend = |before: u8, after: u8| before <= after;
+        // One more than there are slots, for where a list is cut.
+        let end = scene.shapes.total().saturating_add(1);
+        self.lists.check(&LISTS, next.into(), end, ascend)?;
+        Ok(0)
+    }
+}

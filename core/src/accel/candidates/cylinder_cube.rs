@@ -1,0 +1,81 @@
+//! The cylinder cube in the paper's form (section 3.1).
+//!
+//! Each of the six sides of the scene's box is cut into n by n gridels. The volume between two
+//! gridels of different sides is taken for a cylinder about the line through their midpoints, as
+//! wide as to hold all eight corners; its list holds the primitives whose bounding spheres reach
+//! into it, in no order that means anything. A ray tests the list of the two gridels by which it
+//! enters and leaves, all of it.
+//!
+//! Memory: 15 n^4 cells, and a list for each. Cost: the whole list, which is why the paper's lost
+//! against a grid; [`CylinderCubeTight`](crate::accel::CylinderCubeTight) and
+//! [`CylinderCubeEntry`](crate::accel::CylinderCubeEntry) are what can be made of it.
+
+use crate::accel::candidates::gridel_table::Table;
+use crate::accel::candidates::lists::{ListSections, look_up};
+use crate::accel::cull::Deferred;
+use crate::accel::{Accel, Leaf, Records, StackView, Structure};
+use crate::format::{BlobError, SectionKind, Sections};
+use crate::number::Number;
+use crate::observe::count::Count;
+use crate::ray::Ray;
+use crate::scene::Scene;
+
+/// The cylinder cube: lists of what cylinders between gridels meet; needs no stack.
+#[derive(Clone, Copy, Debug)]
+pub enum CylinderCube {}
+
+impl Accel for CylinderCube {
+    const STRUCTURE: Structure = Structure::CylinderCube;
+    type Cull<N: Number> = Deferred;
+
+    // Once, and not for every set of effects that the ray loop is compiled for.
+    #[inline(never)]
+    fn walk<N: Number, C: Count>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        _: &Deferred,
+        _: &mut StackView,
+        count: &mut C,
+        mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+    ) {
+        let Held(table) = scene.held.cylinder_cube;
+        let Some(passage) = table.gridels.and_then(|gridels| gridels.passage(ray)) else {
+            return;
+        };
+        look_up(passage.cell, count);
+        for index in table.lists.list(passage.cell) {
+            let Some(slot) = table.lists.entry(index) else {
+                return;
+            };
+            if leaf(scene.shapes.single(slot), count).is_none() {
+                return;
+            }
+        }
+    }
+}
+
+/// The lists of a scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Held<'a>(Table<'a>);
+
+const GRIDELS: SectionKind = SectionKind::CylinderGridels;
+const LISTS: ListSections = ListSections {
+    cells: SectionKind::CylinderCells,
+    starts: SectionKind::CylinderStarts,
+    entries: SectionKind::CylinderEntries,
+    keys: None,
+};
+
+impl<'a> Records<'a> for Held<'a> {
+    const SECTIONS: &'static [SectionKind] = &[GRIDELS, LISTS.cells, LISTS.starts, LISTS.entries];
+    const USES_LEAVES: bool = false;
+
+    fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
+        Table::read(sections, GRIDELS, &LISTS).map(Self)
+    }
+
+    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
+        self.0.check(scene, GRIDELS, &LISTS, scene.shapes.total())?;
+        Ok(0)
+    }
+}

@@ -1,0 +1,108 @@
+//! The cylinder cube as a door into the hierarchy: for every pair of gridels a few nodes that
+//! together hold all that a ray between the two can meet.
+//!
+//! A ray enters the hierarchy ([`Bvh`](crate::accel::Bvh)) at these nodes and skips the top of the tree;
+//! where nothing lies between two gridels it does nothing at all. The table's size hardly depends on
+//! the scene: a pair has at most [`CylinderCubeEntry::MOST_NODES`] nodes, most have one to four.
+//! Nodes are sorted along the way from one gridel to the other, as the primitives of the
+//! [tight cube](crate::accel::candidates::cylinder_cube_tight) are.
+
+use crate::accel::candidates::gridel_table::{Table, along};
+use crate::accel::candidates::lists::{ListSections, look_up};
+use crate::accel::cull::PairCulling;
+use crate::accel::hierarchy::link::Node;
+use crate::accel::hierarchy::pairs::{PairArray, Walk};
+use crate::accel::{Accel, Leaf, Records, StackView, Structure};
+use crate::format::record::Pair;
+use crate::format::{BlobError, SectionKind, Sections};
+use crate::number::Number;
+use crate::observe::count::Count;
+use crate::ray::Ray;
+use crate::scene::Scene;
+
+/// The cylinder cube whose lists hold nodes of the hierarchy.
+#[derive(Clone, Copy, Debug)]
+pub enum CylinderCubeEntry {}
+
+impl CylinderCubeEntry {
+    /// Most nodes of a pair of gridels.
+    pub const MOST_NODES: usize = 8;
+}
+
+impl Accel for CylinderCubeEntry {
+    const STRUCTURE: Structure = Structure::CylinderCubeEntry;
+    type Cull<N: Number> = N::Cull;
+
+    // Once, and not for every set of effects that the ray loop is compiled for.
+    #[inline(never)]
+    fn walk<N: Number, C: Count>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        cull: &N::Cull,
+        stack: &mut StackView,
+        count: &mut C,
+        mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+    ) {
+        let Held(table) = scene.held.cylinder_cube_entry;
+        let Some(passage) = table.gridels.and_then(|gridels| gridels.passage(ray)) else {
+            return;
+        };
+        look_up(passage.cell, count);
+        let pairs = scene.held.bvh;
+        let walk = Walk {
+            scene,
+            pairs,
+            root: |limit| cull.root(scene.bounds(), limit),
+            root_planes: 6,
+            narrow: |pair: &Pair, _, limit| cull.children(pair, limit),
+        };
+        let mut tmax = ray.tmax;
+        along(&table.lists, &passage, ray, |number| {
+            let node = match number.checked_sub(pairs.len() as u32) {
+                Some(leaf) => Node::leaf(leaf),
+                None => Node::pair(number),
+            };
+            let mut limit = Some(tmax);
+            walk.enter::<N, N::Cull, C>(node, tmax, stack, count, |range, count| {
+                limit = leaf(range, count);
+                limit
+            });
+            tmax = limit?;
+            limit
+        });
+    }
+}
+
+/// The lists of a scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Held<'a>(Table<'a>);
+
+const GRIDELS: SectionKind = SectionKind::EntryGridels;
+const LISTS: ListSections = ListSections {
+    cells: SectionKind::EntryCells,
+    starts: SectionKind::EntryStarts,
+    entries: SectionKind::EntryNodes,
+    keys: Some(SectionKind::EntryKeys),
+};
+
+impl<'a> Records<'a> for Held<'a> {
+    const SECTIONS: &'static [SectionKind] = &[
+        GRIDELS,
+        LISTS.cells,
+        LISTS.starts,
+        LISTS.entries,
+        SectionKind::EntryKeys,
+    ];
+    const USES_LEAVES: bool = true;
+
+    fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
+        Table::read(sections, GRIDELS, &LISTS).map(Self)
+    }
+
+    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
+        Structure::Bvh.needed_by(Structure::CylinderCubeEntry, scene)?;
+        let nodes = scene.held.bvh.0.len() + scene.leaves.len();
+        self.0.check(scene, GRIDELS, &LISTS, nodes)?;
+        Ok(0)
+    }
+}

@@ -1,0 +1,200 @@
+//! Lists of candidates: for each cell of a table what a ray of that cell can meet, in one flat
+//! array.
+//!
+//! Equal lists are stored once: a cell holds the number of its list, and the lists lie one behind
+//! the other. All three arrays are as narrow as their values allow. A list whose order means
+//! something has a *key* for every entry, which says where along the way of the ray it and its
+//! neighbours lie: see [`Levels`].
+
+use crate::format::{BlobError, Indices, SectionKind, Sections};
+use crate::observe::count::Count;
+use crate::observe::event::{Event, Place};
+use core::ops::Range;
+
+/// The sections of one table of lists.
+pub(in crate::accel) struct ListSections {
+    /// For each cell, its list.
+    pub(in crate::accel) cells: SectionKind,
+    /// For each list, its first entry; then the number of all entries.
+    pub(in crate::accel) starts: SectionKind,
+    /// The candidates of all lists.
+    pub(in crate::accel) entries: SectionKind,
+    /// A key for each entry.
+    pub(in crate::accel) keys: Option<SectionKind>,
+}
+
+/// Counts a cell whose list a ray goes through, and tells of it.
+#[inline(always)]
+pub(in crate::accel) fn look_up<C: Count>(cell: u32, count: &mut C) {
+    count.cells(1);
+    if C::TELLS {
+        count.tell(Event::Opened(Place {
+            what: "cell",
+            number: cell,
+        }));
+    }
+}
+
+/// The lists of one table.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::accel) struct Candidates<'a> {
+    cells: Indices<'a>,
+    starts: Indices<'a>,
+    entries: Indices<'a>,
+    keys: &'a [u8],
+}
+
+impl<'a> Candidates<'a> {
+    pub(in crate::accel) fn read(
+        sections: &Sections<'a>,
+        kinds: &ListSections,
+    ) -> Result<Self, BlobError> {
+        Ok(Self {
+            cells: Indices::read(sections, kinds.cells)?,
+            starts: Indices::read(sections, kinds.starts)?,
+            entries: Indices::read(sections, kinds.entries)?,
+            keys: match kinds.keys {
+                Some(kind) => sections.records(kind)?,
+                None => &[],
+            },
+        })
+    }
+
+    /// Proves that every cell has a list, every list its entries, every entry a key where there are
+    /// keys, and that entries lie below `end`. Linear in all of these.
+    pub(in crate::accel) fn check(
+        &self,
+        kinds: &ListSections,
+        cells: u64,
+        end: usize,
+        keys_ascend: fn(u8, u8) -> bool,
+    ) -> Result<(), BlobError> {
+        let count = |section, found: usize, expected: usize| match found == expected {
+            true => Ok(()),
+            false => Err(BlobError::Count {
+                section,
+                found,
+                expected,
+            }),
+        };
+        let below = |section, index, what, found: u32, end: usize| match (found as usize) < end {
+            true => Ok(()),
+            false => Err(BlobError::Record {
+                section,
+                index,
+                what,
+                found: found.into(),
+                expected: end as i64 - 1,
+            }),
+        };
+        count(
+            kinds.cells,
+            self.cells.len(),
+            usize::try_from(cells).unwrap_or(usize::MAX),
+        )?;
+        let lists = self.starts.len().saturating_sub(1);
+        for index in 0..self.cells.len() {
+            let list = self.cells.get(index).unwrap_or(u32::MAX);
+            below(kinds.cells, index, "list", list, lists)?;
+        }
+        let mut last = 0;
+        for index in 0..self.starts.len() {
+            let start = self.starts.get(index).unwrap_or(u32::MAX);
+            let entries = self.entries.len() as u32;
+            let expected = if index == 0 {
+                0
+            } else if index == lists {
+                entries
+            } else {
+                start.clamp(last, entries.max(last))
+            };
+            if start != expected {
+                return Err(BlobError::Record {
+                    section: kinds.starts,
+                    index,
+                    what: "first entry of a list",
+                    found: start.into(),
+                    expected: expected.into(),
+                });
+            }
+            last = start;
+        }
+        for index in 0..self.entries.len() {
+            let entry = self.entries.get(index).unwrap_or(u32::MAX);
+            below(kinds.entries, index, "candidate", entry, end)?;
+        }
+        let Some(section) = kinds.keys else {
+            return Ok(());
+        };
+        count(section, self.keys.len(), self.entries.len())?;
+        for list in 0..lists {
+            let range = self.range(list as u32);
+            let keys = self.keys.get(range.start..range.end).unwrap_or_default();
+            let wrong = keys.windows(2).position(|pair| match *pair {
+                [before, after] => !keys_ascend(before, after),
+                _ => false,
+            });
+            if let Some(place) = wrong {
+                let before = range.start.wrapping_add(place);
+                let index = before.wrapping_add(1);
+                return Err(BlobError::Record {
+                    section,
+                    index,
+                    what: "key, which must ascend in a list,",
+                    found: self.keys.get(index).copied().unwrap_or(0).into(),
+                    expected: self.keys.get(before).copied().unwrap_or(0).into(),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The entries of a list.
+    #[inline(always)]
+    fn range(&self, list: u32) -> Range<usize> {
+        let start = |list: usize| self.starts.get(list).unwrap_or(0) as usize;
+        let list = list as usize;
+        start(list)..start(list.wrapping_add(1))
+    }
+
+    /// The entries of a cell's list, by number; none for a cell that does not exist.
+    #[inline(always)]
+    pub(in crate::accel) fn list(&self, cell: u32) -> Range<usize> {
+        match self.cells.get(cell as usize) {
+            Some(list) => self.range(list),
+            None => 0..0,
+        }
+    }
+
+    /// Visits the entries of a cell's list in order, as long as their keys, which ascend, lie at or
+    /// below an end. `visit` returns the end from then on, or `None` to end the walk.
+    #[inline(always)]
+    pub(in crate::accel) fn ascend(
+        &self,
+        cell: u32,
+        mut end: u8,
+        mut visit: impl FnMut(u32) -> Option<u8>,
+    ) {
+        for index in self.list(cell) {
+            if self.key(index) > end {
+                return;
+            }
+            match self.entry(index).and_then(&mut visit) {
+                Some(new_end) => end = new_end,
+                None => return,
+            }
+        }
+    }
+
+    /// An entry by number.
+    #[inline(always)]
+    pub(in crate::accel) fn entry(&self, index: usize) -> Option<u32> {
+        self.entries.get(index)
+    }
+
+    /// The key of an entry.
+    #[inline(always)]
+    pub(in crate::accel) fn key(&self, index: usize) -> u8 {
+        self.keys.get(index).copied().unwrap_or(0)
+    }
+}

@@ -1,0 +1,29 @@
+//! Candidate lists: a table leads from a ray to all primitives that it can meet.
+//!
+//! | structure | a list for each |
+//! |---|---|
+//! | [`cylinder_cube`] | pair of gridels on the faces of the scene's box (Stuerzlinger and Tobler 1993) |
+//! | [`cylinder_cube_tight`] | the same, sorted along the way between the gridels |
+//! | [`cylinder_cube_entry`] | the same, of nodes of `bvh` at which a ray enters |
+//! | [`apex`] | cell of the directions from the eye or from a light |
+//! | [`ray_classes`] | class of rays by origin and direction (Arvo and Kirk 1987) |
+//!
+//! A look-up takes constant time, then every candidate of the list is tested. Tables take far more
+//! memory than hierarchies, so the compiler holds them to a budget. Loading cannot prove in linear
+//! time that a list is complete: see [`Structure::is_proved`](crate::Structure::is_proved). Use them for scenes of few
+//! primitives that many rays of one sort meet.
+
+#[cfg(feature = "apex")]
+pub mod apex;
+#[cfg(feature = "cylinder-cube")]
+pub mod cylinder_cube;
+#[cfg(feature = "cylinder-cube-entry")]
+pub mod cylinder_cube_entry;
+#[cfg(feature = "cylinder-cube-tight")]
+pub mod cylinder_cube_tight;
+mod gridel_table;
+pub mod gridels;
+mod line;
+pub(in crate::accel) mod lists;
+#[cfg(feature = "ray-classes")]
+pub mod ray_classes;

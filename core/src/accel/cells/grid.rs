@@ -1,0 +1,269 @@
+//! The regular grid, walked cell by cell (the paper's rival of the cylinder cube).
+//!
+//! On every axis the ray crosses plane `p` at the step at which culling lets it enter a box that
+//! begins there: `p * inverse + near` (see [`cull`](crate::accel::cull)). Which cell it is in at a step is
+//! therefore a matter of comparing integers that are computed anew for every plane, so no error
+//! accumulates, and no direction is special: along an axis that the ray does not move on, all planes
+//! lie behind it or before it for good. A walk has at most `x + y + z` cells.
+//!
+//! **No primitive is passed over.** Let a hit be at step `t`, on a primitive whose box is
+//! \[`low`, `high`\] on some axis; the hit lies in the box's culling interval, so
+//! `step(low) + near <= t <= step(high) + far` where the ray rises along the axis. The walk's cell
+//! at step `t` is the last one whose lower plane `p` has `step(p) + near <= t`. Steps are monotone,
+//! so `low` does not lie beyond that cell; and `step(p) <= step(high) + far - near`. `far - near` is
+//! twice the margin of culling: a half unit and seven steps at the least steepness of two steps a
+//! unit, roundings included, which is less than 5 units; and for slopes below 2^-12 another 2^17
+//! steps at 2^13 a unit, 16 units. So `p < high + 17`. Falling along the axis, the same holds the
+//! other way round. A primitive is listed in every cell that its box reaches when it is widened by
+//! [`MARGIN`], so it is tested at the latest in the cell that the ray is in at the hit; the walk
+//! ends only where the next cell begins beyond the best hit.
+
+use crate::accel::candidates::lists::look_up;
+use crate::accel::cells::lists::{Divisions, Lists, Tester, check_complete, divide, reach, record};
+use crate::accel::cull::{Cull, PairCulling};
+use crate::accel::{Accel, Leaf, Records, StackView, Structure};
+use crate::format::record::GridShape;
+use crate::format::{BlobError, SectionKind, Sections};
+use crate::number::Number;
+use crate::observe::count::Count;
+use crate::observe::event::{Event, Place};
+use crate::ray::Ray;
+use crate::scene::Scene;
+
+/// By how much primitives' boxes are widened before they are listed, in units.
+pub const MARGIN: i32 = 18;
+
+/// The regular grid; needs no stack.
+#[derive(Clone, Copy, Debug)]
+pub enum Grid {}
+
+/// The grid of a scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Held<'a> {
+    shape: Option<&'a GridShape>,
+    lists: Lists<'a>,
+}
+
+impl Accel for Grid {
+    const STRUCTURE: Structure = Structure::Grid;
+    type Cull<N: Number> = Cull;
+
+    fn walk<N: Number, C: Count>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        cull: &Cull,
+        _: &mut StackView,
+        count: &mut C,
+        leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+    ) {
+        let held = &scene.held.grid;
+        let Some(shape) = held.shape else { return };
+        count.planes(6);
+        count.boxes(1);
+        let limit = <Cull as PairCulling<N>>::limit;
+        let root = PairCulling::<N>::root(cull, scene.bounds(), limit(ray.tmax));
+        if C::TELLS {
+            count.tell(Event::Tested {
+                place: Place {
+                    what: "grid",
+                    number: 0,
+                },
+                sides: scene.bounds().0.map(|axis| axis.map(Some)),
+                span: Cull::span(root),
+            });
+        }
+        if root.near > root.far {
+            return;
+        }
+        let mut end = root.far;
+        let mut tester = Tester::new(scene, held.lists, leaf);
+        let mut steps = Steps::new(cull, divide(scene.bounds(), shape.counts()), root.near);
+        loop {
+            let cell = steps.cell();
+            look_up(cell, count);
+            match tester.list::<N, C>(cell as usize, count) {
+                Ok(None) => {}
+                Ok(Some(tmax)) => end = end.min(limit(tmax)),
+                Err(()) => return,
+            }
+            count.planes(1);
+            if !steps.advance(end) {
+                return;
+            }
+        }
+    }
+}
+
+/// The cells along a ray.
+struct Steps<'c> {
+    cull: &'c Cull,
+    divisions: [Divisions; 3],
+    /// The cell's division on each axis.
+    place: [u32; 3],
+    /// The step at which the ray leaves it on each axis.
+    exit: [i32; 3],
+}
+
+impl<'c> Steps<'c> {
+    /// Begins in the cell that the ray is in at a step.
+    #[inline(always)]
+    fn new(cull: &'c Cull, divisions: [Divisions; 3], start: i32) -> Self {
+        let mut steps = Self {
+            cull,
+            divisions,
+            place: [0; 3],
+            exit: [i32::MAX; 3],
+        };
+        for (axis, divisions) in divisions.iter().enumerate() {
+            let descends = cull.descends(axis);
+            steps.place[axis] = divisions.last(|plane| {
+                // Up to which plane the ray has come, or down to which it has not.
+                (cull.enters(axis, plane) <= start) != descends
+            });
+            steps.exit[axis] = steps.next(axis);
+        }
+        steps
+    }
+
+    /// The cell's number.
+    #[inline(always)]
+    fn cell(&self) -> u32 {
+        let [x, y, z] = self.place;
+        let row = z.wrapping_mul(self.divisions[1].count()).wrapping_add(y);
+        row.wrapping_mul(self.divisions[0].count()).wrapping_add(x)
+    }
+
+    /// The step at which the ray leaves its cell along an axis; the last one where it never does.
+    #[inline(always)]
+    fn next(&self, axis: usize) -> i32 {
+        let (place, divisions) = (self.place[axis], &self.divisions[axis]);
+        if self.cull.descends(axis) {
+            if place == 0 {
+                return i32::MAX;
+            }
+            self.cull.enters(axis, divisions.plane(place))
+        } else {
+            let next = place.wrapping_add(1);
+            if next >= divisions.count() {
+                return i32::MAX;
+            }
+            self.cull.enters(axis, divisions.plane(next))
+        }
+    }
+
+    /// Goes on to the next cell, if it begins no later than at a step.
+    #[inline(always)]
+    fn advance(&mut self, end: i32) -> bool {
+        let [x, y, z] = self.exit;
+        let axis = if x <= y && x <= z {
+            0
+        } else if y <= z {
+            1
+        } else {
+            2
+        };
+        let exit = self.exit[axis];
+        if exit > end || exit == i32::MAX {
+            return false;
+        }
+        let place = &mut self.place[axis];
+        *place = if self.cull.descends(axis) {
+            place.wrapping_sub(1)
+        } else {
+            place.wrapping_add(1)
+        };
+        self.exit[axis] = self.next(axis);
+        true
+    }
+}
+
+impl Held<'_> {
+    /// Proves that every primitive is in the lists of all cells that it reaches into, and that there
+    /// are as many entries as that takes: so there are no others. A search that finds each entry of a
+    /// list proves that they ascend.
+    fn check_lists(&self, scene: &Scene<'_>, counts: [u32; 3]) -> Result<(), BlobError> {
+        let slots = scene.shapes.total();
+        let reach = reach(scene, divide(scene.bounds(), counts), MARGIN);
+        let listed = self.lists.entries() as u64;
+        // First, because it bounds the work.
+        check_complete(listed, slots, &reach, SectionKind::GridSlots)?;
+        for (slot, [xs, ys, zs]) in (0..slots).filter_map(|slot| Some((slot, reach(slot)?))) {
+            for (z, y) in (zs[0]..=zs[1]).flat_map(|z| (ys[0]..=ys[1]).map(move |y| (z, y))) {
+                let row = z.wrapping_mul(counts[1]).wrapping_add(y);
+                for x in xs[0]..=xs[1] {
+                    let list = row.wrapping_mul(counts[0]).wrapping_add(x) as usize;
+                    if !self.lists.holds(list, slot as u32) {
+                        let what = "number of times that a list holds what reaches into its cell";
+                        return Err(record(SectionKind::GridStarts, list, what, 0, 1));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<'a> Records<'a> for Held<'a> {
+    const SECTIONS: &'static [SectionKind] = &[
+        SectionKind::GridShape,
+        SectionKind::GridStarts,
+        SectionKind::GridSlots,
+    ];
+    const USES_LEAVES: bool = false;
+
+    fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
+        let section = SectionKind::GridShape;
+        let shapes: &[GridShape] = sections.records(section)?;
+        if shapes.len() > 1 {
+            return Err(BlobError::Count {
+                section,
+                found: shapes.len(),
+                expected: 1,
+            });
+        }
+        Ok(Self {
+            shape: shapes.first(),
+            lists: Lists::read(sections, [SectionKind::GridStarts, SectionKind::GridSlots])?,
+        })
+    }
+
+    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
+        let slots = scene.shapes.total();
+        let Some(shape) = self.shape else {
+            if slots == 0 {
+                return Ok(0);
+            }
+            let (section, found, expected) = (SectionKind::GridShape, 0, 1);
+            return Err(BlobError::Count {
+                section,
+                found,
+                expected,
+            });
+        };
+        for (axis, count) in shape.counts().into_iter().enumerate() {
+            let [low, high] = scene.bounds().0[axis];
+            let most = if low == high { 1 } else { Divisions::MOST };
+            if count == 0 || count > most {
+                let what = "number of divisions";
+                return Err(record(SectionKind::GridShape, 0, what, count, most));
+            }
+        }
+        if shape.spare != 0 {
+            let found = shape.spare.into();
+            return Err(record(SectionKind::GridShape, 0, "spare word", found, 0));
+        }
+        let counts = shape.counts();
+        // At most 2^30.
+        let expected = counts.into_iter().fold(1, u32::wrapping_mul) as usize;
+        if self.lists.len() != expected {
+            return Err(BlobError::Count {
+                section: SectionKind::GridStarts,
+                found: self.lists.len(),
+                expected,
+            });
+        }
+        self.lists.check(SectionKind::GridStarts)?;
+        self.check_lists(scene, counts)?;
+        Ok(0)
+    }
+}

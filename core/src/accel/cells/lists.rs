@@ -1,0 +1,411 @@
+//! What the grid and the octree share: the scene's box divided into cells, and the cells' lists.
+//!
+//! On every axis the box has equal divisions, whose planes are computed anew from their numbers, so
+//! that no error accumulates: `plane(i) = lowest + floor(i * pitch / 2^16)`, where the pitch is the
+//! box's extent over the number of divisions, in 1/2^16 unit, rounded up. Where the box is flat
+//! there is one division.
+
+use crate::accel::Leaf;
+use crate::format::record::UnitBox;
+use crate::format::{BlobError, Indices, SectionKind, Sections};
+use crate::geometry::{Kind, Shapes};
+use crate::observe::count::Count;
+use crate::scene::Scene;
+
+/// The divisions of one axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Divisions {
+    low: i32,
+    high: i32,
+    count: u32,
+    pitch: u32,
+}
+
+impl Divisions {
+    /// Most divisions of an axis.
+    pub const MOST: u32 = 1 << 10;
+
+    /// Divides an axis of a box; `count` is taken to lie in 1 to [`MOST`](Self::MOST).
+    #[inline]
+    pub fn of([low, high]: [i16; 2], count: u32) -> Self {
+        let (low, high) = (i32::from(low), i32::from(high));
+        let extent = high.wrapping_sub(low).max(0) as u32;
+        let count = count.clamp(1, Self::MOST);
+        Self {
+            low,
+            high,
+            count,
+            // At most 2^16 - 2 units.
+            pitch: (extent << 16).div_ceil(count),
+        }
+    }
+
+    /// Number of divisions.
+    #[inline(always)]
+    pub fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// The lower plane of a division, in units; beyond the last division the box's upper side.
+    #[inline(always)]
+    pub fn plane(&self, division: u32) -> i16 {
+        let rise = (u64::from(division) * u64::from(self.pitch)) >> 16;
+        self.low.wrapping_add(rise as i32).min(self.high) as i16
+    }
+
+    /// The last division whose lower plane satisfies a condition that holds up to some division,
+    /// or the first.
+    #[inline(always)]
+    pub(in crate::accel) fn last(&self, holds: impl Fn(i16) -> bool) -> u32 {
+        let (mut low, mut high) = (0, self.count);
+        while high.wrapping_sub(low) > 1 {
+            let middle = low.wrapping_add(high.wrapping_sub(low) / 2);
+            if holds(self.plane(middle)) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
+
+    /// The divisions that a closed interval meets, ends included: those from the last that begins at
+    /// or below its lower end, to the last that begins at or below its upper end.
+    pub fn met_by(&self, low: i32, high: i32) -> [u32; 2] {
+        [low, high].map(|end| {
+            if end < self.low {
+                return 0;
+            }
+            // `floor(i * pitch / 2^16) <= rise` where `i * pitch <= (rise + 1) * 2^16 - 1`.
+            let rise = end.min(self.high).wrapping_sub(self.low) as u32;
+            let most = rise.wrapping_shl(16) | 0xffff;
+            let last = self.count.wrapping_sub(1);
+            most.checked_div(self.pitch)
+                .map_or(0, |division| division.min(last))
+        })
+    }
+}
+
+/// The divisions of all axes.
+pub fn divide(bounds: &UnitBox, counts: [u32; 3]) -> [Divisions; 3] {
+    let axis = |k: usize| Divisions::of(bounds.0[k], counts[k]);
+    [axis(0), axis(1), axis(2)]
+}
+
+/// Cells along each axis, the first and the last.
+pub type Range = [[u32; 2]; 3];
+
+/// Number of cells of a range.
+fn volume(range: &Range) -> u64 {
+    range
+        .iter()
+        .map(|&[first, last]| u64::from(last.wrapping_sub(first)).wrapping_add(1))
+        .fold(1, u64::wrapping_mul)
+}
+
+/// Lists of slots, one after the other in one array.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::accel) struct Lists<'a> {
+    /// Where each list begins, and where the last one ends.
+    starts: Indices<'a>,
+    /// Slots, counted over all kinds.
+    slots: Indices<'a>,
+}
+
+impl<'a> Lists<'a> {
+    pub(in crate::accel) fn read(
+        sections: &Sections<'a>,
+        [starts, slots]: [SectionKind; 2],
+    ) -> Result<Self, BlobError> {
+        Ok(Self {
+            starts: Indices::read(sections, starts)?,
+            slots: Indices::read(sections, slots)?,
+        })
+    }
+
+    /// Number of lists.
+    pub(in crate::accel) fn len(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+
+    fn range(&self, list: usize) -> core::ops::Range<usize> {
+        let start = self.starts.get(list).unwrap_or(0) as usize;
+        let end = self.starts.get(list.wrapping_add(1)).unwrap_or(0) as usize;
+        start..end
+    }
+
+    /// Number of entries of all lists.
+    pub(in crate::accel) fn entries(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// Whether a list, whose slots ascend, holds a slot.
+    pub(in crate::accel) fn holds(&self, list: usize, slot: u32) -> bool {
+        self.slots.hold(self.range(list), slot)
+    }
+
+    /// Proves that lists follow each other without a gap and fill the array.
+    pub(in crate::accel) fn check(&self, section: SectionKind) -> Result<(), BlobError> {
+        let mut last = 0;
+        for index in 0..self.starts.len() {
+            let found = self.starts.get(index).unwrap_or(0);
+            let rising = if index == 0 {
+                found == 0
+            } else {
+                found >= last
+            };
+            if !rising {
+                return Err(record(section, index, "start of the list", found, last));
+            }
+            last = found;
+        }
+        if last as usize != self.slots.len() {
+            let index = self.starts.len().saturating_sub(1);
+            let expected = self.slots.len() as u32;
+            return Err(record(section, index, "end of the lists", last, expected));
+        }
+        Ok(())
+    }
+
+    /// Proves a list: slots that exist, ascend, and hold primitives that reach into the list's cells.
+    /// Returns the number of pairs of a cell and a primitive that are listed.
+    pub(in crate::accel) fn check_list(
+        &self,
+        list: usize,
+        cells: &Range,
+        reach: &impl Fn(usize) -> Option<Range>,
+        section: SectionKind,
+    ) -> Result<u64, BlobError> {
+        let mut pairs = 0_u64;
+        let mut next = 0;
+        for index in self.range(list) {
+            let slot = self.slots.get(index).unwrap_or(u32::MAX);
+            if slot < next {
+                return Err(record(
+                    section,
+                    index,
+                    "slot, which must ascend,",
+                    slot,
+                    next,
+                ));
+            }
+            next = slot.saturating_add(1);
+            let common = reach(slot as usize).map(|range| {
+                [0, 1, 2].map(|k| {
+                    let ([a, b], [c, d]) = (range[k], cells[k]);
+                    [a.max(c), b.min(d)]
+                })
+            });
+            match common {
+                Some(common) if common.iter().all(|[first, last]| first <= last) => {
+                    pairs = pairs.saturating_add(volume(&common));
+                }
+                _ => {
+                    let what = "slot of a primitive that does not reach into the cell";
+                    return Err(record(section, index, what, slot, 0));
+                }
+            }
+        }
+        Ok(pairs)
+    }
+}
+
+/// Proves that nothing is missing from the lists: as many pairs of a cell and a primitive are listed
+/// as there are. Lists hold no pair twice and none that does not exist, so then they hold all.
+pub(in crate::accel) fn check_complete(
+    listed: u64,
+    slots: usize,
+    reach: &impl Fn(usize) -> Option<Range>,
+    section: SectionKind,
+) -> Result<(), BlobError> {
+    let needed = (0..slots)
+        .filter_map(reach)
+        .fold(0_u64, |sum, range| sum.saturating_add(volume(&range)));
+    if listed != needed {
+        return Err(BlobError::Record {
+            section,
+            index: 0,
+            what: "number of cells that primitives are listed in",
+            found: listed as i64,
+            expected: needed as i64,
+        });
+    }
+    Ok(())
+}
+
+pub(in crate::accel) fn record(
+    section: SectionKind,
+    index: usize,
+    what: &'static str,
+    found: u32,
+    expected: u32,
+) -> BlobError {
+    BlobError::Record {
+        section,
+        index,
+        what,
+        found: found.into(),
+        expected: expected.into(),
+    }
+}
+
+/// The cells that a primitive is listed in, given its slot over all kinds: those that its box meets
+/// once it is widened by a margin.
+pub(in crate::accel) fn reach(
+    scene: &Scene<'_>,
+    divisions: [Divisions; 3],
+    margin: i32,
+) -> impl Fn(usize) -> Option<Range> {
+    let shapes = scene.shapes;
+    let ends = kind_ends(&shapes);
+    move |slot| {
+        let leaf = locate(&ends, slot as u32)?;
+        let bounds = shapes.bounds(leaf.kind, leaf.first as usize)?;
+        Some(cells_of(&divisions, &bounds, margin))
+    }
+}
+
+/// The cells that a box meets once it is widened by a margin.
+pub fn cells_of(divisions: &[Divisions; 3], bounds: &UnitBox, margin: i32) -> Range {
+    [0, 1, 2].map(|k: usize| {
+        let [low, high] = bounds.0[k].map(i32::from);
+        divisions[k].met_by(low.saturating_sub(margin), high.saturating_add(margin))
+    })
+}
+
+/// Where the slots of each kind end, counted over all kinds.
+#[inline(always)]
+fn kind_ends(shapes: &Shapes<'_>) -> [u32; Kind::ALL.len()] {
+    let mut ends = [0; Kind::ALL.len()];
+    let mut sum = 0_u32;
+    for (end, kind) in ends.iter_mut().zip(Kind::ALL) {
+        sum = sum.saturating_add(shapes.count(kind) as u32);
+        *end = sum;
+    }
+    ends
+}
+
+/// One slot as a leaf of its kind.
+#[inline(always)]
+fn locate(ends: &[u32; Kind::ALL.len()], slot: u32) -> Option<Leaf> {
+    let mut first = 0;
+    for (&end, kind) in ends.iter().zip(Kind::ALL) {
+        if slot < end {
+            return Some(Leaf {
+                kind,
+                first: slot.wrapping_sub(first),
+                count: 1,
+            });
+        }
+        first = end;
+    }
+    None
+}
+
+/// Tests primitives of lists, but none twice in a row of cells: a primitive that reaches into many
+/// is remembered in a mailbox of eight places, 32 bytes, which slots share by their last digits.
+pub(in crate::accel) struct Tester<'a, L> {
+    lists: Lists<'a>,
+    ends: [u32; Kind::ALL.len()],
+    mailbox: [u32; 8],
+    leaf: L,
+}
+
+impl<'a, L> Tester<'a, L> {
+    #[inline(always)]
+    pub(in crate::accel) fn new(scene: &Scene<'a>, lists: Lists<'a>, leaf: L) -> Self {
+        Self {
+            lists,
+            ends: kind_ends(&scene.shapes),
+            mailbox: [u32::MAX; 8],
+            leaf,
+        }
+    }
+
+    /// Tests a list. Returns the t beyond which nothing counts any more, if the list was not empty;
+    /// `Err` to end the walk.
+    #[inline(always)]
+    pub(in crate::accel) fn list<N, C: Count>(
+        &mut self,
+        list: usize,
+        count: &mut C,
+    ) -> Result<Option<N>, ()>
+    where
+        L: FnMut(Leaf, &mut C) -> Option<N>,
+    {
+        let mut tmax = None;
+        for index in self.lists.range(list) {
+            let slot = self.lists.slots.get(index).unwrap_or(u32::MAX);
+            let place = &mut self.mailbox[(slot & 7) as usize];
+            if *place == slot {
+                continue;
+            }
+            *place = slot;
+            let leaf = locate(&self.ends, slot).ok_or(())?;
+            tmax = Some((self.leaf)(leaf, count).ok_or(())?);
+        }
+        Ok(tmax)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn divisions_fill_their_axis() {
+        for (sides, count) in [
+            ([-32767, 32767], 1),
+            ([-32767, 32767], 1024),
+            ([-5, 5], 7),
+            ([3, 3], 1),
+            ([-100, 900], 333),
+        ] {
+            let divisions = Divisions::of(sides, count);
+            assert_eq!(divisions.plane(0), sides[0]);
+            assert_eq!(divisions.plane(count), sides[1]);
+            for division in 0..count {
+                let (low, high) = (divisions.plane(division), divisions.plane(division + 1));
+                assert!(low <= high && sides[0] <= low && high <= sides[1]);
+                let [first, last] = divisions.met_by(low.into(), high.into());
+                assert!(
+                    first >= division && last > division || division + 1 == count || low == high
+                );
+                assert!(divisions.plane(first) <= low && divisions.plane(last + 1) >= high);
+            }
+        }
+    }
+
+    /// The quotient is what a search of all planes finds.
+    #[test]
+    fn the_divisions_that_are_met_are_those_whose_planes_say_so() {
+        for (sides, count) in [
+            ([-32767, 32767], 1024),
+            ([-32767, 32767], 1),
+            ([-5, 5], 7),
+            ([-5, 5], 64),
+            ([3, 3], 1),
+            ([-100, 900], 333),
+            ([0, 1023], 1024),
+        ] {
+            let divisions = Divisions::of(sides, count);
+            for end in (i32::from(sides[0]) - 3..=i32::from(sides[1]) + 3).step_by(7) {
+                let searched = divisions.last(|plane| i32::from(plane) <= end);
+                assert_eq!(
+                    divisions.met_by(end, end),
+                    [searched; 2],
+                    "{sides:?} {count} {end}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn intervals_beyond_the_axis_meet_its_ends() {
+        let divisions = Divisions::of([-100, 100], 10);
+        assert_eq!(divisions.met_by(-500, -400), [0, 0]);
+        assert_eq!(divisions.met_by(400, 500), [9, 9]);
+        assert_eq!(divisions.met_by(-20, 20), [4, 6]);
+        assert_eq!(divisions.met_by(-500, 500), [0, 9]);
+    }
+}

@@ -1,0 +1,79 @@
+//! The bounding volume hierarchy with ordinary traversal: all planes of both children are tested.
+
+use crate::accel::cull::PairCulling;
+use crate::accel::hierarchy::link::Node;
+use crate::accel::hierarchy::pairs::{BoxPair, Pairs, Walk};
+use crate::accel::{Accel, Leaf, StackView, Structure};
+use crate::format::SectionKind;
+use crate::format::record::{Pair, UnitBox};
+use crate::number::Number;
+use crate::observe::count::Count;
+use crate::observe::event::Sides;
+use crate::ray::Ray;
+use crate::scene::Scene;
+
+/// The hierarchy with 32 bytes a pair; twelve planes are tested a pair.
+#[derive(Clone, Copy, Debug)]
+pub enum Bvh {}
+
+impl Accel for Bvh {
+    const STRUCTURE: Structure = Structure::Bvh;
+    type Cull<N: Number> = N::Cull;
+
+    #[inline]
+    fn walk<N: Number, C: Count>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        cull: &N::Cull,
+        stack: &mut StackView,
+        count: &mut C,
+        leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+    ) {
+        walk(scene, ray, cull, stack, count, leaf);
+    }
+}
+
+/// [`Bvh`]'s walk with any form of culling. Where floats cull in SIMD registers, the margins of
+/// [`Cull`](crate::accel::cull::Cull) are those of the flagged hierarchy: only with them are the two
+/// compared plane for plane.
+#[inline]
+pub fn walk<N: Number, K: PairCulling<N>, C: Count>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    cull: &K,
+    stack: &mut StackView,
+    count: &mut C,
+    leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+) {
+    let walk = Walk {
+        scene,
+        pairs: scene.held.bvh,
+        root: |limit| cull.root(scene.bounds(), limit),
+        root_planes: 6,
+        narrow: |pair: &Pair, _, limit| cull.children(pair, limit),
+    };
+    walk.run::<N, K, C>(ray.tmax, stack, count, leaf);
+}
+
+/// The pairs of a scene.
+pub(crate) type Held<'a> = Pairs<'a, Pair>;
+
+impl BoxPair for Pair {
+    const SECTION: SectionKind = SectionKind::Pairs;
+    const PLANES: u32 = 12;
+
+    #[inline(always)]
+    fn child(&self, _: u32, side: u32) -> Node {
+        Node(self.children[(side & 1) as usize])
+    }
+
+    fn sides(&self) -> [Sides; 2] {
+        [0, 1].map(|child| self.planes.map(|axis| axis.map(|side| Some(side[child]))))
+    }
+
+    fn boxes(&self, _: &UnitBox) -> [UnitBox; 2] {
+        let child =
+            |child: usize| UnitBox(self.planes.map(|[low, high]| [low[child], high[child]]));
+        [child(0), child(1)]
+    }
+}

@@ -1,0 +1,495 @@
+//! Dual-split nodes: the idea of the flagged sides taken to its end. A plane that is not worth
+//! testing is not even stored.
+//!
+//! A ray comes to a node with the interval in which it runs through the node's *region*: the box
+//! that the planes on the way down have left of the scene's box. A node narrows the region:
+//!
+//! - up to two *carves* cut it, on one axis each, down to two planes;
+//! - a *split* gives one child all below one plane and the other all above another, on one axis. The
+//!   two may overlap, or leave a gap.
+//!
+//! The builder walks the hierarchy with the regions and chooses axes by what they save. What the
+//! children do not touch is cut off by the split, so most sides of a box are never tested at all.
+//! The sign of the ray's direction on the split's axis tells which child is nearer, so no intervals
+//! are compared.
+//!
+//! **Culling is conservative and monotone.** Where a ray crosses a plane is monotone in the plane's
+//! place ([`cull`](crate::accel::cull)), so the interval of a region is the intersection of those of the
+//! planes that made it, whatever was rounded, and a box in a region has its interval in the
+//! region's; all the more where a core culls with wider ones.
+//! [`Scene::from_bytes`](crate::Scene::from_bytes) proves that the box of each primitive lies in the
+//! region of its leaf. A hit's `t` lies in the interval of the primitive's own box, or is clamped to it,
+//! and between the ray's tmin and the best hit so far, both of which the walk's interval holds: so no
+//! node on the way to a hit is left out. A side that no plane bounds costs visits, not hits, and a region
+//! may even be empty, where there is nothing in it.
+
+use crate::SMALL;
+use crate::accel::cull::{Cull, Culling, Interval, PairCulling};
+use crate::accel::hierarchy::order::Order;
+use crate::accel::{Accel, Entry, Leaf, MAX_LEVELS, Records, StackView, Structure};
+use crate::format::record::{DualNode, UnitBox};
+use crate::format::{BlobError, SectionKind, Sections};
+use crate::number::{CullAxis, NARROW_PRODUCTS, Number};
+use crate::observe::count::Count;
+use crate::observe::event::{Event, Place, Sides};
+use crate::ray::Ray;
+use crate::scene::Scene;
+use core::hint::black_box;
+use heapless::Vec;
+
+/// Whether the compiler is kept from knowing a ray's form by heart: cores that load two words at once,
+/// and have too few registers for what it would know, read the form of an axis faster where it lies.
+const FORM_IN_MEMORY: bool = cfg!(target_arch = "arm") && !NARROW_PRODUCTS;
+
+/// A hierarchy of 16 bytes a node, of which a ray tests two to four planes.
+#[derive(Clone, Copy, Debug)]
+pub enum DualSplit {}
+
+/// What a node is: the last word of its record.
+///
+/// Bits 0 to 23 are the number of its first child, which the second follows, or that of its leaf.
+/// Bits 24 and 25 are the split's axis, 26 and 27 the first carve's, 28 and 29 the second's; 3
+/// stands for none, and a node without a split is a leaf. Bits 30 and 31 are 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Way(pub u32);
+
+impl Way {
+    /// Number of nodes or leaves that can be told apart.
+    pub const NODES: u32 = 1 << 24;
+    /// The axis of a split or carve that there is not.
+    pub const NONE: u32 = 3;
+
+    /// A node's last word.
+    pub const fn new(number: u32, split: u32, carves: [u32; 2]) -> Self {
+        Self(number | split << 24 | carves[0] << 26 | carves[1] << 28)
+    }
+
+    /// Number of the first child or the leaf.
+    #[inline(always)]
+    pub const fn number(self) -> u32 {
+        self.0 & 0xff_ffff
+    }
+
+    /// The axis of the split, or 3 in a leaf.
+    #[inline(always)]
+    pub const fn split(self) -> usize {
+        (self.0 >> 24 & 3) as usize
+    }
+
+    /// The axes of the split and the first carve, four times the latter.
+    #[inline(always)]
+    const fn kind(self) -> u32 {
+        self.0 >> 24 & 15
+    }
+
+    /// The axis of the first carve, or 3.
+    #[inline(always)]
+    const fn first_carve(self) -> usize {
+        (self.0 >> 26 & 3) as usize
+    }
+
+    /// The axis of the second carve, or 3.
+    #[inline(always)]
+    const fn second_carve(self) -> usize {
+        (self.0 >> 28) as usize
+    }
+
+    /// The axes of the carves, or 3.
+    #[inline(always)]
+    pub const fn carves(self) -> [usize; 2] {
+        [(self.0 >> 26 & 3) as usize, (self.0 >> 28 & 3) as usize]
+    }
+}
+
+impl Accel for DualSplit {
+    const STRUCTURE: Structure = Structure::DualSplit;
+    type Cull<N: Number> = Cull;
+
+    #[inline]
+    fn walk<N: Number, C: Count>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        cull: &Cull,
+        stack: &mut StackView,
+        count: &mut C,
+        mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+    ) {
+        let nodes = scene.held.dual_split.0;
+        let mut limit = <Cull as PairCulling<N>>::limit(ray.tmax);
+        let mut interval = PairCulling::<N>::root(cull, scene.bounds(), limit);
+        let cull = if FORM_IN_MEMORY {
+            black_box(cull)
+        } else {
+            cull
+        };
+        tested(count, 6, || Event::Tested {
+            place: place(0),
+            sides: scene.bounds().0.map(|axis| axis.map(Some)),
+            span: Cull::span(interval),
+        });
+        if interval.near > interval.far {
+            return;
+        }
+        // A full stack that is filled from the bottom is cheaper than one that grows.
+        if stack.len() < stack.capacity() {
+            let _ = stack.resize_default(stack.capacity());
+        }
+        let stack = stack.as_mut_slice();
+        let (mut node, mut height) = (0, 0);
+        loop {
+            let Some(record) = nodes.get(node as usize) else {
+                return;
+            };
+            if C::TELLS {
+                count.tell(Event::Opened(place(node)));
+            }
+            match visit(record, node, &mut interval, cull, count) {
+                Next::Near(child) => {
+                    node = child;
+                    continue;
+                }
+                Next::Both(near, later) => {
+                    let Some(free) = stack.get_mut(height) else {
+                        return;
+                    };
+                    *free = later;
+                    height += 1;
+                    node = near;
+                    continue;
+                }
+                Next::Leaf(number) => {
+                    let Some(range) = scene.leaf(number) else {
+                        return;
+                    };
+                    let Some(tmax) = leaf(range, count) else {
+                        return;
+                    };
+                    limit = <Cull as PairCulling<N>>::limit(tmax);
+                }
+                Next::Nothing => {}
+            }
+            loop {
+                height = height.wrapping_sub(1);
+                let Some(entry) = stack.get(height) else {
+                    return;
+                };
+                if entry.near <= limit {
+                    node = entry.node;
+                    interval = Interval {
+                        near: entry.near,
+                        far: entry.far.min(limit),
+                    };
+                    break;
+                }
+                if C::TELLS {
+                    count.tell(Event::GivenUp {
+                        place: place(entry.node),
+                        enters: <Cull as Culling<N>>::units(entry.near),
+                    });
+                }
+            }
+        }
+    }
+}
+
+/// A node as events tell it.
+fn place(number: u32) -> Place {
+    Place {
+        what: "node",
+        number,
+    }
+}
+
+/// Counts planes that were tested for a node, and tells of them.
+#[inline(always)]
+fn tested<C: Count>(count: &mut C, planes: u32, event: impl FnOnce() -> Event) {
+    count.planes(planes);
+    count.boxes(1);
+    if C::TELLS {
+        count.tell(event());
+    }
+}
+
+/// Sides on one axis.
+fn sides(axis: usize, [lower, upper]: [Option<i16>; 2]) -> Sides {
+    let mut sides = Sides::default();
+    if let Some(side) = sides.get_mut(axis) {
+        *side = [lower, upper];
+    }
+    sides
+}
+
+/// Where a walk goes on from a node.
+enum Next {
+    Nothing,
+    Leaf(u32),
+    Near(u32),
+    Both(u32, Entry),
+}
+
+/// Narrows a ray's interval to a node's and then to the child's where the walk goes on.
+///
+/// Compiled for each pair of a first carve's axis and a split's, so that neither is looked up, unless
+/// code shall be small.
+#[inline(always)]
+fn visit<C: Count>(
+    record: &DualNode,
+    number: u32,
+    interval: &mut Interval,
+    cull: &Cull,
+    count: &mut C,
+) -> Next {
+    match Way(record.way).kind() {
+        _ if SMALL => visit_kind::<ANY, ANY, C>(record, number, interval, cull, count),
+        0 => visit_kind::<0, 0, C>(record, number, interval, cull, count),
+        1 => visit_kind::<1, 0, C>(record, number, interval, cull, count),
+        2 => visit_kind::<2, 0, C>(record, number, interval, cull, count),
+        3 => visit_kind::<3, 0, C>(record, number, interval, cull, count),
+        4 => visit_kind::<0, 1, C>(record, number, interval, cull, count),
+        5 => visit_kind::<1, 1, C>(record, number, interval, cull, count),
+        6 => visit_kind::<2, 1, C>(record, number, interval, cull, count),
+        7 => visit_kind::<3, 1, C>(record, number, interval, cull, count),
+        8 => visit_kind::<0, 2, C>(record, number, interval, cull, count),
+        9 => visit_kind::<1, 2, C>(record, number, interval, cull, count),
+        10 => visit_kind::<2, 2, C>(record, number, interval, cull, count),
+        11 => visit_kind::<3, 2, C>(record, number, interval, cull, count),
+        12 => visit_kind::<0, 3, C>(record, number, interval, cull, count),
+        13 => visit_kind::<1, 3, C>(record, number, interval, cull, count),
+        14 => visit_kind::<2, 3, C>(record, number, interval, cull, count),
+        _ => visit_kind::<3, 3, C>(record, number, interval, cull, count),
+    }
+}
+
+/// Stands for an axis that is not known when the code is compiled.
+const ANY: usize = 4;
+
+#[inline(always)]
+fn visit_kind<const SPLIT: usize, const CARVE: usize, C: Count>(
+    record: &DualNode,
+    number: u32,
+    interval: &mut Interval,
+    cull: &Cull,
+    count: &mut C,
+) -> Next {
+    let way = Way(record.way);
+    let first = if CARVE == ANY {
+        way.first_carve()
+    } else {
+        CARVE
+    };
+    if let Some(form) = cull.axes.get(first) {
+        carve_ray(form, first, record.carves[0], number, interval, count);
+        if interval.near > interval.far {
+            return Next::Nothing;
+        }
+        let second = way.second_carve();
+        if let Some(form) = cull.axes.get(second) {
+            carve_ray(form, second, record.carves[1], number, interval, count);
+            if interval.near > interval.far {
+                return Next::Nothing;
+            }
+        }
+    }
+    let axis = if SPLIT == ANY { way.split() } else { SPLIT };
+    match cull.axes.get(axis) {
+        Some(form) => split(record, interval, form, count),
+        None => Next::Leaf(way.number()),
+    }
+}
+
+/// Narrows a ray's interval to what a carve leaves.
+#[inline(always)]
+fn carve_ray<C: Count>(
+    form: &CullAxis,
+    axis: usize,
+    planes: u32,
+    number: u32,
+    interval: &mut Interval,
+    count: &mut C,
+) {
+    *interval = interval.and(form.around(planes));
+    tested(count, 2, || Event::Tested {
+        place: place(number),
+        sides: sides(axis, [Some(planes as i16), Some((planes >> 16) as i16)]),
+        span: Cull::span(*interval),
+    });
+}
+
+/// Chooses among the children of a split.
+#[inline(always)]
+fn split<C: Count>(
+    record: &DualNode,
+    interval: &mut Interval,
+    form: &CullAxis,
+    count: &mut C,
+) -> Next {
+    let (planes, way) = (record.split, Way(record.way));
+    let first = way.number();
+    let Interval {
+        near: enter,
+        far: leave,
+    } = form.around(planes);
+    // The rotation is 0 or 16.
+    let near = first + (form.rotation >> 4);
+    let far = first + (16_u32.wrapping_sub(form.rotation) >> 4);
+    let whole = *interval;
+    count.planes(2);
+    count.boxes(2);
+    if C::TELLS {
+        let to_near = [whole.near, whole.far.min(leave)];
+        let to_far = [whole.near.max(enter), whole.far];
+        for (child, [near, far]) in [(near, to_near), (far, to_far)] {
+            let planes = [planes as i16, (planes >> 16) as i16].map(Some);
+            let planes = if child == first {
+                [None, planes[1]]
+            } else {
+                [planes[0], None]
+            };
+            count.tell(Event::Tested {
+                place: place(child),
+                sides: sides(way.split(), planes),
+                span: Cull::span(Interval { near, far }),
+            });
+        }
+    }
+    if whole.near > leave {
+        // Between the two, or past the far one: its own planes may be of other axes, or none.
+        interval.near = whole.near.max(enter);
+        if interval.near > whole.far {
+            return Next::Nothing;
+        }
+        return Next::Near(far);
+    }
+    interval.far = whole.far.min(leave);
+    if enter > whole.far {
+        return Next::Near(near);
+    }
+    let later = Entry {
+        node: far,
+        near: whole.near.max(enter),
+        far: whole.far,
+    };
+    Next::Both(near, later)
+}
+
+/// The nodes of a scene, breadth first.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Held<'a>(&'a [DualNode]);
+
+const SECTION: SectionKind = SectionKind::DualNodes;
+
+/// An error at a node.
+fn error(index: usize, what: &'static str, found: i64, expected: i64) -> BlobError {
+    BlobError::Record {
+        section: SECTION,
+        index,
+        what,
+        found,
+        expected,
+    }
+}
+
+impl<'a> Records<'a> for Held<'a> {
+    const SECTIONS: &'static [SectionKind] = &[SECTION];
+    const USES_LEAVES: bool = true;
+
+    fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
+        Ok(Self(sections.records(SECTION)?))
+    }
+
+    /// Proves that nodes lie breadth first, so that children come after their parents and every
+    /// node and leaf is reached once, and that primitives lie in their leaves' regions.
+    ///
+    /// Costs the depth of each leaf, and [`MAX_LEVELS`] words of stack.
+    #[inline(never)]
+    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
+        let depth = check_order(self.0, scene.leaves.len())?;
+        // The nodes above the current one: twice their number, and 1 where it is above the split.
+        let mut path: Vec<u32, MAX_LEVELS> = Vec::new();
+        let mut current = 0;
+        while let Some(record) = self.0.get(current as usize) {
+            let way = Way(record.way);
+            if way.split() != Way::NONE as usize {
+                // The depth was proved to fit.
+                let _ = path.push(current << 1);
+                current = way.number();
+                continue;
+            }
+            let mut region = self.region(&path, *scene.bounds());
+            carve(&mut region, record);
+            let leaf = scene.leaf(way.number());
+            if !leaf.is_some_and(|leaf| scene.shapes.leaf_inside(leaf, &region)) {
+                let what = "primitives of its leaf outside of its region: excess";
+                return Err(error(current as usize, what, 1, 0));
+            }
+            while path.last().is_some_and(|step| step & 1 == 1) {
+                path.pop();
+            }
+            let Some(step) = path.last_mut() else { break };
+            *step |= 1;
+            let above = self.0.get((*step >> 1) as usize);
+            current = above.map_or(u32::MAX, |above| Way(above.way).number().wrapping_add(1));
+        }
+        Ok(depth)
+    }
+}
+
+impl Held<'_> {
+    /// What a path down leaves of the scene's box.
+    fn region(&self, path: &[u32], bounds: UnitBox) -> UnitBox {
+        let mut region = bounds;
+        for &step in path {
+            let Some(record) = self.0.get((step >> 1) as usize) else {
+                break;
+            };
+            carve(&mut region, record);
+            if let Some(sides) = region.0.get_mut(Way(record.way).split()) {
+                if step & 1 == 0 {
+                    sides[1] = sides[1].min((record.split >> 16) as i16);
+                } else {
+                    sides[0] = sides[0].max(record.split as i16);
+                }
+            }
+        }
+        region
+    }
+}
+
+/// Cuts a region down to a node's carves.
+fn carve(region: &mut UnitBox, record: &DualNode) {
+    for (axis, planes) in Way(record.way).carves().into_iter().zip(record.carves) {
+        if let Some(sides) = region.0.get_mut(axis) {
+            sides[0] = sides[0].max(planes as i16);
+            sides[1] = sides[1].min((planes >> 16) as i16);
+        }
+    }
+}
+
+/// Proves breadth-first order, and that all nodes and leaves are reached. Returns the number of
+/// levels that have a split.
+fn check_order(nodes: &[DualNode], leaves: usize) -> Result<usize, BlobError> {
+    let expected = leaves.saturating_mul(2).saturating_sub(1);
+    if nodes.len() != expected {
+        return Err(BlobError::Count {
+            section: SECTION,
+            found: nodes.len(),
+            expected,
+        });
+    }
+    let mut order = Order::new(SECTION, nodes.len());
+    for (index, record) in nodes.iter().enumerate() {
+        let way = Way(record.way);
+        let [first, second] = way.carves();
+        let unused = record.way >> 30 != 0 || first == 3 && second != 3;
+        if unused {
+            return Err(error(
+                index,
+                "bits that are not in use: number of nodes",
+                1,
+                0,
+            ));
+        }
+        order.dual(way)?;
+    }
+    order.levels()
+}

@@ -1,0 +1,47 @@
+//! Hierarchies of two children per node.
+//!
+//! | structure | node | per node tested |
+//! |---|---|---|
+//! | [`bvh`] | both children's boxes, 32 bytes | 12 planes |
+//! | [`flagged`] | the sides that differ from the parent's, 16 bytes | 6 planes |
+//! | [`dual_split`] | a split and up to two carves, 16 bytes | 2 to 6 planes |
+//! | [`slabs`] | planes of 3, 7 or 13 directions, 32 to 112 bytes | 4 planes per direction |
+//! | [`flagged_slabs`] | the planes that differ from the parent's | 2 planes per direction |
+//! | [`spheres`] | both children's bounding spheres, 24 bytes | 2 spheres |
+//!
+//! A walk takes logarithmic time for most scenes, and its stack needs one entry per level. Loading
+//! proves that a hierarchy loses no hit. Use `dual-split` on boards; the others serve comparisons
+//! (Kay and Kajiya 1986; Stuerzlinger and Tobler 1993).
+//!
+//! Nodes lie breadth first, which [`order`] proves; the walk and the check of pairs are in
+//! [`pairs`], once for every kind of volume.
+
+#[cfg(feature = "bvh")]
+pub mod bvh;
+#[cfg(feature = "dual-split")]
+pub mod dual_split;
+#[cfg(feature = "flagged")]
+pub mod flagged;
+#[cfg(feature = "flagged-slabs")]
+pub mod flagged_slabs;
+#[cfg(any(
+    feature = "bvh",
+    feature = "flagged",
+    feature = "slabs",
+    feature = "spheres"
+))]
+pub(in crate::accel) mod link;
+pub(crate) mod order;
+#[cfg(any(
+    feature = "bvh",
+    feature = "flagged",
+    feature = "slabs",
+    feature = "spheres"
+))]
+pub(in crate::accel) mod pairs;
+#[cfg(any(feature = "slabs", feature = "spheres"))]
+pub mod reach;
+#[cfg(any(feature = "slabs", feature = "spheres"))]
+pub mod slabs;
+#[cfg(feature = "spheres")]
+pub mod spheres;

@@ -1,0 +1,178 @@
+//! Breadth-first order: what makes every walk through a hierarchy end.
+
+use crate::accel::MAX_LEVELS;
+#[cfg(feature = "dual-split")]
+use crate::accel::hierarchy::dual_split::Way;
+#[cfg(feature = "flagged")]
+use crate::accel::hierarchy::link::Link;
+#[cfg(any(
+    feature = "bvh",
+    feature = "flagged",
+    feature = "slabs",
+    feature = "spheres"
+))]
+use crate::accel::hierarchy::link::Node;
+use crate::format::record::{DualNode, FlaggedPair, Pair};
+use crate::format::{BlobError, SectionKind};
+
+/// The proof that the nodes of a hierarchy lie breadth first, made node by node, with the children
+/// of each. Children then come after their parents, every node and every leaf is reached once, and
+/// a walk visits each of them once at most.
+///
+/// It can be made while a program is compiled: see [`Vouched`](crate::Vouched).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Order {
+    section: SectionKind,
+    /// How many nodes there are.
+    nodes: usize,
+    /// The node whose children come next.
+    index: usize,
+    next_node: usize,
+    next_leaf: usize,
+    /// Where the level of the current node ends.
+    level_end: usize,
+    /// Levels above the current one on which nodes have two children.
+    levels: usize,
+    /// Whether one on the current level has, so far.
+    branches: bool,
+}
+
+impl Order {
+    /// Begins with the root of so many nodes.
+    pub(crate) const fn new(section: SectionKind, nodes: usize) -> Self {
+        Self {
+            section,
+            nodes,
+            index: 0,
+            next_node: 1,
+            next_leaf: 0,
+            level_end: 1,
+            levels: 0,
+            branches: false,
+        }
+    }
+
+    /// The size of the records of a section whose order can be proved with [`Self::record`]; `None`
+    /// for other sections, and where a structure's code is not here.
+    pub(crate) const fn record_size(section: SectionKind) -> Option<usize> {
+        match section {
+            SectionKind::Pairs if cfg!(feature = "bvh") => Some(size_of::<Pair>()),
+            SectionKind::FlaggedPairs if cfg!(feature = "flagged") => {
+                Some(size_of::<FlaggedPair>())
+            }
+            SectionKind::DualNodes if cfg!(feature = "dual-split") => Some(size_of::<DualNode>()),
+            _ => None,
+        }
+    }
+
+    /// Takes the current node whole, given the last two words of its record.
+    pub(crate) const fn record(&mut self, words: [u32; 2]) -> Result<(), BlobError> {
+        match (self.section, words) {
+            #[cfg(feature = "bvh")]
+            (SectionKind::Pairs, [left, right]) => self.pair([Node(left), Node(right)]),
+            #[cfg(feature = "flagged")]
+            (SectionKind::FlaggedPairs, [_, link]) => {
+                let (link, number) = (Link(link), self.index as u32);
+                self.pair([link.child(number, 0), link.child(number, 1)])
+            }
+            #[cfg(feature = "dual-split")]
+            (SectionKind::DualNodes, [_, way]) => self.dual(Way(way)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Takes the current node, a pair.
+    #[cfg(any(
+        feature = "bvh",
+        feature = "flagged",
+        feature = "slabs",
+        feature = "spheres"
+    ))]
+    #[inline(always)]
+    pub(in crate::accel) const fn pair(
+        &mut self,
+        [left, right]: [Node; 2],
+    ) -> Result<(), BlobError> {
+        if let Err(error) = self.child(left.is_leaf(), left.number()) {
+            return Err(error);
+        }
+        if let Err(error) = self.child(right.is_leaf(), right.number()) {
+            return Err(error);
+        }
+        self.end(true)
+    }
+
+    /// Takes the current node, which has a split or is a leaf.
+    #[cfg(feature = "dual-split")]
+    #[inline(always)]
+    pub(in crate::accel) const fn dual(&mut self, way: Way) -> Result<(), BlobError> {
+        let is_leaf = way.split() == Way::NONE as usize;
+        if let Err(error) = self.child(is_leaf, way.number()) {
+            return Err(error);
+        }
+        if !is_leaf && let Err(error) = self.child(false, way.number().wrapping_add(1)) {
+            return Err(error);
+        }
+        self.end(!is_leaf)
+    }
+
+    /// Takes a child of the current node, by its number among those of its sort.
+    #[inline(always)]
+    const fn child(&mut self, is_leaf: bool, number: u32) -> Result<(), BlobError> {
+        let next = if is_leaf {
+            &mut self.next_leaf
+        } else {
+            &mut self.next_node
+        };
+        let expected = *next;
+        // Below twice the number of nodes.
+        *next = expected.wrapping_add(1);
+        if number as usize == expected {
+            return Ok(());
+        }
+        Err(BlobError::Record {
+            section: self.section,
+            index: self.index,
+            what: "number of a child or leaf, which must follow breadth first,",
+            found: number as i64,
+            expected: expected as i64,
+        })
+    }
+
+    /// Ends a node, which has two children or else is a leaf itself, and goes on to the next.
+    #[inline(always)]
+    const fn end(&mut self, branches: bool) -> Result<(), BlobError> {
+        self.branches |= branches;
+        let index = self.index;
+        let next = index.wrapping_add(1);
+        // A node that nothing leads to, or a child beyond the last node.
+        if self.next_node <= next && next < self.nodes || self.next_node > self.nodes {
+            return Err(BlobError::Record {
+                section: self.section,
+                index,
+                what: "number of nodes that are reached up to here",
+                found: self.next_node as i64,
+                expected: self.nodes as i64,
+            });
+        }
+        if next == self.level_end {
+            self.levels = self.levels.wrapping_add(self.branches as usize);
+            self.branches = false;
+            self.level_end = self.next_node;
+        }
+        self.index = next;
+        Ok(())
+    }
+
+    /// The number of levels on which nodes have two children, which is the stack that a walk needs.
+    pub(crate) const fn levels(self) -> Result<usize, BlobError> {
+        if self.levels > MAX_LEVELS {
+            return Err(BlobError::Header {
+                field: "stack depth",
+                found: self.levels as u64,
+                expected: MAX_LEVELS as u64,
+            });
+        }
+        Ok(self.levels)
+    }
+}

@@ -1,0 +1,141 @@
+//! How far a primitive reaches: the points at which a hit on it can be reported.
+//!
+//! Volumes other than boxes must hold these, not only the primitive. A hit's t lies in the culling
+//! interval of the primitive's box, clamped to it if need be (see `accept_in_box` in `geometry`), and
+//! that interval is wider than the box: from the rule of [`cull`](crate::accel::cull) it follows that a hit lies within 4
+//! units of the box on an axis along which the ray's slope is 2^-12 or more, and within 16.3 on the
+//! others, of which there are at most two. A sphere's own test is sharper: where it meets, the point
+//! of the hit lies within a unit of the sphere, because what rounding does to the half chord it does
+//! to its square, along the ray, and a square's error counts by the radius.
+
+use crate::accel::hierarchy::slabs::Direction;
+use crate::format::record::UnitBox;
+use crate::geometry::{Kind, Shapes};
+
+/// The points at which a hit can be reported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// About a sphere: centre and radius in 1/256 unit.
+    Sphere([i32; 3], i32),
+    /// About the box of anything else.
+    Box(UnitBox),
+}
+
+/// By how much a slab is wider than a sphere, in its own units.
+const SLAB_ABOUT_SPHERE: i64 = 1;
+/// By how much a slab is wider than a box: on the steepest directions two axes reach 16.3 units each
+/// and count by half.
+const SLAB_ABOUT_BOX: i64 = 17;
+/// By how much a ball is larger than what it holds: a unit for the hit and one for the ball's test.
+const BALL_ABOUT_SPHERE: i64 = 2;
+/// The diagonal of 16.3, 16.3 and 4 units, and one for the ball's test.
+const BALL_ABOUT_BOX: i64 = 25;
+
+/// The smallest integer whose square is at least this.
+fn root_above(square: u64) -> i64 {
+    let root = square.isqrt();
+    (root + u64::from(root * root < square)) as i64
+}
+
+impl Reach {
+    /// That of a primitive in a blob.
+    pub(crate) fn of(shapes: &Shapes<'_>, kind: Kind, index: usize) -> Option<Self> {
+        if kind == Kind::Sphere {
+            let (center, radius) = shapes.spheres.get(index)?;
+            return Some(Self::Sphere(center, radius));
+        }
+        Some(Self::Box(shapes.bounds(kind, index)?))
+    }
+
+    /// The smallest slab of a direction, in its units; on the axes the box's sides.
+    pub fn slab(&self, direction: Direction) -> [i16; 2] {
+        // One unit of the slab in 1/256 unit.
+        let unit = 256_i64 << direction.halvings;
+        let (low, high, slack) = match *self {
+            Self::Sphere(center, radius) => {
+                let middle = direction.dot(center.map(i64::from));
+                let square = direction.signs.iter().filter(|&&sign| sign != 0).count() as u64;
+                let radius = radius.unsigned_abs() as u64;
+                let reach = root_above(square * radius * radius);
+                (middle - reach, middle + reach, SLAB_ABOUT_SPHERE)
+            }
+            Self::Box(bounds) => {
+                let along = |side: usize| {
+                    let corner = [0, 1, 2].map(|k: usize| {
+                        let other = direction.signs[k] < 0;
+                        i64::from(bounds.0[k][side ^ usize::from(other)]) << 8
+                    });
+                    direction.dot(corner)
+                };
+                (along(0), along(1), SLAB_ABOUT_BOX)
+            }
+        };
+        let slack = if direction.halvings == 0 { 0 } else { slack };
+        let within = |plane: i64| plane.clamp(i64::from(i16::MIN), i64::from(i16::MAX)) as i16;
+        [
+            within(low.div_euclid(unit) - slack),
+            within(-(-high).div_euclid(unit) + slack),
+        ]
+    }
+
+    /// Whether a ball holds all of it: centre and radius in units.
+    pub fn in_ball(&self, center: [i16; 3], radius: u16) -> bool {
+        let radius = i64::from(radius) << 8;
+        let squared = |apart: [i64; 3]| apart.iter().map(|x| x * x).sum::<i64>();
+        let center = center.map(|x| i64::from(x) << 8);
+        match *self {
+            Self::Sphere(middle, reach) => {
+                let room = radius - i64::from(reach) - (BALL_ABOUT_SPHERE << 8);
+                let apart = [0, 1, 2].map(|k: usize| i64::from(middle[k]) - center[k]);
+                room >= 0 && squared(apart) <= room * room
+            }
+            Self::Box(bounds) => {
+                let room = radius - (BALL_ABOUT_BOX << 8);
+                let apart = [0, 1, 2].map(|k: usize| {
+                    let [low, high] = bounds.0[k].map(|side| i64::from(side) << 8);
+                    (center[k] - low).max(high - center[k])
+                });
+                room >= 0 && squared(apart) <= room * room
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::slabs::DIRECTIONS;
+    use super::*;
+
+    #[test]
+    fn slabs_hold_corners_and_spheres() {
+        let bounds = UnitBox([[-300, 40], [7, 900], [-32_767, 32_767]]);
+        let sphere = Reach::Sphere([1000, -77_000, 512], 300_001);
+        for direction in DIRECTIONS {
+            let unit = 256_i64 << direction.halvings;
+            let [low, high] = Reach::Box(bounds).slab(direction).map(i64::from);
+            for corner in 0..8 {
+                let corner = [0, 1, 2].map(|k| i64::from(bounds.0[k][corner >> k & 1]) << 8);
+                let place = direction.dot(corner);
+                assert!(low * unit <= place && place <= high * unit, "{direction:?}");
+            }
+            let [low, high] = sphere.slab(direction).map(i64::from);
+            let length = f64::sqrt(direction.signs.iter().map(|s| f64::from(s * s)).sum());
+            let middle = direction.dot([1000, -77_000, 512]) as f64;
+            assert!((low * unit) as f64 <= middle - length * 300_001.0);
+            assert!((high * unit) as f64 >= middle + length * 300_001.0);
+            let width = ((high - low) * unit) as f64;
+            assert!(width <= 2.0 * length * 300_001.0 + 4.0 * unit as f64);
+        }
+    }
+
+    #[test]
+    fn balls_hold_what_they_must() {
+        let sphere = Reach::Sphere([256, 512, -768], 256 * 100);
+        assert!(sphere.in_ball([1, 2, -3], 102));
+        assert!(!sphere.in_ball([1, 2, -3], 101));
+        assert!(!sphere.in_ball([1, 2, 9], 102));
+        let bounds = Reach::Box(UnitBox([[-30, 30], [-40, 40], [0, 0]]));
+        assert!(bounds.in_ball([0; 3], 75));
+        assert!(!bounds.in_ball([0; 3], 74));
+    }
+}

@@ -1,0 +1,342 @@
+//! Slabs: bounding volumes between parallel planes of fixed directions (Kay and Kajiya, "Ray Tracing
+//! Complex Scenes", 1986), plain and flagged.
+//!
+//! A volume has two planes for each of 3, 7 or 13 directions: the axes, the diagonals of the cube,
+//! the diagonals of its faces. Along a direction `n` a ray's coordinate is `y = n . x / 2^h`, where h
+//! keeps planes in 16 bits; it is a line like that of an axis, with slope and origin of its own, so
+//! slabs are culled by the very rule of boxes (see [`cull`](crate::accel::cull)), and what is proved there
+//! holds here: `y` errs by no more than the coordinates do. What volumes must hold is more than the
+//! primitives: see [`Reach`].
+//!
+//! Plain, all planes of both children are tested, four a direction. Flagged, those that coincide
+//! with the parent's are neither stored nor tested, exactly as with boxes: two a direction. See
+//! `flagged_slabs.rs`.
+
+use crate::accel::cull::{Cull, Interval};
+use crate::accel::hierarchy::link::{Link, Node};
+use crate::accel::hierarchy::pairs::{PairArray, PairRecord, Walk, check_tree};
+use crate::accel::hierarchy::reach::Reach;
+use crate::accel::{Accel, Leaf, Records, StackView, Structure};
+use crate::format::{BlobError, SectionKind, Sections};
+use crate::number::{CullAxis, Number};
+use crate::observe::count::Count;
+use crate::ray::Ray;
+use crate::scene::Scene;
+use heapless::Vec;
+
+/// A direction of slabs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Direction {
+    /// Each -1, 0 or 1.
+    pub signs: [i8; 3],
+    /// How often the sum of the coordinates is halved, so that it has 16 bits.
+    pub halvings: u32,
+}
+
+impl Direction {
+    const fn new(signs: [i8; 3], halvings: u32) -> Self {
+        Self { signs, halvings }
+    }
+
+    /// The sum of coordinates with the direction's signs, not halved.
+    pub fn dot(self, point: [i64; 3]) -> i64 {
+        let terms = point.iter().zip(self.signs);
+        terms.map(|(&x, sign)| x * i64::from(sign)).sum()
+    }
+
+    /// The component of a vector.
+    #[inline(always)]
+    fn along<N: Number>(self, v: [N; 3]) -> N {
+        let mut sum = N::ZERO;
+        for (x, sign) in v.into_iter().zip(self.signs) {
+            // Halved before they are added, so that the sum stays in range.
+            let x = match self.halvings {
+                0 => x,
+                1 => x.half(),
+                _ => x.half().half(),
+            };
+            match sign {
+                0 => {}
+                1 => sum = sum + x,
+                _ => sum = sum - x,
+            }
+        }
+        sum
+    }
+}
+
+/// All directions; volumes have the first 3, 7 or 13.
+pub const DIRECTIONS: [Direction; 13] = [
+    Direction::new([1, 0, 0], 0),
+    Direction::new([0, 1, 0], 0),
+    Direction::new([0, 0, 1], 0),
+    Direction::new([1, 1, 1], 2),
+    Direction::new([1, 1, -1], 2),
+    Direction::new([1, -1, 1], 2),
+    Direction::new([1, -1, -1], 2),
+    Direction::new([1, 1, 0], 1),
+    Direction::new([1, -1, 0], 1),
+    Direction::new([1, 0, 1], 1),
+    Direction::new([1, 0, -1], 1),
+    Direction::new([0, 1, 1], 1),
+    Direction::new([0, 1, -1], 1),
+];
+
+/// Numbers of directions that volumes can have.
+pub const DIRECTION_COUNTS: [usize; 3] = [3, 7, 13];
+
+/// A volume: the lower and the upper plane of each direction, as many as there are.
+pub type Volume = [[i16; 2]; DIRECTIONS.len()];
+
+/// The hierarchy of slabs with all planes.
+#[derive(Clone, Copy, Debug)]
+pub enum Slabs {}
+
+/// A ray's form along each direction.
+pub(in crate::accel) type Forms = Vec<CullAxis, { DIRECTIONS.len() }>;
+
+pub(in crate::accel) fn forms<N: Number>(ray: &Ray<N>, count: usize) -> Forms {
+    let form = |direction: &Direction| {
+        let (slope, origin) = (direction.along(ray.slope), direction.along(ray.origin));
+        N::cull_axis(slope, origin)
+    };
+    DIRECTIONS.iter().take(count).map(form).collect()
+}
+
+/// Two planes of a direction, as a word holds them.
+#[inline(always)]
+pub(in crate::accel) fn planes(word: u32) -> [i16; 2] {
+    [word as i16, (word >> 16) as i16]
+}
+
+/// The planes that a ray comes to first, and those that it comes to last.
+#[inline(always)]
+pub(in crate::accel) fn in_order<T>(form: &CullAxis, lower: T, upper: T) -> (T, T) {
+    if form.descends() {
+        (upper, lower)
+    } else {
+        (lower, upper)
+    }
+}
+
+/// The root's interval, from the ray's start up to a limit.
+pub(in crate::accel) fn root_interval(
+    forms: &Forms,
+    root: &[u32],
+    start: i32,
+    limit: i32,
+) -> Interval {
+    let mut interval = Interval {
+        near: start,
+        far: limit,
+    };
+    for (form, &word) in forms.iter().zip(root) {
+        let [lower, upper] = planes(word);
+        let (near, far) = in_order(form, lower, upper);
+        interval.near = interval.near.max(form.entry(near));
+        interval.far = interval.far.min(form.exit(far));
+    }
+    interval
+}
+
+/// The records of one hierarchy: so many words each.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SlabPairs<'a, const FLAGGED: bool> {
+    /// The root's volume, a word a direction.
+    pub(in crate::accel) root: &'a [u32],
+    words: &'a [u32],
+}
+
+/// One of them.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::accel) struct SlabPair<'a, const FLAGGED: bool>(&'a [u32]);
+
+impl<'a, const FLAGGED: bool> SlabPairs<'a, FLAGGED> {
+    /// Words of a record: for each direction the lower planes and the upper planes, or in flagged
+    /// pairs the inner lower and the inner upper plane; and two words behind them.
+    fn width(&self) -> usize {
+        let directions = self.root.len();
+        2 + if FLAGGED { directions } else { 2 * directions }
+    }
+}
+
+impl<'a, const FLAGGED: bool> PairArray for SlabPairs<'a, FLAGGED> {
+    type Pair = SlabPair<'a, FLAGGED>;
+
+    fn len(self) -> usize {
+        self.words.len() / self.width()
+    }
+
+    #[inline(always)]
+    fn pair(self, number: usize) -> Option<Self::Pair> {
+        let width = self.width();
+        let first = number.checked_mul(width)?;
+        let words = self.words.get(first..)?.get(..width)?;
+        Some(SlabPair(words))
+    }
+}
+
+impl<'a, const FLAGGED: bool> SlabPair<'a, FLAGGED> {
+    /// The planes, and the two words behind them.
+    #[inline(always)]
+    pub(in crate::accel) fn parts(&self) -> (&'a [u32], [u32; 2]) {
+        match self.0 {
+            [planes @ .., a, b] => (planes, [*a, *b]),
+            _ => (&[], [0; 2]),
+        }
+    }
+
+    /// The children's volumes, given their parent's.
+    fn volumes(&self, parent: &Volume) -> [Volume; 2] {
+        let (words, [owners, _]) = self.parts();
+        let mut children = [*parent; 2];
+        if FLAGGED {
+            for (number, &word) in words.iter().enumerate().take(DIRECTIONS.len()) {
+                let [lower, upper] = planes(word);
+                children[(owners >> (2 * number) & 1) as usize][number][0] = lower;
+                children[(owners >> (2 * number + 1) & 1) as usize][number][1] = upper;
+            }
+        } else {
+            for (number, both) in words.chunks_exact(2).enumerate().take(DIRECTIONS.len()) {
+                let (lower, upper) = (planes(both[0]), planes(both[1]));
+                for (child, volume) in children.iter_mut().enumerate() {
+                    volume[number] = [lower[child], upper[child]];
+                }
+            }
+        }
+        children
+    }
+}
+
+impl<const FLAGGED: bool> PairRecord for SlabPair<'_, FLAGGED> {
+    const SECTION: SectionKind = if FLAGGED {
+        SectionKind::FlaggedSlabPairs
+    } else {
+        SectionKind::SlabPairs
+    };
+
+    #[inline(always)]
+    fn planes(&self) -> u32 {
+        2 * (self.0.len() as u32).saturating_sub(2)
+    }
+
+    #[inline(always)]
+    fn child(&self, number: u32, side: u32) -> Node {
+        let (_, [first, second]) = self.parts();
+        if FLAGGED {
+            Link(second).child(number, side)
+        } else {
+            Node(if side == 0 { first } else { second })
+        }
+    }
+}
+
+/// The intervals of children that have all planes, from the ray's start up to a limit.
+#[inline(always)]
+fn plain(pair: SlabPair<'_, false>, forms: &Forms, start: i32, limit: i32) -> [Interval; 2] {
+    let mut children = [Interval {
+        near: start,
+        far: limit,
+    }; 2];
+    for (form, both) in forms.iter().zip(pair.parts().0.chunks_exact(2)) {
+        let (near, far) = in_order(form, planes(both[0]), planes(both[1]));
+        for (child, interval) in children.iter_mut().enumerate() {
+            interval.near = interval.near.max(form.entry(near[child]));
+            interval.far = interval.far.min(form.exit(far[child]));
+        }
+    }
+    children
+}
+
+impl Accel for Slabs {
+    const STRUCTURE: Structure = Structure::Slabs;
+    type Cull<N: Number> = Cull;
+
+    fn walk<N: Number, C: Count>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        cull: &Cull,
+        stack: &mut StackView,
+        count: &mut C,
+        leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+    ) {
+        let pairs = scene.held.slabs;
+        let (forms, start) = (forms(ray, pairs.root.len()), cull.start());
+        let walk = Walk {
+            scene,
+            pairs,
+            root: |limit| root_interval(&forms, pairs.root, start, limit),
+            root_planes: 2 * pairs.root.len() as u32,
+            narrow: |pair, _, limit| plain(pair, &forms, start, limit),
+        };
+        walk.run::<N, Cull, C>(ray.tmax, stack, count, leaf);
+    }
+}
+
+/// The hierarchy of a scene.
+pub(crate) type Held<'a> = SlabPairs<'a, false>;
+
+impl<'a, const FLAGGED: bool> Records<'a> for SlabPairs<'a, FLAGGED> {
+    const SECTIONS: &'static [SectionKind] = if FLAGGED {
+        &[SectionKind::FlaggedSlabRoot, SectionKind::FlaggedSlabPairs]
+    } else {
+        &[SectionKind::SlabRoot, SectionKind::SlabPairs]
+    };
+    const USES_LEAVES: bool = true;
+
+    fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
+        let section = Self::SECTIONS[1];
+        let mut pairs = Self {
+            root: sections.records(Self::SECTIONS[0])?,
+            words: &[],
+        };
+        pairs.words = sections.words(section, pairs.width())?;
+        Ok(pairs)
+    }
+
+    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
+        let pairs = *self;
+        let directions = pairs.root.len();
+        let section = Self::SECTIONS[0];
+        if !DIRECTION_COUNTS.contains(&directions) && !scene.leaves.is_empty() {
+            return Err(BlobError::Count {
+                section,
+                found: directions,
+                expected: DIRECTION_COUNTS[0],
+            });
+        }
+        let mut root: Volume = [[0; 2]; DIRECTIONS.len()];
+        for (volume, &word) in root.iter_mut().zip(pairs.root) {
+            *volume = planes(word);
+        }
+        let inside = |outer: &Volume, inner: &Volume| {
+            let sides = outer.iter().zip(inner).take(directions);
+            sides.into_iter().all(|(outer, inner)| {
+                outer[0] <= inner[0] && inner[0] <= inner[1] && inner[1] <= outer[1]
+            })
+        };
+        let children = |pair: &SlabPair<'a, FLAGGED>, parent: &Volume| {
+            let children = pair.volumes(parent);
+            match children.iter().position(|child| !inside(parent, child)) {
+                None => Ok(children),
+                Some(child) => Err(child),
+            }
+        };
+        let holds = |leaf: Leaf, path: &[Volume]| {
+            let Some(volume) = path.last() else {
+                return false;
+            };
+            let slots = leaf.first as usize..(leaf.first + leaf.count) as usize;
+            slots.into_iter().all(|index| {
+                Reach::of(&scene.shapes, leaf.kind, index).is_some_and(|reach| {
+                    let directions = DIRECTIONS.iter().zip(volume).take(directions);
+                    directions.into_iter().all(|(&direction, &[low, high])| {
+                        let [lowest, highest] = reach.slab(direction);
+                        low <= lowest && highest <= high
+                    })
+                })
+            })
+        };
+        check_tree(pairs, scene.leaves, root, children, holds)
+    }
+}

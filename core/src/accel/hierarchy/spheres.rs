@@ -1,0 +1,144 @@
+//! Bounding spheres, called balls here to tell them from primitives.
+//!
+//! A ball is met where the ray passes its centre no farther than its radius. Its interval is taken
+//! from the point of the ray that is nearest to the centre, a radius back and forth: a little longer
+//! than the chord, and without a square root.
+//!
+//! Balls of children need not lie in their parents' (a tight ball about many is not about their
+//! balls), so what is proved of a blob is that every primitive lies in the ball of each node above
+//! it, with room to spare (see [`Reach`]). Then a hit's point is in all of these balls, at no more
+//! than a radius from the ray's nearest point, and no ball above it is passed over.
+
+use crate::accel::cull::{Cull, Interval, PairCulling};
+use crate::accel::hierarchy::link::Node;
+use crate::accel::hierarchy::pairs::{PairArray, PairRecord, Walk, check_tree};
+use crate::accel::hierarchy::reach::Reach;
+use crate::accel::{Accel, Leaf, Records, StackView, Structure};
+use crate::format::record::{Ball, BallPair};
+use crate::format::{BlobError, SectionKind, Sections};
+use crate::number::Number;
+use crate::observe::count::Count;
+use crate::ray::Ray;
+use crate::scene::Scene;
+
+/// The hierarchy of bounding spheres; no plane is tested below the root, but two balls a pair.
+#[derive(Clone, Copy, Debug)]
+pub enum Spheres {}
+
+impl Accel for Spheres {
+    const STRUCTURE: Structure = Structure::Spheres;
+    type Cull<N: Number> = Cull;
+
+    fn walk<N: Number, C: Count>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        cull: &Cull,
+        stack: &mut StackView,
+        count: &mut C,
+        leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+    ) {
+        let recip_norm2 = N::recip_norm2(ray.slope);
+        let start = cull.start();
+        let meet = |ball: Ball, limit: i32| {
+            let whole = interval(ray, recip_norm2, ball);
+            Interval {
+                near: whole.near.max(start),
+                far: whole.far.min(limit),
+            }
+        };
+        let walk = Walk {
+            scene,
+            pairs: scene.held.spheres.0,
+            root: |limit| PairCulling::<N>::root(cull, scene.bounds(), limit),
+            root_planes: 6,
+            narrow: |pair: &BallPair, _, limit| pair.balls.map(|ball| meet(ball, limit)),
+        };
+        walk.run::<N, Cull, C>(ray.tmax, stack, count, leaf);
+    }
+}
+
+/// The interval of a ball; empty where the ray passes it by.
+#[inline(always)]
+fn interval<N: Number>(ray: &Ray<N>, recip_norm2: N, ball: Ball) -> Interval {
+    const NOWHERE: Interval = Interval { near: 1, far: 0 };
+    let axis = |k: usize| N::from_unit(ball.center[k]) - ray.origin[k];
+    let relative = [axis(0), axis(1), axis(2)];
+    let closest = N::from_wide(N::wide_scale(N::dot(relative, ray.slope), recip_norm2));
+    let axis = |k: usize| relative[k] - closest * ray.slope[k];
+    let apart = [axis(0), axis(1), axis(2)];
+    let radius = N::from_lattice(i32::from(ball.radius) << 8);
+    // The box first, so that squares stay in range.
+    if !(apart[0].abs() <= radius && apart[1].abs() <= radius && apart[2].abs() <= radius) {
+        return NOWHERE;
+    }
+    if radius.wide(radius) < N::dot(apart, apart) {
+        return NOWHERE;
+    }
+    // Steps are half units; one for the rounding of each conversion.
+    let (middle, reach) = (closest.to_cull(), 2 * i32::from(ball.radius) + 1);
+    Interval {
+        near: middle - reach,
+        far: middle + reach + 1,
+    }
+}
+
+/// The hierarchy of a scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Held<'a>(pub(in crate::accel) &'a [BallPair]);
+
+impl PairRecord for &BallPair {
+    const SECTION: SectionKind = SectionKind::BallPairs;
+
+    #[inline(always)]
+    fn planes(&self) -> u32 {
+        0
+    }
+
+    #[inline(always)]
+    fn child(&self, _: u32, side: u32) -> Node {
+        Node(self.children[(side & 1) as usize])
+    }
+}
+
+impl<'a> Records<'a> for Held<'a> {
+    const SECTIONS: &'static [SectionKind] = &[SectionKind::BallPairs];
+    const USES_LEAVES: bool = true;
+
+    fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
+        Ok(Self(sections.records(SectionKind::BallPairs)?))
+    }
+
+    /// At most [`MAX_LEVELS`](crate::accel::MAX_LEVELS) balls are asked about each primitive.
+    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
+        let holds = |leaf: Leaf, path: &[Ball]| {
+            let slots = leaf.first as usize..(leaf.first + leaf.count) as usize;
+            // The first of the path stands for the root, whose box is tested.
+            slots.into_iter().all(|index| {
+                Reach::of(&scene.shapes, leaf.kind, index).is_some_and(|reach| {
+                    let balls = path.iter().skip(1);
+                    balls
+                        .into_iter()
+                        .all(|ball| reach.in_ball(ball.center, ball.radius))
+                })
+            })
+        };
+        let root = Ball {
+            center: [0; 3],
+            radius: 0,
+        };
+        check_tree(self.0, scene.leaves, root, |pair, _| Ok(pair.balls), holds)
+    }
+}
+
+impl<'a> PairArray for &'a [BallPair] {
+    type Pair = &'a BallPair;
+
+    fn len(self) -> usize {
+        <[BallPair]>::len(self)
+    }
+
+    #[inline(always)]
+    fn pair(self, number: usize) -> Option<Self::Pair> {
+        self.get(number)
+    }
+}

@@ -1,0 +1,384 @@
+//! The eight-wide hierarchy, for hosts: nodes of eight children, leaves of one cluster.
+//!
+//! A node is 128 bytes: the children's planes on the box lattice in rows of eight
+//! ([`WideNode`]), so that one instruction of a machine with SIMD registers takes a side of eight
+//! (or four) children, and a word for each child. A leaf is one [cluster](crate::format::cluster),
+//! tested in eight lanes too, or a single primitive of the kinds that have no clusters.
+//!
+//! The answers are the list's, bit for bit: culling is conservative, lane by lane (see
+//! [`cull`]), and what a cluster's lanes do not reject goes through the same scalar
+//! code as everywhere else, or has been through its operations lane by lane. Children that are met
+//! are pushed in no order, but the nearest is taken at once: sorting costs more than it saves. Where
+//! any hit will do, children are taken as they lie, and those of a node wait in one entry.
+
+mod check;
+pub mod cull;
+
+pub(super) use check::check_records;
+
+use crate::accel::cull::Culling;
+use crate::accel::{Accel, Entry, Leaf, Records, StackView, Structure};
+use crate::format::cluster::LANES;
+use crate::format::record::WideNode;
+use crate::format::{BlobError, SectionKind, Sections};
+use crate::geometry::Kind;
+use crate::number::{Format, Number};
+use crate::observe::count::Count;
+use crate::observe::event::{Event, Place};
+use crate::ray::Ray;
+use crate::scene::Scene;
+use crate::simd::{Simd, SimdLevel, with_simd};
+use cull::WideCulling;
+
+/// The hierarchy of eight children a node, for machines with SIMD registers.
+#[derive(Clone, Copy, Debug)]
+pub enum Wide {}
+
+/// What a child of a node is: one word.
+///
+/// Bits 29 to 31 are 7 for a node, whose number is in bits 0 to 23. Any other word is a [`Leaf`];
+/// one of no slots is the cluster of that number: a strip where its kind is triangles, a pack
+/// where it is spheres.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Child(pub u32);
+
+impl Child {
+    /// In the lanes behind a node's last child.
+    pub const NONE: Self = Self(u32::MAX);
+    /// Number of nodes that a word can tell apart.
+    pub const NODES: u32 = (1 << 24) - 1;
+
+    const NODE: u32 = 7 << 29;
+
+    /// A node.
+    pub const fn node(number: u32) -> Self {
+        Self(Self::NODE | number)
+    }
+
+    /// A leaf.
+    pub const fn leaf(leaf: Leaf) -> Self {
+        Self(leaf.to_word())
+    }
+
+    /// The child as events tell it.
+    fn place(self) -> Place {
+        let (what, number) = match (self.as_node(), Leaf::from_word(self.0)) {
+            (Some(number), _) => ("node", number),
+            (None, Some(leaf)) if leaf.count > 0 => (leaf.kind.name(), leaf.first),
+            (None, Some(leaf)) if leaf.kind == Kind::Triangle => ("strip", leaf.first),
+            (None, leaf) => ("pack", leaf.map_or(0, |leaf| leaf.first)),
+        };
+        Place { what, number }
+    }
+
+    /// The node's number, if it is a node.
+    #[inline(always)]
+    pub(crate) const fn as_node(self) -> Option<u32> {
+        if self.0 >= Self::NODE {
+            Some(self.0 & 0xff_ffff)
+        } else {
+            None
+        }
+    }
+}
+
+/// The nodes of a scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Held<'a> {
+    nodes: &'a [WideNode],
+}
+
+impl<'a> Records<'a> for Held<'a> {
+    const SECTIONS: &'static [SectionKind] = &[
+        SectionKind::WideNodes,
+        SectionKind::Strips,
+        SectionKind::Packs,
+        SectionKind::Members,
+        SectionKind::Homes,
+        SectionKind::Radii,
+    ];
+    const USES_LEAVES: bool = false;
+
+    fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
+        Ok(Self {
+            nodes: sections.records(SectionKind::WideNodes)?,
+        })
+    }
+
+    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
+        check::check(self.nodes, scene)
+    }
+}
+
+impl Accel for Wide {
+    const STRUCTURE: Structure = Structure::Wide;
+    const HAS_CLUSTERS: bool = true;
+    type Cull<N: Number> = N::WideCull;
+
+    #[inline(always)]
+    fn walk<N: Number, C: Count>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        cull: &N::WideCull,
+        stack: &mut StackView,
+        count: &mut C,
+        mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+    ) {
+        let nodes = scene.held.wide.nodes;
+        let level = level::<N>(scene);
+        let mut limit = N::WideCull::limit(ray.tmax);
+        let mut current = Child::node(0);
+        stack.clear();
+        loop {
+            if current.as_node().is_some() {
+                let arguments = (nodes, cull, (current, limit), &mut *stack, &mut *count);
+                current = with_simd!(level, |simd| simd.call(descend::<_, N, C>, arguments));
+            }
+            if current == Child::NONE {
+                return;
+            }
+            if C::TELLS {
+                count.tell(Event::Opened(current.place()));
+            }
+            let Some(tmax) = Leaf::from_word(current.0).and_then(|it| leaf(it, count)) else {
+                return;
+            };
+            limit = N::WideCull::limit(tmax);
+            let Some(next) = pop::<N, C>(stack, limit, count) else {
+                return;
+            };
+            current = next;
+        }
+    }
+
+    #[inline(always)]
+    fn walk_any<N: Number, C: Count>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        cull: &N::WideCull,
+        stack: &mut StackView,
+        count: &mut C,
+        mut hits: impl FnMut(Leaf, &mut C) -> bool,
+    ) {
+        let nodes = scene.held.wide.nodes;
+        let level = level::<N>(scene);
+        let limit = N::WideCull::limit(ray.tmax);
+        let mut current = Child::node(0);
+        stack.clear();
+        loop {
+            if current.as_node().is_some() {
+                let arguments = (nodes, cull, (current, limit), &mut *stack, &mut *count);
+                current = with_simd!(level, |simd| simd.call(descend_any::<_, N, C>, arguments));
+            }
+            if current == Child::NONE {
+                return;
+            }
+            if C::TELLS {
+                count.tell(Event::Opened(current.place()));
+            }
+            if Leaf::from_word(current.0).is_none_or(|it| hits(it, count)) {
+                return;
+            }
+            let Some(next) = pop_any(nodes, stack) else {
+                return;
+            };
+            current = next;
+        }
+    }
+}
+
+/// The level for rays of a format: integers have no lanes.
+#[inline(always)]
+fn level<N: Number>(scene: &Scene<'_>) -> SimdLevel {
+    match N::FORMAT {
+        Format::Fixed => SimdLevel::Portable,
+        _ => scene.simd,
+    }
+}
+
+/// The next child that waits and is entered before the limit.
+#[inline(always)]
+fn pop<N: Number, C: Count>(stack: &mut StackView, limit: i32, count: &mut C) -> Option<Child> {
+    loop {
+        let entry = stack.pop()?;
+        if entry.near <= limit {
+            return Some(Child(entry.node));
+        }
+        if C::TELLS {
+            let place = Child(entry.node).place();
+            count.tell(Event::GivenUp {
+                place,
+                enters: N::WideCull::units(entry.near),
+            });
+        }
+    }
+}
+
+/// The next child that waits, of those that wait together.
+#[inline(always)]
+fn pop_any(nodes: &[WideNode], stack: &mut StackView) -> Option<Child> {
+    let Entry { node, near, .. } = stack.pop()?;
+    take(nodes.get(node as usize)?, node, near as u32, stack)
+}
+
+/// Goes down from a node, each time to the child that is met first, while the others are left to
+/// wait; where nothing is met, goes on with the next that waits. Ends at a leaf, or at none.
+///
+/// Called out of line, because the ray's constants for nodes and those for leaves do not fit the
+/// registers together.
+#[inline(always)]
+fn descend<S: Simd, N: Number, C: Count>(
+    simd: S,
+    nodes: &[WideNode],
+    cull: &N::WideCull,
+    (mut current, limit): (Child, i32),
+    stack: &mut StackView,
+    count: &mut C,
+) -> Child {
+    while let Some(number) = current.as_node() {
+        let opened = open::<S, N, C>(simd, nodes, number, cull, limit, count);
+        let Some((node, mut met, near)) = opened else {
+            let Some(next) = pop::<N, C>(stack, limit, count) else {
+                return Child::NONE;
+            };
+            current = next;
+            continue;
+        };
+        let first = take_lowest(&mut met);
+        if met == 0 {
+            // Every other node: no need to wait for where it is entered.
+            current = node.child(first);
+            continue;
+        }
+        let mut nearest = entered(first, &near);
+        while met != 0 {
+            let other = entered(take_lowest(&mut met), &near);
+            // No branches, which would be guessed wrong every other time.
+            let later = nearest.max(other);
+            nearest = nearest.min(other);
+            let entry = Entry {
+                node: node.child(lane(later)).0,
+                near: (later >> 32) as i32,
+                far: 0,
+            };
+            if stack.push(entry).is_err() {
+                // Only a forged blob is deeper than it says: the walk ends.
+                stack.clear();
+                return Child::NONE;
+            }
+        }
+        current = node.child(lane(nearest));
+    }
+    current
+}
+
+/// Goes down from a node, each time to one of the children that are met, to a leaf or to none: what
+/// [`descend`] does where any order will do, for less.
+#[inline(always)]
+fn descend_any<S: Simd, N: Number, C: Count>(
+    simd: S,
+    nodes: &[WideNode],
+    cull: &N::WideCull,
+    (mut current, limit): (Child, i32),
+    stack: &mut StackView,
+    count: &mut C,
+) -> Child {
+    while let Some(number) = current.as_node() {
+        let opened = open::<S, N, C>(simd, nodes, number, cull, limit, count);
+        let Some((node, met, _)) = opened else {
+            let Some(next) = pop_any(nodes, stack) else {
+                return Child::NONE;
+            };
+            current = next;
+            continue;
+        };
+        let Some(first) = take(node, number, met, stack) else {
+            // Only a forged blob is deeper than it says: the walk ends.
+            stack.clear();
+            return Child::NONE;
+        };
+        current = first;
+    }
+    current
+}
+
+/// Opens a node and [tests](WideCulling::children) its children: the node, which of them are met and
+/// where they are entered. `None` where none is met.
+#[inline(always)]
+fn open<'n, S: Simd, N: Number, C: Count>(
+    simd: S,
+    nodes: &'n [WideNode],
+    number: u32,
+    cull: &N::WideCull,
+    limit: i32,
+    count: &mut C,
+) -> Option<(&'n WideNode, u32, [i32; LANES])> {
+    let node = nodes.get(number as usize)?;
+    let children = children(node).count() as u32;
+    count.planes(6 * children);
+    count.boxes(children);
+    if C::TELLS {
+        count.tell(Event::Opened(Child::node(number).place()));
+        tell_tested::<N, C>(node, cull, limit, count);
+    }
+    let (met, near) = cull.children(simd, node, limit);
+    (met != 0).then_some((node, met, near))
+}
+
+/// One of the children of a node that are met, while the others are left to wait together: the node,
+/// with a bit for each of them. `None` if there is no room.
+#[inline(always)]
+fn take(node: &WideNode, number: u32, mut met: u32, stack: &mut StackView) -> Option<Child> {
+    let first = take_lowest(&mut met);
+    if met != 0 {
+        let rest = Entry {
+            node: number,
+            near: met as i32,
+            far: 0,
+        };
+        stack.push(rest).ok()?;
+    }
+    Some(node.child(first))
+}
+
+/// The lanes of a node that hold children.
+fn children(node: &WideNode) -> impl Iterator<Item = usize> + '_ {
+    (0..LANES).filter(|&lane| node.child(lane) != Child::NONE)
+}
+
+/// Tells of the tests of a node's children.
+fn tell_tested<N: Number, C: Count>(
+    node: &WideNode,
+    cull: &N::WideCull,
+    limit: i32,
+    count: &mut C,
+) {
+    for lane in children(node) {
+        let bounds = node.child_box(lane);
+        count.tell(Event::Tested {
+            place: node.child(lane).place(),
+            sides: bounds.0.map(|axis| axis.map(Some)),
+            span: cull.span(&bounds, limit),
+        });
+    }
+}
+
+/// The lowest lane of a set that is not empty, which is removed.
+#[inline(always)]
+fn take_lowest(lanes: &mut u32) -> usize {
+    let lowest = lanes.trailing_zeros();
+    *lanes &= lanes.wrapping_sub(1);
+    (lowest & 7) as usize
+}
+
+/// Where a lane is entered, which is not negative, in the high half, and its number in the low half.
+#[inline(always)]
+fn entered(lane: usize, near: &[i32; LANES]) -> u64 {
+    (near[lane & 7] as u64) << 32 | lane as u64
+}
+
+/// The lane of [`entered`].
+#[inline(always)]
+fn lane(entered: u64) -> usize {
+    (entered & 7) as usize
+}

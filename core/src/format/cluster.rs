@@ -1,0 +1,384 @@
+//! Clusters: strips of triangles and packs of spheres, in rows of eight lanes.
+//!
+//! A cluster holds its geometry itself, so that a leaf of the eight-wide structure is one record:
+//! a vertex that several triangles share is stored, converted and projected once, and no index
+//! leads anywhere. Where [`Structure::Wide`](crate::Structure::Wide) is a blob's only structure,
+//! its triangles and spheres lie in clusters alone.
+//!
+//! **Members.** The triangles of all strips, and after them the spheres of all packs, are counted
+//! from 0 in the order in which they lie there; the section of that name has the primitive of each.
+//! All packs but the last are full, so the sphere in lane `l` of pack `p` is number `8 p + l`.
+//!
+//! **Radii.** Few scenes have more than a handful of them, so a pack on the 24-bit lattice has four
+//! bits for each: its number in a window of [`RADII`] among those of the section of that name. Where
+//! the section is one window, all packs share it; else the one of pack `p` begins at `8 p`.
+
+use crate::format::record::{Vertex, Vertex16, Vertex24};
+use crate::simd::Simd;
+use bytemuck::{Pod, Zeroable};
+use core::array;
+use core::mem::size_of;
+
+/// Lanes of a row: vertices of a strip, spheres of a pack, children of a node.
+pub const LANES: usize = 8;
+/// Radii of a window.
+pub const RADII: usize = 2 * LANES;
+/// Most triangles of a strip.
+pub const STRIP_TRIANGLES: usize = LANES - 2;
+
+/// Eight points on the 16-bit lattice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(transparent)]
+pub struct Rows16(
+    /// `[axis][lane]`, in units.
+    pub [[i16; LANES]; 3],
+);
+
+/// Eight points on the 24-bit lattice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Rows24 {
+    /// `[axis][lane]`: the low 16 bits of a coordinate in 1/256 unit.
+    pub low: [[u16; LANES]; 3],
+    /// `[axis][lane mod 4]`: its high 8 bits, with the sign; for lane 0 to 3 in the low half of a
+    /// word, for lane 4 to 7 in the high half, which four lanes take apart at once.
+    pub high: [[u16; LANES / 2]; 3],
+}
+
+/// Which primitives a strip holds, and which vertex is which corner of them: 6 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct StripMembers {
+    first: [u8; 3],
+    corners: [u8; 3],
+}
+
+/// A generalised strip on the 16-bit lattice: up to 6 triangles on 8 vertices, triangle `k` on the
+/// vertices `k`, `k + 1` and `k + 2`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Strip16 {
+    /// The vertices; lanes that no triangle needs repeat one.
+    pub rows: Rows16,
+    /// Which of the triangles there are, and their corners.
+    pub members: StripMembers,
+}
+
+/// A generalised strip on the 24-bit lattice; see [`Strip16`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Strip24 {
+    /// The vertices; lanes that no triangle needs repeat one.
+    pub rows: Rows24,
+    /// Which of the triangles there are, and their corners.
+    pub members: StripMembers,
+}
+
+/// A pack of up to 8 spheres on the 16-bit lattice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Pack16 {
+    /// The centres.
+    pub rows: Rows16,
+    /// The radii in units; 0 in the lanes behind the last sphere.
+    pub radii: [u16; LANES],
+}
+
+/// A pack of up to 8 spheres on the 24-bit lattice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Pack24 {
+    /// The centres.
+    pub rows: Rows24,
+    /// For each lane the number of its radius in the pack's window: of lane 0 in the low half of the
+    /// first byte, of lane 1 in its high half. The radius is 0 in the lanes behind the last sphere.
+    pub radii: [u8; LANES / 2],
+}
+
+/// A pack on the 24-bit lattice with its window of radii.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Windowed24<'a> {
+    pub(crate) pack: &'a Pack24,
+    /// In 1/256 unit.
+    pub(crate) radii: &'a [i32; RADII],
+}
+
+impl StripMembers {
+    /// The six ways in which the corners of a triangle in scene-file order lie on the three
+    /// vertices of its place.
+    pub const ARRANGEMENTS: [[usize; 3]; 6] = [
+        [0, 1, 2],
+        [1, 2, 0],
+        [2, 0, 1],
+        [0, 2, 1],
+        [2, 1, 0],
+        [1, 0, 2],
+    ];
+
+    /// Members from number `first` on; `arrangements` is, for each place, the number of one of the
+    /// [`ARRANGEMENTS`](Self::ARRANGEMENTS), or `None` where there is no triangle.
+    pub fn new(first: u32, arrangements: [Option<u32>; STRIP_TRIANGLES]) -> Self {
+        let word = (0..).zip(arrangements).fold(0, |word, (place, number)| {
+            number.map_or(word, |number| {
+                word | number << (3 * place) | 1 << (18 + place)
+            })
+        });
+        Self {
+            first: to_24(first),
+            corners: to_24(word),
+        }
+    }
+
+    /// The number of the first triangle among the members.
+    #[inline(always)]
+    pub fn first(&self) -> u32 {
+        from_24(self.first)
+    }
+
+    /// A bit for each place where there is a triangle.
+    #[inline(always)]
+    pub fn places(&self) -> u32 {
+        from_24(self.corners) >> 18
+    }
+
+    /// Number of triangles.
+    #[inline(always)]
+    pub fn count(&self) -> u32 {
+        self.places().count_ones()
+    }
+
+    /// The vertices of a place's triangle in the order of its corners; `None` where the number of
+    /// the arrangement means nothing.
+    #[inline(always)]
+    pub(crate) fn corners(&self, place: u32) -> Option<[usize; 3]> {
+        let number = from_24(self.corners) >> ((3 * place) & 31) & 7;
+        let arrangement = Self::ARRANGEMENTS.get(number as usize)?;
+        let [a, b, c] = *arrangement;
+        let first = place as usize;
+        Some([a + first, b + first, c + first])
+    }
+
+    /// The number of a place's triangle among the members.
+    #[inline(always)]
+    pub(crate) fn member(&self, place: u32) -> u32 {
+        let before = self.places() & !(u32::MAX << (place & 31));
+        self.first() + before.count_ones()
+    }
+}
+
+#[inline(always)]
+fn from_24([low, middle, high]: [u8; 3]) -> u32 {
+    u32::from_le_bytes([low, middle, high, 0])
+}
+
+fn to_24(value: u32) -> [u8; 3] {
+    let [low, middle, high, _] = value.to_le_bytes();
+    [low, middle, high]
+}
+
+/// Eight points in either storage.
+pub(crate) trait Rows: Pod {
+    /// One point.
+    type Vertex: Vertex;
+    /// One coordinate of every point in the steps of [`Vertex`]; exact.
+    fn measure<S: Simd>(&self, simd: S, axis: usize) -> S::F32x8;
+    /// One coordinate of every point in units; exact.
+    fn units<S: Simd>(&self, simd: S, axis: usize) -> S::F32x8;
+    /// The point in a lane.
+    fn vertex(&self, lane: usize) -> Self::Vertex;
+    /// The point in a lane, in 1/256 unit.
+    fn position(&self, lane: usize) -> [i32; 3];
+}
+
+impl Rows for Rows16 {
+    type Vertex = Vertex16;
+
+    #[inline(always)]
+    fn measure<S: Simd>(&self, simd: S, axis: usize) -> S::F32x8 {
+        simd.of_i16(row(&self.0, axis))
+    }
+
+    #[inline(always)]
+    fn units<S: Simd>(&self, simd: S, axis: usize) -> S::F32x8 {
+        self.measure(simd, axis)
+    }
+
+    #[inline(always)]
+    fn vertex(&self, lane: usize) -> Vertex16 {
+        let [x, y, z] = &self.0;
+        Vertex16([x[lane & 7], y[lane & 7], z[lane & 7]])
+    }
+
+    #[inline(always)]
+    fn position(&self, lane: usize) -> [i32; 3] {
+        self.vertex(lane).position()
+    }
+}
+
+impl Rows for Rows24 {
+    type Vertex = Vertex24;
+
+    #[inline(always)]
+    fn measure<S: Simd>(&self, simd: S, axis: usize) -> S::F32x8 {
+        simd.of_i24(row(&self.low, axis), row(&self.high, axis))
+    }
+
+    #[inline(always)]
+    fn units<S: Simd>(&self, simd: S, axis: usize) -> S::F32x8 {
+        self.measure(simd, axis) * simd.splat(1.0 / 256.0)
+    }
+
+    #[inline(always)]
+    fn vertex(&self, lane: usize) -> Vertex24 {
+        Vertex24(self.position(lane))
+    }
+
+    #[inline(always)]
+    fn position(&self, lane: usize) -> [i32; 3] {
+        let axis = |axis: usize| {
+            let high = high_byte(&self.high[axis], lane) as i8;
+            i32::from(self.low[axis][lane & 7]) | i32::from(high) << 16
+        };
+        [axis(0), axis(1), axis(2)]
+    }
+}
+
+/// A row by number, which is below 3: an address, and no branch that would be guessed wrong.
+#[inline(always)]
+fn row<T, const N: usize>(rows: &[[T; N]; 3], axis: usize) -> &[T; N] {
+    rows.get(axis).unwrap_or(&rows[0])
+}
+
+/// The high byte of a lane.
+#[inline(always)]
+fn high_byte(words: &[u16; LANES / 2], lane: usize) -> u8 {
+    let place = (lane & 3) << 1 | lane >> 2 & 1;
+    let bytes = bytemuck::bytes_of(words);
+    bytes.get(place).copied().unwrap_or_default()
+}
+
+/// High bytes as words.
+pub const fn high_bytes(bytes: [u8; LANES]) -> [u16; LANES / 2] {
+    let [a, b, c, d, e, f, g, h] = bytes;
+    [
+        u16::from_le_bytes([a, e]),
+        u16::from_le_bytes([b, f]),
+        u16::from_le_bytes([c, g]),
+        u16::from_le_bytes([d, h]),
+    ]
+}
+
+/// A strip in either storage.
+pub(crate) trait Strip: Pod {
+    /// Its vertices' storage.
+    type Rows: Rows;
+    fn rows(&self) -> &Self::Rows;
+    fn members(&self) -> &StripMembers;
+
+    /// The corners of a place's triangle.
+    #[inline(always)]
+    fn vertices(&self, place: u32) -> Option<[<Self::Rows as Rows>::Vertex; 3]> {
+        let [a, b, c] = self.members().corners(place)?;
+        let rows = self.rows();
+        Some([rows.vertex(a), rows.vertex(b), rows.vertex(c)])
+    }
+
+    /// The corners of a place's triangle, in 1/256 unit.
+    #[inline(always)]
+    fn triangle(&self, place: u32) -> Option<[[i32; 3]; 3]> {
+        let corners = self.members().corners(place)?;
+        Some(corners.map(|lane| self.rows().position(lane)))
+    }
+}
+
+/// A pack in either storage.
+pub(crate) trait Pack {
+    /// Its centres' storage.
+    type Rows: Rows;
+    fn rows(&self) -> &Self::Rows;
+    /// All radii in units; exact.
+    fn radii<S: Simd>(&self, simd: S) -> S::F32x8;
+    /// The radius in a lane, in 1/256 unit.
+    fn radius(&self, lane: usize) -> i32;
+
+    /// Centre and radius of a sphere, in 1/256 unit; `None` in an empty lane.
+    #[inline(always)]
+    fn sphere(&self, lane: u32) -> Option<([i32; 3], i32)> {
+        let radius = self.radius(lane as usize);
+        (radius > 0).then(|| (self.rows().position(lane as usize), radius))
+    }
+
+    /// A bit for each lane that holds a sphere.
+    fn lanes(&self) -> u32 {
+        let holds = |lane: &usize| self.radius(*lane) > 0;
+        (0..LANES)
+            .filter(holds)
+            .fold(0, |lanes, lane| lanes | 1 << lane)
+    }
+}
+
+macro_rules! strip {
+    ($strip:ident, $rows:ident) => {
+        impl Strip for $strip {
+            type Rows = $rows;
+
+            #[inline(always)]
+            fn rows(&self) -> &$rows {
+                &self.rows
+            }
+
+            #[inline(always)]
+            fn members(&self) -> &StripMembers {
+                &self.members
+            }
+        }
+    };
+}
+
+strip!(Strip16, Rows16);
+strip!(Strip24, Rows24);
+
+impl Pack for Pack16 {
+    type Rows = Rows16;
+
+    #[inline(always)]
+    fn rows(&self) -> &Rows16 {
+        &self.rows
+    }
+
+    #[inline(always)]
+    fn radii<S: Simd>(&self, simd: S) -> S::F32x8 {
+        simd.of_u16(&self.radii)
+    }
+
+    #[inline(always)]
+    fn radius(&self, lane: usize) -> i32 {
+        i32::from(self.radii[lane & 7]) << 8
+    }
+}
+
+impl Pack for Windowed24<'_> {
+    type Rows = Rows24;
+
+    #[inline(always)]
+    fn rows(&self) -> &Rows24 {
+        &self.pack.rows
+    }
+
+    #[inline(always)]
+    fn radii<S: Simd>(&self, simd: S) -> S::F32x8 {
+        let radii = array::from_fn(|lane| self.radius(lane));
+        simd.of_i32(&radii) * simd.splat(1.0 / 256.0)
+    }
+
+    #[inline(always)]
+    fn radius(&self, lane: usize) -> i32 {
+        let numbers = u32::from_le_bytes(self.pack.radii);
+        self.radii[(numbers >> (4 * (lane & 7)) & 15) as usize]
+    }
+}
+
+const _: () = {
+    assert!(size_of::<Strip16>() == 54 && size_of::<Strip24>() == 78);
+    assert!(size_of::<Pack16>() == 64 && size_of::<Pack24>() == 76);
+};

@@ -1,0 +1,140 @@
+//! What a program must provide for its own blob, read while it is compiled.
+
+use crate::accel::Structure;
+use crate::format::record::{Header, SectionEntry, View};
+use crate::format::{BlobError, SectionKind};
+use crate::scene::prevalidated::{half, proved, word};
+use crate::shade::Effects;
+use core::mem::offset_of;
+
+/// What a blob asks of the program that it is compiled into.
+///
+/// [`Demand::of`] is a `const fn`: a program that compares what it provides with what its blob asks for,
+/// as the modules of `gridel build --emit-rust` do, does not compile with a blob that has outgrown it.
+///
+/// ```ignore
+/// static BLOB: &[u8] = gridel_core::include_blob!("scene.gridel");
+/// const _: () = {
+///     let Ok(demand) = gridel_core::Demand::of(BLOB) else {
+///         panic!("the blob was damaged")
+///     };
+///     assert!(demand.stack_depth <= STACK_DEPTH);
+/// };
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Demand {
+    /// Entries of the traversal stack.
+    pub stack_depth: usize,
+    /// Places for rays that wait: the ray depth and one, or 0 where no ray causes another.
+    pub work_depth: usize,
+    /// The effects that the scene calls for.
+    pub effects: Effects,
+    /// Pixels of a row of the scene's own picture.
+    pub width: usize,
+    /// Its rows.
+    pub height: usize,
+    structures: u32,
+    /// A bit for each [`SectionKind`] of which there are records.
+    sections: u64,
+    wide_lattice: bool,
+    wide_indices: bool,
+    display_values: bool,
+}
+
+impl Demand {
+    /// Reads it. A few operations a section.
+    ///
+    /// # Errors
+    /// If the blob is cut off. Nothing else is proved: that is for [`Vouched`](crate::scene::Vouched).
+    pub const fn of(blob: &[u8]) -> Result<Self, BlobError> {
+        let lattice_bits = proved!(half(blob, offset_of!(Header, lattice_bits))) & 0xff;
+        let mut demand = Self {
+            stack_depth: proved!(half(blob, offset_of!(Header, stack_depth))) as usize,
+            work_depth: 0,
+            effects: Effects(proved!(word(blob, offset_of!(Header, effects)))),
+            width: 0,
+            height: 0,
+            structures: proved!(word(blob, offset_of!(Header, structures))),
+            sections: 0,
+            wide_lattice: lattice_bits > 16,
+            wide_indices: false,
+            display_values: false,
+        };
+        let sections = proved!(half(blob, offset_of!(Header, section_count))) as usize;
+        let mut index = 0;
+        while index < sections {
+            let entry = size_of::<Header>() + index * size_of::<SectionEntry>();
+            let kind = proved!(half(blob, entry + offset_of!(SectionEntry, kind)));
+            let stride = proved!(half(blob, entry + offset_of!(SectionEntry, stride))) as usize;
+            let count = proved!(word(blob, entry + offset_of!(SectionEntry, count)));
+            let start = proved!(word(blob, entry + offset_of!(SectionEntry, offset))) as usize;
+            if count > 0 && kind < u64::BITS as u16 {
+                demand.sections |= 1 << kind;
+            }
+            if kind == SectionKind::View as u16 {
+                // Fields of half a word and less lie two and three to a word.
+                let size = proved!(word(blob, start.saturating_add(offset_of!(View, width))));
+                let rays = proved!(word(blob, start.saturating_add(offset_of!(View, samples))));
+                (demand.width, demand.height) = (size as usize & 0xffff, size as usize >> 16);
+                // The last byte of the word that begins with the depth.
+                demand.display_values = rays >> 24 != 0;
+                demand.work_depth = demand.effects.work_depth((rays >> 16) as u8);
+            } else if kind == SectionKind::Triangles as u16 {
+                demand.wide_indices = stride > size_of::<[u16; 3]>();
+            }
+            index += 1;
+        }
+        Ok(demand)
+    }
+
+    const fn has(&self, kind: SectionKind) -> bool {
+        self.sections >> kind as u16 & 1 != 0
+    }
+
+    /// Whether the blob holds a structure.
+    pub const fn holds(&self, structure: Structure) -> bool {
+        self.structures & structure.bit() != 0
+    }
+
+    /// A sentence about a Cargo feature that the scene calls for and that this build lacks. A blob that
+    /// calls for one is refused when it is loaded.
+    pub const fn missing(&self) -> Option<&'static str> {
+        macro_rules! parts {
+            ($($called:expr => $feature:literal,)*) => {
+                [$((
+                    $called && !cfg!(feature = $feature),
+                    concat!("the scene calls for `", $feature, "`: enable that feature of gridel-core"),
+                ),)*]
+            };
+        }
+        use SectionKind::{Boxes, Cones, Discs, Packs, Spheres, Strips, Triangles};
+        let effects = self.effects;
+        let clusters_alone =
+            self.has(Strips) && !self.has(Triangles) || self.has(Packs) && !self.has(Spheres);
+        let parts = parts! {
+            self.has(Triangles) => "triangle",
+            self.has(Spheres) => "sphere",
+            self.has(Boxes) => "box",
+            self.has(Discs) => "disc",
+            self.has(Cones) => "cone",
+            self.wide_lattice => "wide-lattice",
+            self.wide_indices => "wide-indices",
+            self.display_values => "display-values",
+            clusters_alone => "wide",
+            effects.contains(Effects::SHADOW) => "shadow",
+            effects.contains(Effects::HIGHLIGHT) => "highlight",
+            effects.contains(Effects::MIRROR) => "mirror",
+            effects.contains(Effects::GLASS) => "glass",
+            effects.contains(Effects::ABSORPTION) => "absorption",
+            effects.contains(Effects::CHECKER) => "checker",
+        };
+        let mut index = 0;
+        while index < parts.len() {
+            if parts[index].0 {
+                return Some(parts[index].1);
+            }
+            index += 1;
+        }
+        None
+    }
+}

@@ -1,0 +1,124 @@
+//! Counters of work, and the story of a ray, which cost nothing where nobody asks for them.
+
+use crate::number::Number;
+use crate::observe::event::Event;
+use crate::ray::Ray;
+
+/// What a ray was cast for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RayKind {
+    /// From the camera.
+    Primary,
+    /// Towards a light.
+    Shadow,
+    /// Off a mirror, or off glass.
+    Reflected,
+    /// Into glass or out of it.
+    Refracted,
+}
+
+/// Receives counts and events; every method does nothing unless it is overridden.
+pub trait Count {
+    /// Whether [`tell`](Self::tell) is called.
+    const TELLS: bool = false;
+
+    /// Planes of boxes were tested.
+    #[inline(always)]
+    fn planes(&mut self, _: u32) {}
+    /// Boxes were tested.
+    #[inline(always)]
+    fn boxes(&mut self, _: u32) {}
+    /// Primitives were tested.
+    #[inline(always)]
+    fn objects(&mut self, _: u32) {}
+    /// Cells of a subdivision of space were entered.
+    #[inline(always)]
+    fn cells(&mut self, _: u32) {}
+    /// A ray was cast.
+    #[inline(always)]
+    fn ray<N: Number>(&mut self, _: RayKind, _: &Ray<N>) {}
+    /// Something happened. It is told only to those that say so by [`TELLS`](Self::TELLS), and the
+    /// code that tells is not even compiled for others.
+    fn tell(&mut self, _: Event) {}
+}
+
+/// Counts nothing, at no cost.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoCount;
+
+impl Count for NoCount {}
+
+/// Counts everything.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Planes of boxes that were tested.
+    pub planes: u64,
+    /// Boxes that were tested.
+    pub boxes: u64,
+    /// Primitives that were tested.
+    pub objects: u64,
+    /// Cells of a subdivision of space that were entered.
+    pub cells: u64,
+    /// Rays from the camera.
+    pub primary: u64,
+    /// Rays towards lights.
+    pub shadow: u64,
+    /// Mirrored rays.
+    pub reflected: u64,
+    /// Refracted rays.
+    pub refracted: u64,
+}
+
+impl Counters {
+    /// All rays.
+    pub fn rays(&self) -> u64 {
+        self.primary + self.secondary()
+    }
+
+    /// All rays but those from the camera.
+    pub fn secondary(&self) -> u64 {
+        self.shadow + self.reflected + self.refracted
+    }
+
+    /// The counts of two parts of the work.
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            planes: self.planes + other.planes,
+            boxes: self.boxes + other.boxes,
+            objects: self.objects + other.objects,
+            cells: self.cells + other.cells,
+            primary: self.primary + other.primary,
+            shadow: self.shadow + other.shadow,
+            reflected: self.reflected + other.reflected,
+            refracted: self.refracted + other.refracted,
+        }
+    }
+}
+
+impl Count for Counters {
+    fn planes(&mut self, number: u32) {
+        self.planes = self.planes.wrapping_add(number.into());
+    }
+
+    fn boxes(&mut self, number: u32) {
+        self.boxes = self.boxes.wrapping_add(number.into());
+    }
+
+    fn objects(&mut self, number: u32) {
+        self.objects = self.objects.wrapping_add(number.into());
+    }
+
+    fn cells(&mut self, number: u32) {
+        self.cells = self.cells.wrapping_add(number.into());
+    }
+
+    fn ray<N: Number>(&mut self, kind: RayKind, _: &Ray<N>) {
+        let counter = match kind {
+            RayKind::Primary => &mut self.primary,
+            RayKind::Shadow => &mut self.shadow,
+            RayKind::Reflected => &mut self.reflected,
+            RayKind::Refracted => &mut self.refracted,
+        };
+        *counter = counter.wrapping_add(1);
+    }
+}

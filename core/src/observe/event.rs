@@ -1,0 +1,180 @@
+//! What happens to a ray, event by event, for whoever wants its story (see [`Count::tell`]).
+//!
+//! Events come from the very code that traces and renders, in the order in which it works. Points,
+//! lengths and t are in units (see [`Number`](crate::Number)), t along the ray's major axis; colours
+//! are linear, 1 being display white. All are exactly what the number format holds.
+//!
+//! [`Count::tell`]: crate::Count::tell
+
+use crate::geometry::Kind;
+use crate::observe::count::RayKind;
+
+/// Something that happened.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// The ray loop takes up a ray: one from the camera, or the last of those that were [sent] and
+    /// not yet taken up.
+    ///
+    /// [sent]: Event::Sent
+    Taken {
+        /// What it was cast for.
+        kind: RayKind,
+        /// How many reflections and refractions led to it.
+        depth: u8,
+        /// What its radiance is multiplied with.
+        weight: [f64; 3],
+    },
+    /// A structure is asked what a ray meets.
+    Query {
+        /// Where the ray starts inside of the kernels: its own origin, or where it comes to the
+        /// scene's box.
+        origin: [f64; 3],
+        /// Its direction; the largest component is 1 or -1.
+        slope: [f64; 3],
+        /// The t of `origin` as the caller counts it.
+        moved: f64,
+        /// The interval that counts, from `origin`. It is empty where the scene cannot be met.
+        interval: [f64; 2],
+        /// Whether any hit will do.
+        any: bool,
+    },
+    /// A node or a cell is tested: the ray can meet what is in it if `span` is not empty.
+    Tested {
+        /// What is tested.
+        place: Place,
+        /// The planes that were tested for it. `None` for one that was not, because it coincides
+        /// with a plane around it, or is not worth it.
+        sides: Sides,
+        /// From where to where the ray is in it, from the query's origin; empty if the first is
+        /// greater.
+        span: [f64; 2],
+    },
+    /// What was just tested holds nothing: the ray does not go into it.
+    Empty(Place),
+    /// A node that was put off is given up, because a hit was found before it.
+    GivenUp {
+        /// What is given up.
+        place: Place,
+        /// Where the ray would enter it.
+        enters: f64,
+    },
+    /// The ray goes into a node, a leaf or a cell.
+    Opened(Place),
+    /// A primitive is tested.
+    Candidate {
+        /// Its kind.
+        kind: Kind,
+        /// Its number in scene-file order.
+        primitive: u32,
+        /// Where the line of the ray enters and leaves it, from the query's origin; `None` if it
+        /// does not meet it, or was seen to meet it behind the origin before that was computed.
+        crossing: Option<[f64; 2]>,
+        /// Whether it is the nearest hit so far.
+        nearest: bool,
+    },
+    /// The answer of a query for any hit.
+    Any(bool),
+    /// The answer of a query for the nearest hit.
+    Nearest(Option<Met>),
+    /// A light is considered at the hit.
+    Light {
+        /// Its number.
+        number: u32,
+        /// The cosine of the angle under which it shines on the surface; at or below 0 the surface
+        /// is turned away.
+        cosine: f64,
+    },
+    /// Light for a shadow comes through the glass that was just met.
+    Filtered {
+        /// What is left of it.
+        left: [f64; 3],
+    },
+    /// What a light adds to a surface, the ray's weight apart.
+    Lit {
+        /// Its number.
+        number: u32,
+        /// Its diffuse part and its highlight.
+        radiance: [f64; 3],
+    },
+    /// The ray came through glass that took up light on the way.
+    Absorbed {
+        /// What is left of the ray's weight.
+        weight: [f64; 3],
+    },
+    /// Radiance is added to the sample, its weight included.
+    Added {
+        /// Why.
+        source: Source,
+        /// How much.
+        radiance: [f64; 3],
+    },
+    /// Glass splits a ray.
+    Split {
+        /// The part that is reflected; 1 is total reflection.
+        reflected: f64,
+    },
+    /// A ray is put on the work list.
+    Sent {
+        /// What it is cast for.
+        kind: RayKind,
+        /// What its radiance will be multiplied with.
+        weight: [f64; 3],
+    },
+    /// A ray is not cast, because it could change too little.
+    Dropped {
+        /// What it would have been cast for.
+        kind: RayKind,
+        /// What its radiance would have been multiplied with.
+        weight: [f64; 3],
+    },
+    /// A mirror or glass was met at the largest depth: what it would show is left black.
+    TooDeep,
+    /// A sample is done.
+    Seen {
+        /// Its place in 1/256 pixel from the left and from the top of the picture; `None` for a ray
+        /// of the caller's own.
+        place: Option<[i32; 2]>,
+        /// Its radiance, each channel limited to 0 to 1.
+        radiance: [f64; 3],
+    },
+}
+
+/// A node, a leaf or a cell: what a structure calls it, and its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Place {
+    /// Such as `pair` or `leaf`.
+    pub what: &'static str,
+    /// Counted from 0.
+    pub number: u32,
+}
+
+/// Planes of a box that were tested, in units: `[axis][lower, upper]`.
+pub type Sides = [[Option<i16>; 2]; 3];
+
+/// Why radiance is added.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The ray met nothing and brings the background.
+    Background,
+    /// A surface under ambient light and lights.
+    Surface,
+}
+
+/// What a query found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Met {
+    /// As the caller counts it.
+    pub t: f64,
+    /// The point.
+    pub point: [f64; 3],
+    /// The normal, of length 1.
+    pub normal: [f64; 3],
+    /// Whether the ray came from the side to which the normal points.
+    pub front: bool,
+    /// The object.
+    pub object: u32,
+    /// The primitive.
+    pub primitive: u32,
+    /// The surface lies within this length of the point, along the normal.
+    pub error: f64,
+}

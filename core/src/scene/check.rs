@@ -1,0 +1,374 @@
+//! The proofs that [`Scene::from_bytes`] makes, in the order in which each relies on those before.
+
+use crate::accel::{Held, Leaf};
+use crate::format::range::{At, at_most, exactly};
+use crate::format::record::{Header, UnitBox};
+use crate::format::section::Sections;
+use crate::format::{BlobError, SectionKind};
+use crate::geometry::{Kind, Shapes};
+use crate::number::{Fixed, Number};
+use crate::scene::read::{FAR, RADIANCE};
+use crate::scene::{Scene, checksum};
+use crate::shade::Effects;
+
+/// Proves that no byte of a blob was changed since it was written.
+pub(crate) fn check_sum(blob: &[u8], header: &Header) -> Result<(), BlobError> {
+    let found = checksum(blob);
+    if found != header.checksum {
+        return Err(BlobError::Checksum {
+            found,
+            expected: header.checksum,
+        });
+    }
+    Ok(())
+}
+
+/// Proves all that is in the records of a scene; see [`Scene::from_bytes`].
+pub(crate) fn check<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<(), BlobError> {
+    check_lights(scene)?;
+    check_materials(scene)?;
+    check_shapes(&scene.shapes, scene.header)?;
+    check_objects(scene)?;
+    check_structures(scene, sections)
+}
+
+/// The ratio 1.
+const ONE: i64 = 1 << 30;
+
+fn check_lights(scene: &Scene<'_>) -> Result<(), BlobError> {
+    let section = SectionKind::Lights;
+    for (index, light) in scene.lights.iter().enumerate() {
+        let at = At { section, index };
+        at.within("kind", light.directional.into(), 0, 1)?;
+        at.all_within("colour", &light.color, 0, RADIANCE)?;
+        let most = if light.directional == 1 { ONE } else { FAR };
+        at.all_within("position or direction", &light.vector, -most, most)?;
+        let zero = light.directional == 1 && light.vector == [0; 3];
+        at.within("number of directions of length 0", zero.into(), 0, 0)?;
+    }
+    Ok(())
+}
+
+fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
+    let section = SectionKind::Materials;
+    let (header, materials) = (scene.header, scene.materials);
+    let mut called = Effects::NONE;
+    if materials.is_empty() && header.primitives > 0 {
+        return Err(BlobError::Count {
+            section,
+            found: 0,
+            expected: 1,
+        });
+    }
+    for (index, material) in materials.iter().enumerate() {
+        let at = At { section, index };
+        let colors = [
+            ("diffuse colour", material.diffuse),
+            ("odd colour", material.odd),
+            ("highlight", material.highlight),
+            ("mirror", material.mirror),
+            ("transmittance", material.transmit),
+        ];
+        for (what, color) in colors {
+            at.all_within(what, &color, 0, ONE)?;
+        }
+        at.within(
+            "inverse index of refraction",
+            material.inverse_ior.into(),
+            ONE / 4,
+            ONE,
+        )?;
+        at.within("shininess", material.shininess.into(), 1, 1024)?;
+        at.within(
+            "checkerboard's size",
+            material.checker_size.into(),
+            0,
+            i32::MAX.into(),
+        )?;
+        at.all_within("checkerboard's origin", &material.checker_origin, -ONE, ONE)?;
+        at.within("spare word", material.spare.into(), 0, 0)?;
+        let uncalled = material.effects().without(Effects(header.effects));
+        at.within(
+            "set of effects that the header does not call for",
+            uncalled.0.into(),
+            0,
+            0,
+        )?;
+        called = called.with(material.effects());
+    }
+    // A scene file may turn shadows off.
+    if !scene.lights.is_empty() && header.objects > 0 {
+        called = called.with(Effects::SHADOW);
+    }
+    exactly(
+        "set of effects that nothing calls for",
+        Effects(header.effects).without(called).0.into(),
+        0,
+    )
+}
+
+fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
+    at_most(
+        "number of slots",
+        shapes.total() as u64,
+        header.primitives.into(),
+    )?;
+    let bounds = &header.bounds;
+    // A point of the scene, in 1/256 unit.
+    let point = |at: At, what, point: [i32; 3]| {
+        bounds
+            .0
+            .iter()
+            .zip(point)
+            .try_for_each(|(sides, coordinate)| {
+                let [low, high] = sides.map(|unit| i64::from(unit) << 8);
+                at.within(what, coordinate.into(), low, high)
+            })
+    };
+    let inside =
+        |at: At, what, inner: &UnitBox| at.within(what, (!bounds.contains(inner)).into(), 0, 0);
+    let radius = i64::from(i16::MAX) << 9;
+
+    let vertices = if Kind::Triangle.is_available() {
+        shapes.vertices.len()
+    } else {
+        0
+    };
+    for index in 0..vertices {
+        let at = At {
+            section: SectionKind::Vertices,
+            index,
+        };
+        point(
+            at,
+            "coordinate",
+            shapes.vertices.position(index).unwrap_or_default(),
+        )?;
+    }
+    for index in 0..shapes.records(Kind::Triangle) {
+        let at = At {
+            section: SectionKind::Triangles,
+            index,
+        };
+        let corners = shapes.triangles.corners(index).unwrap_or_default();
+        at.all_within(
+            "vertex",
+            &corners.map(|corner| corner as i64),
+            0,
+            vertices as i64 - 1,
+        )?;
+    }
+    for index in 0..shapes.records(Kind::Sphere) {
+        let at = At {
+            section: SectionKind::Spheres,
+            index,
+        };
+        let (center, length) = shapes.spheres.get(index).unwrap_or_default();
+        at.within("radius", length.into(), 1, radius)?;
+        point(
+            at,
+            "lowest coordinate",
+            center.map(|x| x.wrapping_sub(length)),
+        )?;
+        point(
+            at,
+            "highest coordinate",
+            center.map(|x| x.wrapping_add(length)),
+        )?;
+    }
+    for (index, cuboid) in (0..shapes.records(Kind::Box)).zip(shapes.boxes) {
+        let at = At {
+            section: SectionKind::Boxes,
+            index,
+        };
+        point(at, "lowest coordinate", cuboid.lowest)?;
+        point(at, "highest coordinate", cuboid.highest)?;
+        let inverted = cuboid
+            .lowest
+            .iter()
+            .zip(&cuboid.highest)
+            .filter(|(low, high)| low > high);
+        at.within("number of inverted sides", inverted.count() as i64, 0, 0)?;
+    }
+    for (index, disc) in (0..shapes.records(Kind::Disc)).zip(shapes.discs) {
+        let at = At {
+            section: SectionKind::Discs,
+            index,
+        };
+        point(at, "centre", disc.center)?;
+        at.all_within("normal", &disc.normal, -(1 << 24), 1 << 24)?;
+        at.within(
+            "number of normals of length 0",
+            (disc.normal == [0; 3]).into(),
+            0,
+            0,
+        )?;
+        at.within("radius", disc.radius.into(), 1, radius)?;
+        inside(at, "number of boxes outside the scene's", &disc.bounds)?;
+    }
+    for (index, cone) in (0..shapes.records(Kind::Cone)).zip(shapes.cones) {
+        let at = At {
+            section: SectionKind::Cones,
+            index,
+        };
+        point(at, "centre of the base", cone.base)?;
+        point(at, "centre of the apex", cone.apex)?;
+        at.within(
+            "number of axes of length 0",
+            (cone.base == cone.apex).into(),
+            0,
+            0,
+        )?;
+        let radii = [cone.base_radius, cone.apex_radius];
+        at.all_within("radius", &radii, 0, radius)?;
+        at.within(
+            "number of cones without a radius",
+            (radii == [0; 2]).into(),
+            0,
+            0,
+        )?;
+        inside(at, "number of boxes outside the scene's", &cone.bounds)?;
+    }
+    Ok(())
+}
+
+fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
+    let objects = scene.header.objects as usize;
+    let primitives = i64::from(scene.header.primitives);
+    let first = &scene.object_first;
+    if first.is_empty() {
+        let implied = objects as i64 == primitives || objects <= 1;
+        exactly(
+            "number of objects without an object-first section",
+            u64::from(!implied),
+            0,
+        )?;
+    } else {
+        let section = SectionKind::ObjectFirst;
+        if first.len() != objects {
+            return Err(BlobError::Count {
+                section,
+                found: first.len(),
+                expected: objects,
+            });
+        }
+        let mut last = 0;
+        for index in 0..objects {
+            let value = first.get(index).unwrap_or(0).into();
+            let most = if index == 0 { 0 } else { primitives };
+            At { section, index }.within("first primitive", value, last, most)?;
+            last = value;
+        }
+    }
+    let material = &scene.object_material;
+    if !material.is_empty() {
+        let section = SectionKind::ObjectMaterial;
+        if material.len() != objects {
+            return Err(BlobError::Count {
+                section,
+                found: material.len(),
+                expected: objects,
+            });
+        }
+        for index in 0..objects {
+            let value = material.get(index).unwrap_or(0).into();
+            let most = scene.materials.len() as i64 - 1;
+            At { section, index }.within("material", value, 0, most)?;
+        }
+    }
+    let order = &scene.order;
+    let slots = scene.shapes.total();
+    if !order.is_empty() || slots as i64 != primitives {
+        let section = SectionKind::Order;
+        if order.len() != slots {
+            return Err(BlobError::Count {
+                section,
+                found: order.len(),
+                expected: slots,
+            });
+        }
+        for index in 0..order.len() {
+            let value = order.get(index).unwrap_or(0).into();
+            At { section, index }.within("primitive", value, 0, primitives - 1)?;
+        }
+    }
+    Ok(())
+}
+
+fn check_structures<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<(), BlobError> {
+    let longest = check_leaves(scene, Held::uses_leaves(scene))?;
+    exactly(
+        "longest leaf",
+        scene.header.longest_leaf.into(),
+        longest.into(),
+    )?;
+    let (depth, all_proved) = Held::check(scene, sections)?;
+    let found = scene.header.stack_depth;
+    if all_proved || usize::from(found) < depth {
+        exactly("stack depth", found.into(), depth as u64)?;
+    }
+    Ok(())
+}
+
+/// Proves that every primitive lies in exactly one leaf, and returns the longest leaf's count:
+/// leaves take the slots of each kind in order.
+fn check_leaves(scene: &Scene<'_>, hierarchies: bool) -> Result<u32, BlobError> {
+    let section = SectionKind::Leaves;
+    if !hierarchies && !scene.leaves.is_empty() {
+        return Err(BlobError::Count {
+            section,
+            found: scene.leaves.len(),
+            expected: 0,
+        });
+    }
+    let mut next = [0_u32; Kind::ALL.len()];
+    let mut longest = 0;
+    for (index, &word) in (0..scene.leaves.len()).zip(scene.leaves) {
+        let at = At { section, index };
+        let Some(leaf) = Leaf::from_word(word) else {
+            let (what, expected) = ("kind", Kind::ALL.len() as i64 - 1);
+            return Err(BlobError::Record {
+                section,
+                index,
+                what,
+                found: (word >> 29).into(),
+                expected,
+            });
+        };
+        at.within(
+            "number of primitives",
+            leaf.count.into(),
+            1,
+            Leaf::MAX_COUNT.into(),
+        )?;
+        let next = &mut next[leaf.kind as usize];
+        at.within(
+            "first slot",
+            leaf.first.into(),
+            (*next).into(),
+            (*next).into(),
+        )?;
+        // Below 2^24 and 31.
+        *next = next.wrapping_add(leaf.count);
+        longest = longest.max(leaf.count);
+        let most = scene.shapes.records(leaf.kind) as i64;
+        at.within("end of the slots", (*next).into(), 0, most)?;
+    }
+    if hierarchies {
+        for kind in Kind::ALL {
+            // Those that lie in clusters alone would be missing.
+            let (found, expected) = (next[kind as usize] as usize, scene.shapes.count(kind));
+            if found != expected {
+                return Err(BlobError::Count {
+                    section,
+                    found,
+                    expected,
+                });
+            }
+        }
+    }
+    Ok(longest)
+}
+
+// The checks above hold coordinates to what a `Fixed` length can be.
+const _: () = assert!((i16::MAX as i64) << 13 < Fixed::FAR.0 as i64);

@@ -1,0 +1,169 @@
+//! What a program proves of its own blob while it is compiled, so that loading need not.
+
+use crate::accel::Structure;
+use crate::accel::hierarchy::order::Order;
+use crate::format::record::{Header, SectionEntry};
+use crate::format::{BlobError, SectionKind};
+use crate::scene::checksum;
+use core::mem::offset_of;
+
+/// A blob that the program itself vouches for: loading it with [`Scene::vouched`](crate::scene::Scene::vouched)
+/// takes constant time.
+///
+/// [`Vouched::of`] is a `const fn`. Evaluated for a `static`, it runs in the compiler, and a program
+/// whose blob fails does not compile:
+///
+/// ```ignore
+/// static BLOB: &[u8] = gridel_core::include_blob!("scene.gridel");
+/// static VOUCHED: Vouched<'static> = match Vouched::of(BLOB) {
+///     Ok(vouched) => vouched,
+///     Err(_) => panic!("the blob was damaged"),
+/// };
+///
+/// let scene = Scene::vouched(VOUCHED)?;
+/// ```
+///
+/// **What is proved here**: the checksum, so the blob is what `gridel build` wrote, to the byte; and
+/// the order of the hierarchies whose code is compiled in, so that every walk visits each node once
+/// at most and finds room on a stack of the depth that the header states. **What loading proves**,
+/// in constant time: header, section table and view; that every section lies in the blob and has
+/// records of the right size; that this build has the effects and kinds of primitives that are called
+/// for. **What nobody proves**: what `gridel build` is there for, that boxes lie in their parents' and
+/// primitives in their leaves, that numbers are in their ranges. A blob that is forged there, with a
+/// checksum that fits, gives wrong answers. It cannot do more: whatever leads from one record to
+/// another is looked up with a check, arithmetic wraps or saturates, and no loop takes its end from a
+/// record but those that end with an array. Tests hold this to records of any content, with overflow
+/// checks on; and programs of such a blob hold no code that panics.
+///
+/// Blobs for boards can be vouched for: those that hold no other structures than [`Self::STRUCTURES`].
+#[derive(Clone, Copy, Debug)]
+pub struct Vouched<'a> {
+    pub(crate) blob: &'a [u8],
+}
+
+/// `?`, which constant functions lack.
+macro_rules! proved {
+    ($result:expr) => {
+        match $result {
+            Ok(value) => value,
+            Err(error) => return Err(error),
+        }
+    };
+}
+
+pub(crate) use proved;
+
+impl<'a> Vouched<'a> {
+    /// The structures that can be vouched for.
+    pub const STRUCTURES: [Structure; 4] = [
+        Structure::List,
+        Structure::Bvh,
+        Structure::Flagged,
+        Structure::DualSplit,
+    ];
+
+    /// The bits of these in the header.
+    const BITS: u32 = {
+        let mut bits = 0;
+        let mut index = 0;
+        while index < Self::STRUCTURES.len() {
+            bits |= Self::STRUCTURES[index].bit();
+            index += 1;
+        }
+        bits
+    };
+
+    /// Proves a blob. Linear in its length; of constant time in a program that has the compiler
+    /// evaluate it.
+    ///
+    /// # Errors
+    /// If the checksum does not fit, a hierarchy is not in breadth-first order or deeper than the
+    /// header says, or the header names, or there are sections of, structures that cannot be vouched
+    /// for.
+    pub const fn of(blob: &'a [u8]) -> Result<Self, BlobError> {
+        let expected = proved!(word(blob, offset_of!(Header, checksum)));
+        let found = checksum(blob);
+        if found != expected {
+            return Err(BlobError::Checksum { found, expected });
+        }
+        let structures = proved!(word(blob, offset_of!(Header, structures)));
+        if structures & !Self::BITS != 0 {
+            return Err(BlobError::Header {
+                field: "set of structures, all of which are vouched for,",
+                found: structures as u64,
+                expected: Self::BITS as u64,
+            });
+        }
+        let sections = proved!(half(blob, offset_of!(Header, section_count))) as usize;
+        let stack_depth = proved!(half(blob, offset_of!(Header, stack_depth))) as usize;
+        let mut index = 0;
+        while index < sections {
+            let entry = size_of::<Header>() + index * size_of::<SectionEntry>();
+            let kind = proved!(half(blob, entry + offset_of!(SectionEntry, kind)));
+            if kind > SectionKind::DualNodes as u16 {
+                return Err(BlobError::Table {
+                    index,
+                    what: "kind of a section that is vouched for",
+                    found: kind as u64,
+                    expected: SectionKind::DualNodes as u64,
+                });
+            }
+            let levels = proved!(levels(blob, entry, kind));
+            if levels > stack_depth {
+                return Err(BlobError::Header {
+                    field: "stack depth",
+                    found: stack_depth as u64,
+                    expected: levels as u64,
+                });
+            }
+            index += 1;
+        }
+        Ok(Self { blob })
+    }
+}
+
+/// The levels of a hierarchy, given where its section's entry lies in the table, and its kind; none
+/// for other sections.
+const fn levels(blob: &[u8], entry: usize, kind: u16) -> Result<usize, BlobError> {
+    let section = match kind {
+        _ if kind == SectionKind::Pairs as u16 => SectionKind::Pairs,
+        _ if kind == SectionKind::FlaggedPairs as u16 => SectionKind::FlaggedPairs,
+        _ if kind == SectionKind::DualNodes as u16 => SectionKind::DualNodes,
+        _ => return Ok(0),
+    };
+    let Some(size) = Order::record_size(section) else {
+        return Ok(0);
+    };
+    let count = proved!(word(blob, entry + offset_of!(SectionEntry, count))) as usize;
+    let mut end = proved!(word(blob, entry + offset_of!(SectionEntry, offset))) as usize;
+    let mut order = Order::new(section, count);
+    let mut index = 0;
+    while index < count {
+        end = end.saturating_add(size);
+        let words = [
+            proved!(word(blob, end.saturating_sub(8))),
+            proved!(word(blob, end.saturating_sub(4))),
+        ];
+        proved!(order.record(words));
+        index += 1;
+    }
+    order.levels()
+}
+
+/// The word at a place of a blob.
+pub(crate) const fn word(blob: &[u8], place: usize) -> Result<u32, BlobError> {
+    if let Some((_, rest)) = blob.split_at_checked(place)
+        && let Some(bytes) = rest.first_chunk()
+    {
+        return Ok(u32::from_le_bytes(*bytes));
+    }
+    Err(BlobError::Truncated {
+        needed: place.saturating_add(4),
+        found: blob.len(),
+    })
+}
+
+/// The half word at a place of a blob, which another half follows.
+pub(crate) const fn half(blob: &[u8], place: usize) -> Result<u16, BlobError> {
+    Ok(proved!(word(blob, place)) as u16)
+}
