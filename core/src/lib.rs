@@ -33,8 +33,9 @@
 pub mod boards {}
 
 pub mod accel;
+mod axis;
 pub mod format;
-mod geometry;
+pub mod geometry;
 pub mod number;
 pub mod observe;
 mod query;
@@ -75,17 +76,15 @@ pub use accel::Slabs;
 pub use accel::Spheres;
 #[cfg(feature = "wide")]
 pub use accel::Wide;
-pub use accel::{Accel, List, Stack, StackView, Structure, StructureVisitor};
-pub use format::{BlobError, Demand};
-pub use geometry::Kind;
+pub use accel::{Accel, List, Stack, StackView, StructureVisitor};
+pub use format::{Aligned, BlobError, Demand, Effects, Kind, Structure};
 pub use number::{Fixed, Format, Number};
 pub use observe::count::{Count, Counters, NoCount, RayKind};
 pub use observe::event::Event;
 pub use query::{Found, Hit, any_hit, closest_hit, closest_primitive};
 pub use ray::{Pencil, Ray, RayError};
 pub use render::{Renderer, Rgb565, Rgb888, Settings, Workspace};
-pub use scene::{Aligned, Scene, Vouched};
-pub use shade::Effects;
+pub use scene::{Scene, Vouched};
 #[cfg(feature = "wide")]
 pub use simd::SimdLevel;
 

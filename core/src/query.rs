@@ -1,17 +1,20 @@
 //! Queries: what does a ray meet first, does it meet anything at all?
 
 use crate::SMALL;
+use crate::accel::Accel;
+use crate::accel::clamp::accept_in_box;
 use crate::accel::cull::Culling;
-use crate::accel::{Accel, Leaf, StackView};
+use crate::accel::stack::StackView;
 #[cfg(feature = "wide")]
 use crate::format::cluster::{LANES, Pack, Strip};
+use crate::format::limits::{WIDE_INDICES, WIDE_LATTICE};
 use crate::format::record::{Corners, Sphere, UnitBox, Vertex};
+use crate::format::{Kind, Leaf};
 #[cfg(feature = "wide")]
 use crate::geometry::strip::StripRay;
 use crate::geometry::triangle::Projection;
 use crate::geometry::{
-    Crossing, Kind, Part, Place, Spheres, Triangles, Vertices, WIDE_INDICES, WIDE_LATTICE, accept,
-    accept_in_box, sphere, triangle,
+    Crossing, Part, PrimitiveId, Spheres, Triangles, Vertices, accept, sphere, triangle,
 };
 #[cfg(feature = "wide")]
 use crate::geometry::{Packs, Strips, pack};
@@ -63,7 +66,7 @@ pub struct Hit<N: Number> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Best<N> {
     t: N,
-    place: Place,
+    place: PrimitiveId,
     part: Part,
 }
 
@@ -94,7 +97,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                 N::ZERO
             },
             #[cfg(feature = "wide")]
-            strip_ray: StripRay::new(ray, &scene.shapes.clusters.strips),
+            strip_ray: StripRay::new(ray, &scene.space.shapes.clusters.strips),
             tmax: ray.tmax,
             best: None,
         }
@@ -102,7 +105,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
 
     /// Takes a crossing that beats the best hit: a smaller t, or the same t of an earlier primitive.
     #[inline(always)]
-    fn take(&mut self, crossing: Crossing<N>, place: Place) {
+    fn take(&mut self, crossing: Crossing<N>, place: PrimitiveId) {
         if let Some(hit) = accept(self.ray, crossing, self.tmax) {
             self.keep(hit, place);
         }
@@ -111,7 +114,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     /// The same of a primitive whose crossing may have been rounded out of its box.
     #[cfg_attr(not(feature = "small"), inline(always))]
     #[cfg_attr(feature = "small", inline(never))]
-    fn take_in_box(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: Place) {
+    fn take_in_box(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: PrimitiveId) {
         if let Some(hit) = accept_in_box(self.ray, self.cull, crossing, bounds, self.tmax) {
             self.keep(hit, place);
         }
@@ -119,7 +122,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
 
     /// The same, out of line, because few of the primitives that are tested come this far.
     #[cfg_attr(not(feature = "small"), inline(never))]
-    fn met(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: Place) {
+    fn met(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: PrimitiveId) {
         self.take_in_box(crossing, bounds, place);
     }
 
@@ -127,7 +130,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     // Out of line on hosts, where many places come here and few rays.
     #[cfg_attr(feature = "wide", inline(never))]
     #[cfg_attr(not(feature = "wide"), inline(always))]
-    fn keep(&mut self, (t, part): (N, Part), place: Place) {
+    fn keep(&mut self, (t, part): (N, Part), place: PrimitiveId) {
         // No hit lies beyond the best one, so this one is nearer, or as near.
         let tie = self.best.filter(|best| t >= best.t);
         if tie.is_some_and(|best| self.scene.key(best.place) <= self.scene.key(place)) {
@@ -139,7 +142,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
 
     /// Tells of a primitive that was just tested, and considered if it was met.
     #[inline(always)]
-    fn tell<C: Count>(&self, place: Place, crossing: Option<&Crossing<N>>, count: &mut C) {
+    fn tell<C: Count>(&self, place: PrimitiveId, crossing: Option<&Crossing<N>>, count: &mut C) {
         if C::TELLS {
             count.tell(Event::Candidate {
                 kind: place.kind(),
@@ -153,7 +156,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     /// Tells of those primitives of a cluster that lanes rejected.
     #[cfg(feature = "wide")]
     #[inline(always)]
-    fn tell_missed<C: Count>(&self, missed: u32, place: impl Fn(u8) -> Place, count: &mut C) {
+    fn tell_missed<C: Count>(&self, missed: u32, place: impl Fn(u8) -> PrimitiveId, count: &mut C) {
         if C::TELLS {
             for lane in (0..8).filter(|&lane| missed >> lane & 1 != 0) {
                 self.tell(place(lane), None, count);
@@ -166,7 +169,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     fn leaf<A: Accel, C: Count, const ANY: bool>(&mut self, leaf: Leaf, count: &mut C) {
         #[cfg(feature = "wide")]
         if A::HAS_CLUSTERS && leaf.count == 0 {
-            let clusters = &self.scene.shapes.clusters;
+            let clusters = &self.scene.space.shapes.clusters;
             return match (leaf.kind, clusters.strips, clusters.packs) {
                 (Kind::Triangle, Strips::S16(strips), _) => self.strip(strips, leaf.first, count),
                 (Kind::Triangle, Strips::S24(strips), _) => self.strip(strips, leaf.first, count),
@@ -192,11 +195,11 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         count.objects(strip.members().count());
         let mut met = self.strip_met(strip);
         let missed = strip.members().places() & !met;
-        self.tell_missed(missed, |place| Place::Strip(number, place), count);
+        self.tell_missed(missed, |place| PrimitiveId::Strip(number, place), count);
         while met != 0 {
             let place = met.trailing_zeros();
             met &= met - 1;
-            self.triangle_in_strip(strip, Place::Strip(number, place as u8), count);
+            self.triangle_in_strip(strip, PrimitiveId::Strip(number, place as u8), count);
         }
     }
 
@@ -204,7 +207,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     #[cfg(feature = "wide")]
     #[inline(always)]
     fn strip_met<S: Strip>(&self, strip: &S) -> u32 {
-        match self.scene.simd {
+        match self.scene.space.simd {
             SimdLevel::Portable => self.strip_ray.met(Portable, strip),
             #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
             SimdLevel::Avx2(avx2) => avx2.call(
@@ -218,8 +221,13 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     /// Takes a triangle of a strip that the ray meets somewhere on its line.
     #[cfg(feature = "wide")]
     #[inline(never)]
-    fn triangle_in_strip<S: Strip, C: Count>(&mut self, strip: &S, place: Place, count: &mut C) {
-        if let Place::Strip(_, number) = place
+    fn triangle_in_strip<S: Strip, C: Count>(
+        &mut self,
+        strip: &S,
+        place: PrimitiveId,
+        count: &mut C,
+    ) {
+        if let PrimitiveId::Strip(_, number) = place
             && let Some(corners) = strip.triangle(number.into())
         {
             self.triangle(corners, place, count);
@@ -236,7 +244,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         count: &mut C,
     ) {
         let Some(pack) = pack else { return };
-        let place = |lane: u32| Place::Pack(number, lane as u8);
+        let place = |lane: u32| PrimitiveId::Pack(number, lane as u8);
         count.objects(pack.lanes().count_ones());
         if N::FORMAT != Format::F32 {
             for lane in 0..LANES as u32 {
@@ -244,7 +252,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             }
             return;
         }
-        let met = with_simd!(self.scene.simd, |simd| simd.call(
+        let met = with_simd!(self.scene.space.simd, |simd| simd.call(
             #[inline(always)]
             |simd, ray, recip_norm2, pack, (), ()| pack::met(simd, ray, recip_norm2, pack),
             (self.ray, self.recip_norm2, pack, (), ()),
@@ -272,7 +280,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         &mut self,
         pack: &P,
         lane: u32,
-        place: Place,
+        place: PrimitiveId,
         count: &mut C,
     ) {
         let Some((center, radius)) = pack.sphere(lane) else {
@@ -289,7 +297,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     #[inline(always)]
     fn slots<C: Count>(&mut self, leaf: Leaf, count: &mut C) {
         let slots = leaf.slots();
-        let shapes = &self.scene.shapes;
+        let shapes = &self.scene.space.shapes;
         match leaf.kind {
             // Code that was left out, and that no blob here leads to.
             kind if !kind.is_available() => (),
@@ -352,11 +360,11 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         leaf: Leaf,
         count: &mut C,
         cross: impl Fn(&Self, &T) -> Option<Crossing<N>>,
-        take: impl Fn(&mut Self, Crossing<N>, &T, Place),
+        take: impl Fn(&mut Self, Crossing<N>, &T, PrimitiveId),
     ) {
         for (index, record) in numbered(leaf, records) {
             let crossing = cross(self, record);
-            let place = Place::Slot(leaf.kind, index);
+            let place = PrimitiveId::Slot(leaf.kind, index);
             if let Some(crossing) = crossing {
                 take(self, crossing, record, place);
             }
@@ -420,7 +428,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             if projection.meets::<MAJOR, V>(a, b, c) {
                 self.triangle_in_slot(vertices, record, index, count);
             } else {
-                self.tell(Place::Slot(Kind::Triangle, index), None, count);
+                self.tell(PrimitiveId::Slot(Kind::Triangle, index), None, count);
             }
         }
     }
@@ -440,13 +448,13 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         let corners = (vertices.get(a), vertices.get(b), vertices.get(c));
         if let (Some(a), Some(b), Some(c)) = corners {
             let corners = [a, b, c].map(Vertex::position);
-            self.triangle(corners, Place::Slot(Kind::Triangle, index), count);
+            self.triangle(corners, PrimitiveId::Slot(Kind::Triangle, index), count);
         }
     }
 
     /// Takes a triangle that the ray meets somewhere on its line.
     #[inline(always)]
-    fn triangle<C: Count>(&mut self, corners: [[i32; 3]; 3], place: Place, count: &mut C) {
+    fn triangle<C: Count>(&mut self, corners: [[i32; 3]; 3], place: PrimitiveId, count: &mut C) {
         let crossing = triangle::cross(self.ray, corners);
         if let Some((t, steeply)) = crossing {
             let crossing = Crossing::flat(t);
@@ -511,26 +519,51 @@ fn search<N: Number, A: Accel, C: Count, const ANY: bool>(
 ) -> Option<Found<N>> {
     // Known when the code is compiled, unless one copy of it is to serve both.
     let any = if A::ONE_COPY { any } else { ANY };
+    let views = A::views(&scene.structures);
     let cull = A::Cull::<N>::new(ray);
     let mut search = Search::new(scene, ray, &cull);
     if C::TELLS {
         count.tell(ray.query(any));
     }
     if ANY {
-        A::walk_any(scene, ray, &cull, stack, count, |leaf, count| {
-            search.leaf::<A, C, ANY>(leaf, count);
-            search.best.is_some()
-        });
+        A::walk_any(
+            &scene.space,
+            views,
+            ray,
+            &cull,
+            stack,
+            count,
+            |leaf, count| {
+                search.leaf::<A, C, ANY>(leaf, count);
+                search.best.is_some()
+            },
+        );
     } else if A::ONE_COPY {
-        A::walk(scene, ray, &cull, stack, count, |leaf, count| {
-            search.leaf::<A, C, ANY>(leaf, count);
-            (!any || search.best.is_none()).then_some(search.tmax)
-        });
+        A::walk(
+            &scene.space,
+            views,
+            ray,
+            &cull,
+            stack,
+            count,
+            |leaf, count| {
+                search.leaf::<A, C, ANY>(leaf, count);
+                (!any || search.best.is_none()).then_some(search.tmax)
+            },
+        );
     } else {
-        A::walk(scene, ray, &cull, stack, count, |leaf, count| {
-            search.leaf::<A, C, ANY>(leaf, count);
-            Some(search.tmax)
-        });
+        A::walk(
+            &scene.space,
+            views,
+            ray,
+            &cull,
+            stack,
+            count,
+            |leaf, count| {
+                search.leaf::<A, C, ANY>(leaf, count);
+                Some(search.tmax)
+            },
+        );
     }
     let best = search.best?;
     Some(Found {
@@ -547,7 +580,10 @@ impl<N: Number> Found<N> {
     pub fn hit(&self, scene: &Scene<'_>, ray: &Ray<N>) -> Option<Hit<N>> {
         let best = self.best;
         let point = ray.at(best.t);
-        let (surface, front) = scene.shapes.surface(best.place, best.part, ray, point)?;
+        let (surface, front) = scene
+            .space
+            .shapes
+            .surface(best.place, best.part, ray, point)?;
         Some(Hit {
             t: self.t,
             point: surface.point,
@@ -583,6 +619,7 @@ impl<N: Number> Hit<N> {
         match Leaf::from_word(self.place) {
             Some(Leaf { kind, first, .. }) => {
                 scene
+                    .space
                     .shapes
                     .inside(kind, first as usize, surface, self.error)
             }

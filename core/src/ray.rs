@@ -1,8 +1,10 @@
 //! Rays, in the one form that every kernel uses.
 
 use crate::SMALL;
+use crate::axis::pick;
+use crate::format::limits::FARTHEST;
 use crate::format::record::UnitBox;
-use crate::number::{Format, Number, pick};
+use crate::number::{Format, Number};
 use crate::observe::event::Event;
 use core::cmp::Ordering;
 use core::fmt;
@@ -121,10 +123,6 @@ fn end_after<N: Number>(tmax: N::Wide, moved: N::Wide) -> N {
         N::excess(tmax, moved)
     }
 }
-
-/// How far from the lattice's middle an origin may be along each axis: 2^37 units, with 13 fraction bits.
-/// Eyes and lights of a blob are no farther away.
-pub const FARTHEST: i64 = 1 << 50;
 
 /// How far from the lattice's middle a ray may start on any axis, with 13 fraction bits: on its way
 /// through the scene's box, which ends at 2^15 units, a ray rises by at most 2^16. Kernels keep their

@@ -8,8 +8,8 @@
 //! [`show`] is what firmware does: it allocates nothing. In place of a [`Panel`], which stands for
 //! a display of the ST7789 family and its bus, it is given the board's own.
 
-use gridel_core::accel::MAX_STACK_DEPTH;
-use gridel_core::render::{MAX_RAY_DEPTH, WorkspaceView};
+use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::render::WorkspaceView;
 use gridel_core::{
     Accel, DualSplit, Effects, NoCount, Number, Renderer, Rgb565, Settings, Workspace,
 };

@@ -3,8 +3,9 @@
 //! Rows are spread over threads; a pixel depends on nothing but the blob, the number format and the
 //! settings, so a picture is the same bit for bit with any number of threads.
 
-use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
-use gridel_core::render::{MAX_RAY_DEPTH, RenderError};
+use gridel_core::accel::DynAccel;
+use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::render::RenderError;
 use gridel_core::{
     Accel, Count, Counters, DualSplit, Effects, Fixed, Format, NoCount, Number, Renderer, Scene,
     Settings, Structure, Wide, Workspace,
@@ -95,12 +96,12 @@ fn with_format<N: Number>(
     match (job.count, opaque) {
         (true, true) => counted_rows::<N, OPAQUE>(scene, job, progress),
         (true, false) => counted_rows::<N, ALL>(scene, job, progress),
-        (false, true) => rows::<N, Chosen, OPAQUE>(scene, job, progress),
-        (false, false) => rows::<N, Chosen, ALL>(scene, job, progress),
+        (false, true) => rows::<N, DynAccel, OPAQUE>(scene, job, progress),
+        (false, false) => rows::<N, DynAccel, ALL>(scene, job, progress),
     }
 }
 
-/// The scene with a structure chosen for [`Chosen`] to walk.
+/// The scene with a structure chosen for [`DynAccel`] to walk.
 pub(crate) fn chosen<'a>(
     scene: &Scene<'a>,
     structure: Structure,
@@ -130,7 +131,7 @@ fn counted_rows<N: Number, const EFFECTS: u32>(
     job: &Job,
     progress: &(dyn Fn() + Sync),
 ) -> Result<Picture, RenderError> {
-    let renderer = Renderer::<N, Chosen, EFFECTS>::new(scene, job.settings)?;
+    let renderer = Renderer::<N, DynAccel, EFFECTS>::new(scene, job.settings)?;
     let row = |y, pixels: &mut _| Some(counted_row(&renderer, y, pixels));
     Ok(spread(job, progress, &row))
 }

@@ -6,7 +6,7 @@
 //! apart with certainty from the surface that it touches.
 
 use glam::DVec3;
-use gridel_core::scene::Geometry;
+use gridel_core::geometry::Geometry;
 use gridel_core::{Format, Kind, Scene};
 use serde::Serialize;
 

@@ -8,7 +8,8 @@ pub use rejection::{Rejection, Rejections};
 pub use stride::Stride;
 
 use glam::DVec3;
-use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
+use gridel_core::accel::DynAccel;
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
     Accel, Bvh, Count, Counters, DualSplit, Fixed, Flagged, Format, NoCount, Number, Ray, RayError,
     RayKind, Scene, Stack, Structure, Wide, any_hit, closest_primitive,
@@ -99,9 +100,9 @@ pub fn trace_counted(
     };
     let any = query.any;
     match query.format {
-        Format::Fixed => through::<Fixed, Chosen, _>(&scene, rays, any, hits, counters),
-        Format::F32 => through::<f32, Chosen, _>(&scene, rays, any, hits, counters),
-        Format::F64 => through::<f64, Chosen, _>(&scene, rays, any, hits, counters),
+        Format::Fixed => through::<Fixed, DynAccel, _>(&scene, rays, any, hits, counters),
+        Format::F32 => through::<f32, DynAccel, _>(&scene, rays, any, hits, counters),
+        Format::F64 => through::<f64, DynAccel, _>(&scene, rays, any, hits, counters),
     }
 }
 
@@ -119,7 +120,7 @@ fn with_format<N: Number>(
         Structure::DualSplit => through::<N, DualSplit, _>(scene, rays, any, hits, count),
         Structure::Wide => through::<N, Wide, _>(scene, rays, any, hits, count),
         other => match scene.choose(other) {
-            Some(scene) => through::<N, Chosen, _>(&scene, rays, any, hits, count),
+            Some(scene) => through::<N, DynAccel, _>(&scene, rays, any, hits, count),
             None => {
                 hits.fill(SceneHit::MISS);
                 Rejections::default()

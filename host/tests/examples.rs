@@ -14,8 +14,8 @@ use embedded_graphics::pixelcolor::raw::{LittleEndian, RawU1};
 use embedded_graphics::pixelcolor::{BinaryColor, IntoStorage};
 use embedded_graphics::prelude::DrawTargetExt;
 use embedded_graphics::primitives::Rectangle;
-use gridel_core::accel::MAX_STACK_DEPTH;
-use gridel_core::render::{MAX_RAY_DEPTH, Pixel};
+use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::render::Pixel;
 use gridel_core::{
     Counters, DualSplit, Effects, Format, Renderer, Rgb565, Settings, Structure, Workspace,
 };

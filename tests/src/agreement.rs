@@ -2,11 +2,12 @@
 
 use crate::query::{HitBits, UnitRay, any, closest, depart, held, through};
 use crate::random::Random;
-use gridel_core::accel::Leaf;
 use gridel_core::accel::cull::Cull;
 use gridel_core::accel::hierarchy::bvh;
+use gridel_core::accel::{Space, StructureViews, Traverse};
+use gridel_core::format::Leaf;
 use gridel_core::{
-    Accel, Count, Counters, Flagged, List, NoCount, Number, Ray, Scene, StackView, Structure,
+    Accel, Bvh, Count, Counters, Flagged, List, NoCount, Number, Ray, Scene, StackView, Structure,
 };
 
 /// The plain hierarchy, culled in integers as the flagged one is in every format: what floats may
@@ -14,18 +15,26 @@ use gridel_core::{
 enum Plain {}
 
 impl Accel for Plain {
+    fn views<'s, 'a>(views: &'s StructureViews<'a>) -> &'s Self::Views<'a> {
+        Bvh::views(views)
+    }
+}
+
+impl Traverse for Plain {
     const STRUCTURE: Structure = Structure::Bvh;
+    type Views<'a> = bvh::Views<'a>;
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
         stack: &mut StackView,
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        bvh::walk(scene, ray, cull, stack, count, leaf);
+        bvh::walk(space, views, ray, cull, stack, count, leaf);
     }
 }
 

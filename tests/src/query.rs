@@ -2,7 +2,8 @@
 
 pub use gridel_host::verify::{UnitRay, depart};
 
-use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
+use gridel_core::accel::DynAccel;
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
     Accel, Count, Fixed, Hit, NoCount, Number, Ray, Scene, Stack, Structure, any_hit, closest_hit,
 };
@@ -96,8 +97,8 @@ fn ask_f64(structure: Structure, scene: &Scene<'_>, ray: &Ray<f64>) -> Answer<f6
 fn ask<N: Number>(structure: Structure, scene: &Scene<'_>, ray: &Ray<N>) -> Answer<N> {
     let chosen = scene.choose(structure).expect("a structure that is held");
     (
-        closest::<N, Chosen>(&chosen, ray, &mut NoCount),
-        any::<N, Chosen>(&chosen, ray),
+        closest::<N, DynAccel>(&chosen, ray, &mut NoCount),
+        any::<N, DynAccel>(&chosen, ray),
     )
 }
 

@@ -1,7 +1,6 @@
 //! Between loading a blob and the last pixel nothing is allocated, in any format and structure.
 
-use gridel_core::accel::MAX_STACK_DEPTH;
-use gridel_core::render::MAX_RAY_DEPTH;
+use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
 use gridel_core::{
     Accel, Bvh, Effects, Fixed, Flagged, List, NoCount, Number, Renderer, Rgb888, Scene, Settings,
     Workspace,

@@ -1,7 +1,7 @@
 //! Apex lists serve the rays of their points, and no others; ray classes serve the scene's own.
 
 use glam::DVec3;
-use gridel_core::accel::MAX_STACK_DEPTH;
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
     Accel, Apex, Counters, List, NoCount, Number, Ray, RayClasses, Scene, Settings, Stack,
     Structure, any_hit,

@@ -4,9 +4,8 @@
 //! comes from; t is rounded once more. What is not answered is rejected with a reason. Nothing else.
 
 use glam::DVec3;
-use gridel_core::accel::MAX_STACK_DEPTH;
-use gridel_core::ray::FARTHEST;
-use gridel_core::render::{MAX_RAY_DEPTH, RenderError};
+use gridel_core::format::limits::{FARTHEST, MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::render::RenderError;
 use gridel_core::{
     DualSplit, Effects, Fixed, Format, List, NoCount, Number, Pencil, Ray, RayError, Renderer,
     Scene, Settings, Structure, Workspace,

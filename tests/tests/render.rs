@@ -5,8 +5,7 @@
 //! fixtures/check.toml` writes them anew; the difference belongs into the same commit.
 
 use glam::DVec3;
-use gridel_core::accel::MAX_STACK_DEPTH;
-use gridel_core::render::MAX_RAY_DEPTH;
+use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
 use gridel_core::{
     Counters, Effects, Flagged, Format, NoCount, Number, Renderer, Rgb888, Scene, Settings,
     Structure, Workspace,

@@ -1,8 +1,10 @@
 //! `verify` finds nothing wrong with what is right, and everything that is made wrong on purpose.
 
 use glam::{DQuat, DVec3, EulerRot};
+use gridel_core::accel::StackView;
 use gridel_core::accel::cull::Cull;
-use gridel_core::accel::{Leaf, StackView};
+use gridel_core::accel::{Space, StructureViews, Traverse};
+use gridel_core::format::Leaf;
 use gridel_core::{Accel, Count, Flagged, Hit, Kind, List, Number, Ray, Scene, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::scene::Shape;
@@ -274,18 +276,26 @@ fn mutated_answers_are_caught() {
 enum Forgetful {}
 
 impl Accel for Forgetful {
+    fn views<'s, 'a>(views: &'s StructureViews<'a>) -> &'s Self::Views<'a> {
+        Flagged::views(views)
+    }
+}
+
+impl Traverse for Forgetful {
     const STRUCTURE: Structure = Structure::Flagged;
+    type Views<'a> = <Flagged as Traverse>::Views<'a>;
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
         stack: &mut StackView,
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        Flagged::walk(scene, ray, cull, stack, count, |found, count| {
+        Flagged::walk(space, views, ray, cull, stack, count, |found, count| {
             if found.first.is_multiple_of(5) {
                 return Some(ray_end(ray));
             }

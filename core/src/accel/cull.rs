@@ -22,8 +22,9 @@
 //! Values are monotone in `p`, so a child's interval lies in its parent's, whatever was rounded. Hits lie
 //! in these intervals or are clamped to them; what cores walk with may be wider, never narrower.
 
+use crate::axis::pick;
 use crate::format::record::{Gridels, Pair, UnitBox, plane_word};
-use crate::number::{CullAxis, NARROW_PRODUCTS, Number, pick};
+use crate::number::{CullAxis, NARROW_PRODUCTS, Number};
 use crate::ray::Ray;
 
 /// The steps at which a ray enters and leaves something; it misses where `near > far`.

@@ -1,25 +1,28 @@
 //! The plain list: every primitive is tested. What all structures are measured against.
 
 use crate::accel::cull::Cull;
-use crate::accel::{Accel, Leaf, Records, StackView, Structure};
-use crate::format::{BlobError, SectionKind, Sections};
-use crate::geometry::Kind;
+use crate::accel::records::Records;
+use crate::accel::space::Space;
+use crate::accel::stack::StackView;
+use crate::accel::traverse::Traverse;
+use crate::format::{BlobError, Kind, Leaf, SectionKind, Sections, Structure};
 use crate::number::Number;
 use crate::observe::count::Count;
 use crate::ray::Ray;
-use crate::scene::Scene;
 
 /// Tests every primitive; needs no stack.
 #[derive(Clone, Copy, Debug)]
 pub enum List {}
 
-impl Accel for List {
+impl Traverse for List {
     const STRUCTURE: Structure = Structure::List;
+    type Views<'a> = Views<'a>;
     const HAS_CLUSTERS: bool = cfg!(feature = "wide");
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        _: &Self::Views<'_>,
         _: &Ray<N>,
         _: &Cull,
         _: &mut StackView,
@@ -28,7 +31,7 @@ impl Accel for List {
     ) {
         for kind in Kind::ALL {
             let mut first = 0;
-            let end = scene.shapes.records(kind) as u32;
+            let end = space.shapes.records(kind) as u32;
             while first < end {
                 let size = (end - first).min(Leaf::MAX_COUNT);
                 let range = Leaf {
@@ -42,7 +45,7 @@ impl Accel for List {
                 first += size;
             }
             #[cfg(feature = "wide")]
-            for cluster in 0..scene.shapes.sole_clusters(kind) as u32 {
+            for cluster in 0..space.shapes.sole_clusters(kind) as u32 {
                 let cluster = Leaf {
                     kind,
                     first: cluster,
@@ -58,9 +61,9 @@ impl Accel for List {
 
 /// A list keeps nothing but the primitives.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Held<'a>(core::marker::PhantomData<&'a ()>);
+pub struct Views<'a>(core::marker::PhantomData<&'a ()>);
 
-impl<'a> Records<'a> for Held<'a> {
+impl<'a> Records<'a> for Views<'a> {
     const SECTIONS: &'static [SectionKind] = &[];
     const USES_LEAVES: bool = false;
 
@@ -68,7 +71,7 @@ impl<'a> Records<'a> for Held<'a> {
         Ok(Self(core::marker::PhantomData))
     }
 
-    fn check(&self, _: &Scene<'a>) -> Result<usize, BlobError> {
+    fn check(&self, _: &Space<'a>) -> Result<usize, BlobError> {
         Ok(0)
     }
 }

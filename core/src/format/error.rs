@@ -1,8 +1,7 @@
 //! Why a blob was refused, in words that say what to do.
 
-use crate::accel::Structure;
 use crate::format::section::SectionKind;
-use crate::shade::Effects;
+use crate::format::{Effects, Structure};
 use core::fmt;
 
 /// Why [`Scene::from_bytes`](crate::scene::Scene::from_bytes) refused a blob.

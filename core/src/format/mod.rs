@@ -3,17 +3,35 @@
 //! This module says what a blob is made of, and nothing else. `FORMAT.md` beside the crate's manifest specifies
 //! every byte.
 
+pub(crate) mod checksum;
 #[cfg(feature = "wide")]
 pub mod cluster;
+mod effects;
 mod error;
 mod index;
+pub(crate) mod kind;
+mod leaf;
+pub mod limits;
+pub(crate) mod link;
+mod node;
 pub(crate) mod range;
 pub mod record;
 mod requirements;
 pub(crate) mod section;
+pub(crate) mod structure;
+pub(crate) mod word;
 
+pub use checksum::{Aligned, checksum};
+pub use effects::Effects;
 pub use error::BlobError;
 pub use index::Indices;
+pub use kind::Kind;
+pub use leaf::Leaf;
+pub use link::Link;
+#[cfg(feature = "wide")]
+pub use node::Child;
+pub use node::{ClassNode, NodeWord, OctreeNode};
 pub use requirements::Demand;
 pub use section::SectionKind;
 pub(crate) use section::Sections;
+pub use structure::Structure;

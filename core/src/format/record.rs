@@ -3,7 +3,7 @@
 //! Little-endian, naturally aligned, without padding. `FORMAT.md` specifies every field; the
 //! assertions at the end of this file hold the layout to it.
 
-use crate::number::pick;
+use crate::axis::pick;
 use bytemuck::{Pod, Zeroable};
 use core::mem::{align_of, offset_of, size_of};
 
@@ -30,11 +30,11 @@ pub struct Header {
     pub section_count: u16,
     /// Length of the blob in bytes, the header included.
     pub blob_bytes: u32,
-    /// [`checksum`](crate::scene::checksum) of the blob with this field as 0.
+    /// [`checksum`](crate::format::checksum) of the blob with this field as 0.
     pub checksum: u32,
-    /// Acceleration structures that the blob holds: a bit for each [`Structure`](crate::accel::Structure).
+    /// Acceleration structures that the blob holds: a bit for each [`Structure`](crate::format::Structure).
     pub structures: u32,
-    /// Effects that the scene calls for: see [`Effects`](crate::shade::Effects).
+    /// Effects that the scene calls for: see [`Effects`](crate::format::Effects).
     pub effects: u32,
     /// Entries that the deepest walk pushes on the traversal stack.
     pub stack_depth: u16,
@@ -139,7 +139,7 @@ pub struct View {
     pub height: u16,
     /// Default number of samples a pixel, 1 to 256.
     pub samples: u16,
-    /// How often a ray may be reflected or refracted, 0 to [`MAX_RAY_DEPTH`](crate::render::MAX_RAY_DEPTH).
+    /// How often a ray may be reflected or refracted, 0 to [`MAX_RAY_DEPTH`](crate::format::limits::MAX_RAY_DEPTH).
     pub depth: u8,
     /// 1 where all colours and lights are display values, which reach the display as they are; 0
     /// where they are linear.
@@ -289,7 +289,7 @@ pub struct DualNode {
     /// The node's lower side in the low half and its upper side in the high half, on each carve's
     /// axis; zero where there is no carve.
     pub carves: [u32; 2],
-    /// Axes, and the children or the leaf: see [`Way`](crate::accel::hierarchy::dual_split::Way).
+    /// Axes, and the children or the leaf: see [`Way`](crate::format::NodeWord).
     pub way: u32,
 }
 
@@ -360,7 +360,7 @@ pub struct WideNode {
     /// `[axis][side][child]`: the children's lower sides, then their upper ones. Missing children,
     /// which are the last ones, have a box that nothing meets: [`EMPTY`](Self::EMPTY).
     pub planes: [[[i16; 8]; 2]; 3],
-    /// What the children are: see [`Child`](crate::accel::wide::Child).
+    /// What the children are: see [`Child`](crate::format::Child).
     pub children: [u32; 8],
 }
 
@@ -381,8 +381,8 @@ impl WideNode {
 
     /// What a child is.
     #[inline(always)]
-    pub fn child(&self, lane: usize) -> crate::accel::wide::Child {
-        crate::accel::wide::Child(self.children[lane & 7])
+    pub fn child(&self, lane: usize) -> crate::format::Child {
+        crate::format::Child(self.children[lane & 7])
     }
 }
 

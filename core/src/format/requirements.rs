@@ -1,10 +1,8 @@
 //! What a program must provide for its own blob, read while it is compiled.
 
-use crate::accel::Structure;
 use crate::format::record::{Header, SectionEntry, View};
-use crate::format::{BlobError, SectionKind};
-use crate::scene::prevalidated::{half, proved, word};
-use crate::shade::Effects;
+use crate::format::word::{half, proved, word};
+use crate::format::{BlobError, Effects, SectionKind, Structure};
 use core::mem::offset_of;
 
 /// What a blob asks of the program that it is compiled into.

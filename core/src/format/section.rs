@@ -54,7 +54,7 @@ kinds! {
     Discs = 11, "discs";
     /// [`Cone`](crate::format::record::Cone)s: cylinders, cones and frusta.
     Cones = 12, "cones";
-    /// [`Leaf`](crate::accel::Leaf)s, `u32` each.
+    /// [`Leaf`](crate::format::Leaf)s, `u32` each.
     Leaves = 13, "leaves";
     /// [`Pair`](crate::format::record::Pair)s of the ordinary hierarchy.
     Pairs = 14, "pairs";
@@ -102,7 +102,7 @@ kinds! {
     EntryNodes = 35, "entry-nodes";
     /// For each entry, between which levels it and its neighbours lie (1 byte).
     EntryKeys = 36, "entry-keys";
-    /// [`ClassNode`](crate::accel::candidates::ray_classes::ClassNode)s, `u32` each.
+    /// [`ClassNode`](crate::format::ClassNode)s, `u32` each.
     ClassNodes = 37, "class-nodes";
     /// For each class with a list, its list (1 to 4 bytes).
     ClassCells = 38, "class-cells";
@@ -139,7 +139,7 @@ kinds! {
     GridStarts = 53, "grid-starts";
     /// The slots in the cells of the grid (1 to 4 bytes).
     GridSlots = 54, "grid-slots";
-    /// [`OctreeNode`](crate::accel::cells::octree::OctreeNode)s.
+    /// [`OctreeNode`](crate::format::OctreeNode)s.
     OctreeNodes = 55, "octree-nodes";
     /// For each list of the octree, where it begins; then where the last one ends (1 to 4 bytes).
     OctreeStarts = 56, "octree-starts";

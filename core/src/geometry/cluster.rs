@@ -1,11 +1,10 @@
 //! All clusters of a blob: see [`blob::cluster`](crate::format::cluster).
 
-use crate::format::Indices;
 use crate::format::cluster::{
     LANES, Pack, Pack16, Pack24, RADII, Strip, Strip16, Strip24, StripMembers, Windowed24,
 };
 use crate::format::record::UnitBox;
-use crate::geometry::Kind;
+use crate::format::{Indices, Kind};
 
 /// All strips.
 #[derive(Clone, Copy, Debug)]

@@ -8,9 +8,10 @@
 //! a coordinate and a t of less than 2^18 units are rounded, 2^-5 unit in `f32`, and culling widens boxes
 //! by more (see [`cull`](crate::accel)).
 
+use crate::axis::pick;
 use crate::format::record::{Cuboid, UnitBox};
 use crate::geometry::{Crossing, Part, Surface, plane};
-use crate::number::{Number, pick};
+use crate::number::Number;
 use crate::ray::Ray;
 
 impl Cuboid {

@@ -1,7 +1,8 @@
 //! Planes: where a point of one lies next to a point that was computed, and how far off that is.
 
+use crate::axis::pick;
 use crate::geometry::Surface;
-use crate::number::{Number, pick};
+use crate::number::Number;
 
 /// The face of a plane at right angles to an axis, at a point of it.
 ///

@@ -15,7 +15,7 @@
 //! above 32 m^2, 2 m and 1, and whose products are off by less than 8 e each: in sum by 768 e m^3 and
 //! 512 e m^2. So where both determinants are above 1024 e times m^3 or m^2, both computations have
 //! their signs, and where these say so, the test's t is below 0. It is clamped to the interval of the
-//! triangle's box then (see [`accept_in_box`](crate::geometry::accept_in_box)), but that starts below 0 as well if the box
+//! triangle's box then (see [`accept_in_box`](crate::accel::clamp::accept_in_box)), but that starts below 0 as well if the box
 //! begins behind or beside the ray's start on every axis: if some vertex does. No hit starts below 0.
 
 use crate::format::cluster::{Rows, Strip};

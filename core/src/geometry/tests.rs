@@ -1,7 +1,8 @@
+use crate::accel::clamp::accept_in_box;
 use crate::accel::cull::{Cull, Culling};
 use crate::format::record::{Cuboid, UnitBox, Vertex24};
 use crate::geometry::triangle::Projection;
-use crate::geometry::{Crossing, accept, accept_in_box, sphere, triangle};
+use crate::geometry::{Crossing, accept, sphere, triangle};
 use crate::number::{Fixed, Number};
 use crate::ray::Ray;
 use proptest::prelude::*;

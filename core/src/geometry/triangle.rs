@@ -8,9 +8,10 @@
 //! interpolated, which goes wrong on stretched triangles, but taken from the plane, whose normal is
 //! computed in integers without any rounding and is the same in every number format.
 
+use crate::axis::pick;
 use crate::format::record::{UnitBox, Vertex};
 use crate::geometry::{Surface, cross_plane, plane};
-use crate::number::{Number, Sight, pick, product};
+use crate::number::{Number, Sight, product};
 use crate::ray::Ray;
 
 /// The projection along a ray: how its origin sees coordinates on the axes in the order of their roles

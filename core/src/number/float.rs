@@ -4,8 +4,9 @@
 //! `max` of the standard library (they differ on signed zeros), square roots by libm.
 
 use crate::accel::cull::FloatCulling;
+use crate::axis::pick;
 use crate::geometry::extent;
-use crate::number::{CullAxis, Format, Number, Sight, pick};
+use crate::number::{CullAxis, Format, Number, Sight};
 use core::cmp::Ordering;
 
 /// How `a b` compares to `c d`, exactly: products of `f32` fit `f64`.

@@ -60,16 +60,6 @@ impl Format {
 pub(crate) const NARROW_PRODUCTS: bool =
     cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
 
-/// A component by number. Unlike an index it keeps the vector in registers.
-#[inline(always)]
-pub(crate) fn pick<T: Copy>(v: [T; 3], axis: usize) -> T {
-    match axis {
-        0 => v[0],
-        1 => v[1],
-        _ => v[2],
-    }
-}
-
 mod sealed {
     pub trait Sealed {}
     impl Sealed for crate::Fixed {}

@@ -6,7 +6,7 @@
 //!
 //! [`Count::tell`]: crate::Count::tell
 
-use crate::geometry::Kind;
+use crate::format::Kind;
 use crate::observe::count::RayKind;
 
 /// Something that happened.
@@ -41,7 +41,7 @@ pub enum Event {
     /// A node or a cell is tested: the ray can meet what is in it if `span` is not empty.
     Tested {
         /// What is tested.
-        place: Place,
+        place: NodeId,
         /// The planes that were tested for it. `None` for one that was not, because it coincides
         /// with a plane around it, or is not worth it.
         sides: Sides,
@@ -50,16 +50,16 @@ pub enum Event {
         span: [f64; 2],
     },
     /// What was just tested holds nothing: the ray does not go into it.
-    Empty(Place),
+    Empty(NodeId),
     /// A node that was put off is given up, because a hit was found before it.
     GivenUp {
         /// What is given up.
-        place: Place,
+        place: NodeId,
         /// Where the ray would enter it.
         enters: f64,
     },
     /// The ray goes into a node, a leaf or a cell.
-    Opened(Place),
+    Opened(NodeId),
     /// A primitive is tested.
     Candidate {
         /// Its kind.
@@ -141,7 +141,7 @@ pub enum Event {
 
 /// A node, a leaf or a cell: what a structure calls it, and its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Place {
+pub struct NodeId {
     /// Such as `pair` or `leaf`.
     pub what: &'static str,
     /// Counted from 0.

@@ -18,12 +18,6 @@ mod sample;
 mod trace;
 
 pub use cursor::Cursor;
-pub(crate) use pixel::DISPLAY_VALUES;
 pub use pixel::{Pixel, Rgb565, Rgb888};
 pub use renderer::{RenderError, Renderer, Settings};
-pub use trace::{Workspace, WorkspaceView, work_depth};
-
-/// The largest ray depth that a scene can ask for.
-pub const MAX_RAY_DEPTH: usize = 16;
-/// Most samples a pixel.
-pub const MAX_SAMPLES: u16 = 256;
+pub use trace::{Workspace, WorkspaceView};

@@ -70,9 +70,6 @@ fn srgb(linear: u16) -> u32 {
     ((below as u32) << 8).wrapping_add(part.unwrap_or(0))
 }
 
-/// Whether this build holds the code for scenes whose colours are display values.
-pub(crate) const DISPLAY_VALUES: bool = cfg!(feature = "display-values");
-
 /// The linear values whose sRGB codes are these display values, 65535 being white.
 #[cold]
 #[inline(never)]

@@ -1,19 +1,21 @@
 //! The renderer: pixels of one scene at one size, wherever and in whatever order they are wanted.
 
 use crate::SMALL;
-use crate::accel::{Accel, Structure};
+use crate::accel::Accel;
+use crate::format::limits::{DISPLAY_VALUES, MAX_RAY_DEPTH, MAX_SAMPLES};
+use crate::format::{Effects, Structure};
 use crate::number::{Format, Number};
 use crate::observe::count::Count;
 use crate::observe::event::Event;
 use crate::ray::{Ray, RayError};
+use crate::render::camera;
 use crate::render::camera::Camera;
 use crate::render::cursor::{Cursor, Samples};
-use crate::render::pixel::{DISPLAY_VALUES, Linear, Pixel, from_display};
+use crate::render::pixel::{Linear, Pixel, from_display};
 use crate::render::sample::SUBPIXELS;
 use crate::render::trace::{Loop, WorkspaceView};
-use crate::render::{MAX_RAY_DEPTH, MAX_SAMPLES, camera};
 use crate::scene::Scene;
-use crate::shade::{Color, Effects};
+use crate::shade::Color;
 use core::fmt;
 use core::marker::PhantomData;
 
@@ -164,7 +166,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         if usize::from(depth) > MAX_RAY_DEPTH {
             return Err(RenderError::Depth(depth));
         }
-        let needed = A::needs(scene);
+        let needed = A::needs(&scene.space);
         if !scene.holds(needed) {
             return Err(RenderError::Structure(needed));
         }

@@ -11,7 +11,10 @@
 //!
 //! Everything is compiled for a set of effects: what is not in it costs neither code nor time.
 
-use crate::accel::{Accel, Stack, StackView};
+use crate::accel::Accel;
+use crate::accel::stack::{Stack, StackView};
+use crate::format::Effects;
+use crate::format::limits::MAX_RAY_DEPTH;
 use crate::format::record::{Light, Material};
 use crate::geometry::extent;
 use crate::number::Number;
@@ -19,10 +22,9 @@ use crate::observe::count::{Count, RayKind};
 use crate::observe::event::{Event, Source};
 use crate::query::{Hit, any_hit, closest_hit};
 use crate::ray::{Ray, RayError};
-use crate::render::MAX_RAY_DEPTH;
 use crate::scene::Scene;
 use crate::shade::glass::Split;
-use crate::shade::{Color, Effects, glass};
+use crate::shade::{Color, glass};
 use heapless::{Vec, VecView};
 
 /// A ray that waits for its turn.
@@ -45,11 +47,6 @@ pub(super) struct Pending<N: Number> {
 pub struct Workspace<N: Number, const STACK: usize, const WORK: usize> {
     stack: Stack<STACK>,
     work: Vec<Pending<N>, WORK>,
-}
-
-/// Places for waiting rays that a ray depth needs.
-pub const fn work_depth(depth: u8) -> usize {
-    depth as usize + 1
 }
 
 impl<N: Number, const STACK: usize, const WORK: usize> Workspace<N, STACK, WORK> {

@@ -1,15 +1,14 @@
 //! The proofs that [`Scene::from_bytes`] makes, in the order in which each relies on those before.
 
-use crate::accel::{Held, Leaf};
+use crate::accel::StructureViews;
 use crate::format::range::{At, at_most, exactly};
 use crate::format::record::{Header, UnitBox};
 use crate::format::section::Sections;
-use crate::format::{BlobError, SectionKind};
-use crate::geometry::{Kind, Shapes};
+use crate::format::{BlobError, Effects, Kind, Leaf, SectionKind, checksum};
+use crate::geometry::Shapes;
 use crate::number::{Fixed, Number};
+use crate::scene::Scene;
 use crate::scene::read::{FAR, RADIANCE};
-use crate::scene::{Scene, checksum};
-use crate::shade::Effects;
 
 /// Proves that no byte of a blob was changed since it was written.
 pub(crate) fn check_sum(blob: &[u8], header: &Header) -> Result<(), BlobError> {
@@ -27,7 +26,7 @@ pub(crate) fn check_sum(blob: &[u8], header: &Header) -> Result<(), BlobError> {
 pub(crate) fn check<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<(), BlobError> {
     check_lights(scene)?;
     check_materials(scene)?;
-    check_shapes(&scene.shapes, scene.header)?;
+    check_shapes(&scene.space.shapes, scene.space.header)?;
     check_objects(scene)?;
     check_structures(scene, sections)
 }
@@ -51,7 +50,7 @@ fn check_lights(scene: &Scene<'_>) -> Result<(), BlobError> {
 
 fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
     let section = SectionKind::Materials;
-    let (header, materials) = (scene.header, scene.materials);
+    let (header, materials) = (scene.space.header, scene.materials);
     let mut called = Effects::NONE;
     if materials.is_empty() && header.primitives > 0 {
         return Err(BlobError::Count {
@@ -233,8 +232,8 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
 }
 
 fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
-    let objects = scene.header.objects as usize;
-    let primitives = i64::from(scene.header.primitives);
+    let objects = scene.space.header.objects as usize;
+    let primitives = i64::from(scene.space.header.primitives);
     let first = &scene.object_first;
     if first.is_empty() {
         let implied = objects as i64 == primitives || objects <= 1;
@@ -277,7 +276,7 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
         }
     }
     let order = &scene.order;
-    let slots = scene.shapes.total();
+    let slots = scene.space.shapes.total();
     if !order.is_empty() || slots as i64 != primitives {
         let section = SectionKind::Order;
         if order.len() != slots {
@@ -296,14 +295,14 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
 }
 
 fn check_structures<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<(), BlobError> {
-    let longest = check_leaves(scene, Held::uses_leaves(scene))?;
+    let longest = check_leaves(scene, StructureViews::uses_leaves(&scene.space))?;
     exactly(
         "longest leaf",
-        scene.header.longest_leaf.into(),
+        scene.space.header.longest_leaf.into(),
         longest.into(),
     )?;
-    let (depth, all_proved) = Held::check(scene, sections)?;
-    let found = scene.header.stack_depth;
+    let (depth, all_proved) = scene.structures.check(&scene.space, sections)?;
+    let found = scene.space.header.stack_depth;
     if all_proved || usize::from(found) < depth {
         exactly("stack depth", found.into(), depth as u64)?;
     }
@@ -314,16 +313,16 @@ fn check_structures<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<()
 /// leaves take the slots of each kind in order.
 fn check_leaves(scene: &Scene<'_>, hierarchies: bool) -> Result<u32, BlobError> {
     let section = SectionKind::Leaves;
-    if !hierarchies && !scene.leaves.is_empty() {
+    if !hierarchies && !scene.space.leaves.is_empty() {
         return Err(BlobError::Count {
             section,
-            found: scene.leaves.len(),
+            found: scene.space.leaves.len(),
             expected: 0,
         });
     }
     let mut next = [0_u32; Kind::ALL.len()];
     let mut longest = 0;
-    for (index, &word) in (0..scene.leaves.len()).zip(scene.leaves) {
+    for (index, &word) in (0..scene.space.leaves.len()).zip(scene.space.leaves) {
         let at = At { section, index };
         let Some(leaf) = Leaf::from_word(word) else {
             let (what, expected) = ("kind", Kind::ALL.len() as i64 - 1);
@@ -351,13 +350,13 @@ fn check_leaves(scene: &Scene<'_>, hierarchies: bool) -> Result<u32, BlobError> 
         // Below 2^24 and 31.
         *next = next.wrapping_add(leaf.count);
         longest = longest.max(leaf.count);
-        let most = scene.shapes.records(leaf.kind) as i64;
+        let most = scene.space.shapes.records(leaf.kind) as i64;
         at.within("end of the slots", (*next).into(), 0, most)?;
     }
     if hierarchies {
         for kind in Kind::ALL {
             // Those that lie in clusters alone would be missing.
-            let (found, expected) = (next[kind as usize] as usize, scene.shapes.count(kind));
+            let (found, expected) = (next[kind as usize] as usize, scene.space.shapes.count(kind));
             if found != expected {
                 return Err(BlobError::Count {
                     section,

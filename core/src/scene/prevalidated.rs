@@ -1,10 +1,11 @@
 //! What a program proves of its own blob while it is compiled, so that loading need not.
 
-use crate::accel::Structure;
 use crate::accel::hierarchy::order::Order;
 use crate::format::record::{Header, SectionEntry};
-use crate::format::{BlobError, SectionKind};
-use crate::scene::checksum;
+use crate::format::word::half;
+use crate::format::word::proved;
+use crate::format::word::word;
+use crate::format::{BlobError, SectionKind, Structure, checksum};
 use core::mem::offset_of;
 
 /// A blob that the program itself vouches for: loading it with [`Scene::vouched`](crate::scene::Scene::vouched)
@@ -38,20 +39,8 @@ use core::mem::offset_of;
 /// Blobs for boards can be vouched for: those that hold no other structures than [`Self::STRUCTURES`].
 #[derive(Clone, Copy, Debug)]
 pub struct Vouched<'a> {
-    pub(crate) blob: &'a [u8],
+    pub(in crate::scene) blob: &'a [u8],
 }
-
-/// `?`, which constant functions lack.
-macro_rules! proved {
-    ($result:expr) => {
-        match $result {
-            Ok(value) => value,
-            Err(error) => return Err(error),
-        }
-    };
-}
-
-pub(crate) use proved;
 
 impl<'a> Vouched<'a> {
     /// The structures that can be vouched for.
@@ -148,22 +137,4 @@ const fn levels(blob: &[u8], entry: usize, kind: u16) -> Result<usize, BlobError
         index += 1;
     }
     order.levels()
-}
-
-/// The word at a place of a blob.
-pub(crate) const fn word(blob: &[u8], place: usize) -> Result<u32, BlobError> {
-    if let Some((_, rest)) = blob.split_at_checked(place)
-        && let Some(bytes) = rest.first_chunk()
-    {
-        return Ok(u32::from_le_bytes(*bytes));
-    }
-    Err(BlobError::Truncated {
-        needed: place.saturating_add(4),
-        found: blob.len(),
-    })
-}
-
-/// The half word at a place of a blob, which another half follows.
-pub(crate) const fn half(blob: &[u8], place: usize) -> Result<u16, BlobError> {
-    Ok(proved!(word(blob, place)) as u16)
 }

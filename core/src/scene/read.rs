@@ -1,19 +1,24 @@
 //! What loading does in constant time: the header, the table, the view, and where everything lies.
 
-use crate::accel::{Entry, Held, MAX_STACK_DEPTH, Structure};
+use crate::accel::StructureViews;
+use crate::accel::space::Space;
+use crate::accel::stack::Entry;
+use crate::format::limits::{
+    DISPLAY_VALUES, FARTHEST, MAX_RAY_DEPTH, MAX_SAMPLES, MAX_STACK_DEPTH, WIDE_INDICES,
+    WIDE_LATTICE,
+};
 use crate::format::range::{At, at_most, exactly};
 use crate::format::record::{
     ALIGNMENT, Cone, Cuboid, Disc, ENDIANNESS, Header, MAGIC, VERSION, View,
 };
 use crate::format::section::Sections;
-use crate::format::{BlobError, Indices, SectionKind};
+use crate::format::{BlobError, Effects, Indices, Kind, SectionKind, Structure};
 #[cfg(feature = "wide")]
 use crate::geometry::{Clusters, Packs, Packs24, Strips};
-use crate::geometry::{Kind, Shapes, Spheres, Triangles, Vertices, WIDE_INDICES, WIDE_LATTICE};
-use crate::ray::FARTHEST;
-use crate::render::{DISPLAY_VALUES, MAX_RAY_DEPTH, MAX_SAMPLES};
+use crate::geometry::{Shapes, Spheres, Triangles, Vertices};
 use crate::scene::Scene;
-use crate::shade::Effects;
+#[cfg(feature = "wide")]
+use crate::simd::SimdLevel;
 use core::mem::size_of;
 
 /// Largest magnitude of a far coordinate, so that sums and products with ratios stay in 64 bits.
@@ -65,21 +70,23 @@ pub(crate) fn scene<'a>(
     let view = check_view(sections)?;
     let shapes = read_shapes(sections, header)?;
     Ok(Scene {
-        header,
+        space: Space {
+            header,
+            shapes,
+            leaves: sections.records(SectionKind::Leaves)?,
+            #[cfg(feature = "all-structures")]
+            chosen: Structure::List,
+            #[cfg(feature = "wide")]
+            simd: SimdLevel::Portable,
+        },
+        structures: StructureViews::read(sections)?,
         view,
         lights: sections.records(SectionKind::Lights)?,
         materials: sections.records(SectionKind::Materials)?,
         object_first: Indices::read(sections, SectionKind::ObjectFirst)?,
         object_material: Indices::read(sections, SectionKind::ObjectMaterial)?,
         order: Indices::read(sections, SectionKind::Order)?,
-        shapes,
-        leaves: sections.records(SectionKind::Leaves)?,
-        held: Held::read(sections)?,
         needs_norm: shapes.count(Kind::Sphere) > 0 || shapes.count(Kind::Cone) > 0,
-        #[cfg(feature = "all-structures")]
-        chosen: Structure::List,
-        #[cfg(feature = "wide")]
-        simd: crate::simd::SimdLevel::Portable,
     })
 }
 

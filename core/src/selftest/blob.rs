@@ -1,7 +1,7 @@
 //! `from_bytes` reads what was written and refuses what was damaged.
 
+use crate::format::checksum;
 use crate::format::record::Header;
-use crate::scene::checksum;
 use crate::selftest::Checks;
 use crate::selftest::scene::TinyBlob;
 use crate::{BlobError, Effects, Kind, Scene, Structure};

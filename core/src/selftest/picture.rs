@@ -1,7 +1,8 @@
 //! Pixels are encoded as the display wants them, and a picture has the same bytes everywhere.
 
+use crate::format::limits::work_depth;
 use crate::observe::count::NoCount;
-use crate::render::{Pixel, work_depth};
+use crate::render::Pixel;
 use crate::selftest::scene::TinyBlob;
 use crate::selftest::{Checks, FNV_START, hash, name};
 use crate::{Effects, Format, List, Number, Renderer, Rgb565, Rgb888, Scene, Settings, Workspace};

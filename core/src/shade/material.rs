@@ -1,9 +1,10 @@
 //! What a material calls for, and its colour at a point.
 
+use crate::format::Effects;
 use crate::format::record::Material;
 use crate::number::Number;
 use crate::query::Hit;
-use crate::shade::{Color, Effects};
+use crate::shade::Color;
 
 impl Material {
     /// The effects that this material calls for.

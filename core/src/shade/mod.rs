@@ -1,10 +1,8 @@
 //! What a surface makes of light: colours, materials, lights, glass.
 
 mod color;
-mod effects;
 pub(crate) mod glass;
 pub(crate) mod light;
 mod material;
 
 pub(crate) use color::Color;
-pub use effects::Effects;

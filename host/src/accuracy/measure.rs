@@ -8,9 +8,10 @@ use crate::compile::{self, CompileError, Quality};
 use crate::render::{Job, Picture, chosen, render};
 use crate::report::working_memory_at;
 use crate::scene::Scene;
-use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
-use gridel_core::render::{MAX_RAY_DEPTH, Pixel, RenderError};
-use gridel_core::scene::checksum;
+use gridel_core::accel::DynAccel;
+use gridel_core::format::checksum;
+use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::render::{Pixel, RenderError};
 use gridel_core::{
     Effects, Fixed, Format, NoCount, Number, Renderer, Rgb888, Settings, Stack, Structure,
     closest_hit,
@@ -302,12 +303,12 @@ fn first_hits<N: Number>(
     scene: &gridel_core::Scene<'_>,
     settings: Settings,
 ) -> Result<Vec<FirstHit>, RenderError> {
-    let renderer = Renderer::<N, Chosen, { Effects::ALL.0 }>::new(scene, settings)?;
+    let renderer = Renderer::<N, DynAccel, { Effects::ALL.0 }>::new(scene, settings)?;
     let unit = f64::powi(2.0, scene.header().unit_exponent.into());
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
     let mut first = |x: u16, y: u16| {
         let ray = renderer.primary_ray(x, y).ok()?;
-        let hit = closest_hit::<N, Chosen, _>(scene, &ray, stack.as_view(), &mut NoCount)?;
+        let hit = closest_hit::<N, DynAccel, _>(scene, &ray, stack.as_view(), &mut NoCount)?;
         let slope = ray.slope().map(N::ratio_to_f64);
         let norm = slope.iter().map(|x| x * x).sum::<f64>().sqrt();
         Some((hit.object, N::far_to_f64(hit.t) * norm * unit))

@@ -1,7 +1,7 @@
 //! What a sweep turns: five levers, each alone and together.
 
 use gridel_core::Format;
-use gridel_core::render::MAX_SAMPLES;
+use gridel_core::format::limits::MAX_SAMPLES;
 use serde::{Deserialize, Serialize};
 
 /// A way to build and render a scene.

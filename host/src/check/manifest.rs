@@ -5,7 +5,7 @@ use crate::output::place;
 use crate::scene::SceneError;
 use crate::scene::toml::source::{Source, Span, nearest};
 use crate::scene::toml::value::{Fields, Value};
-use gridel_core::render::MAX_SAMPLES;
+use gridel_core::format::limits::MAX_SAMPLES;
 use gridel_core::{Format, Structure};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Display;

@@ -1,7 +1,8 @@
 //! Tracing with counters, and tracing against the clock.
 
 use super::{Options, PictureRays, Works};
-use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
+use gridel_core::accel::DynAccel;
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
     Accel, Count, Counters, NoCount, Number, Ray, Scene, Stack, Structure, StructureVisitor,
     any_hit, closest_primitive,
@@ -160,7 +161,7 @@ pub fn measure<N: Number>(
             let rays = some.len();
             // The work is the same as through the structure's own code.
             if let Some(scene) = scene.choose(structure) {
-                ask_through::<N, Chosen, _>(
+                ask_through::<N, DynAccel, _>(
                     &scene,
                     question,
                     &mut some,

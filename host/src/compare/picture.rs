@@ -1,8 +1,7 @@
 //! The rays of a scene's own picture, as the ray loop casts them.
 
 use super::CompareError;
-use gridel_core::accel::MAX_STACK_DEPTH;
-use gridel_core::render::MAX_RAY_DEPTH;
+use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
 use gridel_core::{
     Count, Effects, Flagged, Number, Ray, RayKind, Renderer, Scene, Settings, Workspace,
 };

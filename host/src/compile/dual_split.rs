@@ -6,7 +6,7 @@
 //! each choice looks ahead as far as the children's.
 
 use super::hierarchy::{Node, area};
-use gridel_core::accel::hierarchy::dual_split::Way;
+use gridel_core::format::NodeWord;
 use gridel_core::format::record::{DualNode, UnitBox, plane_word};
 use rayon::prelude::*;
 
@@ -55,7 +55,7 @@ pub fn lay_out(root: &mut Node) -> Vec<DualNode> {
             let region = carved(&region, &bounds, choice.carves);
             let carve = |place: usize| choice.carves.get(place).copied();
             let planes = |place| carve(place).map_or(0, |axis| plane_word(bounds.0[axis]));
-            let axis = |place| carve(place).map_or(Way::NONE, |axis| axis as u32);
+            let axis = |place| carve(place).map_or(NodeWord::NONE, |axis| axis as u32);
             let carves = [planes(0), planes(1)];
             let axes = [axis(0), axis(1)];
             nodes.push(match (node, choice.split) {
@@ -70,7 +70,7 @@ pub fn lay_out(root: &mut Node) -> Vec<DualNode> {
                     DualNode {
                         split: plane_word([boxes[1].0[axis][0], boxes[0].0[axis][1]]),
                         carves,
-                        way: Way::new(next_node - 2, axis as u32, axes).0,
+                        way: NodeWord::new(next_node - 2, axis as u32, axes).0,
                     }
                 }
                 _ => {
@@ -78,7 +78,7 @@ pub fn lay_out(root: &mut Node) -> Vec<DualNode> {
                     DualNode {
                         split: 0,
                         carves,
-                        way: Way::new(next_leaf - 1, Way::NONE, axes).0,
+                        way: NodeWord::new(next_leaf - 1, NodeWord::NONE, axes).0,
                     }
                 }
             });

@@ -9,7 +9,8 @@
 //! [`MAX_LEVELS`], and time is `O(n log n)` a level at the most.
 
 use gridel_core::Kind;
-use gridel_core::accel::{Leaf, MAX_LEVELS};
+use gridel_core::format::Leaf;
+use gridel_core::format::limits::MAX_LEVELS;
 use gridel_core::format::record::UnitBox;
 
 /// A primitive as the builder sees it.

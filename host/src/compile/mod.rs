@@ -35,7 +35,7 @@ use advice::{Size, advice};
 use candidates::target::Targets;
 use glam::DVec3;
 use gridel_core::Structure;
-use gridel_core::accel::Leaf;
+use gridel_core::format::Leaf;
 use gridel_core::format::record::{Gridels, UnitBox};
 use hierarchy::{Node, Primitive, Splits};
 use lattice::Lattice;

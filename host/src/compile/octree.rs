@@ -6,9 +6,9 @@ use super::estimate::{Rays, ordinary_tests};
 use super::writer::{Section, indices, section};
 use gridel_core::Structure;
 use gridel_core::accel::cells::lists::{cells_of, divide};
-use gridel_core::accel::cells::octree::{MOST_LEVELS, OctreeNode};
-use gridel_core::format::SectionKind;
+use gridel_core::accel::cells::octree::MOST_LEVELS;
 use gridel_core::format::record::UnitBox;
+use gridel_core::format::{OctreeNode, SectionKind};
 
 /// Primitives in a cell of an octree that are not worth a split.
 const FEW: usize = 6;

@@ -1,9 +1,8 @@
 //! Lays a hierarchy out as pairs in breadth-first order, plain and flagged.
 
 use super::hierarchy::{Node, Primitive};
-use gridel_core::accel::Leaf;
-use gridel_core::accel::Link;
 use gridel_core::format::record::{DualNode, FlaggedPair, Pair, UnitBox, plane_word};
+use gridel_core::format::{Leaf, Link};
 
 /// A hierarchy as a blob holds it.
 #[derive(Debug, Default)]

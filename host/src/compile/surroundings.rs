@@ -5,8 +5,8 @@ use super::lattice::Lattice;
 use crate::scene::{Camera, Color, Diffuse, Light, Material, Scene, Shape};
 use glam::DVec3;
 use gridel_core::Effects;
+use gridel_core::format::limits::FARTHEST;
 use gridel_core::format::record;
-use gridel_core::ray::FARTHEST;
 
 /// What is supplied with a light, so that shadows are not black.
 const AMBIENT: f64 = 0.15;

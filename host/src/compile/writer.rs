@@ -7,12 +7,11 @@ use super::pairs::Flat;
 use super::primitives::Primitives;
 use crate::blob::Blob;
 use gridel_core::accel::Entry;
-use gridel_core::format::SectionKind;
 use gridel_core::format::record::{
     ALIGNMENT, ENDIANNESS, Header, MAGIC, SectionEntry, Sphere16, Sphere24, VERSION, Vertex16,
     Vertex24,
 };
-use gridel_core::scene::checksum;
+use gridel_core::format::{SectionKind, checksum};
 use gridel_core::{Kind, Structure};
 
 /// A section before it has a place.

@@ -14,8 +14,9 @@ pub use walk::{Candidate, Culled, Plane, Side, Step, Tested, Verdict, Walk};
 
 use crate::render::{ALL, OPAQUE, chosen};
 use crate::trace::{Frame, Rejection, SceneRay};
-use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
-use gridel_core::render::{MAX_RAY_DEPTH, Pixel, RenderError};
+use gridel_core::accel::DynAccel;
+use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::render::{Pixel, RenderError};
 use gridel_core::{
     Count, Effects, Event, Fixed, Format, Number, Renderer, Rgb888, Scene, Settings, Structure,
     Workspace,
@@ -89,7 +90,7 @@ fn watch<N: Number, const EFFECTS: u32>(
     settings: Settings,
     subject: Subject,
 ) -> Told {
-    let renderer = Renderer::<N, Chosen, EFFECTS>::new(scene, settings)?;
+    let renderer = Renderer::<N, DynAccel, EFFECTS>::new(scene, settings)?;
     let mut space = Box::new(Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new());
     let mut space = space.as_view();
     let mut recorder = Recorder::default();

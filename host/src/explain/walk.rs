@@ -3,7 +3,7 @@
 use crate::trace::{Frame, SceneRay};
 use crate::verify::judge;
 use glam::DVec3;
-use gridel_core::observe::event::{Place, Sides};
+use gridel_core::observe::event::{NodeId, Sides};
 use gridel_core::{Event, Format};
 use serde::Serialize;
 
@@ -389,12 +389,12 @@ impl Culled {
     }
 }
 
-fn name(place: Place) -> String {
+fn name(place: NodeId) -> String {
     format!("{} {}", place.what, place.number)
 }
 
 impl InUnits {
-    fn tested(&self, place: Place, sides: Sides, span: [f64; 2]) -> Tested {
+    fn tested(&self, place: NodeId, sides: Sides, span: [f64; 2]) -> Tested {
         let mut planes = Vec::new();
         for (axis, sides) in sides.iter().enumerate() {
             for (side, plane) in sides.iter().enumerate() {

@@ -2,7 +2,8 @@
 
 use super::judge::{Answer, GRAZING, Judge, RoundedRay, STEPS, Wrong, step};
 use super::random::Random;
-use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
+use gridel_core::accel::DynAccel;
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
     Accel, Format, Hit, Kind, List, NoCount, Number, Ray, Scene, Stack, Structure, any_hit,
     closest_hit,
@@ -94,7 +95,7 @@ pub fn ask_all<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Heard<N>> {
             let chosen = scene.choose(structure)?;
             Some(Heard {
                 structure,
-                ..ask::<N, Chosen>(&chosen, ray)
+                ..ask::<N, DynAccel>(&chosen, ray)
             })
         });
     std::iter::once(list).chain(others).collect()

@@ -4,7 +4,7 @@
 use super::exact::Real;
 use super::solid::{Line, Solid};
 use gridel_core::format::record::UnitBox;
-use gridel_core::scene::Geometry;
+use gridel_core::geometry::Geometry;
 use gridel_core::{Format, Kind, Number, Ray, Scene};
 
 /// How many rounding steps an answer may be off by: the shape that it is right for may be so much

@@ -19,7 +19,7 @@ pub use closed::ClosedMesh;
 pub use rays::{Targets, UnitRay};
 
 use crate::trace::{Frame, SceneRay};
-use gridel_core::accel::Chosen;
+use gridel_core::accel::DynAccel;
 use gridel_core::{Fixed, Format, List, Number, Scene, Structure};
 use judge::Judge;
 use random::Random;
@@ -315,7 +315,7 @@ impl Work<'_> {
                 continue;
             };
             tally.checked(Promise::Leaks, 1);
-            let fault = sealed::<N, Chosen>(&scene, self.judge, aim.object, origin, direction);
+            let fault = sealed::<N, DynAccel>(&scene, self.judge, aim.object, origin, direction);
             if let Some(fault) = fault {
                 let ray = UnitRay::new(origin, direction);
                 tally.fault(Fault { structure, ..fault }, &self.frame.scene_ray(&ray));

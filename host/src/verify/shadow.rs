@@ -6,7 +6,7 @@ use super::random::Random;
 use super::rays::UnitRay;
 use glam::DVec3;
 use gridel_core::format::record::Light;
-use gridel_core::scene::Geometry;
+use gridel_core::geometry::Geometry;
 use gridel_core::{Effects, Format, Hit, Kind, List, Number, Ray, Scene, Structure};
 
 /// A ray at a place that an object keeps a light from: from somewhere above the place, in units. `None`

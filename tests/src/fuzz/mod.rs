@@ -15,9 +15,8 @@ pub use parts::Base;
 
 use crate::query::{HitBits, UnitRay, held, through};
 use crate::{every_format, rays};
-use gridel_core::format::BlobError;
 use gridel_core::format::record::Header;
-use gridel_core::scene::checksum;
+use gridel_core::format::{BlobError, checksum};
 use gridel_core::{Number, Scene, Structure};
 use gridel_host::blob::Blob;
 use std::mem::offset_of;

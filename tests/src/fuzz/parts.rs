@@ -1,11 +1,10 @@
 //! A blob taken apart into header and sections, and put together again.
 
 use super::sealed;
-use gridel_core::accel::wide::Child;
-use gridel_core::format::SectionKind;
 use gridel_core::format::record::{
     BallPair, DualNode, FlaggedPair, Header, Pair, SectionEntry, UnitBox, WideNode, plane_word,
 };
+use gridel_core::format::{Child, SectionKind};
 use gridel_host::blob::Blob;
 
 /// A blob taken apart.

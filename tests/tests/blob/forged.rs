@@ -2,11 +2,9 @@
 
 use super::{Fate, small_blob, works};
 use glam::DVec3;
-use gridel_core::accel::Link;
-use gridel_core::accel::hierarchy::dual_split::Way;
-use gridel_core::format::SectionKind;
 use gridel_core::format::cluster::Pack24;
 use gridel_core::format::record::{DualNode, FlaggedPair, Header, Pair, SectionEntry, WideNode};
+use gridel_core::format::{Link, NodeWord, SectionKind};
 use gridel_core::{Number, Scene, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;
@@ -217,7 +215,7 @@ fn cycles_and_orphans_are_refused() {
     let dual = section(&bytes, SectionKind::DualNodes).1;
     for index in 0..dual.count {
         let end = dual.offset as usize + (index as usize + 1) * size_of::<DualNode>();
-        let way = Way(word_at(end - 4));
+        let way = NodeWord(word_at(end - 4));
         let carves = way.carves().map(|axis| axis as u32);
         for number in [
             0,
@@ -228,7 +226,7 @@ fn cycles_and_orphans_are_refused() {
             0xff_ffff,
         ] {
             for split in 0..4 {
-                forge(end - 4, Way::new(number, split, carves).0);
+                forge(end - 4, NodeWord::new(number, split, carves).0);
             }
         }
         forge(end - 4, way.0 | 1 << 31);

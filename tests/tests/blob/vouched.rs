@@ -2,9 +2,10 @@
 
 use super::forged::section;
 use super::{render_small, small_scene};
-use gridel_core::accel::{Chosen, Leaf, MAX_STACK_DEPTH};
-use gridel_core::format::SectionKind;
+use gridel_core::accel::DynAccel;
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::format::record::{DualNode, FlaggedPair, Header, Pair, SectionEntry, View};
+use gridel_core::format::{Leaf, SectionKind};
 use gridel_core::{
     BlobError, Counters, Demand, Number, Scene, Settings, Stack, Structure, Vouched, any_hit,
     closest_hit,
@@ -234,8 +235,8 @@ fn walks_end<N: Number>(scene: &Scene<'_>, leaves: u32, rays_each: usize) {
             };
             let (mut first, mut any) = (Counters::default(), Counters::default());
             let stack = stack.as_view();
-            closest_hit::<N, Chosen, _>(&scene, &ready, stack, &mut first);
-            any_hit::<N, Chosen, _>(&scene, &ready, stack, &mut any);
+            closest_hit::<N, DynAccel, _>(&scene, &ready, stack, &mut first);
+            any_hit::<N, DynAccel, _>(&scene, &ready, stack, &mut any);
             for count in [first, any] {
                 // Of a tree of leaves: fewer nodes than twice as many, each visited once, with two
                 // carves and a split; a pair has two boxes.

@@ -2,7 +2,7 @@
 //! compiles loads.
 
 use glam::DVec3;
-use gridel_core::scene::Geometry;
+use gridel_core::geometry::Geometry;
 use gridel_core::{Bvh, Kind, NoCount, Structure};
 use gridel_host::compile::{Compiled, Options, compile};
 use gridel_host::scene::{self, Shape};

@@ -2,7 +2,7 @@
 
 use super::meshes::{Mesh, cut_box, stretched, torus};
 use glam::DVec3;
-use gridel_core::accel::Chosen;
+use gridel_core::accel::DynAccel;
 use gridel_core::{Counters, Kind, Structure};
 use gridel_host::compile::{CompileError, Options, compile};
 use gridel_host::scene::Shape;
@@ -90,7 +90,7 @@ fn grid_and_octree_test_at_most_ten_times_as_many_primitives_as_bvh() {
                 let mut count = Counters::default();
                 for ray in rays(bounds, sort) {
                     let ray = ray.ready::<f64>(&scene).expect("a ray");
-                    closest::<f64, Chosen>(&chosen, &ray, &mut count);
+                    closest::<f64, DynAccel>(&chosen, &ray, &mut count);
                 }
                 count.objects as f64 / RAYS as f64
             });

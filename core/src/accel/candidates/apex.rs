@@ -13,7 +13,7 @@
 //! ([`Bvh`]); so a camera that was moved is noticed by itself, and costs time alone.
 //!
 //! A directional light is an apex infinitely far away. Its rays differ by where they pass a *plane*
-//! across their major axis that lies beyond the scene, and its one window is a rectangle of that
+//! across their major axis that lies beyond the space, and its one window is a rectangle of that
 //! plane.
 //!
 //! **No candidate is lost.** Let a line in integers pass the apex, in the plane across its major
@@ -43,13 +43,18 @@ use crate::accel::candidates::line::Line;
 use crate::accel::candidates::lists::{Candidates, ListSections, look_up};
 use crate::accel::cull::{Culling, Deferred};
 use crate::accel::hierarchy::bvh::Bvh;
-use crate::accel::{Accel, Leaf, Records, StackView, Structure};
+use crate::accel::hierarchy::pairs::Pairs;
+use crate::accel::records::Records;
+use crate::accel::space::Space;
+use crate::accel::stack::StackView;
+use crate::accel::traverse::Traverse;
+use crate::axis::pick;
+use crate::format::record::Pair;
 use crate::format::record::{ApexDirection, ApexPoint, ApexWindow, Gridels};
-use crate::format::{BlobError, SectionKind, Sections};
-use crate::number::{Number, pick};
+use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
+use crate::number::Number;
 use crate::observe::count::Count;
 use crate::ray::Ray;
-use crate::scene::Scene;
 
 /// Lists for the rays of the camera and of lights, and the hierarchy for all others.
 #[derive(Clone, Copy, Debug)]
@@ -72,21 +77,23 @@ impl Apex {
     const PARALLEL: u32 = 1 << 11;
 }
 
-impl Accel for Apex {
+impl Traverse for Apex {
     const STRUCTURE: Structure = Structure::Apex;
+    type Views<'a> = Views<'a>;
     type Cull<N: Number> = Deferred;
 
     // Once, and not for every set of effects that the ray loop is compiled for.
     #[inline(never)]
     fn walk<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
         ray: &Ray<N>,
         _: &Deferred,
         stack: &mut StackView,
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let held = &scene.held.apex;
+        let held = views;
         let mut tmax = ray.tmax;
         if let Some(way) = held.way(ray) {
             look_up(way.cell, count);
@@ -97,7 +104,7 @@ impl Accel for Apex {
             };
             let mut cut = false;
             held.lists.ascend(way.cell, end, |slot| {
-                let single = scene.shapes.single(slot);
+                let single = space.shapes.single(slot);
                 if single.count == 0 {
                     cut = true;
                     return None;
@@ -117,7 +124,7 @@ impl Accel for Apex {
         }
         let rest = Ray { tmax, ..*ray };
         let cull = Culling::new(&rest);
-        Bvh::walk(scene, &rest, &cull, stack, count, leaf);
+        Bvh::walk(space, &views.fallback, &rest, &cull, stack, count, leaf);
     }
 }
 
@@ -188,14 +195,16 @@ impl ApexWindow {
 
 /// The apexes of a scene, and the lists of their windows.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Held<'a> {
+pub struct Views<'a> {
     points: &'a [ApexPoint],
     directions: &'a [ApexDirection],
     windows: &'a [ApexWindow],
     lists: Candidates<'a>,
+    /// The hierarchy for rays without a list.
+    fallback: Pairs<'a, Pair>,
 }
 
-impl<'a> Held<'a> {
+impl<'a> Views<'a> {
     /// The apex that a ray starts from or runs to, if it has a list there.
     #[inline(always)]
     fn way<N: Number>(&self, ray: &Ray<N>) -> Option<Way<'a>> {
@@ -281,7 +290,7 @@ const LISTS: ListSections = ListSections {
     keys: Some(SectionKind::ApexKeys),
 };
 
-impl<'a> Records<'a> for Held<'a> {
+impl<'a> Records<'a> for Views<'a> {
     const SECTIONS: &'static [SectionKind] = &[
         SectionKind::ApexPoints,
         SectionKind::ApexWindows,
@@ -299,13 +308,14 @@ impl<'a> Records<'a> for Held<'a> {
             directions: sections.records(SectionKind::ApexDirections)?,
             windows: sections.records(SectionKind::ApexWindows)?,
             lists: Candidates::read(sections, &LISTS)?,
+            fallback: Pairs::read(sections)?,
         })
     }
 
     /// Proves that points and planes lie within reach, that windows follow each other in the table and
     /// fill it, and the lists; and that the scene holds the hierarchy for all other rays.
-    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
-        Structure::Bvh.needed_by(Structure::Apex, scene)?;
+    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
+        space.require(Structure::Bvh, Structure::Apex)?;
         const MOST: u32 = 1 << 29;
         for (index, point) in self.points.iter().enumerate() {
             let wrong = |what, found: i64, expected: i64| BlobError::Record {
@@ -372,7 +382,7 @@ impl<'a> Records<'a> for Held<'a> {
         }
         let ascend = |before: u8, after: u8| before <= after;
         // One more than there are slots, for where a list is cut.
-        let end = scene.shapes.total().saturating_add(1);
+        let end = space.shapes.total().saturating_add(1);
         self.lists.check(&LISTS, next.into(), end, ascend)?;
         Ok(0)
     }

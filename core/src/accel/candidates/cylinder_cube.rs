@@ -13,32 +13,36 @@
 use crate::accel::candidates::gridel_table::Table;
 use crate::accel::candidates::lists::{ListSections, look_up};
 use crate::accel::cull::Deferred;
-use crate::accel::{Accel, Leaf, Records, StackView, Structure};
-use crate::format::{BlobError, SectionKind, Sections};
+use crate::accel::records::Records;
+use crate::accel::space::Space;
+use crate::accel::stack::StackView;
+use crate::accel::traverse::Traverse;
+use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
 use crate::number::Number;
 use crate::observe::count::Count;
 use crate::ray::Ray;
-use crate::scene::Scene;
 
 /// The cylinder cube: lists of what cylinders between gridels meet; needs no stack.
 #[derive(Clone, Copy, Debug)]
 pub enum CylinderCube {}
 
-impl Accel for CylinderCube {
+impl Traverse for CylinderCube {
     const STRUCTURE: Structure = Structure::CylinderCube;
+    type Views<'a> = Views<'a>;
     type Cull<N: Number> = Deferred;
 
     // Once, and not for every set of effects that the ray loop is compiled for.
     #[inline(never)]
     fn walk<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
         ray: &Ray<N>,
         _: &Deferred,
         _: &mut StackView,
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let Held(table) = scene.held.cylinder_cube;
+        let Views(table) = *views;
         let Some(passage) = table.gridels.and_then(|gridels| gridels.passage(ray)) else {
             return;
         };
@@ -47,7 +51,7 @@ impl Accel for CylinderCube {
             let Some(slot) = table.lists.entry(index) else {
                 return;
             };
-            if leaf(scene.shapes.single(slot), count).is_none() {
+            if leaf(space.shapes.single(slot), count).is_none() {
                 return;
             }
         }
@@ -56,7 +60,7 @@ impl Accel for CylinderCube {
 
 /// The lists of a scene.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Held<'a>(Table<'a>);
+pub struct Views<'a>(Table<'a>);
 
 const GRIDELS: SectionKind = SectionKind::CylinderGridels;
 const LISTS: ListSections = ListSections {
@@ -66,7 +70,7 @@ const LISTS: ListSections = ListSections {
     keys: None,
 };
 
-impl<'a> Records<'a> for Held<'a> {
+impl<'a> Records<'a> for Views<'a> {
     const SECTIONS: &'static [SectionKind] = &[GRIDELS, LISTS.cells, LISTS.starts, LISTS.entries];
     const USES_LEAVES: bool = false;
 
@@ -74,8 +78,8 @@ impl<'a> Records<'a> for Held<'a> {
         Table::read(sections, GRIDELS, &LISTS).map(Self)
     }
 
-    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
-        self.0.check(scene, GRIDELS, &LISTS, scene.shapes.total())?;
+    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
+        self.0.check(space, GRIDELS, &LISTS, space.shapes.total())?;
         Ok(0)
     }
 }

@@ -10,15 +10,18 @@
 use crate::accel::candidates::gridel_table::{Table, along};
 use crate::accel::candidates::lists::{ListSections, look_up};
 use crate::accel::cull::PairCulling;
-use crate::accel::hierarchy::link::Node;
+use crate::accel::hierarchy::pairs::Pairs;
 use crate::accel::hierarchy::pairs::{PairArray, Walk};
-use crate::accel::{Accel, Leaf, Records, StackView, Structure};
+use crate::accel::records::Records;
+use crate::accel::space::Space;
+use crate::accel::stack::StackView;
+use crate::accel::traverse::Traverse;
+use crate::format::link::Node;
 use crate::format::record::Pair;
-use crate::format::{BlobError, SectionKind, Sections};
+use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
 use crate::number::Number;
 use crate::observe::count::Count;
 use crate::ray::Ray;
-use crate::scene::Scene;
 
 /// The cylinder cube whose lists hold nodes of the hierarchy.
 #[derive(Clone, Copy, Debug)]
@@ -29,30 +32,31 @@ impl CylinderCubeEntry {
     pub const MOST_NODES: usize = 8;
 }
 
-impl Accel for CylinderCubeEntry {
+impl Traverse for CylinderCubeEntry {
     const STRUCTURE: Structure = Structure::CylinderCubeEntry;
+    type Views<'a> = Views<'a>;
     type Cull<N: Number> = N::Cull;
 
     // Once, and not for every set of effects that the ray loop is compiled for.
     #[inline(never)]
     fn walk<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &N::Cull,
         stack: &mut StackView,
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let Held(table) = scene.held.cylinder_cube_entry;
+        let Views { table, pairs } = *views;
         let Some(passage) = table.gridels.and_then(|gridels| gridels.passage(ray)) else {
             return;
         };
         look_up(passage.cell, count);
-        let pairs = scene.held.bvh;
         let walk = Walk {
-            scene,
+            space,
             pairs,
-            root: |limit| cull.root(scene.bounds(), limit),
+            root: |limit| cull.root(space.bounds(), limit),
             root_planes: 6,
             narrow: |pair: &Pair, _, limit| cull.children(pair, limit),
         };
@@ -75,7 +79,11 @@ impl Accel for CylinderCubeEntry {
 
 /// The lists of a scene.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Held<'a>(Table<'a>);
+pub struct Views<'a> {
+    table: Table<'a>,
+    /// The hierarchy that rays enter.
+    pairs: Pairs<'a, Pair>,
+}
 
 const GRIDELS: SectionKind = SectionKind::EntryGridels;
 const LISTS: ListSections = ListSections {
@@ -85,7 +93,7 @@ const LISTS: ListSections = ListSections {
     keys: Some(SectionKind::EntryKeys),
 };
 
-impl<'a> Records<'a> for Held<'a> {
+impl<'a> Records<'a> for Views<'a> {
     const SECTIONS: &'static [SectionKind] = &[
         GRIDELS,
         LISTS.cells,
@@ -96,13 +104,16 @@ impl<'a> Records<'a> for Held<'a> {
     const USES_LEAVES: bool = true;
 
     fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
-        Table::read(sections, GRIDELS, &LISTS).map(Self)
+        Ok(Self {
+            table: Table::read(sections, GRIDELS, &LISTS)?,
+            pairs: Pairs::read(sections)?,
+        })
     }
 
-    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
-        Structure::Bvh.needed_by(Structure::CylinderCubeEntry, scene)?;
-        let nodes = scene.held.bvh.0.len() + scene.leaves.len();
-        self.0.check(scene, GRIDELS, &LISTS, nodes)?;
+    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
+        space.require(Structure::Bvh, Structure::CylinderCubeEntry)?;
+        let nodes = self.pairs.0.len() + space.leaves.len();
+        self.table.check(space, GRIDELS, &LISTS, nodes)?;
         Ok(0)
     }
 }

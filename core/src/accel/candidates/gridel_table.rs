@@ -3,11 +3,11 @@
 
 use crate::accel::candidates::gridels::{Levels, Passage};
 use crate::accel::candidates::lists::{Candidates, ListSections};
+use crate::accel::space::Space;
 use crate::format::record::Gridels;
 use crate::format::{BlobError, SectionKind, Sections};
 use crate::number::Number;
 use crate::ray::Ray;
-use crate::scene::Scene;
 
 /// What the cylinder cubes keep: a partition, and a list for every pair of gridels.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +40,7 @@ impl<'a> Table<'a> {
     /// candidate is missing is the builder's to answer for.
     pub(in crate::accel) fn check(
         &self,
-        scene: &Scene<'a>,
+        space: &Space<'a>,
         section: SectionKind,
         kinds: &ListSections,
         end: usize,
@@ -52,7 +52,7 @@ impl<'a> Table<'a> {
                 expected: 1,
             });
         };
-        if *gridels != Gridels::new(scene.bounds(), gridels.count) {
+        if *gridels != Gridels::new(space.bounds(), gridels.count) {
             return Err(BlobError::Record {
                 section,
                 index: 0,

@@ -8,7 +8,7 @@
 
 use crate::format::{BlobError, Indices, SectionKind, Sections};
 use crate::observe::count::Count;
-use crate::observe::event::{Event, Place};
+use crate::observe::event::{Event, NodeId};
 use core::ops::Range;
 
 /// The sections of one table of lists.
@@ -28,7 +28,7 @@ pub(in crate::accel) struct ListSections {
 pub(in crate::accel) fn look_up<C: Count>(cell: u32, count: &mut C) {
     count.cells(1);
     if C::TELLS {
-        count.tell(Event::Opened(Place {
+        count.tell(Event::Opened(NodeId {
             what: "cell",
             number: cell,
         }));

@@ -19,59 +19,23 @@ use crate::accel::candidates::line::Line;
 use crate::accel::candidates::lists::{Candidates, ListSections, look_up};
 use crate::accel::cull::{Culling, Deferred};
 use crate::accel::hierarchy::bvh::Bvh;
-use crate::accel::{Accel, Leaf, Records, StackView, Structure};
+use crate::accel::hierarchy::pairs::Pairs;
+use crate::accel::records::Records;
+use crate::accel::space::Space;
+use crate::accel::stack::StackView;
+use crate::accel::traverse::Traverse;
+use crate::axis::pick;
+use crate::format::ClassNode;
+use crate::format::record::Pair;
 use crate::format::record::{Gridels, UnitBox};
-use crate::format::{BlobError, SectionKind, Sections};
-use crate::number::{Number, pick};
+use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
+use crate::number::Number;
 use crate::observe::count::Count;
 use crate::ray::Ray;
-use crate::scene::Scene;
 
 /// A tree over origin and direction with lists of candidates, and the hierarchy where it has none.
 #[derive(Clone, Copy, Debug)]
 pub enum RayClasses {}
-
-/// A node of the tree over rays, as a word.
-///
-/// Bits 0 to 2 are the dimension that is halved: 0 to 2 a coordinate of the place, 3 and 4 the slope
-/// on the first and the second axis after the major one. Bits 3 to 31 are then the number of the
-/// first of two children, the lower half. A dimension of 7 means a leaf; bits 3 to 31 are its cell,
-/// or [`ClassNode::NONE`] for the hierarchy.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ClassNode(pub u32);
-
-impl ClassNode {
-    /// The cell of a leaf that has no list.
-    pub const NONE: u32 = u32::MAX >> 3;
-    /// What stands for the dimension of a leaf.
-    const LEAF: u32 = 7;
-    /// Dimensions of the space of rays.
-    pub const DIMENSIONS: usize = 5;
-
-    /// A node whose children are `first` and the next one.
-    pub const fn split(dimension: usize, first: u32) -> Self {
-        Self(dimension as u32 | first << 3)
-    }
-
-    /// A leaf with the list of a cell.
-    pub const fn leaf(cell: u32) -> Self {
-        Self(Self::LEAF | cell << 3)
-    }
-
-    /// The dimension that is halved; `None` for a leaf.
-    #[inline(always)]
-    const fn dimension(self) -> Option<usize> {
-        match self.0 & 7 {
-            Self::LEAF => None,
-            dimension => Some(dimension as usize),
-        }
-    }
-
-    #[inline(always)]
-    const fn number(self) -> u32 {
-        self.0 >> 3
-    }
-}
 
 /// A range of rays: for each dimension from where to where. Places are lengths with 13 fraction
 /// bits, slopes ratios with 30.
@@ -161,14 +125,16 @@ impl ClassPoint {
     }
 }
 
-impl Accel for RayClasses {
+impl Traverse for RayClasses {
     const STRUCTURE: Structure = Structure::RayClasses;
+    type Views<'a> = Views<'a>;
     type Cull<N: Number> = Deferred;
 
     // Once, and not for every set of effects that the ray loop is compiled for.
     #[inline(never)]
     fn walk<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
         ray: &Ray<N>,
         _: &Deferred,
         stack: &mut StackView,
@@ -177,16 +143,16 @@ impl Accel for RayClasses {
     ) {
         /// Culling steps that a place may be off by.
         const SLACK: i32 = 4;
-        let held = &scene.held.ray_classes;
-        let Some(point) = ClassPoint::of(scene.bounds(), ray) else {
+        let held = views;
+        let Some(point) = ClassPoint::of(space.bounds(), ray) else {
             return;
         };
-        let Some(cell) = held.cell(&point, scene.bounds()) else {
+        let Some(cell) = held.cell(&point, space.bounds()) else {
             let cull = Culling::new(ray);
-            return Bvh::walk(scene, ray, &cull, stack, count, leaf);
+            return Bvh::walk(space, &views.fallback, ray, &cull, stack, count, leaf);
         };
         look_up(cell, count);
-        let a_step = ClassRange::levels_a_step(scene.bounds(), point.face / 2);
+        let a_step = ClassRange::levels_a_step(space.bounds(), point.face / 2);
         let level = |t: N| {
             let step = t.to_cull().saturating_sub(point.start);
             ClassRange::key(step.saturating_add(SLACK), a_step)
@@ -194,7 +160,7 @@ impl Accel for RayClasses {
         let mut tmax = ray.tmax;
         let mut end = level(tmax);
         held.lists.ascend(cell, end, |slot| {
-            let limit = leaf(scene.shapes.single(slot), count)?;
+            let limit = leaf(space.shapes.single(slot), count)?;
             if limit < tmax {
                 tmax = limit;
                 end = level(tmax);
@@ -206,12 +172,14 @@ impl Accel for RayClasses {
 
 /// The tree of a scene, and its lists.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Held<'a> {
+pub struct Views<'a> {
     nodes: &'a [u32],
     lists: Candidates<'a>,
+    /// The hierarchy for rays without a list.
+    fallback: Pairs<'a, Pair>,
 }
 
-impl Held<'_> {
+impl Views<'_> {
     /// The cell of a ray's class; `None` for one that has no list.
     #[inline(always)]
     fn cell(&self, point: &ClassPoint, bounds: &UnitBox) -> Option<u32> {
@@ -236,7 +204,7 @@ const LISTS: ListSections = ListSections {
     keys: Some(SectionKind::ClassKeys),
 };
 
-impl<'a> Records<'a> for Held<'a> {
+impl<'a> Records<'a> for Views<'a> {
     const SECTIONS: &'static [SectionKind] = &[
         SectionKind::ClassNodes,
         LISTS.cells,
@@ -250,13 +218,14 @@ impl<'a> Records<'a> for Held<'a> {
         Ok(Self {
             nodes: sections.records(SectionKind::ClassNodes)?,
             lists: Candidates::read(sections, &LISTS)?,
+            fallback: Pairs::read(sections)?,
         })
     }
 
     /// Proves that there are six roots, that children come after their parents, so that every walk
     /// ends, and that leaves take the cells in order.
-    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
-        Structure::Bvh.needed_by(Structure::RayClasses, scene)?;
+    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
+        space.require(Structure::Bvh, Structure::RayClasses)?;
         let section = SectionKind::ClassNodes;
         if self.nodes.len() < 6 {
             return Err(BlobError::Count {
@@ -310,7 +279,7 @@ impl<'a> Records<'a> for Held<'a> {
         }
         let ascend = |before: u8, after: u8| before <= after;
         self.lists
-            .check(&LISTS, cells.into(), scene.shapes.total(), ascend)?;
+            .check(&LISTS, cells.into(), space.shapes.total(), ascend)?;
         Ok(0)
     }
 }

@@ -21,14 +21,16 @@
 use crate::accel::candidates::lists::look_up;
 use crate::accel::cells::lists::{Divisions, Lists, Tester, check_complete, divide, reach, record};
 use crate::accel::cull::{Cull, PairCulling};
-use crate::accel::{Accel, Leaf, Records, StackView, Structure};
+use crate::accel::records::Records;
+use crate::accel::space::Space;
+use crate::accel::stack::StackView;
+use crate::accel::traverse::Traverse;
 use crate::format::record::GridShape;
-use crate::format::{BlobError, SectionKind, Sections};
+use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
 use crate::number::Number;
 use crate::observe::count::Count;
-use crate::observe::event::{Event, Place};
+use crate::observe::event::{Event, NodeId};
 use crate::ray::Ray;
-use crate::scene::Scene;
 
 /// By how much primitives' boxes are widened before they are listed, in units.
 pub const MARGIN: i32 = 18;
@@ -39,36 +41,38 @@ pub enum Grid {}
 
 /// The grid of a scene.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Held<'a> {
+pub struct Views<'a> {
     shape: Option<&'a GridShape>,
     lists: Lists<'a>,
 }
 
-impl Accel for Grid {
+impl Traverse for Grid {
     const STRUCTURE: Structure = Structure::Grid;
+    type Views<'a> = Views<'a>;
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
         _: &mut StackView,
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let held = &scene.held.grid;
+        let held = views;
         let Some(shape) = held.shape else { return };
         count.planes(6);
         count.boxes(1);
         let limit = <Cull as PairCulling<N>>::limit;
-        let root = PairCulling::<N>::root(cull, scene.bounds(), limit(ray.tmax));
+        let root = PairCulling::<N>::root(cull, space.bounds(), limit(ray.tmax));
         if C::TELLS {
             count.tell(Event::Tested {
-                place: Place {
+                place: NodeId {
                     what: "grid",
                     number: 0,
                 },
-                sides: scene.bounds().0.map(|axis| axis.map(Some)),
+                sides: space.bounds().0.map(|axis| axis.map(Some)),
                 span: Cull::span(root),
             });
         }
@@ -76,8 +80,8 @@ impl Accel for Grid {
             return;
         }
         let mut end = root.far;
-        let mut tester = Tester::new(scene, held.lists, leaf);
-        let mut steps = Steps::new(cull, divide(scene.bounds(), shape.counts()), root.near);
+        let mut tester = Tester::new(space, held.lists, leaf);
+        let mut steps = Steps::new(cull, divide(space.bounds(), shape.counts()), root.near);
         loop {
             let cell = steps.cell();
             look_up(cell, count);
@@ -177,13 +181,13 @@ impl<'c> Steps<'c> {
     }
 }
 
-impl Held<'_> {
+impl Views<'_> {
     /// Proves that every primitive is in the lists of all cells that it reaches into, and that there
     /// are as many entries as that takes: so there are no others. A search that finds each entry of a
     /// list proves that they ascend.
-    fn check_lists(&self, scene: &Scene<'_>, counts: [u32; 3]) -> Result<(), BlobError> {
-        let slots = scene.shapes.total();
-        let reach = reach(scene, divide(scene.bounds(), counts), MARGIN);
+    fn check_lists(&self, space: &Space<'_>, counts: [u32; 3]) -> Result<(), BlobError> {
+        let slots = space.shapes.total();
+        let reach = reach(space, divide(space.bounds(), counts), MARGIN);
         let listed = self.lists.entries() as u64;
         // First, because it bounds the work.
         check_complete(listed, slots, &reach, SectionKind::GridSlots)?;
@@ -203,7 +207,7 @@ impl Held<'_> {
     }
 }
 
-impl<'a> Records<'a> for Held<'a> {
+impl<'a> Records<'a> for Views<'a> {
     const SECTIONS: &'static [SectionKind] = &[
         SectionKind::GridShape,
         SectionKind::GridStarts,
@@ -227,8 +231,8 @@ impl<'a> Records<'a> for Held<'a> {
         })
     }
 
-    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
-        let slots = scene.shapes.total();
+    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
+        let slots = space.shapes.total();
         let Some(shape) = self.shape else {
             if slots == 0 {
                 return Ok(0);
@@ -241,7 +245,7 @@ impl<'a> Records<'a> for Held<'a> {
             });
         };
         for (axis, count) in shape.counts().into_iter().enumerate() {
-            let [low, high] = scene.bounds().0[axis];
+            let [low, high] = space.bounds().0[axis];
             let most = if low == high { 1 } else { Divisions::MOST };
             if count == 0 || count > most {
                 let what = "number of divisions";
@@ -263,7 +267,7 @@ impl<'a> Records<'a> for Held<'a> {
             });
         }
         self.lists.check(SectionKind::GridStarts)?;
-        self.check_lists(scene, counts)?;
+        self.check_lists(space, counts)?;
         Ok(0)
     }
 }

@@ -5,12 +5,11 @@
 //! box's extent over the number of divisions, in 1/2^16 unit, rounded up. Where the box is flat
 //! there is one division.
 
-use crate::accel::Leaf;
+use crate::accel::space::Space;
 use crate::format::record::UnitBox;
-use crate::format::{BlobError, Indices, SectionKind, Sections};
-use crate::geometry::{Kind, Shapes};
+use crate::format::{BlobError, Indices, Kind, Leaf, SectionKind, Sections};
+use crate::geometry::Shapes;
 use crate::observe::count::Count;
-use crate::scene::Scene;
 
 /// The divisions of one axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -252,11 +251,11 @@ pub(in crate::accel) fn record(
 /// The cells that a primitive is listed in, given its slot over all kinds: those that its box meets
 /// once it is widened by a margin.
 pub(in crate::accel) fn reach(
-    scene: &Scene<'_>,
+    space: &Space<'_>,
     divisions: [Divisions; 3],
     margin: i32,
 ) -> impl Fn(usize) -> Option<Range> {
-    let shapes = scene.shapes;
+    let shapes = space.shapes;
     let ends = kind_ends(&shapes);
     move |slot| {
         let leaf = locate(&ends, slot as u32)?;
@@ -313,10 +312,10 @@ pub(in crate::accel) struct Tester<'a, L> {
 
 impl<'a, L> Tester<'a, L> {
     #[inline(always)]
-    pub(in crate::accel) fn new(scene: &Scene<'a>, lists: Lists<'a>, leaf: L) -> Self {
+    pub(in crate::accel) fn new(space: &Space<'a>, lists: Lists<'a>, leaf: L) -> Self {
         Self {
             lists,
-            ends: kind_ends(&scene.shapes),
+            ends: kind_ends(&space.shapes),
             mailbox: [u32::MAX; 8],
             leaf,
         }

@@ -14,14 +14,17 @@ use crate::accel::cells::lists::{
     Divisions, Lists, Range, Tester, check_complete, divide, reach, record,
 };
 use crate::accel::cull::{Cull, Culling, Interval, PairCulling};
-use crate::accel::{Accel, Entry, Leaf, Records, StackView, Structure};
-use crate::format::{BlobError, SectionKind, Sections};
+use crate::accel::records::Records;
+use crate::accel::space::Space;
+use crate::accel::stack::{Entry, StackView};
+use crate::accel::traverse::Traverse;
+use crate::format::OctreeNode;
+use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
 use crate::number::Number;
 use crate::observe::count::Count;
 use crate::observe::event;
 use crate::observe::event::{Event, Sides};
 use crate::ray::Ray;
-use crate::scene::Scene;
 use heapless::Vec;
 
 /// The octree: one word a node.
@@ -30,34 +33,6 @@ pub enum Octree {}
 
 /// Most levels of inner nodes: each leaves at most seven children waiting.
 pub const MOST_LEVELS: u32 = 6;
-
-/// A node: one word.
-///
-/// An inner node is the number of the first of its eight children, which lie together, the one with
-/// bit 0 set on the upper side of x, bit 1 of y, bit 2 of z. A leaf has bit 31 set and is the number
-/// of its list, or all bits for one without primitives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OctreeNode(pub u32);
-
-impl OctreeNode {
-    /// A leaf without primitives.
-    pub const EMPTY: Self = Self(u32::MAX);
-
-    /// A leaf with a list.
-    pub const fn leaf(list: u32) -> Self {
-        Self(list | 1 << 31)
-    }
-
-    #[inline(always)]
-    const fn is_leaf(self) -> bool {
-        self.0 >> 31 != 0
-    }
-
-    #[inline(always)]
-    const fn list(self) -> u32 {
-        self.0 & 0x7fff_ffff
-    }
-}
 
 /// Where a node lies: its first division on each axis, six bits each, and the level above the leaves
 /// of the finest division.
@@ -105,49 +80,51 @@ impl Place {
 
 /// The octree of a scene.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Held<'a> {
+pub struct Views<'a> {
     nodes: &'a [u32],
     lists: Lists<'a>,
     /// Levels of inner nodes.
     levels: u32,
 }
 
-impl Held<'_> {
-    fn divisions(&self, scene: &Scene<'_>) -> [Divisions; 3] {
-        divide(scene.bounds(), [1 << self.levels; 3])
+impl Views<'_> {
+    fn divisions(&self, space: &Space<'_>) -> [Divisions; 3] {
+        divide(space.bounds(), [1 << self.levels; 3])
     }
 }
 
-impl Accel for Octree {
+impl Traverse for Octree {
     const STRUCTURE: Structure = Structure::Octree;
+    type Views<'a> = Views<'a>;
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
         stack: &mut StackView,
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let held = &scene.held.octree;
+        let held = views;
         let limit = <Cull as PairCulling<N>>::limit;
         let mut end = limit(ray.tmax);
         count.planes(6);
         count.boxes(1);
-        let root = PairCulling::<N>::root(cull, scene.bounds(), end);
+        let root = PairCulling::<N>::root(cull, space.bounds(), end);
         if C::TELLS {
             count.tell(Event::Tested {
                 place: told(0),
-                sides: scene.bounds().0.map(|axis| axis.map(Some)),
+                sides: space.bounds().0.map(|axis| axis.map(Some)),
                 span: Cull::span(root),
             });
         }
         if root.near > root.far {
             return;
         }
-        let divisions = held.divisions(scene);
-        let mut tester = Tester::new(scene, held.lists, leaf);
+        let divisions = held.divisions(space);
+        let mut tester = Tester::new(space, held.lists, leaf);
         // The children's order along the ray: on every axis the side that it comes from first.
         let from = cull.descending();
         let (mut number, mut place) = (0_u32, Place::root(held.levels));
@@ -227,8 +204,8 @@ impl Accel for Octree {
 }
 
 /// A node as events tell it.
-fn told(number: u32) -> event::Place {
-    event::Place {
+fn told(number: u32) -> event::NodeId {
+    event::NodeId {
         what: "node",
         number,
     }
@@ -262,7 +239,7 @@ fn halves(
     halves
 }
 
-impl<'a> Records<'a> for Held<'a> {
+impl<'a> Records<'a> for Views<'a> {
     const SECTIONS: &'static [SectionKind] = &[
         SectionKind::OctreeNodes,
         SectionKind::OctreeStarts,
@@ -283,8 +260,8 @@ impl<'a> Records<'a> for Held<'a> {
     }
 
     /// Children follow their parents, so every node is reached once; leaves take the lists in order.
-    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
-        let slots = scene.shapes.total();
+    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
+        let slots = space.shapes.total();
         if self.nodes.is_empty() != (slots == 0) {
             return Err(BlobError::Count {
                 section: SectionKind::OctreeNodes,
@@ -293,7 +270,7 @@ impl<'a> Records<'a> for Held<'a> {
             });
         }
         self.lists.check(SectionKind::OctreeStarts)?;
-        let reach = reach(scene, self.divisions(scene), 0);
+        let reach = reach(space, self.divisions(space), 0);
         let section = SectionKind::OctreeSlots;
         let (mut pairs, mut lists) = (0, 0);
         let mut waiting: Vec<(u32, Place), { 8 * MOST_LEVELS as usize }> = Vec::new();

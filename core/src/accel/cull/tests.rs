@@ -94,7 +94,7 @@ fn holds_the_true_interval<N: Number>(
         } else {
             (second, first)
         };
-        // Before the origin, and beyond every scene, nothing needs to be held.
+        // Before the origin, and beyond every space, nothing needs to be held.
         let (zero, end) = (Fraction(0, 1), Fraction(2 * 65_536, 1));
         let near = Fraction(interval.near.into(), 1);
         let far = Fraction(interval.far.into(), 1);

@@ -1,35 +1,41 @@
 //! The bounding volume hierarchy with ordinary traversal: all planes of both children are tested.
 
 use crate::accel::cull::PairCulling;
-use crate::accel::hierarchy::link::Node;
 use crate::accel::hierarchy::pairs::{BoxPair, Pairs, Walk};
-use crate::accel::{Accel, Leaf, StackView, Structure};
-use crate::format::SectionKind;
+use crate::accel::space::Space;
+use crate::accel::stack::StackView;
+use crate::accel::traverse::Traverse;
+use crate::format::link::Node;
 use crate::format::record::{Pair, UnitBox};
+use crate::format::{Leaf, SectionKind, Structure};
 use crate::number::Number;
 use crate::observe::count::Count;
 use crate::observe::event::Sides;
 use crate::ray::Ray;
-use crate::scene::Scene;
 
 /// The hierarchy with 32 bytes a pair; twelve planes are tested a pair.
 #[derive(Clone, Copy, Debug)]
 pub enum Bvh {}
 
-impl Accel for Bvh {
+/// The records of a scene.
+pub type Views<'a> = Pairs<'a, Pair>;
+
+impl Traverse for Bvh {
     const STRUCTURE: Structure = Structure::Bvh;
+    type Views<'a> = Views<'a>;
     type Cull<N: Number> = N::Cull;
 
     #[inline]
     fn walk<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &N::Cull,
         stack: &mut StackView,
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        walk(scene, ray, cull, stack, count, leaf);
+        walk(space, views, ray, cull, stack, count, leaf);
     }
 }
 
@@ -38,7 +44,8 @@ impl Accel for Bvh {
 /// compared plane for plane.
 #[inline]
 pub fn walk<N: Number, K: PairCulling<N>, C: Count>(
-    scene: &Scene<'_>,
+    space: &Space<'_>,
+    pairs: &Pairs<'_, Pair>,
     ray: &Ray<N>,
     cull: &K,
     stack: &mut StackView,
@@ -46,17 +53,14 @@ pub fn walk<N: Number, K: PairCulling<N>, C: Count>(
     leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
 ) {
     let walk = Walk {
-        scene,
-        pairs: scene.held.bvh,
-        root: |limit| cull.root(scene.bounds(), limit),
+        space,
+        pairs: *pairs,
+        root: |limit| cull.root(space.bounds(), limit),
         root_planes: 6,
         narrow: |pair: &Pair, _, limit| cull.children(pair, limit),
     };
     walk.run::<N, K, C>(ray.tmax, stack, count, leaf);
 }
-
-/// The pairs of a scene.
-pub(crate) type Held<'a> = Pairs<'a, Pair>;
 
 impl BoxPair for Pair {
     const SECTION: SectionKind = SectionKind::Pairs;

@@ -26,14 +26,18 @@
 use crate::SMALL;
 use crate::accel::cull::{Cull, Culling, Interval, PairCulling};
 use crate::accel::hierarchy::order::Order;
-use crate::accel::{Accel, Entry, Leaf, MAX_LEVELS, Records, StackView, Structure};
+use crate::accel::records::Records;
+use crate::accel::space::Space;
+use crate::accel::stack::{Entry, StackView};
+use crate::accel::traverse::Traverse;
+use crate::format::NodeWord;
+use crate::format::limits::MAX_LEVELS;
 use crate::format::record::{DualNode, UnitBox};
-use crate::format::{BlobError, SectionKind, Sections};
+use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
 use crate::number::{CullAxis, NARROW_PRODUCTS, Number};
 use crate::observe::count::Count;
-use crate::observe::event::{Event, Place, Sides};
+use crate::observe::event::{Event, NodeId, Sides};
 use crate::ray::Ray;
-use crate::scene::Scene;
 use core::hint::black_box;
 use heapless::Vec;
 
@@ -45,78 +49,24 @@ const FORM_IN_MEMORY: bool = cfg!(target_arch = "arm") && !NARROW_PRODUCTS;
 #[derive(Clone, Copy, Debug)]
 pub enum DualSplit {}
 
-/// What a node is: the last word of its record.
-///
-/// Bits 0 to 23 are the number of its first child, which the second follows, or that of its leaf.
-/// Bits 24 and 25 are the split's axis, 26 and 27 the first carve's, 28 and 29 the second's; 3
-/// stands for none, and a node without a split is a leaf. Bits 30 and 31 are 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Way(pub u32);
-
-impl Way {
-    /// Number of nodes or leaves that can be told apart.
-    pub const NODES: u32 = 1 << 24;
-    /// The axis of a split or carve that there is not.
-    pub const NONE: u32 = 3;
-
-    /// A node's last word.
-    pub const fn new(number: u32, split: u32, carves: [u32; 2]) -> Self {
-        Self(number | split << 24 | carves[0] << 26 | carves[1] << 28)
-    }
-
-    /// Number of the first child or the leaf.
-    #[inline(always)]
-    pub const fn number(self) -> u32 {
-        self.0 & 0xff_ffff
-    }
-
-    /// The axis of the split, or 3 in a leaf.
-    #[inline(always)]
-    pub const fn split(self) -> usize {
-        (self.0 >> 24 & 3) as usize
-    }
-
-    /// The axes of the split and the first carve, four times the latter.
-    #[inline(always)]
-    const fn kind(self) -> u32 {
-        self.0 >> 24 & 15
-    }
-
-    /// The axis of the first carve, or 3.
-    #[inline(always)]
-    const fn first_carve(self) -> usize {
-        (self.0 >> 26 & 3) as usize
-    }
-
-    /// The axis of the second carve, or 3.
-    #[inline(always)]
-    const fn second_carve(self) -> usize {
-        (self.0 >> 28) as usize
-    }
-
-    /// The axes of the carves, or 3.
-    #[inline(always)]
-    pub const fn carves(self) -> [usize; 2] {
-        [(self.0 >> 26 & 3) as usize, (self.0 >> 28 & 3) as usize]
-    }
-}
-
-impl Accel for DualSplit {
+impl Traverse for DualSplit {
     const STRUCTURE: Structure = Structure::DualSplit;
+    type Views<'a> = Views<'a>;
     type Cull<N: Number> = Cull;
 
     #[inline]
     fn walk<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
         stack: &mut StackView,
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let nodes = scene.held.dual_split.0;
+        let nodes = views.0;
         let mut limit = <Cull as PairCulling<N>>::limit(ray.tmax);
-        let mut interval = PairCulling::<N>::root(cull, scene.bounds(), limit);
+        let mut interval = PairCulling::<N>::root(cull, space.bounds(), limit);
         let cull = if FORM_IN_MEMORY {
             black_box(cull)
         } else {
@@ -124,7 +74,7 @@ impl Accel for DualSplit {
         };
         tested(count, 6, || Event::Tested {
             place: place(0),
-            sides: scene.bounds().0.map(|axis| axis.map(Some)),
+            sides: space.bounds().0.map(|axis| axis.map(Some)),
             span: Cull::span(interval),
         });
         if interval.near > interval.far {
@@ -158,7 +108,7 @@ impl Accel for DualSplit {
                     continue;
                 }
                 Next::Leaf(number) => {
-                    let Some(range) = scene.leaf(number) else {
+                    let Some(range) = space.leaf(number) else {
                         return;
                     };
                     let Some(tmax) = leaf(range, count) else {
@@ -193,8 +143,8 @@ impl Accel for DualSplit {
 }
 
 /// A node as events tell it.
-fn place(number: u32) -> Place {
-    Place {
+fn place(number: u32) -> NodeId {
+    NodeId {
         what: "node",
         number,
     }
@@ -239,7 +189,7 @@ fn visit<C: Count>(
     cull: &Cull,
     count: &mut C,
 ) -> Next {
-    match Way(record.way).kind() {
+    match NodeWord(record.way).kind() {
         _ if SMALL => visit_kind::<ANY, ANY, C>(record, number, interval, cull, count),
         0 => visit_kind::<0, 0, C>(record, number, interval, cull, count),
         1 => visit_kind::<1, 0, C>(record, number, interval, cull, count),
@@ -271,7 +221,7 @@ fn visit_kind<const SPLIT: usize, const CARVE: usize, C: Count>(
     cull: &Cull,
     count: &mut C,
 ) -> Next {
-    let way = Way(record.way);
+    let way = NodeWord(record.way);
     let first = if CARVE == ANY {
         way.first_carve()
     } else {
@@ -323,7 +273,7 @@ fn split<C: Count>(
     form: &CullAxis,
     count: &mut C,
 ) -> Next {
-    let (planes, way) = (record.split, Way(record.way));
+    let (planes, way) = (record.split, NodeWord(record.way));
     let first = way.number();
     let Interval {
         near: enter,
@@ -374,7 +324,7 @@ fn split<C: Count>(
 
 /// The nodes of a scene, breadth first.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Held<'a>(&'a [DualNode]);
+pub struct Views<'a>(&'a [DualNode]);
 
 const SECTION: SectionKind = SectionKind::DualNodes;
 
@@ -389,7 +339,7 @@ fn error(index: usize, what: &'static str, found: i64, expected: i64) -> BlobErr
     }
 }
 
-impl<'a> Records<'a> for Held<'a> {
+impl<'a> Records<'a> for Views<'a> {
     const SECTIONS: &'static [SectionKind] = &[SECTION];
     const USES_LEAVES: bool = true;
 
@@ -402,23 +352,23 @@ impl<'a> Records<'a> for Held<'a> {
     ///
     /// Costs the depth of each leaf, and [`MAX_LEVELS`] words of stack.
     #[inline(never)]
-    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
-        let depth = check_order(self.0, scene.leaves.len())?;
+    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
+        let depth = check_order(self.0, space.leaves.len())?;
         // The nodes above the current one: twice their number, and 1 where it is above the split.
         let mut path: Vec<u32, MAX_LEVELS> = Vec::new();
         let mut current = 0;
         while let Some(record) = self.0.get(current as usize) {
-            let way = Way(record.way);
-            if way.split() != Way::NONE as usize {
+            let way = NodeWord(record.way);
+            if way.split() != NodeWord::NONE as usize {
                 // The depth was proved to fit.
                 let _ = path.push(current << 1);
                 current = way.number();
                 continue;
             }
-            let mut region = self.region(&path, *scene.bounds());
+            let mut region = self.region(&path, *space.bounds());
             carve(&mut region, record);
-            let leaf = scene.leaf(way.number());
-            if !leaf.is_some_and(|leaf| scene.shapes.leaf_inside(leaf, &region)) {
+            let leaf = space.leaf(way.number());
+            if !leaf.is_some_and(|leaf| space.shapes.leaf_inside(leaf, &region)) {
                 let what = "primitives of its leaf outside of its region: excess";
                 return Err(error(current as usize, what, 1, 0));
             }
@@ -428,13 +378,15 @@ impl<'a> Records<'a> for Held<'a> {
             let Some(step) = path.last_mut() else { break };
             *step |= 1;
             let above = self.0.get((*step >> 1) as usize);
-            current = above.map_or(u32::MAX, |above| Way(above.way).number().wrapping_add(1));
+            current = above.map_or(u32::MAX, |above| {
+                NodeWord(above.way).number().wrapping_add(1)
+            });
         }
         Ok(depth)
     }
 }
 
-impl Held<'_> {
+impl Views<'_> {
     /// What a path down leaves of the scene's box.
     fn region(&self, path: &[u32], bounds: UnitBox) -> UnitBox {
         let mut region = bounds;
@@ -443,7 +395,7 @@ impl Held<'_> {
                 break;
             };
             carve(&mut region, record);
-            if let Some(sides) = region.0.get_mut(Way(record.way).split()) {
+            if let Some(sides) = region.0.get_mut(NodeWord(record.way).split()) {
                 if step & 1 == 0 {
                     sides[1] = sides[1].min((record.split >> 16) as i16);
                 } else {
@@ -457,7 +409,7 @@ impl Held<'_> {
 
 /// Cuts a region down to a node's carves.
 fn carve(region: &mut UnitBox, record: &DualNode) {
-    for (axis, planes) in Way(record.way).carves().into_iter().zip(record.carves) {
+    for (axis, planes) in NodeWord(record.way).carves().into_iter().zip(record.carves) {
         if let Some(sides) = region.0.get_mut(axis) {
             sides[0] = sides[0].max(planes as i16);
             sides[1] = sides[1].min((planes >> 16) as i16);
@@ -478,7 +430,7 @@ fn check_order(nodes: &[DualNode], leaves: usize) -> Result<usize, BlobError> {
     }
     let mut order = Order::new(SECTION, nodes.len());
     for (index, record) in nodes.iter().enumerate() {
-        let way = Way(record.way);
+        let way = NodeWord(record.way);
         let [first, second] = way.carves();
         let unused = record.way >> 30 != 0 || first == 3 && second != 3;
         if unused {

@@ -7,39 +7,45 @@
 //! brings its interval in the parent and narrows it by six planes instead of twelve.
 
 use crate::accel::cull::{Cull, Interval, PairCulling};
-use crate::accel::hierarchy::link::{Link, Node};
 use crate::accel::hierarchy::pairs::{BoxPair, Pairs, Walk};
-use crate::accel::{Accel, Leaf, StackView, Structure};
-use crate::format::SectionKind;
+use crate::accel::space::Space;
+use crate::accel::stack::StackView;
+use crate::accel::traverse::Traverse;
+use crate::format::link::{Link, Node};
 use crate::format::record::{FlaggedPair, UnitBox};
+use crate::format::{Leaf, SectionKind, Structure};
 use crate::number::Number;
 use crate::observe::count::Count;
 use crate::observe::event::Sides;
 use crate::ray::Ray;
-use crate::scene::Scene;
 
 /// The hierarchy with 16 bytes a pair; six planes are tested a pair.
 #[derive(Clone, Copy, Debug)]
 pub enum Flagged {}
 
-impl Accel for Flagged {
+/// The records of a scene.
+pub type Views<'a> = Pairs<'a, FlaggedPair>;
+
+impl Traverse for Flagged {
     const STRUCTURE: Structure = Structure::Flagged;
+    type Views<'a> = Views<'a>;
     type Cull<N: Number> = Cull;
 
     #[inline]
     fn walk<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
         stack: &mut StackView,
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let root = |limit| PairCulling::<N>::root(cull, scene.bounds(), limit);
+        let root = |limit| PairCulling::<N>::root(cull, space.bounds(), limit);
         let narrow = |pair: &FlaggedPair, parent, _| narrow(pair, parent, cull);
         let walk = Walk {
-            scene,
-            pairs: scene.held.flagged,
+            space,
+            pairs: *views,
             root,
             root_planes: 6,
             narrow,
@@ -47,9 +53,6 @@ impl Accel for Flagged {
         walk.run::<N, Cull, C>(ray.tmax, stack, count, leaf);
     }
 }
-
-/// The pairs of a scene.
-pub(crate) type Held<'a> = Pairs<'a, FlaggedPair>;
 
 impl BoxPair for FlaggedPair {
     const SECTION: SectionKind = SectionKind::FlaggedPairs;

@@ -6,35 +6,39 @@ use crate::accel::hierarchy::pairs::Walk;
 use crate::accel::hierarchy::slabs::{
     Forms, SlabPair, SlabPairs, forms, in_order, planes, root_interval,
 };
-use crate::accel::{Accel, Leaf, StackView, Structure};
+use crate::accel::space::Space;
+use crate::accel::stack::StackView;
+use crate::accel::traverse::Traverse;
+use crate::format::{Leaf, Structure};
 use crate::number::Number;
 use crate::observe::count::Count;
 use crate::ray::Ray;
-use crate::scene::Scene;
 
 /// The hierarchy of slabs with two planes a direction and pair.
 #[derive(Clone, Copy, Debug)]
 pub enum FlaggedSlabs {}
 
-/// The hierarchy of a scene.
-pub(crate) type Held<'a> = SlabPairs<'a, true>;
+/// The records of a scene.
+pub type Views<'a> = SlabPairs<'a, true>;
 
-impl Accel for FlaggedSlabs {
+impl Traverse for FlaggedSlabs {
     const STRUCTURE: Structure = Structure::FlaggedSlabs;
+    type Views<'a> = Views<'a>;
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
         stack: &mut StackView,
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let pairs = scene.held.flagged_slabs;
+        let pairs = *views;
         let (forms, start) = (forms(ray, pairs.root.len()), cull.start());
         let walk = Walk {
-            scene,
+            space,
             pairs,
             root: |limit| root_interval(&forms, pairs.root, start, limit),
             root_planes: 2 * pairs.root.len() as u32,

@@ -24,13 +24,6 @@ pub mod dual_split;
 pub mod flagged;
 #[cfg(feature = "flagged-slabs")]
 pub mod flagged_slabs;
-#[cfg(any(
-    feature = "bvh",
-    feature = "flagged",
-    feature = "slabs",
-    feature = "spheres"
-))]
-pub(in crate::accel) mod link;
 pub(crate) mod order;
 #[cfg(any(
     feature = "bvh",

@@ -1,17 +1,17 @@
 //! Breadth-first order: what makes every walk through a hierarchy end.
 
-use crate::accel::MAX_LEVELS;
 #[cfg(feature = "dual-split")]
-use crate::accel::hierarchy::dual_split::Way;
+use crate::format::NodeWord;
+use crate::format::limits::MAX_LEVELS;
 #[cfg(feature = "flagged")]
-use crate::accel::hierarchy::link::Link;
+use crate::format::link::Link;
 #[cfg(any(
     feature = "bvh",
     feature = "flagged",
     feature = "slabs",
     feature = "spheres"
 ))]
-use crate::accel::hierarchy::link::Node;
+use crate::format::link::Node;
 use crate::format::record::{DualNode, FlaggedPair, Pair};
 use crate::format::{BlobError, SectionKind};
 
@@ -76,7 +76,7 @@ impl Order {
                 self.pair([link.child(number, 0), link.child(number, 1)])
             }
             #[cfg(feature = "dual-split")]
-            (SectionKind::DualNodes, [_, way]) => self.dual(Way(way)),
+            (SectionKind::DualNodes, [_, way]) => self.dual(NodeWord(way)),
             _ => Ok(()),
         }
     }
@@ -105,8 +105,8 @@ impl Order {
     /// Takes the current node, which has a split or is a leaf.
     #[cfg(feature = "dual-split")]
     #[inline(always)]
-    pub(in crate::accel) const fn dual(&mut self, way: Way) -> Result<(), BlobError> {
-        let is_leaf = way.split() == Way::NONE as usize;
+    pub(in crate::accel) const fn dual(&mut self, way: NodeWord) -> Result<(), BlobError> {
+        let is_leaf = way.split() == NodeWord::NONE as usize;
         if let Err(error) = self.child(is_leaf, way.number()) {
             return Err(error);
         }

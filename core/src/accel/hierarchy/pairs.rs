@@ -1,17 +1,29 @@
 //! What hierarchies of pairs share: the walk, and the proof that it is sound.
 
 use crate::accel::cull::{Culling, Interval, PairCulling};
-use crate::accel::hierarchy::link::Node;
 use crate::accel::hierarchy::order::Order;
-use crate::accel::{Entry, Leaf, MAX_LEVELS, Records, StackView};
+use crate::accel::records::Records;
+use crate::accel::space::Space;
+use crate::accel::stack::{Entry, StackView};
+use crate::format::limits::MAX_LEVELS;
+use crate::format::link::Node;
 use crate::format::record::UnitBox;
-use crate::format::{BlobError, SectionKind, Sections};
+use crate::format::{BlobError, Leaf, SectionKind, Sections};
 use crate::geometry::Shapes;
 use crate::number::Number;
 use crate::observe::count::Count;
-use crate::observe::event::{Event, Sides};
-use crate::scene::Scene;
+use crate::observe::event::{Event, NodeId, Sides};
 use heapless::Vec;
+
+impl Node {
+    /// The node as observers know it.
+    pub(in crate::accel) const fn id(self) -> NodeId {
+        NodeId {
+            what: if self.is_leaf() { "leaf" } else { "pair" },
+            number: self.number(),
+        }
+    }
+}
 
 /// A record of two children.
 pub(in crate::accel) trait PairRecord: Copy {
@@ -32,7 +44,7 @@ pub(in crate::accel) trait PairRecord: Copy {
     /// The test of a child, as events tell it.
     fn tested(&self, number: u32, side: u32, span: [f64; 2]) -> Event {
         Event::Tested {
-            place: self.child(number, side).place(),
+            place: self.child(number, side).id(),
             sides: self.sides()[(side & 1) as usize],
             span,
         }
@@ -88,7 +100,7 @@ pub(in crate::accel) trait PairArray: Copy {
 
 /// The pairs of a hierarchy of boxes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pairs<'a, P>(pub(in crate::accel) &'a [P]);
+pub struct Pairs<'a, P>(pub(in crate::accel) &'a [P]);
 
 impl<'a, P: BoxPair> PairArray for Pairs<'a, P> {
     type Pair = &'a P;
@@ -111,14 +123,14 @@ impl<'a, P: BoxPair> Records<'a> for Pairs<'a, P> {
         Ok(Self(sections.records(P::SECTION)?))
     }
 
-    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
-        check_pairs(*self, scene.leaves, &scene.shapes, scene.bounds())
+    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
+        check_pairs(*self, space.leaves, &space.shapes, space.bounds())
     }
 }
 
 /// A walk through a hierarchy: what the ray brings to it.
 pub(in crate::accel) struct Walk<'w, 'a, A, R, F> {
-    pub(in crate::accel) scene: &'w Scene<'a>,
+    pub(in crate::accel) space: &'w Space<'a>,
     pub(in crate::accel) pairs: A,
     /// The scene's interval, given the limit.
     pub(in crate::accel) root: R,
@@ -155,8 +167,8 @@ where
         let interval = (self.root)(limit);
         if C::TELLS {
             count.tell(Event::Tested {
-                place: root(self.pairs).place(),
-                sides: self.scene.bounds().0.map(|axis| axis.map(Some)),
+                place: root(self.pairs).id(),
+                sides: self.space.bounds().0.map(|axis| axis.map(Some)),
                 span: span::<N, K>(interval),
             });
         }
@@ -197,10 +209,10 @@ where
         stack.clear();
         loop {
             if C::TELLS {
-                count.tell(Event::Opened(node.place()));
+                count.tell(Event::Opened(node.id()));
             }
             if node.is_leaf() {
-                let Some(range) = self.scene.leaf(node.number()) else {
+                let Some(range) = self.space.leaf(node.number()) else {
                     return;
                 };
                 let Some(tmax) = leaf(range, count) else {
@@ -261,7 +273,7 @@ where
                 }
                 if C::TELLS {
                     count.tell(Event::GivenUp {
-                        place: Node(entry.node).place(),
+                        place: Node(entry.node).id(),
                         enters: K::units(entry.near),
                     });
                 }

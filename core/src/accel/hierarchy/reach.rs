@@ -9,8 +9,9 @@
 //! to its square, along the ray, and a square's error counts by the radius.
 
 use crate::accel::hierarchy::slabs::Direction;
+use crate::format::Kind;
 use crate::format::record::UnitBox;
-use crate::geometry::{Kind, Shapes};
+use crate::geometry::Shapes;
 
 /// The points at which a hit can be reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

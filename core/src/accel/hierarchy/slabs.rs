@@ -13,15 +13,17 @@
 //! `flagged_slabs.rs`.
 
 use crate::accel::cull::{Cull, Interval};
-use crate::accel::hierarchy::link::{Link, Node};
 use crate::accel::hierarchy::pairs::{PairArray, PairRecord, Walk, check_tree};
 use crate::accel::hierarchy::reach::Reach;
-use crate::accel::{Accel, Leaf, Records, StackView, Structure};
-use crate::format::{BlobError, SectionKind, Sections};
+use crate::accel::records::Records;
+use crate::accel::space::Space;
+use crate::accel::stack::StackView;
+use crate::accel::traverse::Traverse;
+use crate::format::link::{Link, Node};
+use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
 use crate::number::{CullAxis, Number};
 use crate::observe::count::Count;
 use crate::ray::Ray;
-use crate::scene::Scene;
 use heapless::Vec;
 
 /// A direction of slabs.
@@ -141,7 +143,7 @@ pub(in crate::accel) fn root_interval(
 
 /// The records of one hierarchy: so many words each.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SlabPairs<'a, const FLAGGED: bool> {
+pub struct SlabPairs<'a, const FLAGGED: bool> {
     /// The root's volume, a word a direction.
     pub(in crate::accel) root: &'a [u32],
     words: &'a [u32],
@@ -248,22 +250,27 @@ fn plain(pair: SlabPair<'_, false>, forms: &Forms, start: i32, limit: i32) -> [I
     children
 }
 
-impl Accel for Slabs {
+/// The records of a scene.
+pub type Views<'a> = SlabPairs<'a, false>;
+
+impl Traverse for Slabs {
     const STRUCTURE: Structure = Structure::Slabs;
+    type Views<'a> = Views<'a>;
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
         stack: &mut StackView,
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let pairs = scene.held.slabs;
+        let pairs = *views;
         let (forms, start) = (forms(ray, pairs.root.len()), cull.start());
         let walk = Walk {
-            scene,
+            space,
             pairs,
             root: |limit| root_interval(&forms, pairs.root, start, limit),
             root_planes: 2 * pairs.root.len() as u32,
@@ -272,9 +279,6 @@ impl Accel for Slabs {
         walk.run::<N, Cull, C>(ray.tmax, stack, count, leaf);
     }
 }
-
-/// The hierarchy of a scene.
-pub(crate) type Held<'a> = SlabPairs<'a, false>;
 
 impl<'a, const FLAGGED: bool> Records<'a> for SlabPairs<'a, FLAGGED> {
     const SECTIONS: &'static [SectionKind] = if FLAGGED {
@@ -294,11 +298,11 @@ impl<'a, const FLAGGED: bool> Records<'a> for SlabPairs<'a, FLAGGED> {
         Ok(pairs)
     }
 
-    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
+    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
         let pairs = *self;
         let directions = pairs.root.len();
         let section = Self::SECTIONS[0];
-        if !DIRECTION_COUNTS.contains(&directions) && !scene.leaves.is_empty() {
+        if !DIRECTION_COUNTS.contains(&directions) && !space.leaves.is_empty() {
             return Err(BlobError::Count {
                 section,
                 found: directions,
@@ -328,7 +332,7 @@ impl<'a, const FLAGGED: bool> Records<'a> for SlabPairs<'a, FLAGGED> {
             };
             let slots = leaf.first as usize..(leaf.first + leaf.count) as usize;
             slots.into_iter().all(|index| {
-                Reach::of(&scene.shapes, leaf.kind, index).is_some_and(|reach| {
+                Reach::of(&space.shapes, leaf.kind, index).is_some_and(|reach| {
                     let directions = DIRECTIONS.iter().zip(volume).take(directions);
                     directions.into_iter().all(|(&direction, &[low, high])| {
                         let [lowest, highest] = reach.slab(direction);
@@ -337,6 +341,6 @@ impl<'a, const FLAGGED: bool> Records<'a> for SlabPairs<'a, FLAGGED> {
                 })
             })
         };
-        check_tree(pairs, scene.leaves, root, children, holds)
+        check_tree(pairs, space.leaves, root, children, holds)
     }
 }

@@ -10,27 +10,31 @@
 //! than a radius from the ray's nearest point, and no ball above it is passed over.
 
 use crate::accel::cull::{Cull, Interval, PairCulling};
-use crate::accel::hierarchy::link::Node;
 use crate::accel::hierarchy::pairs::{PairArray, PairRecord, Walk, check_tree};
 use crate::accel::hierarchy::reach::Reach;
-use crate::accel::{Accel, Leaf, Records, StackView, Structure};
+use crate::accel::records::Records;
+use crate::accel::space::Space;
+use crate::accel::stack::StackView;
+use crate::accel::traverse::Traverse;
+use crate::format::link::Node;
 use crate::format::record::{Ball, BallPair};
-use crate::format::{BlobError, SectionKind, Sections};
+use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
 use crate::number::Number;
 use crate::observe::count::Count;
 use crate::ray::Ray;
-use crate::scene::Scene;
 
 /// The hierarchy of bounding spheres; no plane is tested below the root, but two balls a pair.
 #[derive(Clone, Copy, Debug)]
 pub enum Spheres {}
 
-impl Accel for Spheres {
+impl Traverse for Spheres {
     const STRUCTURE: Structure = Structure::Spheres;
+    type Views<'a> = Views<'a>;
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
         stack: &mut StackView,
@@ -47,9 +51,9 @@ impl Accel for Spheres {
             }
         };
         let walk = Walk {
-            scene,
-            pairs: scene.held.spheres.0,
-            root: |limit| PairCulling::<N>::root(cull, scene.bounds(), limit),
+            space,
+            pairs: views.0,
+            root: |limit| PairCulling::<N>::root(cull, space.bounds(), limit),
             root_planes: 6,
             narrow: |pair: &BallPair, _, limit| pair.balls.map(|ball| meet(ball, limit)),
         };
@@ -84,7 +88,7 @@ fn interval<N: Number>(ray: &Ray<N>, recip_norm2: N, ball: Ball) -> Interval {
 
 /// The hierarchy of a scene.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Held<'a>(pub(in crate::accel) &'a [BallPair]);
+pub struct Views<'a>(pub(in crate::accel) &'a [BallPair]);
 
 impl PairRecord for &BallPair {
     const SECTION: SectionKind = SectionKind::BallPairs;
@@ -100,7 +104,7 @@ impl PairRecord for &BallPair {
     }
 }
 
-impl<'a> Records<'a> for Held<'a> {
+impl<'a> Records<'a> for Views<'a> {
     const SECTIONS: &'static [SectionKind] = &[SectionKind::BallPairs];
     const USES_LEAVES: bool = true;
 
@@ -108,13 +112,13 @@ impl<'a> Records<'a> for Held<'a> {
         Ok(Self(sections.records(SectionKind::BallPairs)?))
     }
 
-    /// At most [`MAX_LEVELS`](crate::accel::MAX_LEVELS) balls are asked about each primitive.
-    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
+    /// At most [`MAX_LEVELS`](crate::format::limits::MAX_LEVELS) balls are asked about each primitive.
+    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
         let holds = |leaf: Leaf, path: &[Ball]| {
             let slots = leaf.first as usize..(leaf.first + leaf.count) as usize;
             // The first of the path stands for the root, whose box is tested.
             slots.into_iter().all(|index| {
-                Reach::of(&scene.shapes, leaf.kind, index).is_some_and(|reach| {
+                Reach::of(&space.shapes, leaf.kind, index).is_some_and(|reach| {
                     let balls = path.iter().skip(1);
                     balls
                         .into_iter()
@@ -126,7 +130,7 @@ impl<'a> Records<'a> for Held<'a> {
             center: [0; 3],
             radius: 0,
         };
-        check_tree(self.0, scene.leaves, root, |pair, _| Ok(pair.balls), holds)
+        check_tree(self.0, space.leaves, root, |pair, _| Ok(pair.balls), holds)
     }
 }
 

@@ -1,12 +1,11 @@
 //! The proof that a blob's eight-wide hierarchy is sound.
 
-use crate::accel::wide::Child;
-use crate::accel::{Leaf, MAX_STACK_DEPTH};
+use crate::accel::space::Space;
 use crate::format::cluster::{LANES, RADII};
+use crate::format::limits::MAX_STACK_DEPTH;
 use crate::format::record::{UnitBox, WideNode};
-use crate::format::{BlobError, SectionKind};
-use crate::geometry::{Clusters, Kind, Packs, Packs24};
-use crate::scene::Scene;
+use crate::format::{BlobError, Child, Kind, Leaf, SectionKind};
+use crate::geometry::{Clusters, Packs, Packs24};
 use heapless::Vec;
 
 /// Proves that nodes and clusters are numbered breadth first, so that every one is reached once
@@ -14,11 +13,11 @@ use heapless::Vec;
 /// all primitives are in it. Returns the stack that a walk needs.
 ///
 /// Linear; uses [`MAX_STACK_DEPTH`] times 20 bytes of stack.
-pub(super) fn check(nodes: &[WideNode], scene: &Scene<'_>) -> Result<usize, BlobError> {
-    check_members(scene)?;
-    check_order(nodes, scene)?;
-    check_homes(nodes, scene)?;
-    check_boxes(nodes, scene)
+pub(super) fn check(nodes: &[WideNode], space: &Space<'_>) -> Result<usize, BlobError> {
+    check_members(space)?;
+    check_order(nodes, space)?;
+    check_homes(nodes, space)?;
+    check_boxes(nodes, space)
 }
 
 fn wrong(
@@ -38,8 +37,8 @@ fn wrong(
 }
 
 /// Proves that members ascend from cluster to cluster, and that there are as many as primitives.
-fn check_members(scene: &Scene<'_>) -> Result<(), BlobError> {
-    let clusters = &scene.shapes.clusters;
+fn check_members(space: &Space<'_>) -> Result<(), BlobError> {
+    let clusters = &space.shapes.clusters;
     let mut next = 0;
     for strip in 0..clusters.strips.len() {
         let section = SectionKind::Strips;
@@ -79,7 +78,7 @@ fn check_members(scene: &Scene<'_>) -> Result<(), BlobError> {
         next += count;
     }
     let section = SectionKind::Members;
-    let most = scene.header().primitives as usize;
+    let most = space.header.primitives as usize;
     if triangles + next > most {
         return Err(BlobError::Count {
             section,
@@ -89,8 +88,8 @@ fn check_members(scene: &Scene<'_>) -> Result<(), BlobError> {
     }
     for (found, expected) in [
         (clusters.members.len(), triangles + next),
-        (scene.shapes.count(Kind::Triangle), triangles),
-        (scene.shapes.count(Kind::Sphere), next),
+        (space.shapes.count(Kind::Triangle), triangles),
+        (space.shapes.count(Kind::Sphere), next),
     ] {
         if found != expected {
             return Err(BlobError::Count {
@@ -158,12 +157,12 @@ fn check_radii(packs: &Packs<'_>) -> Result<(), BlobError> {
 
 /// Proves that triangles and spheres have records of their own: what any structure but the list and
 /// this one leads to.
-pub(crate) fn check_records(scene: &Scene<'_>) -> Result<(), BlobError> {
+pub(crate) fn check_records(space: &Space<'_>) -> Result<(), BlobError> {
     for (section, kind) in [
         (SectionKind::Triangles, Kind::Triangle),
         (SectionKind::Spheres, Kind::Sphere),
     ] {
-        let (found, expected) = (scene.shapes.records(kind), scene.shapes.count(kind));
+        let (found, expected) = (space.shapes.records(kind), space.shapes.count(kind));
         if found != expected {
             return Err(BlobError::Count {
                 section,
@@ -176,9 +175,9 @@ pub(crate) fn check_records(scene: &Scene<'_>) -> Result<(), BlobError> {
 }
 
 /// Proves breadth-first order.
-fn check_order(nodes: &[WideNode], scene: &Scene<'_>) -> Result<(), BlobError> {
+fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
     let section = SectionKind::WideNodes;
-    let Clusters { strips, packs, .. } = &scene.shapes.clusters;
+    let Clusters { strips, packs, .. } = &space.shapes.clusters;
     let (mut next_node, mut next_strip, mut next_pack) = (1, 0, 0);
     // A pack that is not full comes last, wherever the hierarchy leads to it.
     let full = (0..packs.len()).rposition(|pack| packs.lanes(pack as u32).count_ones() == 8);
@@ -186,7 +185,7 @@ fn check_order(nodes: &[WideNode], scene: &Scene<'_>) -> Result<(), BlobError> {
     let mut next_sparse = full_packs;
     let mut others = [0; Kind::ALL.len()];
     // Where other structures share the slots, these are in the order of theirs.
-    let own_order = scene.shapes.clusters.homes.is_empty();
+    let own_order = space.shapes.clusters.homes.is_empty();
     for (index, node) in nodes.iter().enumerate() {
         let mut ended = false;
         for lane in 0..LANES {
@@ -214,7 +213,7 @@ fn check_order(nodes: &[WideNode], scene: &Scene<'_>) -> Result<(), BlobError> {
                     (Kind::Sphere, 0) => (leaf.first as usize, &mut next_pack),
                     (Kind::Box | Kind::Disc | Kind::Cone, 1) => {
                         let next = &mut others[leaf.kind as usize];
-                        let slots = scene.shapes.count(leaf.kind);
+                        let slots = space.shapes.count(leaf.kind);
                         let first = leaf.first as usize;
                         if !own_order && first < slots {
                             *next += 1;
@@ -244,7 +243,7 @@ fn check_order(nodes: &[WideNode], scene: &Scene<'_>) -> Result<(), BlobError> {
             return Err(wrong(section, index, what, next_node, nodes.len()));
         }
     }
-    let all = |kind: Kind| (others[kind as usize], scene.shapes.count(kind));
+    let all = |kind: Kind| (others[kind as usize], space.shapes.count(kind));
     let reached = [
         (next_strip, strips.len()),
         (next_pack, full_packs),
@@ -267,9 +266,9 @@ fn check_order(nodes: &[WideNode], scene: &Scene<'_>) -> Result<(), BlobError> {
 
 /// Proves, where other structures share the primitives, that the hierarchy holds each of them once:
 /// every slot has a home that leads back to it, and there are as many homes as places.
-fn check_homes(nodes: &[WideNode], scene: &Scene<'_>) -> Result<(), BlobError> {
+fn check_homes(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
     let section = SectionKind::Homes;
-    let (shapes, clusters) = (&scene.shapes, &scene.shapes.clusters);
+    let (shapes, clusters) = (&space.shapes, &space.shapes.clusters);
     let homes = clusters.homes;
     if homes.is_empty() {
         // Then the clusters' are the only triangles and spheres.
@@ -288,7 +287,7 @@ fn check_homes(nodes: &[WideNode], scene: &Scene<'_>) -> Result<(), BlobError> {
         }
         return Ok(());
     }
-    check_records(scene)?;
+    check_records(space)?;
     if homes.len() != shapes.total() {
         return Err(BlobError::Count {
             section,
@@ -338,16 +337,16 @@ fn check_homes(nodes: &[WideNode], scene: &Scene<'_>) -> Result<(), BlobError> {
 }
 
 /// Proves that boxes hold what is below them, and returns the most entries that a walk has waiting.
-fn check_boxes(nodes: &[WideNode], scene: &Scene<'_>) -> Result<usize, BlobError> {
+fn check_boxes(nodes: &[WideNode], space: &Space<'_>) -> Result<usize, BlobError> {
     let section = SectionKind::WideNodes;
-    let clusters = &scene.shapes.clusters;
+    let clusters = &space.shapes.clusters;
     let mut deepest = 0;
     if nodes.is_empty() {
         return Ok(0);
     }
     // Children that wait, their boxes, and how many wait before they are reached.
     let mut waiting: Vec<(u32, UnitBox, u16), { MAX_STACK_DEPTH + 1 }> = Vec::new();
-    let mut current = Some((0, *scene.bounds(), 0));
+    let mut current = Some((0, *space.bounds(), 0));
     while let Some((number, parent, before)) = current {
         let index = number as usize;
         if let Some(node) = nodes.get(index) {
@@ -376,7 +375,7 @@ fn check_boxes(nodes: &[WideNode], scene: &Scene<'_>) -> Result<usize, BlobError
                     (None, Some(leaf)) if leaf.count == 0 => {
                         clusters.inside(leaf.kind, leaf.first, &bounds)
                     }
-                    (None, Some(leaf)) => scene.shapes.leaf_inside(leaf, &bounds),
+                    (None, Some(leaf)) => space.shapes.leaf_inside(leaf, &bounds),
                     (None, None) => false,
                 };
                 if !within || !parent.contains(&bounds) {

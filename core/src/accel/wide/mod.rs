@@ -17,16 +17,18 @@ pub mod cull;
 pub(super) use check::check_records;
 
 use crate::accel::cull::Culling;
-use crate::accel::{Accel, Entry, Leaf, Records, StackView, Structure};
+use crate::accel::records::Records;
+use crate::accel::space::Space;
+use crate::accel::stack::{Entry, StackView};
+use crate::accel::traverse::Traverse;
+use crate::format::Child;
 use crate::format::cluster::LANES;
 use crate::format::record::WideNode;
-use crate::format::{BlobError, SectionKind, Sections};
-use crate::geometry::Kind;
+use crate::format::{BlobError, Kind, Leaf, SectionKind, Sections, Structure};
 use crate::number::{Format, Number};
 use crate::observe::count::Count;
-use crate::observe::event::{Event, Place};
+use crate::observe::event::{Event, NodeId};
 use crate::ray::Ray;
-use crate::scene::Scene;
 use crate::simd::{Simd, SimdLevel, with_simd};
 use cull::WideCulling;
 
@@ -34,61 +36,26 @@ use cull::WideCulling;
 #[derive(Clone, Copy, Debug)]
 pub enum Wide {}
 
-/// What a child of a node is: one word.
-///
-/// Bits 29 to 31 are 7 for a node, whose number is in bits 0 to 23. Any other word is a [`Leaf`];
-/// one of no slots is the cluster of that number: a strip where its kind is triangles, a pack
-/// where it is spheres.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Child(pub u32);
-
 impl Child {
-    /// In the lanes behind a node's last child.
-    pub const NONE: Self = Self(u32::MAX);
-    /// Number of nodes that a word can tell apart.
-    pub const NODES: u32 = (1 << 24) - 1;
-
-    const NODE: u32 = 7 << 29;
-
-    /// A node.
-    pub const fn node(number: u32) -> Self {
-        Self(Self::NODE | number)
-    }
-
-    /// A leaf.
-    pub const fn leaf(leaf: Leaf) -> Self {
-        Self(leaf.to_word())
-    }
-
-    /// The child as events tell it.
-    fn place(self) -> Place {
+    /// The child as observers know it.
+    fn id(self) -> NodeId {
         let (what, number) = match (self.as_node(), Leaf::from_word(self.0)) {
             (Some(number), _) => ("node", number),
             (None, Some(leaf)) if leaf.count > 0 => (leaf.kind.name(), leaf.first),
             (None, Some(leaf)) if leaf.kind == Kind::Triangle => ("strip", leaf.first),
             (None, leaf) => ("pack", leaf.map_or(0, |leaf| leaf.first)),
         };
-        Place { what, number }
-    }
-
-    /// The node's number, if it is a node.
-    #[inline(always)]
-    pub(crate) const fn as_node(self) -> Option<u32> {
-        if self.0 >= Self::NODE {
-            Some(self.0 & 0xff_ffff)
-        } else {
-            None
-        }
+        NodeId { what, number }
     }
 }
 
 /// The nodes of a scene.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Held<'a> {
+pub struct Views<'a> {
     nodes: &'a [WideNode],
 }
 
-impl<'a> Records<'a> for Held<'a> {
+impl<'a> Records<'a> for Views<'a> {
     const SECTIONS: &'static [SectionKind] = &[
         SectionKind::WideNodes,
         SectionKind::Strips,
@@ -105,27 +72,29 @@ impl<'a> Records<'a> for Held<'a> {
         })
     }
 
-    fn check(&self, scene: &Scene<'a>) -> Result<usize, BlobError> {
-        check::check(self.nodes, scene)
+    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
+        check::check(self.nodes, space)
     }
 }
 
-impl Accel for Wide {
+impl Traverse for Wide {
     const STRUCTURE: Structure = Structure::Wide;
+    type Views<'a> = Views<'a>;
     const HAS_CLUSTERS: bool = true;
     type Cull<N: Number> = N::WideCull;
 
     #[inline(always)]
     fn walk<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &N::WideCull,
         stack: &mut StackView,
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let nodes = scene.held.wide.nodes;
-        let level = level::<N>(scene);
+        let nodes = views.nodes;
+        let level = level::<N>(space);
         let mut limit = N::WideCull::limit(ray.tmax);
         let mut current = Child::node(0);
         stack.clear();
@@ -138,7 +107,7 @@ impl Accel for Wide {
                 return;
             }
             if C::TELLS {
-                count.tell(Event::Opened(current.place()));
+                count.tell(Event::Opened(current.id()));
             }
             let Some(tmax) = Leaf::from_word(current.0).and_then(|it| leaf(it, count)) else {
                 return;
@@ -153,15 +122,16 @@ impl Accel for Wide {
 
     #[inline(always)]
     fn walk_any<N: Number, C: Count>(
-        scene: &Scene<'_>,
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &N::WideCull,
         stack: &mut StackView,
         count: &mut C,
         mut hits: impl FnMut(Leaf, &mut C) -> bool,
     ) {
-        let nodes = scene.held.wide.nodes;
-        let level = level::<N>(scene);
+        let nodes = views.nodes;
+        let level = level::<N>(space);
         let limit = N::WideCull::limit(ray.tmax);
         let mut current = Child::node(0);
         stack.clear();
@@ -174,7 +144,7 @@ impl Accel for Wide {
                 return;
             }
             if C::TELLS {
-                count.tell(Event::Opened(current.place()));
+                count.tell(Event::Opened(current.id()));
             }
             if Leaf::from_word(current.0).is_none_or(|it| hits(it, count)) {
                 return;
@@ -189,10 +159,10 @@ impl Accel for Wide {
 
 /// The level for rays of a format: integers have no lanes.
 #[inline(always)]
-fn level<N: Number>(scene: &Scene<'_>) -> SimdLevel {
+fn level<N: Number>(space: &Space<'_>) -> SimdLevel {
     match N::FORMAT {
         Format::Fixed => SimdLevel::Portable,
-        _ => scene.simd,
+        _ => space.simd,
     }
 }
 
@@ -205,7 +175,7 @@ fn pop<N: Number, C: Count>(stack: &mut StackView, limit: i32, count: &mut C) ->
             return Some(Child(entry.node));
         }
         if C::TELLS {
-            let place = Child(entry.node).place();
+            let place = Child(entry.node).id();
             count.tell(Event::GivenUp {
                 place,
                 enters: N::WideCull::units(entry.near),
@@ -318,7 +288,7 @@ fn open<'n, S: Simd, N: Number, C: Count>(
     count.planes(6 * children);
     count.boxes(children);
     if C::TELLS {
-        count.tell(Event::Opened(Child::node(number).place()));
+        count.tell(Event::Opened(Child::node(number).id()));
         tell_tested::<N, C>(node, cull, limit, count);
     }
     let (met, near) = cull.children(simd, node, limit);
@@ -356,7 +326,7 @@ fn tell_tested<N: Number, C: Count>(
     for lane in children(node) {
         let bounds = node.child_box(lane);
         count.tell(Event::Tested {
-            place: node.child(lane).place(),
+            place: node.child(lane).id(),
             sides: bounds.0.map(|axis| axis.map(Some)),
             span: cull.span(&bounds, limit),
         });

@@ -3,7 +3,7 @@
 
 use super::super::hierarchy::{Primitive, area};
 use super::tree::{Below, Tree};
-use gridel_core::accel::MAX_LEVELS;
+use gridel_core::format::limits::MAX_LEVELS;
 use gridel_core::format::record::UnitBox;
 
 /// Inserts all primitives in scene-file order of their kinds. Below the deepest level that a

@@ -10,7 +10,7 @@
 //! | `tree.rs` | the tree that all but the first build, and how it becomes a hierarchy |
 //!
 //! All are bounded: none takes more than `O(n log n)` steps a level or pass, some hundred bytes a
-//! primitive, and [`MAX_LEVELS`](gridel_core::accel::MAX_LEVELS) levels: below where a
+//! primitive, and [`MAX_LEVELS`](gridel_core::format::limits::MAX_LEVELS) levels: below where a
 //! tree would be deeper, its subtrees are halved instead.
 
 mod insertion;

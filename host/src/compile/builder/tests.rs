@@ -2,7 +2,7 @@
 
 use super::*;
 use gridel_core::Kind;
-use gridel_core::accel::MAX_LEVELS;
+use gridel_core::format::limits::MAX_LEVELS;
 use gridel_core::format::record::UnitBox;
 
 fn primitives(boxes: impl IntoIterator<Item = [[i16; 2]; 3]>) -> Vec<Primitive> {

@@ -3,7 +3,7 @@
 use super::super::hierarchy::{
     LEAF_SIZE, Node, Primitive, STEP_COST, area, build_halved, halvings,
 };
-use gridel_core::accel::MAX_LEVELS;
+use gridel_core::format::limits::MAX_LEVELS;
 use gridel_core::format::record::UnitBox;
 
 /// A node of a [`Tree`].

@@ -6,7 +6,7 @@ use crate::compile::pairs::Flat;
 use crate::compile::primitives::Primitives;
 use glam::DVec3;
 use gridel_core::Kind;
-use gridel_core::accel::Leaf;
+use gridel_core::format::Leaf;
 use gridel_core::format::record::{Gridels, Pair, UnitBox};
 
 /// Units by which the surface of a primitive is widened where it is tested itself: kernels are off

@@ -20,13 +20,12 @@ use super::writer::{Section, indices, section};
 use clap::ValueEnum;
 use collapse::Forests;
 use gridel_core::Kind;
-use gridel_core::accel::wide::Child;
-use gridel_core::accel::{Leaf, MAX_STACK_DEPTH};
-use gridel_core::format::SectionKind;
 use gridel_core::format::cluster::{
     LANES, Pack16, Pack24, RADII, Rows16, Rows24, Strip16, Strip24, StripMembers, high_bytes,
 };
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::format::record::WideNode;
+use gridel_core::format::{Child, Leaf, SectionKind};
 use hull::Hull;
 use packs::Pack;
 use strips::Strip;

@@ -3,11 +3,9 @@
 #![no_std]
 #![no_main]
 
-use gridel_core::accel::{Chosen, MAX_STACK_DEPTH};
-use gridel_core::render::MAX_RAY_DEPTH;
-use gridel_core::{
-    Effects, Fixed, NoCount, Number, Renderer, Rgb888, Scene, Settings, Structure, Workspace,
-};
+use gridel_core::accel::DynAccel;
+use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::{Effects, Fixed, NoCount, Number, Renderer, Rgb888, Scene, Settings, Structure, Workspace};
 use gridel_firmware::board::File;
 use gridel_firmware::program;
 use gridel_firmware::report::{fail, line, words};
@@ -75,7 +73,7 @@ fn render<N: Number>(
     file: &File,
 ) {
     let settings = Settings::of(scene);
-    let renderer = Renderer::<N, Chosen, { Effects::ALL.0 }>::new(scene, settings);
+    let renderer = Renderer::<N, DynAccel, { Effects::ALL.0 }>::new(scene, settings);
     let Ok(renderer) = renderer else {
         fail("the scene is not for this renderer")
     };

@@ -1,7 +1,5 @@
 //! How a pair names its children.
 
-use crate::observe::event::Place;
-
 /// What the two children of a pair are: one word.
 ///
 /// Bits 0 to 23 are the number of the first child that is a pair; if both are, the right one
@@ -42,7 +40,7 @@ impl Link {
 
     /// The left (0) or right (1) child of pair `pair` as a node.
     #[inline(always)]
-    pub(in crate::accel) const fn child(self, pair: u32, side: u32) -> Node {
+    pub(crate) const fn child(self, pair: u32, side: u32) -> Node {
         // Pairs or leaves among the children before this one.
         let left_leaf = self.0 >> 24 & side;
         if self.0 >> 24 >> (side & 1) & 1 != 0 {
@@ -56,32 +54,24 @@ impl Link {
 
 /// A pair or a leaf, by number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::accel) struct Node(pub(super) u32);
+pub(crate) struct Node(pub(crate) u32);
 
 impl Node {
-    pub(in crate::accel) const fn pair(number: u32) -> Self {
+    pub(crate) const fn pair(number: u32) -> Self {
         Self(number)
     }
 
-    pub(in crate::accel) const fn leaf(number: u32) -> Self {
+    pub(crate) const fn leaf(number: u32) -> Self {
         Self(number | 1 << 31)
     }
 
     #[inline(always)]
-    pub(in crate::accel) const fn is_leaf(self) -> bool {
+    pub(crate) const fn is_leaf(self) -> bool {
         self.0 >> 31 != 0
     }
 
     #[inline(always)]
-    pub(in crate::accel) const fn number(self) -> u32 {
+    pub(crate) const fn number(self) -> u32 {
         self.0 & 0x7fff_ffff
-    }
-
-    /// The node as events tell it.
-    pub(in crate::accel) const fn place(self) -> Place {
-        Place {
-            what: if self.is_leaf() { "leaf" } else { "pair" },
-            number: self.number(),
-        }
     }
 }

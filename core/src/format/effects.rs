@@ -1,6 +1,6 @@
 //! What light does in a scene, as a set: the scene pays for these and for nothing else.
 
-use crate::render::work_depth;
+use crate::format::limits::work_depth;
 use core::fmt;
 
 /// A set of effects.

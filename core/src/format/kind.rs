@@ -3,9 +3,6 @@
 //! The code of each is a Cargo feature of the same name, and so is that of the wider forms in which
 //! they are stored.
 
-use crate::geometry::Triangles;
-use crate::scene::Scene;
-
 macro_rules! kinds {
     ($($(#[doc = $doc:literal])* $variant:ident = $number:literal, $name:literal;)*) => {
         /// The kinds of primitives, in the order of their slots.
@@ -57,28 +54,4 @@ kinds! {
     Disc = 3, "disc";
     /// A capped cylinder, cone or frustum.
     Cone = 4, "cone";
-}
-
-/// Whether this build holds the code for coordinates of more than 16 bits.
-pub(crate) const WIDE_LATTICE: bool = cfg!(feature = "wide-lattice");
-/// Whether this build holds the code for vertex indices of more than 16 bits.
-pub(crate) const WIDE_INDICES: bool = cfg!(feature = "wide-indices");
-
-impl Scene<'_> {
-    /// The Cargo features of this crate that the scene calls for, beside that of its structure:
-    /// the kinds of its primitives, how they are stored, whether its colours are display values, and its effects.
-    pub fn features(&self) -> impl Iterator<Item = &'static str> {
-        let kinds = Kind::ALL.map(|kind| (self.count(kind) > 0, kind.name()));
-        let others = [
-            (self.header.storage_bits > 16, "wide-lattice"),
-            (
-                matches!(self.shapes.triangles, Triangles::U32(_)),
-                "wide-indices",
-            ),
-            (self.view.display_values != 0, "display-values"),
-        ];
-        let called = kinds.into_iter().chain(others);
-        let names = called.filter_map(|(called, name)| called.then_some(name));
-        names.chain(self.effects().names())
-    }
 }

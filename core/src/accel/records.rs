@@ -1,0 +1,19 @@
+//! What a structure keeps in a blob.
+
+use crate::accel::space::Space;
+use crate::format::{BlobError, SectionKind, Sections};
+
+/// What a structure keeps in a blob, and the proof that it is sound.
+pub(in crate::accel) trait Records<'a>: Copy {
+    /// The sections that are this structure's alone.
+    const SECTIONS: &'static [SectionKind];
+    /// Whether the structure leads to the leaves that hierarchies share.
+    const USES_LEAVES: bool;
+
+    /// Finds the records.
+    fn read(sections: &Sections<'a>) -> Result<Self, BlobError>;
+
+    /// Proves all that a walk relies on, in linear time, and returns the entries that its stack
+    /// needs. Everything else in the scene is proved already.
+    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError>;
+}

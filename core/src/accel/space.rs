@@ -1,0 +1,54 @@
+//! What all structures of a scene share.
+
+use crate::format::record::{Header, UnitBox};
+use crate::format::{BlobError, Leaf, Structure};
+use crate::geometry::Shapes;
+#[cfg(feature = "wide")]
+use crate::simd::SimdLevel;
+
+/// The space that structures divide: the scene's box, its primitives, and the leaves that hierarchies share.
+#[derive(Clone, Copy, Debug)]
+pub struct Space<'a> {
+    pub(crate) header: &'a Header,
+    pub(crate) shapes: Shapes<'a>,
+    pub(crate) leaves: &'a [u32],
+    /// What [`DynAccel`](crate::accel::DynAccel) walks.
+    #[cfg(feature = "all-structures")]
+    pub(crate) chosen: Structure,
+    /// The instructions that [`Wide`](crate::Wide) uses.
+    #[cfg(feature = "wide")]
+    pub(crate) simd: SimdLevel,
+}
+
+impl<'a> Space<'a> {
+    /// The scene's box.
+    #[inline(always)]
+    pub(crate) fn bounds(&self) -> &'a UnitBox {
+        &self.header.bounds
+    }
+
+    /// Whether the blob holds a structure.
+    pub(crate) fn holds(&self, structure: Structure) -> bool {
+        self.header.structures & structure.bit() != 0
+    }
+
+    /// A leaf by its number.
+    #[inline(always)]
+    pub(crate) fn leaf(&self, number: u32) -> Option<Leaf> {
+        self.leaves
+            .get(number as usize)
+            .and_then(|&word| Leaf::from_word(word))
+    }
+
+    /// Proves that the blob holds a structure, to which another one leads.
+    pub(in crate::accel) fn require(
+        &self,
+        missing: Structure,
+        needed_by: Structure,
+    ) -> Result<(), BlobError> {
+        if self.holds(missing) {
+            return Ok(());
+        }
+        Err(BlobError::MissingStructure { missing, needed_by })
+    }
+}

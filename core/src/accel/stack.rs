@@ -1,0 +1,35 @@
+//! The traversal stack.
+
+use heapless::{Vec, VecView};
+
+/// A child that waits for its turn: 12 bytes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Entry {
+    pub(in crate::accel) node: u32,
+    pub(in crate::accel) near: i32,
+    pub(in crate::accel) far: i32,
+}
+
+/// The traversal stack, owned by the caller: 12 bytes an entry and one word.
+///
+/// `DEPTH` must be at least the blob's [`stack_depth`](crate::Scene::stack_depth), which
+/// [`Scene::from_bytes`](crate::Scene::from_bytes) proves. A smaller stack is never overrun:
+/// queries on it have no hit, and
+/// [`Renderer::check_workspace`](crate::Renderer::check_workspace) refuses it.
+#[derive(Debug, Default)]
+pub struct Stack<const DEPTH: usize>(Vec<Entry, DEPTH>);
+
+/// A [`Stack`] whose depth is not part of its type.
+pub type StackView = VecView<Entry>;
+
+impl<const DEPTH: usize> Stack<DEPTH> {
+    /// An empty stack.
+    pub const fn new() -> Self {
+        Self(Vec::new())
+    }
+
+    /// The stack as queries take it.
+    pub fn as_view(&mut self) -> &mut StackView {
+        &mut self.0
+    }
+}

@@ -1,0 +1,61 @@
+//! How a structure is walked.
+
+use crate::SMALL;
+use crate::accel::cull::Culling;
+use crate::accel::space::Space;
+use crate::accel::stack::StackView;
+use crate::format::{Leaf, Structure};
+use crate::number::Number;
+use crate::observe::count::Count;
+use crate::ray::Ray;
+
+/// How a structure is walked.
+pub trait Traverse: Send + Sync {
+    /// Its name; the list's of one that has none.
+    const STRUCTURE: Structure;
+    /// The form in which its rays cull.
+    type Cull<N: Number>: Culling<N>;
+    /// What it keeps in a blob.
+    type Views<'a>: Copy;
+    /// Whether its leaves can be [clusters](crate::format::cluster): code for these is only compiled
+    /// where they are.
+    const HAS_CLUSTERS: bool = false;
+    /// Whether one copy of a query's code serves the closest hit and any hit: less code, and a branch
+    /// per leaf.
+    const ONE_COPY: bool = SMALL;
+
+    /// What a scene must hold to be walked.
+    fn needs(_: &Space<'_>) -> Structure {
+        Self::STRUCTURE
+    }
+
+    /// Calls `leaf` for every leaf whose box the ray can meet, nearer ones first where the
+    /// structure knows. `leaf` returns the t beyond which nothing counts any more, or `None` to
+    /// end the walk.
+    fn walk<N: Number, C: Count>(
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
+        ray: &Ray<N>,
+        cull: &Self::Cull<N>,
+        stack: &mut StackView,
+        count: &mut C,
+        leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+    );
+
+    /// The same for any hit: in any order, up to the first leaf of which `hits` is true.
+    #[inline(always)]
+    fn walk_any<N: Number, C: Count>(
+        space: &Space<'_>,
+        views: &Self::Views<'_>,
+        ray: &Ray<N>,
+        cull: &Self::Cull<N>,
+        stack: &mut StackView,
+        count: &mut C,
+        mut hits: impl FnMut(Leaf, &mut C) -> bool,
+    ) {
+        let tmax = ray.tmax;
+        Self::walk(space, views, ray, cull, stack, count, |leaf, count| {
+            (!hits(leaf, count)).then_some(tmax)
+        });
+    }
+}

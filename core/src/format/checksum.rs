@@ -1,0 +1,52 @@
+//! The checksum of a blob, and its alignment.
+
+use crate::format::record::Header;
+
+/// The checksum of a blob: FNV-1a over its 32-bit words, the checksum's own taken as 0.
+///
+/// Every step is a bijection of the state, so a change of any single word always shows.
+pub const fn checksum(blob: &[u8]) -> u32 {
+    const OWN_WORD: usize = core::mem::offset_of!(Header, checksum) / 4;
+    const fn mix(state: u32, word: u32) -> u32 {
+        (state ^ word).wrapping_mul(0x0100_0193)
+    }
+    let mut state: u32 = 0x811c_9dc5;
+    let (mut words, mut rest) = blob.as_chunks();
+    let mut before = 0;
+    while let [word, after @ ..] = words {
+        let own = before == OWN_WORD;
+        state = mix(state, if own { 0 } else { u32::from_le_bytes(*word) });
+        before = before.wrapping_add(1);
+        words = after;
+    }
+    if !rest.is_empty() {
+        // The last bytes as a word that ends in zeros.
+        let mut word = 0;
+        while let [before @ .., byte] = rest {
+            word = word << 8 | *byte as u32;
+            rest = before;
+        }
+        state = mix(state, word);
+    }
+    state
+}
+
+/// Bytes aligned as a blob must be; what [`include_blob!`](crate::include_blob) makes.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(16))]
+pub struct Aligned<T: ?Sized>(pub T);
+
+/// Embeds a blob file with the alignment that [`Scene::from_bytes`] asks for.
+///
+/// ```ignore
+/// static BLOB: &[u8] = gridel_core::include_blob!("scene.gridel");
+/// ```
+#[macro_export]
+macro_rules! include_blob {
+    ($path:expr) => {{
+        const BYTES: &[u8] = include_bytes!($path);
+        static ALIGNED: $crate::Aligned<[u8; BYTES.len()]> =
+            $crate::Aligned(*include_bytes!($path));
+        &ALIGNED.0 as &'static [u8]
+    }};
+}

@@ -1,0 +1,31 @@
+//! Limits that every blob keeps, and what this build can read.
+
+/// The largest stack depth that a blob may need.
+pub const MAX_STACK_DEPTH: usize = 160;
+
+/// Most levels of a hierarchy of pairs, and the largest stack depth that one needs.
+pub const MAX_LEVELS: usize = 48;
+
+/// The largest ray depth that a scene can ask for.
+pub const MAX_RAY_DEPTH: usize = 16;
+
+/// Most samples a pixel.
+pub const MAX_SAMPLES: u16 = 256;
+
+/// Places for waiting rays that a ray depth needs.
+pub const fn work_depth(depth: u8) -> usize {
+    depth as usize + 1
+}
+
+/// How far from the lattice's middle an origin may be along each axis: 2^37 units, with 13 fraction bits.
+/// Eyes and lights of a blob are no farther away.
+pub const FARTHEST: i64 = 1 << 50;
+
+/// Whether this build holds the code for scenes whose colours are display values.
+pub(crate) const DISPLAY_VALUES: bool = cfg!(feature = "display-values");
+
+/// Whether this build holds the code for coordinates of more than 16 bits.
+pub(crate) const WIDE_LATTICE: bool = cfg!(feature = "wide-lattice");
+
+/// Whether this build holds the code for vertex indices of more than 16 bits.
+pub(crate) const WIDE_INDICES: bool = cfg!(feature = "wide-indices");

@@ -1,0 +1,37 @@
+//! How a surface lies where it was hit.
+
+use crate::number::Number;
+use crate::ray::Ray;
+
+/// How a surface lies where it was hit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surface<N> {
+    /// Outward, or to the front; of length 1.
+    pub(crate) normal: [N; 3],
+    /// The point of the surface next to the one that the ray's t gives.
+    pub(crate) point: [N; 3],
+    /// The surface lies within this length of `point`, and what starts so far away along the normal does
+    /// not meet it again.
+    pub(crate) error: N,
+    /// Whether `point` lies on the surface exactly, so that t is 0 for what starts there.
+    pub(crate) is_exact: bool,
+}
+
+impl<N: Number> Surface<N> {
+    /// The normal as a ray sees it that only grazes the surface.
+    ///
+    /// What a ray enters or leaves is known better than the normal, which the point's rounding turns
+    /// where a solid is as thin as an error bound; and a grazing ray's may turn too far by a bit.
+    #[cold]
+    pub(crate) fn level_with(&self, ray: &Ray<N>) -> [N; 3] {
+        let turned = N::wide_scale(N::dot(self.normal, ray.slope), N::recip_norm2(ray.slope));
+        let turned = N::from_wide(turned);
+        let axis = |k: usize| self.normal[k] - turned * ray.slope[k];
+        let (normal, length) = N::normalize([axis(0), axis(1), axis(2)]);
+        if length == N::ZERO {
+            self.normal.map(|x| -x)
+        } else {
+            normal
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! A scene: a checked view of a blob.
+
+use crate::accel::{Space, StructureViews};
+use crate::format::record::{Header, Light, Material, UnitBox, View};
+use crate::format::{Effects, Indices, Kind, Structure};
+use crate::geometry::{Geometry, PrimitiveId};
+#[cfg(feature = "wide")]
+use crate::simd::SimdLevel;
+
+/// A checked view of a blob: a few hundred bytes that borrow from it.
+///
+/// Once it exists, no blob can make a query panic, run forever or leave its arrays: that was proved
+/// by [`Scene::from_bytes`], which proves that the answers are right as well, or by [`Vouched`].
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'a> {
+    /// The scene's box, primitives and leaves.
+    pub(crate) space: Space<'a>,
+    /// The records of its structures.
+    pub(crate) structures: StructureViews<'a>,
+    pub(crate) view: &'a View,
+    pub(crate) lights: &'a [Light],
+    pub(crate) materials: &'a [Material],
+    pub(in crate::scene) object_first: Indices<'a>,
+    pub(in crate::scene) object_material: Indices<'a>,
+    pub(in crate::scene) order: Indices<'a>,
+    /// Whether any primitive's test needs the norm of the ray's direction.
+    pub(crate) needs_norm: bool,
+}
+
+impl<'a> Scene<'a> {
+    /// The header.
+    pub fn header(&self) -> &'a Header {
+        self.space.header
+    }
+
+    /// Camera, surroundings and rendering defaults.
+    pub fn view(&self) -> &'a View {
+        self.view
+    }
+
+    /// The lights.
+    pub fn lights(&self) -> &'a [Light] {
+        self.lights
+    }
+
+    /// The materials.
+    pub fn materials(&self) -> &'a [Material] {
+        self.materials
+    }
+
+    /// The scene's box, for [`Ray::new`](crate::Ray::new).
+    pub fn bounds(&self) -> &'a UnitBox {
+        self.space.bounds()
+    }
+
+    /// The effects that the scene calls for.
+    pub fn effects(&self) -> Effects {
+        Effects(self.space.header.effects)
+    }
+
+    /// Entries that the traversal stack needs.
+    pub fn stack_depth(&self) -> usize {
+        self.space.header.stack_depth.into()
+    }
+
+    /// Whether the blob holds a structure.
+    pub fn holds(&self, structure: Structure) -> bool {
+        self.space.holds(structure)
+    }
+
+    /// The scene with a structure chosen for [`DynAccel`](crate::accel::DynAccel) to walk; `None` if the
+    /// blob does not hold it.
+    #[cfg(feature = "all-structures")]
+    pub fn choose(&self, structure: Structure) -> Option<Self> {
+        self.holds(structure).then(|| {
+            let mut scene = *self;
+            scene.space.chosen = structure;
+            scene
+        })
+    }
+
+    /// The scene with queries through [`Wide`](crate::Wide) at a level of instructions; at first they
+    /// are portable.
+    #[cfg(feature = "wide")]
+    pub fn with_simd(self, simd: SimdLevel) -> Self {
+        let mut scene = self;
+        scene.space.simd = simd;
+        scene
+    }
+
+    /// The instructions that queries through [`Wide`](crate::Wide) use.
+    #[cfg(feature = "wide")]
+    pub fn simd(&self) -> SimdLevel {
+        self.space.simd
+    }
+
+    /// Number of primitives of a kind.
+    pub fn count(&self, kind: Kind) -> usize {
+        self.space.shapes.count(kind)
+    }
+
+    /// Number of vertices of all meshes.
+    pub fn vertices(&self) -> usize {
+        self.space.shapes.vertices.len()
+    }
+
+    /// The box of a primitive, given by its kind and its slot among those of that kind.
+    pub fn primitive_bounds(&self, kind: Kind, slot: usize) -> Option<UnitBox> {
+        self.space.shapes.bounds(kind, slot)
+    }
+
+    /// The corners of a triangle in 1/256 unit, given by its slot.
+    pub fn triangle(&self, slot: usize) -> Option<[[i32; 3]; 3]> {
+        self.space.shapes.triangle(slot)
+    }
+
+    /// A primitive as it lies on the lattice, given by its kind and its slot among those of that kind.
+    pub fn geometry(&self, kind: Kind, slot: usize) -> Option<Geometry> {
+        let shapes = &self.space.shapes;
+        Some(match kind {
+            Kind::Triangle => Geometry::Triangle(shapes.triangle(slot)?),
+            Kind::Sphere => {
+                let (center, radius) = shapes.spheres.get(slot)?;
+                Geometry::Sphere { center, radius }
+            }
+            Kind::Box => Geometry::Box(*shapes.boxes.get(slot)?),
+            Kind::Disc => Geometry::Disc(*shapes.discs.get(slot)?),
+            Kind::Cone => Geometry::Cone(*shapes.cones.get(slot)?),
+        })
+    }
+
+    /// The number, in scene-file order, of a primitive given by kind and slot. Below the number of
+    /// primitives. Several slots have one number where a triangle was cut into pieces.
+    #[inline]
+    pub fn primitive(&self, kind: Kind, slot: u32) -> u32 {
+        self.primitive_at(self.space.shapes.place(kind, slot))
+    }
+
+    /// The number, in scene-file order, of a primitive that lies somewhere.
+    #[cfg_attr(feature = "wide", inline(always))]
+    #[cfg_attr(not(feature = "wide"), inline)]
+    pub(crate) fn primitive_at(&self, place: PrimitiveId) -> u32 {
+        self.key(place).0
+    }
+
+    /// What decides between hits at the same t: the primitive's number, and between pieces of one
+    /// primitive, kind and slot; so answers do not depend on the structure either.
+    #[cfg_attr(feature = "wide", inline(always))]
+    #[cfg_attr(not(feature = "wide"), inline)]
+    pub(crate) fn key(&self, place: PrimitiveId) -> (u32, u8, u32) {
+        match place {
+            PrimitiveId::Slot(kind, slot) => (self.in_slot(kind, slot), kind as u8, slot),
+            #[cfg(feature = "wide")]
+            PrimitiveId::Strip(strip, place) => {
+                let members = self.space.shapes.clusters.strips.members(strip);
+                let member = members.map_or(0, |members| members.member(place.into()));
+                self.member(Kind::Triangle, member, 0)
+            }
+            #[cfg(feature = "wide")]
+            PrimitiveId::Pack(pack, lane) => {
+                let number = pack << 3 | u32::from(lane);
+                self.member(Kind::Sphere, number, self.space.shapes.clusters.triangles())
+            }
+        }
+    }
+
+    /// The key of a member of a cluster, by its number among those of its kind and the number of
+    /// members before them.
+    #[cfg(feature = "wide")]
+    #[inline(always)]
+    fn member(&self, kind: Kind, number: u32, before: usize) -> (u32, u8, u32) {
+        let clusters = &self.space.shapes.clusters;
+        let member = clusters.members.get(before + number as usize).unwrap_or(0);
+        if clusters.homes.is_empty() {
+            (member, kind as u8, number)
+        } else {
+            (self.in_slot(kind, member), kind as u8, member)
+        }
+    }
+
+    /// The primitive in a slot of a kind that has records of its own.
+    #[inline(always)]
+    fn in_slot(&self, kind: Kind, slot: u32) -> u32 {
+        let slot = self.space.shapes.slot(kind, slot);
+        self.order.get(slot).unwrap_or(slot as u32)
+    }
+
+    /// The object that a primitive belongs to.
+    #[cfg_attr(feature = "wide", inline)]
+    pub fn object(&self, primitive: u32) -> u32 {
+        if self.object_first.is_empty() {
+            return if self.space.header.objects == self.space.header.primitives {
+                primitive
+            } else {
+                0
+            };
+        }
+        // The last object whose first primitive is not beyond this one.
+        let (mut low, mut high) = (0_usize, self.object_first.len());
+        while low.saturating_add(1) < high {
+            let middle = low.midpoint(high);
+            match self.object_first.get(middle) {
+                Some(first) if first <= primitive => low = middle,
+                _ => high = middle,
+            }
+        }
+        low as u32
+    }
+
+    /// The material of an object.
+    #[inline]
+    pub fn material(&self, object: u32) -> Option<&'a Material> {
+        let material = self.object_material.get(object as usize).unwrap_or(0);
+        self.materials.get(material as usize)
+    }
+}

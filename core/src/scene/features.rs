@@ -1,0 +1,24 @@
+//! Which Cargo features of this crate a scene requires.
+
+use crate::format::Kind;
+use crate::geometry::Triangles;
+use crate::scene::Scene;
+
+impl Scene<'_> {
+    /// The Cargo features of this crate that the scene calls for, beside that of its structure:
+    /// the kinds of its primitives, how they are stored, whether its colours are display values, and its effects.
+    pub fn features(&self) -> impl Iterator<Item = &'static str> {
+        let kinds = Kind::ALL.map(|kind| (self.count(kind) > 0, kind.name()));
+        let others = [
+            (self.space.header.storage_bits > 16, "wide-lattice"),
+            (
+                matches!(self.space.shapes.triangles, Triangles::U32(_)),
+                "wide-indices",
+            ),
+            (self.view.display_values != 0, "display-values"),
+        ];
+        let called = kinds.into_iter().chain(others);
+        let names = called.filter_map(|(called, name)| called.then_some(name));
+        names.chain(self.effects().names())
+    }
+}

@@ -1,0 +1,43 @@
+//! Loading: from the bytes of a blob to a scene.
+
+use crate::format::BlobError;
+use crate::format::section::Sections;
+use crate::scene::blob::Scene;
+use crate::scene::prevalidated::Vouched;
+use crate::scene::{check, read};
+
+impl<'a> Scene<'a> {
+    /// Checks a blob and returns a view of it.
+    ///
+    /// Proves alignment, size, version, byte order and checksum; that every section lies in the
+    /// blob and every field in its range; that every index leads to a record; that every hierarchy
+    /// is a tree in breadth-first order whose depth is what the header says, with boxes inside
+    /// their parents' and primitives inside their leaves', each primitive in one leaf. After that
+    /// a walk through any structure ends, and through a hierarchy it gives the same hits as testing
+    /// every primitive (see [`Structure::is_proved`] for the others).
+    ///
+    /// Costs time linear in the blob's length and about 2 KiB of stack.
+    ///
+    /// # Errors
+    /// If anything of this fails to hold, or the scene calls for an effect, or holds a kind of
+    /// primitive, that this build was compiled without. Shortcomings of the scene itself (no lights, no objects) are no errors.
+    pub fn from_bytes(blob: &'a [u8]) -> Result<Self, BlobError> {
+        let header = read::header(blob)?;
+        check::check_sum(blob, header)?;
+        let sections = Sections::read(blob, header.section_count)?;
+        let scene = read::scene(header, &sections)?;
+        check::check(&scene, &sections)?;
+        Ok(scene)
+    }
+
+    /// The view of a blob that was [vouched for](Vouched), in constant time.
+    ///
+    /// # Errors
+    /// If the slice is not aligned, or the header, the section table or the view is not as it must
+    /// be, or this build lacks what the scene calls for.
+    pub fn vouched(vouched: Vouched<'a>) -> Result<Self, BlobError> {
+        let header = read::header(vouched.blob)?;
+        let sections = Sections::read(vouched.blob, header.section_count)?;
+        read::scene(header, &sections)
+    }
+}
