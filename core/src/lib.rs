@@ -47,6 +47,7 @@ pub mod selftest;
 pub mod shade;
 #[cfg(feature = "wide")]
 mod simd;
+mod target;
 
 #[cfg(feature = "apex")]
 pub use accel::Apex;
@@ -76,17 +77,14 @@ pub use accel::Slabs;
 pub use accel::Spheres;
 #[cfg(feature = "wide")]
 pub use accel::Wide;
-pub use accel::{Accel, List, Stack, StackView, StructureVisitor};
+pub use accel::{Accel, List, Number, Stack, StackView, StructureVisitor};
 pub use format::{Aligned, BlobError, Demand, Effects, Kind, Structure};
-pub use number::{Fixed, Format, Number};
-pub use observe::count::{Count, Counters, NoCount, RayKind};
-pub use observe::event::Event;
+pub use number::{Fixed, Format};
+pub use observe::count::{Count, Counters, NoCount};
+pub use observe::event::{Event, RayKind};
 pub use query::{Found, Hit, any_hit, closest_hit, closest_primitive};
 pub use ray::{Pencil, Ray, RayError};
 pub use render::{Renderer, Rgb565, Rgb888, Settings, Workspace};
 pub use scene::{Scene, Vouched};
 #[cfg(feature = "wide")]
 pub use simd::SimdLevel;
-
-/// Whether code shall be small where that makes it slower; no bit of an answer depends on it.
-pub(crate) const SMALL: bool = cfg!(feature = "small");

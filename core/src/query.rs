@@ -1,10 +1,9 @@
 //! Queries: what does a ray meet first, does it meet anything at all?
 
-use crate::SMALL;
-use crate::accel::Accel;
 use crate::accel::clamp::accept_in_box;
 use crate::accel::cull::Culling;
 use crate::accel::stack::StackView;
+use crate::accel::{Accel, Number};
 #[cfg(feature = "wide")]
 use crate::format::cluster::{LANES, Pack, Strip};
 use crate::format::limits::{WIDE_INDICES, WIDE_LATTICE};
@@ -20,13 +19,13 @@ use crate::geometry::{
 use crate::geometry::{Packs, Strips, pack};
 #[cfg(feature = "wide")]
 use crate::number::Format;
-use crate::number::Number;
 use crate::observe::count::Count;
 use crate::observe::event::{Event, Met};
 use crate::ray::Ray;
 use crate::scene::Scene;
 #[cfg(feature = "wide")]
 use crate::simd::{Portable, Simd, SimdLevel, with_simd};
+use crate::target::SMALL;
 
 /// What a ray met.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,11 +1,11 @@
 //! Rays, in the one form that every kernel uses.
 
-use crate::SMALL;
 use crate::axis::pick;
 use crate::format::limits::FARTHEST;
 use crate::format::record::UnitBox;
-use crate::number::{Format, Number};
+use crate::number::{Arithmetic, Format};
 use crate::observe::event::Event;
+use crate::target::SMALL;
 use core::cmp::Ordering;
 use core::fmt;
 
@@ -35,7 +35,7 @@ use core::fmt;
 ///   2^-53, and in `fixed` by a sub-step, 2^-13 of a unit. [`Hit::point`](crate::Hit::point) is not taken
 ///   from it, and is as good as that of a ray from near by.
 #[derive(Clone, Copy, Debug)]
-pub struct Ray<N: Number> {
+pub struct Ray<N: Arithmetic> {
     pub(crate) origin: [N; 3],
     pub(crate) slope: [N; 3],
     pub(crate) major: usize,
@@ -79,7 +79,7 @@ impl core::error::Error for RayError {}
 /// How far rays are moved that run up or down one axis, from a coordinate on it: to the plane in which the scene's
 /// box begins, or towards it for hits behind the point.
 #[cfg_attr(not(feature = "small"), inline(always))]
-fn way_to_box<N: Number>(
+fn way_to_box<N: Arithmetic>(
     bounds: &UnitBox,
     origin: N::Wide,
     (axis, forward): (usize, bool),
@@ -104,7 +104,7 @@ fn way_to_box<N: Number>(
 
 /// An interval counted from where a ray was moved to.
 #[inline(always)]
-fn interval<N: Number>(tmin: N::Wide, tmax: N::Wide, moved: N::Wide) -> [N; 2] {
+fn interval<N: Arithmetic>(tmin: N::Wide, tmax: N::Wide, moved: N::Wide) -> [N; 2] {
     let tmin = if tmin > moved {
         N::excess(tmin, moved)
     } else {
@@ -115,7 +115,7 @@ fn interval<N: Number>(tmin: N::Wide, tmax: N::Wide, moved: N::Wide) -> [N; 2] {
 
 /// The end of an interval, counted likewise.
 #[inline(always)]
-fn end_after<N: Number>(tmax: N::Wide, moved: N::Wide) -> N {
+fn end_after<N: Arithmetic>(tmax: N::Wide, moved: N::Wide) -> N {
     // An interval that ends before it starts holds no hit.
     if tmax < moved {
         -N::ONE
@@ -132,7 +132,7 @@ const REACH: i64 = (3 * i16::MAX as i64) << 13;
 /// Whether every ray that is moved so far along its major axis starts within [`REACH`]: slopes are at
 /// most 1, and along its major axis a ray moves to the box. Never for numbers that are saturated.
 #[inline(always)]
-fn is_near<N: Number>(origin: [N; 3], major: usize, moved: N) -> bool {
+fn is_near<N: Arithmetic>(origin: [N; 3], major: usize, moved: N) -> bool {
     let (reach, moved) = (N::narrow(N::far(REACH)), moved.abs());
     let within = |axis: usize| {
         let reach = if axis == major {
@@ -149,7 +149,7 @@ fn is_near<N: Number>(origin: [N; 3], major: usize, moved: N) -> bool {
 
 /// Where a ray starts that is moved from an origin [near](is_near) the scene.
 #[inline(always)]
-fn near_start<N: Number>(origin: [N; 3], moved: N, slope: [N; 3]) -> [N; 3] {
+fn near_start<N: Arithmetic>(origin: [N; 3], moved: N, slope: [N; 3]) -> [N; 3] {
     let start = |axis: usize| N::settle(origin[axis] + moved * slope[axis]);
     [start(0), start(1), start(2)]
 }
@@ -157,7 +157,7 @@ fn near_start<N: Number>(origin: [N; 3], moved: N, slope: [N; 3]) -> [N; 3] {
 /// Where a ray starts that is moved from an origin anywhere, how far that is, and whether it lies within
 /// [`REACH`]: else it meets nothing. `EXACT` says that slopes and lengths are not rounded.
 #[cfg_attr(not(feature = "small"), inline(always))]
-fn far_start<N: Number, const EXACT: bool>(
+fn far_start<N: Arithmetic, const EXACT: bool>(
     bounds: &UnitBox,
     origin: [N::Wide; 3],
     direction: [N::Wide; 3],
@@ -188,7 +188,7 @@ fn far_start<N: Number, const EXACT: bool>(
 
 /// [`far_start`] of a ray that is to run along its slopes as they are.
 #[inline(always)]
-fn far_start_along<N: Number>(
+fn far_start_along<N: Arithmetic>(
     bounds: &UnitBox,
     origin: [N::Wide; 3],
     (slope, major): ([N; 3], usize),
@@ -205,14 +205,14 @@ fn far_start_along<N: Number>(
 /// One coordinate of a start, in a register: through memory all three would burden near rays too.
 #[cold]
 #[inline(never)]
-fn far_coordinate<N: Number>(origin: N::Wide, moved: N::Wide, slope: N) -> N {
+fn far_coordinate<N: Arithmetic>(origin: N::Wide, moved: N::Wide, slope: N) -> N {
     N::settle(N::narrow(origin + N::wide_scale(moved, slope)))
 }
 
 /// An error unless every coordinate of an origin is a number of at most [`FARTHEST`].
 #[cold]
 #[inline(never)]
-fn check_origin<N: Number>(x: N::Wide, y: N::Wide, z: N::Wide) -> Result<(), RayError> {
+fn check_origin<N: Arithmetic>(x: N::Wide, y: N::Wide, z: N::Wide) -> Result<(), RayError> {
     let most = N::far(FARTHEST);
     let origin = [x, y, z];
     // Not so for NaN.
@@ -239,11 +239,11 @@ fn check_interval<W: Copy + PartialOrd>(tmin: W, tmax: W) -> Result<(), RayError
 /// Gives the same rays as [`Ray::new`], bit for bit, for half of its cost or less where the point
 /// is not much farther from the scene's box than the box is wide.
 #[derive(Clone, Copy, Debug)]
-pub struct Pencil<N: Number>(Origin<N>);
+pub struct Pencil<N: Arithmetic>(Origin<N>);
 
 /// Where the rays of a pencil begin.
 #[derive(Clone, Copy, Debug)]
-enum Origin<N: Number> {
+enum Origin<N: Arithmetic> {
     /// [Near](is_near) the scene, whichever way a ray is moved.
     Near {
         origin: [N; 3],
@@ -256,7 +256,7 @@ enum Origin<N: Number> {
     },
 }
 
-impl<N: Number> Pencil<N> {
+impl<N: Arithmetic> Pencil<N> {
     /// The rays from a point, with all `t` that are not negative: see [`Ray::new`].
     ///
     /// # Errors
@@ -346,11 +346,11 @@ impl<N: Number> Pencil<N> {
 
 /// A length beyond every scene, however far from it a ray begins.
 #[cfg(test)]
-fn endless<N: Number>() -> N::Wide {
+fn endless<N: Arithmetic>() -> N::Wide {
     N::far(1 << 60)
 }
 
-impl<N: Number> Ray<N> {
+impl<N: Arithmetic> Ray<N> {
     /// A ray through a scene whose box is `bounds` (see [`Scene::bounds`](crate::Scene::bounds)).
     ///
     /// Origin and interval are lengths in units; the direction is of any length but 0. Hits are
@@ -497,7 +497,7 @@ mod tests {
     use crate::number::Fixed;
     use proptest::prelude::*;
 
-    fn same_ray<N: Number>(origin: [f64; 3], direction: [f64; 3]) {
+    fn same_ray<N: Arithmetic>(origin: [f64; 3], direction: [f64; 3]) {
         let bounds = UnitBox([[-300, 400], [-1000, 32_000], [5, 6]]);
         let origin = origin.map(N::far_from_f64);
         let direction = direction.map(N::far_from_f64);
@@ -525,7 +525,7 @@ mod tests {
     }
 
     /// What is near starts as what is far: all that is saved is arithmetic.
-    fn same_start<N: Number>(origin: [f64; 3], direction: [f64; 3], tmin: f64) {
+    fn same_start<N: Arithmetic>(origin: [f64; 3], direction: [f64; 3], tmin: f64) {
         let bounds = UnitBox([[-300, 400], [-32_768, 32_767], [5, 6]]);
         let origin = origin.map(N::far_from_f64);
         let direction = direction.map(N::far_from_f64);
@@ -546,7 +546,7 @@ mod tests {
     /// Three finite numbers may have a sum that is not.
     #[test]
     fn origins_are_rejected_with_the_reason() {
-        fn origins<N: Number<Wide = N>>(largest: N, infinite: N) {
+        fn origins<N: Arithmetic<Wide = N>>(largest: N, infinite: N) {
             let bounds = UnitBox([[-300, 400], [-1000, 32_000], [5, 6]]);
             let (zero, end) = (N::ZERO, N::FAR);
             let made = |origin: [N; 3]| {

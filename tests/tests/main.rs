@@ -16,6 +16,7 @@ mod grids;
 mod large_scenes;
 #[path = "lattice/main.rs"]
 mod lattice;
+mod layers;
 mod origins;
 mod reference;
 mod render;

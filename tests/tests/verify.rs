@@ -1,9 +1,8 @@
 //! `verify` finds nothing wrong with what is right, and everything that is made wrong on purpose.
 
 use glam::{DQuat, DVec3, EulerRot};
-use gridel_core::accel::StackView;
 use gridel_core::accel::cull::Cull;
-use gridel_core::accel::{Space, StructureViews, Traverse};
+use gridel_core::accel::{Space, StackView, StructureViews, Traverse};
 use gridel_core::format::Leaf;
 use gridel_core::{Accel, Count, Flagged, Hit, Kind, List, Number, Ray, Scene, Structure};
 use gridel_host::blob::Blob;

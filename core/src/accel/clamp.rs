@@ -1,9 +1,9 @@
 //! Crossings clamped to the culling interval of the primitive's box.
 
 use crate::accel::cull::Culling;
+use crate::accel::number::Number;
 use crate::format::record::UnitBox;
 use crate::geometry::{Crossing, LEAVING, Part, accept};
-use crate::number::Number;
 use crate::ray::Ray;
 
 /// The same of a crossing that a kernel may have rounded out of the primitive's box.
@@ -52,3 +52,6 @@ pub(crate) fn accept_in_box<N: Number, K: Culling<N>>(
     };
     accept(ray, clamped, tmax)
 }
+
+#[cfg(test)]
+mod tests;

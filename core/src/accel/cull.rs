@@ -22,22 +22,15 @@
 //! Values are monotone in `p`, so a child's interval lies in its parent's, whatever was rounded. Hits lie
 //! in these intervals or are clamped to them; what cores walk with may be wider, never narrower.
 
+use crate::accel::cull_axis::CullArithmetic;
+use crate::accel::cull_axis::CullAxis;
+use crate::accel::cull_axis::Interval;
 use crate::axis::pick;
 use crate::format::record::{Gridels, Pair, UnitBox, plane_word};
-use crate::number::{CullAxis, NARROW_PRODUCTS, Number};
 use crate::ray::Ray;
 
-/// The steps at which a ray enters and leaves something; it misses where `near > far`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Interval {
-    /// The first step.
-    pub near: i32,
-    /// The last step.
-    pub far: i32,
-}
-
 /// A form of a ray that culls boxes: [`Cull`] in integers, or lanes of floats where there is SIMD.
-pub trait Culling<N: Number>: Copy + core::fmt::Debug + Default + Send + Sync {
+pub trait Culling<N: CullArithmetic>: Copy + core::fmt::Debug + Default + Send + Sync {
     /// Sets up a ray.
     fn new(ray: &Ray<N>) -> Self;
     /// The integer form, whose intervals hits are clamped to.
@@ -59,7 +52,7 @@ pub trait Culling<N: Number>: Copy + core::fmt::Debug + Default + Send + Sync {
 }
 
 /// A form of a ray that culls the boxes of pairs.
-pub trait PairCulling<N: Number>: Culling<N> {
+pub trait PairCulling<N: CullArithmetic>: Culling<N> {
     /// The interval of a box, from the ray's start up to a limit.
     fn root(&self, bounds: &UnitBox, limit: i32) -> Interval;
     /// The limit for hits at or before a length.
@@ -77,7 +70,7 @@ pub struct Cull {
     pub(crate) axes: [CullAxis; 3],
 }
 
-impl<N: Number> Culling<N> for Cull {
+impl<N: CullArithmetic> Culling<N> for Cull {
     /// Costs three divisions and some fifty operations.
     #[cfg_attr(not(feature = "small"), inline(always))]
     fn new(ray: &Ray<N>) -> Self {
@@ -98,7 +91,7 @@ impl<N: Number> Culling<N> for Cull {
     }
 }
 
-impl<N: Number> PairCulling<N> for Cull {
+impl<N: CullArithmetic> PairCulling<N> for Cull {
     #[inline(always)]
     fn root(&self, bounds: &UnitBox, limit: i32) -> Interval {
         let whole = self.interval(bounds);
@@ -139,7 +132,7 @@ impl<N: Number> PairCulling<N> for Cull {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Deferred;
 
-impl<N: Number> Culling<N> for Deferred {
+impl<N: CullArithmetic> Culling<N> for Deferred {
     #[cfg_attr(not(feature = "small"), inline(always))]
     fn new(_: &Ray<N>) -> Self {
         Self
@@ -188,110 +181,6 @@ impl<N: Number> Culling<N> for Deferred {
         };
         let [a, b] = Gridels::across(ray.major);
         t + deep < ray.tmin || t - deep > tmax || beside(a) || beside(b)
-    }
-}
-
-/// Where the upper half of a product comes for nothing, and there is no instruction for the upper
-/// 32 of 48 bits, as the extension for signal processing has it: small cores without floats.
-const UPPER_HALF: bool = cfg!(any(
-    all(target_arch = "arm", not(target_abi = "eabihf")),
-    target_arch = "riscv32"
-));
-
-/// Whether there is an instruction that rotates.
-const ROTATES: bool = !cfg!(target_arch = "riscv32");
-
-impl CullAxis {
-    /// The step at which the ray enters through a plane.
-    #[inline(always)]
-    pub(crate) fn entry(&self, plane: i16) -> i32 {
-        self.step(plane).wrapping_add(self.near)
-    }
-
-    /// The step at which the ray leaves through a plane.
-    #[inline(always)]
-    pub(crate) fn exit(&self, plane: i16) -> i32 {
-        self.step(plane).wrapping_add(self.far)
-    }
-
-    /// Whether the ray runs down the axis.
-    #[inline(always)]
-    pub(crate) fn descends(&self) -> bool {
-        self.rotation != 0
-    }
-
-    /// The upper half of a plane's product, the plane being the upper half of a word.
-    #[inline(always)]
-    fn upper_half(&self, word: u32) -> i32 {
-        ((self.inverse as i64 * word as i32 as i64) >> 32) as i32
-    }
-
-    /// A plane's product: the upper bits of 48.
-    #[inline(always)]
-    fn step(&self, plane: i16) -> i32 {
-        if NARROW_PRODUCTS {
-            // Both products fit 32 bits.
-            let (high, low) = (self.inverse >> 16, self.inverse & 0xffff);
-            let plane = plane as i32;
-            high.wrapping_mul(plane)
-                .wrapping_add(low.wrapping_mul(plane) >> 16)
-        } else if UPPER_HALF {
-            self.upper_half((plane as u32) << 16)
-        } else {
-            ((self.inverse as i64 * plane as i64) >> 16) as i32
-        }
-    }
-
-    /// The two planes of a word in the order in which the ray comes to them.
-    #[inline(always)]
-    pub(crate) fn ordered(&self, planes: u32) -> [i16; 2] {
-        let ordered = planes.rotate_right(self.rotation);
-        [ordered as i16, (ordered >> 16) as i16]
-    }
-
-    /// The steps at which the ray enters and leaves between the two planes of a word.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    fn between(&self, planes: u32) -> Interval {
-        let [near, far] = self.ordered(planes);
-        Interval {
-            near: self.entry(near),
-            far: self.exit(far),
-        }
-    }
-
-    /// The same to cull with: up to a unit wider, where that is cheaper.
-    #[inline(always)]
-    pub(crate) fn around(&self, planes: u32) -> Interval {
-        if ROTATES {
-            self.between(planes)
-        } else {
-            self.around_by_shifts(planes)
-        }
-    }
-
-    /// Each plane is shifted into the upper half of a word. Below it lies the other one or nothing, so that
-    /// it counts as up to a unit higher. Below another lies the lower half of the given word alone: its
-    /// upper half is where the ray leaves if it runs up the axis, and where it enters if it runs down.
-    /// Either way the interval grows.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    fn around_by_shifts(&self, planes: u32) -> Interval {
-        let near = planes.wrapping_shl(self.rotation ^ 16);
-        let far = planes.wrapping_shl(self.rotation);
-        Interval {
-            near: self.upper_half(near).wrapping_add(self.near),
-            far: self.upper_half(far).wrapping_add(self.far),
-        }
-    }
-}
-
-impl Interval {
-    /// What two intervals share.
-    #[inline(always)]
-    pub(crate) fn and(self, other: Self) -> Self {
-        Self {
-            near: self.near.max(other.near),
-            far: self.far.min(other.far),
-        }
     }
 }
 
@@ -352,7 +241,7 @@ impl Cull {
 /// origin, which so has no plane of the box farther ahead than 1/4 unit: every axis is entered below
 /// 0, and so are the interval's start and whatever t is clamped to.
 #[inline(always)]
-pub(crate) fn holds<N: Number>(ray: &Ray<N>, t: N, bounds: &UnitBox) -> bool {
+pub(crate) fn holds<N: CullArithmetic>(ray: &Ray<N>, t: N, bounds: &UnitBox) -> bool {
     let eighth = N::from_lattice(32);
     let within = |axis: usize| {
         let [low, high] = bounds.0[axis].map(N::from_unit);
@@ -361,24 +250,6 @@ pub(crate) fn holds<N: Number>(ray: &Ray<N>, t: N, bounds: &UnitBox) -> bool {
     };
     within(0) && within(1) && within(2)
 }
-
-/// The form in which rays of a float format cull on this machine.
-///
-/// Cores with SIMD registers take four planes at a time, the others integers. Neither can change
-/// an answer; only how many boxes are visited for nothing may differ, by the width of a margin.
-#[cfg(any(
-    target_arch = "x86_64",
-    target_arch = "aarch64",
-    all(target_arch = "wasm32", target_feature = "simd128")
-))]
-pub(crate) type FloatCulling = crate::accel::lanes::Lanes;
-/// The form in which rays of a float format cull on this machine.
-#[cfg(not(any(
-    target_arch = "x86_64",
-    target_arch = "aarch64",
-    all(target_arch = "wasm32", target_feature = "simd128")
-)))]
-pub(crate) type FloatCulling = Cull;
 
 #[cfg(test)]
 mod tests;

@@ -3,10 +3,11 @@
 //! Rule and margins are those of `single.rs`.
 
 use crate::accel::cull;
-use crate::accel::cull::{Cull, Culling, Interval, PairCulling};
+use crate::accel::cull::{Cull, Culling, PairCulling};
+use crate::accel::cull_axis::CullArithmetic;
+use crate::accel::cull_axis::Interval;
 use crate::accel::single::Single;
 use crate::format::record::{Pair, UnitBox};
-use crate::number::Number;
 use crate::ray::Ray;
 use glam::Vec4;
 
@@ -46,7 +47,7 @@ impl Lanes {
     }
 }
 
-impl<N: Number> Culling<N> for Lanes {
+impl<N: CullArithmetic> Culling<N> for Lanes {
     #[inline(always)]
     fn new(ray: &Ray<N>) -> Self {
         let Single { inverse, near, far } = Single::of(ray);
@@ -80,7 +81,7 @@ impl<N: Number> Culling<N> for Lanes {
     }
 }
 
-impl<N: Number> PairCulling<N> for Lanes {
+impl<N: CullArithmetic> PairCulling<N> for Lanes {
     #[inline(always)]
     fn root(&self, bounds: &UnitBox, limit: i32) -> Interval {
         let planes = bounds.0.map(|[low, high]| [[low, low], [high, high]]);

@@ -1,12 +1,12 @@
 //! The plain list: every primitive is tested. What all structures are measured against.
 
 use crate::accel::cull::Cull;
+use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::{BlobError, Kind, Leaf, SectionKind, Sections, Structure};
-use crate::number::Number;
 use crate::observe::count::Count;
 use crate::ray::Ray;
 

@@ -12,6 +12,7 @@ pub mod candidates;
 pub mod cells;
 pub(crate) mod clamp;
 pub mod cull;
+pub(crate) mod cull_axis;
 pub mod hierarchy;
 #[cfg(any(
     target_arch = "x86_64",
@@ -20,6 +21,7 @@ pub mod hierarchy;
 ))]
 mod lanes;
 pub mod list;
+pub(crate) mod number;
 mod records;
 mod registry;
 #[cfg(any(
@@ -62,6 +64,7 @@ pub use hierarchy::slabs::Slabs;
 #[cfg(feature = "spheres")]
 pub use hierarchy::spheres::Spheres;
 pub use list::List;
+pub use number::Number;
 #[cfg(feature = "all-structures")]
 pub use registry::DynAccel;
 pub use registry::{Accel, StructureViews, StructureVisitor};

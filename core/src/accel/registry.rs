@@ -2,6 +2,8 @@
 
 #[cfg(feature = "all-structures")]
 use crate::accel::cull::Culling;
+#[cfg(feature = "all-structures")]
+use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
 #[cfg(feature = "all-structures")]
@@ -11,8 +13,6 @@ use crate::accel::traverse::Traverse;
 use crate::format::Leaf;
 use crate::format::structure::structures;
 use crate::format::{BlobError, Sections, Structure};
-#[cfg(feature = "all-structures")]
-use crate::number::Number;
 #[cfg(feature = "all-structures")]
 use crate::observe::count::Count;
 #[cfg(feature = "all-structures")]

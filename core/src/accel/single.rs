@@ -8,7 +8,7 @@
 //! them. No number is NaN: an inverse slope is at most 4096 in magnitude, and all products are
 //! finite.
 
-use crate::number::Number;
+use crate::accel::cull_axis::CullArithmetic;
 use crate::ray::Ray;
 use glam::Vec4;
 
@@ -25,7 +25,7 @@ pub(super) struct Single {
 
 impl Single {
     #[inline(always)]
-    pub(super) fn of<N: Number>(ray: &Ray<N>) -> Self {
+    pub(super) fn of<N: CullArithmetic>(ray: &Ray<N>) -> Self {
         let lanes = |v: [N; 3]| Vec4::new(v[0].to_f32(), v[1].to_f32(), v[2].to_f32(), 1.0);
         let (origin, slope) = (lanes(ray.origin), lanes(ray.slope));
         let level = Vec4::splat(1.0 / 4096.0);
@@ -45,7 +45,7 @@ impl Single {
     /// The limit for hits at or before a length, as the bits of a number: the next above, whatever
     /// the conversion rounded; below 0 there is nothing.
     #[inline(always)]
-    pub(super) fn limit<N: Number>(t: N) -> i32 {
+    pub(super) fn limit<N: CullArithmetic>(t: N) -> i32 {
         let t = t.to_f32();
         if t < 0.0 { -1 } else { t.to_bits() as i32 + 1 }
     }

@@ -1,13 +1,13 @@
 //! How a structure is walked.
 
-use crate::SMALL;
 use crate::accel::cull::Culling;
+use crate::accel::number::Number;
 use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::format::{Leaf, Structure};
-use crate::number::Number;
 use crate::observe::count::Count;
 use crate::ray::Ray;
+use crate::target::SMALL;
 
 /// How a structure is walked.
 pub trait Traverse: Send + Sync {

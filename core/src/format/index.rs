@@ -1,7 +1,8 @@
 //! Arrays of integers that are as narrow as their values allow.
 
+use crate::format::Sections;
 use crate::format::error::BlobError;
-use crate::format::section::{SectionKind, Sections};
+use crate::format::section::SectionKind;
 
 /// A read-only array of integers in one to four bytes each, or none at all.
 #[derive(Clone, Copy, Debug)]

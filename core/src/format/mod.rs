@@ -17,7 +17,8 @@ mod node;
 pub(crate) mod range;
 pub mod record;
 mod requirements;
-pub(crate) mod section;
+mod section;
+pub(crate) mod sections;
 pub(crate) mod structure;
 pub(crate) mod word;
 
@@ -33,5 +34,5 @@ pub use node::Child;
 pub use node::{ClassNode, NodeWord, OctreeNode};
 pub use requirements::Demand;
 pub use section::SectionKind;
-pub(crate) use section::Sections;
+pub(crate) use sections::Sections;
 pub use structure::Structure;

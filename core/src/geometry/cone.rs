@@ -21,8 +21,9 @@
 //! and a radius: three reaches, below 2^31. Squares are below 2^62.
 
 use crate::format::record::Cone;
-use crate::geometry::{Crossing, Part, Surface, extent};
-use crate::number::Number;
+use crate::geometry::{Crossing, Part, Surface};
+use crate::number::Arithmetic;
+use crate::number::extent;
 use crate::ray::Ray;
 
 /// Part numbers.
@@ -48,7 +49,7 @@ struct Frame<N> {
 }
 
 /// Where a line is in the infinite mantle: `cos |q + d s| <= g - e s`.
-struct Mantle<N: Number> {
+struct Mantle<N: Arithmetic> {
     q: [N; 3],
     d: [N; 3],
     cos: N,
@@ -59,7 +60,7 @@ struct Mantle<N: Number> {
     reach: N,
 }
 
-impl<N: Number> Mantle<N> {
+impl<N: Arithmetic> Mantle<N> {
     /// `C` and `B` of the quadric around a point `q` of the line.
     #[inline(always)]
     fn terms(&self, q: [N; 3], g: N) -> (N::Wide, N::Wide) {
@@ -138,7 +139,7 @@ impl<N: Number> Mantle<N> {
 
 impl Cone {
     #[inline(always)]
-    fn frame<N: Number>(&self) -> Frame<N> {
+    fn frame<N: Arithmetic>(&self) -> Frame<N> {
         let along = |k: usize| N::from_lattice(self.apex[k].wrapping_sub(self.base[k]));
         let (axis, height) = N::normalize([along(0), along(1), along(2)]);
         let narrowing = N::from_lattice(self.base_radius.wrapping_sub(self.apex_radius));
@@ -153,7 +154,7 @@ impl Cone {
     }
 
     #[inline(always)]
-    fn middle<N: Number>(&self) -> [N; 3] {
+    fn middle<N: Arithmetic>(&self) -> [N; 3] {
         let axis = |k: usize| N::from_lattice(self.base[k].wrapping_add(self.apex[k])).half();
         [axis(0), axis(1), axis(2)]
     }
@@ -162,7 +163,7 @@ impl Cone {
     ///
     /// Cost: some 20 multiplications and additions to reject by the sphere around the solid; some
     /// 100, five divisions and six square roots to accept.
-    pub(crate) fn cross<N: Number>(&self, ray: &Ray<N>, recip_norm2: N) -> Option<Crossing<N>> {
+    pub(crate) fn cross<N: Arithmetic>(&self, ray: &Ray<N>, recip_norm2: N) -> Option<Crossing<N>> {
         let frame = self.frame::<N>();
         let middle = self.middle::<N>();
         let axis = |k: usize| middle[k] - ray.origin[k];
@@ -261,7 +262,7 @@ impl Cone {
 
     /// A point of the solid near a point of its surface, at least `depth` away from mantle and caps,
     /// or where the solid is thinner, on the axis.
-    pub(crate) fn inside<N: Number>(&self, point: [N; 3], depth: N) -> [N; 3] {
+    pub(crate) fn inside<N: Arithmetic>(&self, point: [N; 3], depth: N) -> [N; 3] {
         let Frame {
             axis,
             half_height,
@@ -296,7 +297,7 @@ impl Cone {
 
     /// Outward. Where the point says too little about the mantle's normal, at the tip above all, it is
     /// at least turned to `toward`: where the ray comes from that enters, or goes that leaves.
-    pub(crate) fn surface<N: Number>(
+    pub(crate) fn surface<N: Arithmetic>(
         &self,
         part: Part,
         point: [N; 3],
@@ -343,7 +344,7 @@ impl Cone {
 
 /// A direction at right angles to an axis: `lean` without its part along the axis, or without that
 /// the axis of coordinates that is farthest from it.
-fn upright<N: Number>(lean: [N; 3], axis: [N; 3]) -> [N; 3] {
+fn upright<N: Arithmetic>(lean: [N; 3], axis: [N; 3]) -> [N; 3] {
     let without = |v: [N; 3]| {
         let along = N::from_wide(N::dot(v, axis));
         let across = |k: usize| v[k] - along * axis[k];

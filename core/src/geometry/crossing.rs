@@ -2,7 +2,7 @@
 //!
 //! What of a crossing is a hit is decided here, once for all primitives, in [`accept`].
 
-use crate::number::Number;
+use crate::number::Arithmetic;
 use crate::ray::Ray;
 
 /// The part of a primitive's surface that a crossing lies on; each kernel numbers its own.
@@ -30,7 +30,11 @@ impl<N: Copy> Crossing<N> {
 
 /// The hit of a crossing in `tmin <= t <= tmax`, if there is one. A NaN is no hit.
 #[inline(always)]
-pub(crate) fn accept<N: Number>(ray: &Ray<N>, crossing: Crossing<N>, tmax: N) -> Option<(N, Part)> {
+pub(crate) fn accept<N: Arithmetic>(
+    ray: &Ray<N>,
+    crossing: Crossing<N>,
+    tmax: N,
+) -> Option<(N, Part)> {
     let Crossing { enter, leave } = crossing;
     if enter.0 >= ray.tmin && enter.0 <= tmax {
         return Some(enter);
@@ -42,7 +46,7 @@ pub(crate) fn accept<N: Number>(ray: &Ray<N>, crossing: Crossing<N>, tmax: N) ->
 /// any length, of which `approach` is the product with the ray's slope. `None` where the ray runs along
 /// the plane.
 #[inline(always)]
-pub(crate) fn cross_plane<N: Number>(
+pub(crate) fn cross_plane<N: Arithmetic>(
     normal: [N; 3],
     relative: [N; 3],
     approach: N::Wide,

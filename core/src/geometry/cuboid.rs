@@ -11,7 +11,7 @@
 use crate::axis::pick;
 use crate::format::record::{Cuboid, UnitBox};
 use crate::geometry::{Crossing, Part, Surface, plane};
-use crate::number::Number;
+use crate::number::Arithmetic;
 use crate::ray::Ray;
 
 impl Cuboid {
@@ -25,7 +25,7 @@ impl Cuboid {
     ///
     /// Cost: six divisions; in integers two, where the box is met, and none where it is not.
     #[inline(always)]
-    pub(crate) fn cross<N: Number>(&self, ray: &Ray<N>) -> Option<Crossing<N>> {
+    pub(crate) fn cross<N: Arithmetic>(&self, ray: &Ray<N>) -> Option<Crossing<N>> {
         let mut enter = ((-N::FAR).quotient(N::ONE), 0);
         let mut leave = (N::FAR.quotient(N::ONE), 0);
         for axis in 0..3 {
@@ -62,7 +62,7 @@ impl Cuboid {
 
     /// Outward. At an edge the point stays on the face: as far from the other faces as rays start beside
     /// them.
-    pub(crate) fn surface<N: Number>(&self, part: Part, point: [N; 3]) -> Surface<N> {
+    pub(crate) fn surface<N: Arithmetic>(&self, part: Part, point: [N; 3]) -> Surface<N> {
         let (axis, is_upper) = (usize::from(part / 2), part & 1 != 0);
         let side = if is_upper { self.highest } else { self.lowest };
         let coordinate = N::from_lattice(pick(side, axis));
@@ -71,7 +71,7 @@ impl Cuboid {
 
     /// The point beneath all faces that is nearest to a point: a step beside them, or where the box is no
     /// thicker than that, halfway between them.
-    pub(crate) fn inside<N: Number>(&self, point: [N; 3]) -> [N; 3] {
+    pub(crate) fn inside<N: Arithmetic>(&self, point: [N; 3]) -> [N; 3] {
         let axis = |k: usize| {
             let low = N::from_lattice(self.lowest[k]);
             let high = N::from_lattice(self.highest[k]);

@@ -2,17 +2,17 @@
 
 use crate::format::record::Disc;
 use crate::geometry::{Crossing, Surface, cross_plane, plane};
-use crate::number::Number;
+use crate::number::Arithmetic;
 use crate::ray::Ray;
 
 impl Disc {
-    fn normal<N: Number>(&self) -> [N; 3] {
+    fn normal<N: Arithmetic>(&self) -> [N; 3] {
         N::direction(self.normal.map(i64::from))
     }
 
     /// The crossing, both sides alike; `None` for a ray along the plane.
     #[inline(always)]
-    pub(crate) fn cross<N: Number>(&self, ray: &Ray<N>) -> Option<Crossing<N>> {
+    pub(crate) fn cross<N: Arithmetic>(&self, ray: &Ray<N>) -> Option<Crossing<N>> {
         let axis = |k: usize| N::from_lattice(self.center[k]) - ray.origin[k];
         let relative = [axis(0), axis(1), axis(2)];
         let normal = self.normal();
@@ -33,7 +33,7 @@ impl Disc {
     }
 
     /// The front is where the normal points.
-    pub(crate) fn surface<N: Number>(&self, point: [N; 3]) -> Surface<N> {
+    pub(crate) fn surface<N: Arithmetic>(&self, point: [N; 3]) -> Surface<N> {
         plane::surface(self.normal(), self.center, point)
     }
 }

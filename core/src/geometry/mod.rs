@@ -10,25 +10,23 @@ pub(crate) mod cone;
 mod crossing;
 pub(crate) mod cuboid;
 pub(crate) mod disc;
-mod extent;
 #[cfg(feature = "wide")]
 pub(crate) mod pack;
 pub(crate) mod plane;
 mod primitive_id;
+pub(crate) mod project;
 mod shapes;
 pub(crate) mod sphere;
 #[cfg(feature = "wide")]
 pub(crate) mod strip;
 mod surface;
-#[cfg(test)]
-mod tests;
 pub(crate) mod triangle;
 
 #[cfg(feature = "wide")]
 pub(crate) use cluster::{Clusters, Packs, Packs24, Strips};
 pub(crate) use crossing::{Crossing, LEAVING, Part, accept, cross_plane};
-pub(crate) use extent::extent;
 pub(crate) use primitive_id::PrimitiveId;
+pub use project::Project;
 pub use shapes::Geometry;
 pub(crate) use shapes::{Shapes, Spheres, Triangles, Vertices};
 pub(crate) use surface::Surface;

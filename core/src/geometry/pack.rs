@@ -4,7 +4,7 @@
 
 use crate::format::cluster::{LANES, Pack, Rows};
 use crate::geometry::{Crossing, sphere};
-use crate::number::Number;
+use crate::number::Arithmetic;
 use crate::ray::Ray;
 use crate::simd::{F32x8, Simd};
 
@@ -21,7 +21,7 @@ pub(crate) struct Met {
 impl Met {
     /// The crossing with the sphere in a lane: that of [`sphere::cross`].
     #[inline(always)]
-    pub(crate) fn crossing<N: Number>(&self, recip_norm2: N, lane: usize) -> Crossing<N> {
+    pub(crate) fn crossing<N: Arithmetic>(&self, recip_norm2: N, lane: usize) -> Crossing<N> {
         let closest = N::length_from_f64(self.closest[lane & 7].into());
         let square = N::length_from_f64(self.square[lane & 7].into());
         sphere::beside(closest, square.widen(), recip_norm2)
@@ -32,7 +32,7 @@ impl Met {
 ///
 /// Cost: some 40 operations in eight lanes.
 #[inline(always)]
-pub(crate) fn met<N: Number, S: Simd, P: Pack>(
+pub(crate) fn met<N: Arithmetic, S: Simd, P: Pack>(
     simd: S,
     ray: &Ray<N>,
     recip_norm2: N,

@@ -2,13 +2,13 @@
 
 use crate::axis::pick;
 use crate::geometry::Surface;
-use crate::number::Number;
+use crate::number::Arithmetic;
 
 /// The face of a plane at right angles to an axis, at a point of it.
 ///
 /// The point's coordinate on that axis is the plane's own, without any rounding.
 #[inline(always)]
-pub(crate) fn face<N: Number>(
+pub(crate) fn face<N: Arithmetic>(
     axis: usize,
     is_upper: bool,
     coordinate: N,
@@ -29,7 +29,11 @@ pub(crate) fn face<N: Number>(
 /// The surface of a plane, at a point of it next to `point`. `normal` is of any length, and
 /// `through` is the point of the plane that t was computed with.
 #[inline(always)]
-pub(crate) fn surface<N: Number>(normal: [N; 3], through: [i32; 3], point: [N; 3]) -> Surface<N> {
+pub(crate) fn surface<N: Arithmetic>(
+    normal: [N; 3],
+    through: [i32; 3],
+    point: [N; 3],
+) -> Surface<N> {
     let through = through.map(N::from_lattice);
     let [x, y, z] = normal.map(|component| component == N::ZERO);
     let axis = match (x, y, z) {
@@ -49,7 +53,7 @@ pub(crate) fn surface<N: Number>(normal: [N; 3], through: [i32; 3], point: [N; 3
 /// The surface of a plane at right angles to no axis, given its normal of length 1: the point moves onto
 /// the plane along the normal, by its distance from `through`.
 #[inline(always)]
-fn tilted<N: Number>(normal: [N; 3], through: [N; 3], point: [N; 3]) -> Surface<N> {
+fn tilted<N: Arithmetic>(normal: [N; 3], through: [N; 3], point: [N; 3]) -> Surface<N> {
     let relative = |k: usize| through[k] - point[k];
     let relative = [relative(0), relative(1), relative(2)];
     let away = N::from_wide(N::dot(relative, normal));

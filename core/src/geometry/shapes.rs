@@ -1,21 +1,15 @@
 //! All primitives of a blob, each kind in an array of its own.
 
-use crate::format::Kind;
-use crate::format::Leaf;
-use crate::format::limits::WIDE_INDICES;
-use crate::format::limits::WIDE_LATTICE;
+use crate::format::limits::{WIDE_INDICES, WIDE_LATTICE};
 use crate::format::record::{
     Cone, Corners, Cuboid, Disc, Sphere, Sphere16, Sphere24, UnitBox, Vertex, Vertex16, Vertex24,
 };
+use crate::format::{Kind, Leaf};
 #[cfg(feature = "wide")]
 use crate::geometry::Clusters;
-use crate::geometry::LEAVING;
-use crate::geometry::Part;
-use crate::geometry::PrimitiveId;
-use crate::geometry::Surface;
-use crate::geometry::extent;
-use crate::geometry::{sphere, triangle};
-use crate::number::Number;
+use crate::geometry::{LEAVING, Part, PrimitiveId, Surface, sphere, triangle};
+use crate::number::Arithmetic;
+use crate::number::extent;
 use crate::ray::Ray;
 
 /// The vertices of all meshes.
@@ -246,7 +240,7 @@ impl Shapes<'_> {
     /// How a primitive's surface lies where a ray hit it, and whether the ray came from the side to
     /// which the normal points.
     #[cfg_attr(feature = "wide", inline(always))]
-    pub(crate) fn surface<N: Number>(
+    pub(crate) fn surface<N: Arithmetic>(
         &self,
         place: PrimitiveId,
         part: Part,
@@ -294,7 +288,7 @@ impl Shapes<'_> {
     /// it is seen from.
     #[cfg_attr(feature = "wide", inline(never))]
     #[cfg_attr(not(feature = "wide"), inline(always))]
-    fn surface_in_slot<N: Number>(
+    fn surface_in_slot<N: Arithmetic>(
         &self,
         kind: Kind,
         index: usize,
@@ -319,7 +313,7 @@ impl Shapes<'_> {
     ///
     /// At an edge or a rim the way along the normal alone could lead out again.
     #[inline(never)]
-    pub(crate) fn inside<N: Number>(
+    pub(crate) fn inside<N: Arithmetic>(
         &self,
         kind: Kind,
         index: usize,

@@ -16,14 +16,14 @@
 
 use crate::format::record::UnitBox;
 use crate::geometry::{Crossing, Surface};
-use crate::number::Number;
+use crate::number::Arithmetic;
 use crate::ray::Ray;
 
 /// The crossing with a sphere. `recip_norm2` is [`Number::recip_norm2`] of the ray's slopes.
 ///
 /// Cost: 18 multiplications and additions to reject, and a square root to accept.
 #[inline(always)]
-pub(crate) fn cross<N: Number>(
+pub(crate) fn cross<N: Arithmetic>(
     ray: &Ray<N>,
     recip_norm2: N,
     center: [i32; 3],
@@ -49,7 +49,7 @@ pub(crate) fn cross<N: Number>(
 /// The crossing whose middle lies at `closest`, with `square` the radius squared less the square of
 /// the line's distance from the centre.
 #[inline(always)]
-pub(crate) fn beside<N: Number>(closest: N, square: N::Wide, recip_norm2: N) -> Crossing<N> {
+pub(crate) fn beside<N: Arithmetic>(closest: N, square: N::Wide, recip_norm2: N) -> Crossing<N> {
     let half = N::root(N::wide_scale(square, recip_norm2));
     Crossing {
         enter: (closest - half, 0),
@@ -67,7 +67,7 @@ pub(crate) fn bounds(center: [i32; 3], radius: i32) -> UnitBox {
 }
 
 /// Outward. The point lies a radius from the centre, whatever t was rounded by.
-pub(crate) fn surface<N: Number>(center: [i32; 3], radius: i32, point: [N; 3]) -> Surface<N> {
+pub(crate) fn surface<N: Arithmetic>(center: [i32; 3], radius: i32, point: [N; 3]) -> Surface<N> {
     let center = center.map(N::from_lattice);
     let radius = N::from_lattice(radius);
     let axis = |k: usize| point[k] - center[k];

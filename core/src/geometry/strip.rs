@@ -20,9 +20,10 @@
 
 use crate::format::cluster::{Rows, Strip};
 use crate::format::record::{Vertex16, Vertex24};
+use crate::geometry::Project;
 use crate::geometry::Strips;
 use crate::geometry::triangle::Projection;
-use crate::number::{Format, Number};
+use crate::number::Format;
 use crate::ray::Ray;
 use crate::simd::{F32x8, Simd};
 
@@ -37,7 +38,7 @@ pub(crate) struct StripRay<N> {
     descends: u32,
 }
 
-impl<N: Number> StripRay<N> {
+impl<N: Project> StripRay<N> {
     /// A ray for the strips of a scene.
     #[inline(always)]
     pub(crate) fn new(ray: &Ray<N>, strips: &Strips<'_>) -> Self {
@@ -168,7 +169,7 @@ fn axis(axes: u32, role: u32) -> usize {
     (axes >> (2 * role) & 3) as usize
 }
 
-fn met_along<const MAJOR: usize, N: Number, T: Strip>(
+fn met_along<const MAJOR: usize, N: Project, T: Strip>(
     projection: &Projection<N>,
     strip: &T,
     places: u32,

@@ -1,6 +1,6 @@
 //! How a surface lies where it was hit.
 
-use crate::number::Number;
+use crate::number::Arithmetic;
 use crate::ray::Ray;
 
 /// How a surface lies where it was hit.
@@ -17,7 +17,7 @@ pub(crate) struct Surface<N> {
     pub(crate) is_exact: bool,
 }
 
-impl<N: Number> Surface<N> {
+impl<N: Arithmetic> Surface<N> {
     /// The normal as a ray sees it that only grazes the surface.
     ///
     /// What a ray enters or leaves is known better than the normal, which the point's rounding turns

@@ -10,8 +10,11 @@
 
 use crate::axis::pick;
 use crate::format::record::{UnitBox, Vertex};
+use crate::geometry::Project;
+use crate::geometry::project::Sight;
 use crate::geometry::{Surface, cross_plane, plane};
-use crate::number::{Number, Sight, product};
+use crate::number::Arithmetic;
+use crate::number::fixed::halves::product;
 use crate::ray::Ray;
 
 /// The projection along a ray: how its origin sees coordinates on the axes in the order of their roles
@@ -37,7 +40,7 @@ fn axis<const MAJOR: usize>(major: usize, role: usize) -> usize {
     }
 }
 
-impl<N: Number> Projection<N> {
+impl<N: Project> Projection<N> {
     /// The projection of vertices `V` along a ray whose major axis is `MAJOR`, or [`ANY`].
     #[inline(always)]
     pub(crate) fn of<const MAJOR: usize, V: Vertex>(ray: &Ray<N>) -> Self {
@@ -101,7 +104,7 @@ impl<N: Number> Projection<N> {
 /// within 1/8 unit of `q`, and a point within 1/4 unit of a box has a t in its interval (see
 /// [`cull`](crate::accel)).
 #[inline(always)]
-pub(crate) fn cross<N: Number>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> Option<(N, bool)> {
+pub(crate) fn cross<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> Option<(N, bool)> {
     let relative = |axis: usize| N::from_lattice(corners[0][axis]) - ray.origin[axis];
     let relative = [relative(0), relative(1), relative(2)];
     let normal = normal(corners);
@@ -112,7 +115,7 @@ pub(crate) fn cross<N: Number>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> Option<(
 
 /// The normal, of any length: exact but for one rounding a component.
 #[cfg_attr(not(feature = "small"), inline(always))]
-fn normal<N: Number>([a, b, c]: [[i32; 3]; 3]) -> [N; 3] {
+fn normal<N: Arithmetic>([a, b, c]: [[i32; 3]; 3]) -> [N; 3] {
     let edge = |from: [i32; 3], to: [i32; 3]| {
         let axis = |k: usize| to[k].wrapping_sub(from[k]);
         [axis(0), axis(1), axis(2)]
@@ -136,6 +139,6 @@ pub(crate) fn bounds([a, b, c]: [[i32; 3]; 3]) -> UnitBox {
 
 /// The front is where the corners run counter-clockwise.
 #[cfg_attr(feature = "wide", inline(always))]
-pub(crate) fn surface<N: Number>(corners: [[i32; 3]; 3], point: [N; 3]) -> Surface<N> {
+pub(crate) fn surface<N: Arithmetic>(corners: [[i32; 3]; 3], point: [N; 3]) -> Surface<N> {
     plane::surface(normal(corners), corners[0], point)
 }

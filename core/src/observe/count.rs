@@ -1,21 +1,7 @@
 //! Counters of work, and the story of a ray, which cost nothing where nobody asks for them.
 
-use crate::number::Number;
-use crate::observe::event::Event;
-use crate::ray::Ray;
-
-/// What a ray was cast for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RayKind {
-    /// From the camera.
-    Primary,
-    /// Towards a light.
-    Shadow,
-    /// Off a mirror, or off glass.
-    Reflected,
-    /// Into glass or out of it.
-    Refracted,
-}
+use crate::observe::event::{Event, RayKind};
+use core::any::Any;
 
 /// Receives counts and events; every method does nothing unless it is overridden.
 pub trait Count {
@@ -34,9 +20,9 @@ pub trait Count {
     /// Cells of a subdivision of space were entered.
     #[inline(always)]
     fn cells(&mut self, _: u32) {}
-    /// A ray was cast.
+    /// A ray was cast: a [`Ray`](crate::Ray) of some number format.
     #[inline(always)]
-    fn ray<N: Number>(&mut self, _: RayKind, _: &Ray<N>) {}
+    fn ray<R: Any>(&mut self, _: RayKind, _: &R) {}
     /// Something happened. It is told only to those that say so by [`TELLS`](Self::TELLS), and the
     /// code that tells is not even compiled for others.
     fn tell(&mut self, _: Event) {}
@@ -112,7 +98,7 @@ impl Count for Counters {
         self.cells = self.cells.wrapping_add(number.into());
     }
 
-    fn ray<N: Number>(&mut self, kind: RayKind, _: &Ray<N>) {
+    fn ray<R: Any>(&mut self, kind: RayKind, _: &R) {
         let counter = match kind {
             RayKind::Primary => &mut self.primary,
             RayKind::Shadow => &mut self.shadow,

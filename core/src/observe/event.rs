@@ -1,13 +1,25 @@
 //! What happens to a ray, event by event, for whoever wants its story (see [`Count::tell`]).
 //!
 //! Events come from the very code that traces and renders, in the order in which it works. Points,
-//! lengths and t are in units (see [`Number`](crate::Number)), t along the ray's major axis; colours
+//! lengths and t are in units (see [`Number`](crate::accel::Number)), t along the ray's major axis; colours
 //! are linear, 1 being display white. All are exactly what the number format holds.
 //!
 //! [`Count::tell`]: crate::Count::tell
 
 use crate::format::Kind;
-use crate::observe::count::RayKind;
+
+/// What a ray was cast for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RayKind {
+    /// From the camera.
+    Primary,
+    /// Towards a light.
+    Shadow,
+    /// Off a mirror, or off glass.
+    Reflected,
+    /// Into glass or out of it.
+    Refracted,
+}
 
 /// Something that happened.
 #[derive(Clone, Copy, Debug, PartialEq)]

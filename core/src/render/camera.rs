@@ -4,9 +4,10 @@
 //! in square pictures of up to 90 degrees a slope is off by less than 2^-26; in wider ones by more,
 //! but by less than a thousandth of the distance of two pixels.
 
+use crate::accel::Number;
 use crate::axis::pick;
 use crate::format::record::{UnitBox, View};
-use crate::number::{Format, Number};
+use crate::number::Format;
 use crate::ray::{Pencil, Ray, RayError};
 use crate::render::sample::SUBPIXELS;
 

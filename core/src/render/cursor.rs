@@ -1,16 +1,12 @@
 //! Where rendering is: the sample of a pixel, the pixel of a rectangle. It can stop behind any ray
 //! and go on later, so a call takes a bounded time and the picture is the same bit for bit.
 
-use crate::accel::Accel;
-use crate::number::Number;
+use crate::accel::{Accel, Number};
 use crate::observe::count::Count;
-use crate::observe::event::Event;
-use crate::render::pixel::{Linear, Pixel};
+use crate::render::pixel::Pixel;
 use crate::render::renderer::Renderer;
-use crate::render::sample::place;
+use crate::render::samples::Samples;
 use crate::render::trace::WorkspaceView;
-use crate::shade::Color;
-use core::hint::black_box;
 
 /// A rectangle of a picture that is rendered a few rays at a time, for firmware with deadlines.
 ///
@@ -102,68 +98,15 @@ impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> Cursor<'r, 's, 'a, N, 
     }
 }
 
-/// A pixel that is being rendered: the number of its sample, and what was seen so far.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Samples<N: Number> {
-    index: u16,
-    /// Of the samples before this one.
-    sum: Color<N>,
-    /// What this sample's rays have brought.
-    radiance: Color<N>,
-}
-
-impl<N: Number> Samples<N> {
-    pub(super) fn new() -> Self {
-        Self {
-            index: 0,
-            sum: Color::BLACK,
-            radiance: Color::BLACK,
-        }
-    }
-
-    /// Traces one ray; the pixel, linear, if that was its last. The work list holds rays of the
-    /// pixel's current sample, and is empty when a sample begins.
-    #[inline(always)]
-    pub(super) fn step<A: Accel, C: Count, const EFFECTS: u32>(
-        &mut self,
-        renderer: &Renderer<'_, '_, N, A, EFFECTS>,
-        [x, y]: [u16; 2],
-        space: &mut WorkspaceView<'_, N>,
-        count: &mut C,
-    ) -> Option<Linear> {
-        let samples = renderer.settings().samples;
-        let camera = || {
-            let [x, y] = place([x, y], self.index, samples);
-            // Moved out of the loops around this, its fields would go to the stack and come back.
-            black_box(renderer).ray_through(x, y)
-        };
-        let radiance = &mut self.radiance;
-        let tracing = renderer.tracing();
-        if !tracing.step::<N, A, C, EFFECTS>(camera, radiance, space, count) {
-            return None;
-        }
-        // Clamped before they are averaged, so that the edge of a highlight is smooth.
-        let seen = self.radiance.displayable();
-        self.sum = self.sum.plus(seen);
-        if C::TELLS {
-            count.tell(Event::Seen {
-                place: Some(place([x, y], self.index, samples)),
-                radiance: seen.told(),
-            });
-        }
-        self.radiance = Color::BLACK;
-        self.index = self.index.saturating_add(1);
-        if self.index < samples {
-            return None;
-        }
-        let mean = if samples == 1 {
-            self.sum
-        } else {
-            // `Renderer::new` refuses 0 samples.
-            self.sum
-                .scaled(N::ratio((1 << 30) / i32::from(samples.max(1))))
-        };
-        Some(renderer.to_linear(mean))
+impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFFECTS> {
+    /// The same rectangle, rendered a few rays at a time: see [`Cursor`].
+    pub fn cursor<'r>(
+        &'r self,
+        corner: [u16; 2],
+        size: [u16; 2],
+        space: WorkspaceView<'r, N>,
+    ) -> Cursor<'r, 's, 'a, N, A, EFFECTS> {
+        Cursor::new(self, corner, size, space)
     }
 }
 

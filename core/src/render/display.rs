@@ -4,8 +4,7 @@
 //! [`Cursor`](crate::render::Cursor), pixels go there as they become ready, a bounded number of rays at a
 //! time: hand each to [`DrawTarget::draw_iter`] as a `Pixel`.
 
-use crate::accel::Accel;
-use crate::number::Number;
+use crate::accel::{Accel, Number};
 use crate::observe::count::Count;
 use crate::render::pixel::{Pixel, luminance, quantize};
 use crate::render::renderer::Renderer;

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | where in the pixel, and in which direction | `sample.rs`, `camera.rs` |
 //! | what the ray and those it causes bring | `trace.rs` |
+//! | the samples of a pixel, all pixels of a rectangle | `samples.rs`, `rows.rs` |
 //! | where rendering is between two calls | `cursor.rs` |
 //! | onto a display of `embedded-graphics`, where the feature is on | `display.rs` |
 //! | from radiance to the bytes of a display | `pixel.rs` |
@@ -14,7 +15,9 @@ mod cursor;
 mod display;
 mod pixel;
 mod renderer;
+mod rows;
 mod sample;
+mod samples;
 mod trace;
 
 pub use cursor::Cursor;

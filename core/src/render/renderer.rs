@@ -1,21 +1,18 @@
 //! The renderer: pixels of one scene at one size, wherever and in whatever order they are wanted.
 
-use crate::SMALL;
-use crate::accel::Accel;
+use crate::accel::{Accel, Number};
 use crate::format::limits::{DISPLAY_VALUES, MAX_RAY_DEPTH, MAX_SAMPLES};
 use crate::format::{Effects, Structure};
-use crate::number::{Format, Number};
-use crate::observe::count::Count;
-use crate::observe::event::Event;
+use crate::number::Format;
 use crate::ray::{Ray, RayError};
 use crate::render::camera;
 use crate::render::camera::Camera;
-use crate::render::cursor::{Cursor, Samples};
-use crate::render::pixel::{Linear, Pixel, from_display};
+use crate::render::pixel::{Linear, from_display};
 use crate::render::sample::SUBPIXELS;
 use crate::render::trace::{Loop, WorkspaceView};
 use crate::scene::Scene;
 use crate::shade::Color;
+use crate::target::SMALL;
 use core::fmt;
 use core::marker::PhantomData;
 
@@ -233,45 +230,6 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         self.camera.ray(&self.camera.row(y), x)
     }
 
-    /// One pixel, linear, 65535 being white. Outside of the picture pixels go on.
-    pub fn linear<C: Count>(
-        &self,
-        x: u16,
-        y: u16,
-        space: &mut WorkspaceView<'_, N>,
-        count: &mut C,
-    ) -> [u16; 3] {
-        space.work.clear();
-        let mut samples = Samples::new();
-        loop {
-            if let Some(linear) = samples.step(self, [x, y], space, count) {
-                return linear;
-            }
-        }
-    }
-
-    /// What is seen along a ray of the caller's own, linear, 65535 being white.
-    pub fn linear_along<C: Count>(
-        &self,
-        ray: &Ray<N>,
-        space: &mut WorkspaceView<'_, N>,
-        count: &mut C,
-    ) -> [u16; 3] {
-        space.work.clear();
-        let tracing = self.tracing();
-        let mut radiance = Color::BLACK;
-        let camera = || Ok(*ray);
-        while !tracing.step::<N, A, C, EFFECTS>(camera, &mut radiance, space, count) {}
-        let seen = radiance.displayable();
-        if C::TELLS {
-            count.tell(Event::Seen {
-                place: None,
-                radiance: seen.told(),
-            });
-        }
-        self.to_linear(seen)
-    }
-
     /// A pixel's value in the steps of a picture.
     #[inline(always)]
     pub(super) fn to_linear(&self, seen: Color<N>) -> Linear {
@@ -281,60 +239,6 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         } else {
             values
         }
-    }
-
-    /// One pixel in a display's form.
-    pub fn pixel<P: Pixel, C: Count>(
-        &self,
-        x: u16,
-        y: u16,
-        space: &mut WorkspaceView<'_, N>,
-        count: &mut C,
-    ) -> P {
-        P::encode(
-            self.linear(x, y, space, count),
-            self.settings.dither.then_some([x, y]),
-        )
-    }
-
-    /// A part of a row: as many pixels as `row` has, from column `x` on.
-    pub fn row<P: Pixel, C: Count>(
-        &self,
-        x: u16,
-        y: u16,
-        row: &mut [P],
-        space: &mut WorkspaceView<'_, N>,
-        count: &mut C,
-    ) {
-        for (column, pixel) in (x..=u16::MAX).zip(row) {
-            *pixel = self.pixel(column, y, space, count);
-        }
-    }
-
-    /// Any rectangle, pixel by pixel, row by row from its upper left corner.
-    pub fn rectangle<P: Pixel, C: Count>(
-        &self,
-        corner: [u16; 2],
-        size: [u16; 2],
-        space: &mut WorkspaceView<'_, N>,
-        count: &mut C,
-        mut sink: impl FnMut(u16, u16, P),
-    ) {
-        for y in (corner[1]..=u16::MAX).take(size[1].into()) {
-            for x in (corner[0]..=u16::MAX).take(size[0].into()) {
-                sink(x, y, self.pixel(x, y, space, count));
-            }
-        }
-    }
-
-    /// The same rectangle, rendered a few rays at a time: see [`Cursor`].
-    pub fn cursor<'r>(
-        &'r self,
-        corner: [u16; 2],
-        size: [u16; 2],
-        space: WorkspaceView<'r, N>,
-    ) -> Cursor<'r, 's, 'a, N, A, EFFECTS> {
-        Cursor::new(self, corner, size, space)
     }
 
     pub(super) fn tracing(&self) -> Loop<'s, 'a> {

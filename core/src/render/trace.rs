@@ -11,15 +11,14 @@
 //!
 //! Everything is compiled for a set of effects: what is not in it costs neither code nor time.
 
-use crate::accel::Accel;
 use crate::accel::stack::{Stack, StackView};
+use crate::accel::{Accel, Number};
 use crate::format::Effects;
 use crate::format::limits::MAX_RAY_DEPTH;
 use crate::format::record::{Light, Material};
-use crate::geometry::extent;
-use crate::number::Number;
-use crate::observe::count::{Count, RayKind};
-use crate::observe::event::{Event, Source};
+use crate::number::extent;
+use crate::observe::count::Count;
+use crate::observe::event::{Event, RayKind, Source};
 use crate::query::{Hit, any_hit, closest_hit};
 use crate::ray::{Ray, RayError};
 use crate::scene::Scene;

@@ -3,10 +3,10 @@
 use crate::accel::StructureViews;
 use crate::format::range::{At, at_most, exactly};
 use crate::format::record::{Header, UnitBox};
-use crate::format::section::Sections;
-use crate::format::{BlobError, Effects, Kind, Leaf, SectionKind, checksum};
+use crate::format::{BlobError, Effects, Kind, Leaf, SectionKind, Sections, checksum};
 use crate::geometry::Shapes;
-use crate::number::{Fixed, Number};
+use crate::number::Fixed;
+use crate::number::Scalar;
 use crate::scene::Scene;
 use crate::scene::read::{FAR, RADIANCE};
 

@@ -1,7 +1,6 @@
 //! Loading: from the bytes of a blob to a scene.
 
-use crate::format::BlobError;
-use crate::format::section::Sections;
+use crate::format::{BlobError, Sections};
 use crate::scene::blob::Scene;
 use crate::scene::prevalidated::Vouched;
 use crate::scene::{check, read};

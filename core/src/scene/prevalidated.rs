@@ -2,9 +2,7 @@
 
 use crate::accel::hierarchy::order::Order;
 use crate::format::record::{Header, SectionEntry};
-use crate::format::word::half;
-use crate::format::word::proved;
-use crate::format::word::word;
+use crate::format::word::{half, proved, word};
 use crate::format::{BlobError, SectionKind, Structure, checksum};
 use core::mem::offset_of;
 

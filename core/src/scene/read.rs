@@ -11,8 +11,7 @@ use crate::format::range::{At, at_most, exactly};
 use crate::format::record::{
     ALIGNMENT, Cone, Cuboid, Disc, ENDIANNESS, Header, MAGIC, VERSION, View,
 };
-use crate::format::section::Sections;
-use crate::format::{BlobError, Effects, Indices, Kind, SectionKind, Structure};
+use crate::format::{BlobError, Effects, Indices, Kind, SectionKind, Sections, Structure};
 #[cfg(feature = "wide")]
 use crate::geometry::{Clusters, Packs, Packs24, Strips};
 use crate::geometry::{Shapes, Spheres, Triangles, Vertices};

@@ -1,9 +1,10 @@
 //! Every shape is hit where geometry says.
 
+use crate::accel::Number;
 use crate::observe::count::NoCount;
 use crate::selftest::scene::TinyBlob;
 use crate::selftest::{Checks, name};
-use crate::{Hit, List, Number, Ray, Scene, Stack, any_hit, closest_hit};
+use crate::{Hit, List, Ray, Scene, Stack, any_hit, closest_hit};
 
 /// What one ray must find.
 struct Expected {

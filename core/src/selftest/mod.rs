@@ -19,7 +19,7 @@ mod std_host;
 #[cfg(feature = "std")]
 pub use std_host::StdHost;
 
-use crate::number::Number;
+use crate::accel::Number;
 use core::ffi::CStr;
 use core::fmt;
 

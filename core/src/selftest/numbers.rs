@@ -1,9 +1,13 @@
 //! Arithmetic against wider integers, in which it is exact.
 
-use crate::number::{Fixed, Number};
+use crate::accel::Number;
+use crate::geometry::Project;
+use crate::number::Fixed;
+use crate::number::Products;
+use crate::number::Scalar;
 use crate::selftest::{Checks, FNV_START, Random, hash, name};
 
-type Product = <Fixed as Number>::Wide;
+type Product = <Fixed as crate::number::Scalar>::Wide;
 
 const ROUNDS: usize = 2_000;
 

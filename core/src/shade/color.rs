@@ -1,6 +1,6 @@
 //! Three channels of radiance, or of the ratios that it is weighted with.
 
-use crate::number::Number;
+use crate::accel::Number;
 
 /// Red, green and blue.
 #[derive(Clone, Copy, Debug, PartialEq)]

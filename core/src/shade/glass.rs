@@ -3,8 +3,8 @@
 //! The index of refraction is kept as its inverse `k`, at most 1, and the refracted direction may
 //! have any length, so that every number here lies between -2 and 2.
 
+use crate::accel::Number;
 use crate::format::record::Material;
-use crate::number::Number;
 use crate::shade::Color;
 
 /// What a glass surface does with a ray.

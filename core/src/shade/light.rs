@@ -1,7 +1,7 @@
 //! Lights: where they are from a point, and what of them arrives.
 
+use crate::accel::Number;
 use crate::format::record::Light;
-use crate::number::Number;
 
 impl Light {
     /// The way from a point to this light, of any length, and how far along its largest component

@@ -1,8 +1,8 @@
 //! What a material calls for, and its colour at a point.
 
+use crate::accel::Number;
 use crate::format::Effects;
 use crate::format::record::Material;
-use crate::number::Number;
 use crate::query::Hit;
 use crate::shade::Color;
 

@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use gridel_core::accel::hierarchy::slabs::DIRECTION_COUNTS;
+use gridel_core::accel::hierarchy::direction::DIRECTION_COUNTS;
 use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use gridel_core::{Format, Scene as CoreScene, Settings, Structure};
 use gridel_host::board::{BOARDS, Board};

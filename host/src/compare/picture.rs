@@ -24,7 +24,7 @@ pub struct PictureRays<N: Number> {
 
 /// Keeps every ray that is cast.
 impl<N: Number> Count for PictureRays<N> {
-    fn ray<M: Number>(&mut self, kind: RayKind, ray: &Ray<M>) {
+    fn ray<R: Any>(&mut self, kind: RayKind, ray: &R) {
         let Some(&ray) = (ray as &dyn Any).downcast_ref::<Ray<N>>() else {
             return;
         };

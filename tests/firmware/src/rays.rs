@@ -3,7 +3,8 @@
 use crate::scene::{Accel, Number as N, SceneRenderer};
 use core::hint::black_box;
 use gridel_core::format::record::Light;
-use gridel_core::{Hit, NoCount, Number, Ray, Scene, StackView, any_hit, closest_primitive};
+use gridel_core::number::{Convert, ErrorBounds, Products, Scalar};
+use gridel_core::{Hit, NoCount, Ray, Scene, StackView, any_hit, closest_primitive};
 
 /// What was traced.
 #[derive(Clone, Copy, Debug, Default)]

@@ -44,15 +44,14 @@ use crate::accel::candidates::lists::{Candidates, ListSections, look_up};
 use crate::accel::cull::{Culling, Deferred};
 use crate::accel::hierarchy::bvh::Bvh;
 use crate::accel::hierarchy::pairs::Pairs;
+use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::axis::pick;
-use crate::format::record::Pair;
-use crate::format::record::{ApexDirection, ApexPoint, ApexWindow, Gridels};
+use crate::format::record::{ApexDirection, ApexPoint, ApexWindow, Gridels, Pair};
 use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
-use crate::number::Number;
 use crate::observe::count::Count;
 use crate::ray::Ray;
 

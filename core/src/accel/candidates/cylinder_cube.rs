@@ -13,12 +13,12 @@
 use crate::accel::candidates::gridel_table::Table;
 use crate::accel::candidates::lists::{ListSections, look_up};
 use crate::accel::cull::Deferred;
+use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
-use crate::number::Number;
 use crate::observe::count::Count;
 use crate::ray::Ray;
 

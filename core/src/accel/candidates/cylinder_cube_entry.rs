@@ -10,8 +10,8 @@
 use crate::accel::candidates::gridel_table::{Table, along};
 use crate::accel::candidates::lists::{ListSections, look_up};
 use crate::accel::cull::PairCulling;
-use crate::accel::hierarchy::pairs::Pairs;
-use crate::accel::hierarchy::pairs::{PairArray, Walk};
+use crate::accel::hierarchy::pairs::{PairArray, Pairs, Walk};
+use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
 use crate::accel::stack::StackView;
@@ -19,7 +19,6 @@ use crate::accel::traverse::Traverse;
 use crate::format::link::Node;
 use crate::format::record::Pair;
 use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
-use crate::number::Number;
 use crate::observe::count::Count;
 use crate::ray::Ray;
 

@@ -3,10 +3,10 @@
 
 use crate::accel::candidates::gridels::{Levels, Passage};
 use crate::accel::candidates::lists::{Candidates, ListSections};
+use crate::accel::number::Number;
 use crate::accel::space::Space;
 use crate::format::record::Gridels;
 use crate::format::{BlobError, SectionKind, Sections};
-use crate::number::Number;
 use crate::ray::Ray;
 
 /// What the cylinder cubes keep: a partition, and a list for every pair of gridels.

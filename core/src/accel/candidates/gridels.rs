@@ -23,9 +23,9 @@
 //! [`Gridels::SPARE`], meet that hull is complete, in every number format.
 
 use crate::accel::candidates::line::{Line, Through};
+use crate::accel::number::Number;
 use crate::axis::pick;
 use crate::format::record::{Gridels, UnitBox};
-use crate::number::Number;
 use crate::ray::Ray;
 
 impl Gridels {

@@ -1,8 +1,8 @@
 //! The line of a ray in integers: which cell of a table a ray belongs to does not depend on the
 //! number format.
 
+use crate::accel::number::Number;
 use crate::axis::pick;
-use crate::number::Number;
 use crate::ray::Ray;
 
 /// A ray's line, its parameter a length along the major axis with 13 fraction bits.

@@ -21,13 +21,13 @@
 use crate::accel::candidates::lists::look_up;
 use crate::accel::cells::lists::{Divisions, Lists, Tester, check_complete, divide, reach, record};
 use crate::accel::cull::{Cull, PairCulling};
+use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::record::GridShape;
 use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
-use crate::number::Number;
 use crate::observe::count::Count;
 use crate::observe::event::{Event, NodeId};
 use crate::ray::Ray;

@@ -13,14 +13,14 @@
 use crate::accel::cells::lists::{
     Divisions, Lists, Range, Tester, check_complete, divide, reach, record,
 };
-use crate::accel::cull::{Cull, Culling, Interval, PairCulling};
+use crate::accel::cull::{Cull, Culling, PairCulling};
+use crate::accel::cull_axis::Interval;
+use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
 use crate::accel::stack::{Entry, StackView};
 use crate::accel::traverse::Traverse;
-use crate::format::OctreeNode;
-use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
-use crate::number::Number;
+use crate::format::{BlobError, Leaf, OctreeNode, SectionKind, Sections, Structure};
 use crate::observe::count::Count;
 use crate::observe::event;
 use crate::observe::event::{Event, Sides};

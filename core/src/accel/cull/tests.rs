@@ -1,6 +1,8 @@
 use crate::accel::cull::{Cull, Culling, PairCulling};
+use crate::accel::cull_axis::CullArithmetic;
+use crate::accel::number::Number;
 use crate::format::record::UnitBox;
-use crate::number::{Fixed, Number};
+use crate::number::Fixed;
 use crate::ray::Ray;
 use proptest::prelude::*;
 

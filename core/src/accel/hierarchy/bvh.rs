@@ -2,13 +2,13 @@
 
 use crate::accel::cull::PairCulling;
 use crate::accel::hierarchy::pairs::{BoxPair, Pairs, Walk};
+use crate::accel::number::Number;
 use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::link::Node;
 use crate::format::record::{Pair, UnitBox};
 use crate::format::{Leaf, SectionKind, Structure};
-use crate::number::Number;
 use crate::observe::count::Count;
 use crate::observe::event::Sides;
 use crate::ray::Ray;

@@ -23,21 +23,21 @@
 //! node on the way to a hit is left out. A side that no plane bounds costs visits, not hits, and a region
 //! may even be empty, where there is nothing in it.
 
-use crate::SMALL;
-use crate::accel::cull::{Cull, Culling, Interval, PairCulling};
+use crate::accel::cull::{Cull, Culling, PairCulling};
+use crate::accel::cull_axis::{CullAxis, Interval};
 use crate::accel::hierarchy::order::Order;
+use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
 use crate::accel::stack::{Entry, StackView};
 use crate::accel::traverse::Traverse;
-use crate::format::NodeWord;
 use crate::format::limits::MAX_LEVELS;
 use crate::format::record::{DualNode, UnitBox};
-use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
-use crate::number::{CullAxis, NARROW_PRODUCTS, Number};
+use crate::format::{BlobError, Leaf, NodeWord, SectionKind, Sections, Structure};
 use crate::observe::count::Count;
 use crate::observe::event::{Event, NodeId, Sides};
 use crate::ray::Ray;
+use crate::target::{NARROW_PRODUCTS, SMALL};
 use core::hint::black_box;
 use heapless::Vec;
 

@@ -6,15 +6,16 @@
 //! the child that does *not* touch it, and one bit that says which child that is (its owner). A ray
 //! brings its interval in the parent and narrows it by six planes instead of twelve.
 
-use crate::accel::cull::{Cull, Interval, PairCulling};
+use crate::accel::cull::{Cull, PairCulling};
+use crate::accel::cull_axis::Interval;
 use crate::accel::hierarchy::pairs::{BoxPair, Pairs, Walk};
+use crate::accel::number::Number;
 use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::link::{Link, Node};
 use crate::format::record::{FlaggedPair, UnitBox};
 use crate::format::{Leaf, SectionKind, Structure};
-use crate::number::Number;
 use crate::observe::count::Count;
 use crate::observe::event::Sides;
 use crate::ray::Ray;

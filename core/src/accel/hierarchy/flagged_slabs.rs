@@ -1,16 +1,17 @@
 //! Slabs without the planes that coincide with the parent's: what [`flagged`](crate::accel::hierarchy::flagged) is to
 //! boxes.
 
-use crate::accel::cull::{Cull, Interval};
+use crate::accel::cull::Cull;
+use crate::accel::cull_axis::Interval;
 use crate::accel::hierarchy::pairs::Walk;
 use crate::accel::hierarchy::slabs::{
     Forms, SlabPair, SlabPairs, forms, in_order, planes, root_interval,
 };
+use crate::accel::number::Number;
 use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::{Leaf, Structure};
-use crate::number::Number;
 use crate::observe::count::Count;
 use crate::ray::Ray;
 

@@ -18,6 +18,8 @@
 
 #[cfg(feature = "bvh")]
 pub mod bvh;
+#[cfg(any(feature = "slabs", feature = "spheres"))]
+pub mod direction;
 #[cfg(feature = "dual-split")]
 pub mod dual_split;
 #[cfg(feature = "flagged")]

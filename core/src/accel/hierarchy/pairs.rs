@@ -1,7 +1,9 @@
 //! What hierarchies of pairs share: the walk, and the proof that it is sound.
 
-use crate::accel::cull::{Culling, Interval, PairCulling};
+use crate::accel::cull::{Culling, PairCulling};
+use crate::accel::cull_axis::Interval;
 use crate::accel::hierarchy::order::Order;
+use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
 use crate::accel::stack::{Entry, StackView};
@@ -10,7 +12,6 @@ use crate::format::link::Node;
 use crate::format::record::UnitBox;
 use crate::format::{BlobError, Leaf, SectionKind, Sections};
 use crate::geometry::Shapes;
-use crate::number::Number;
 use crate::observe::count::Count;
 use crate::observe::event::{Event, NodeId, Sides};
 use heapless::Vec;

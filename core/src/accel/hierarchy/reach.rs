@@ -8,7 +8,7 @@
 //! of the hit lies within a unit of the sphere, because what rounding does to the half chord it does
 //! to its square, along the ray, and a square's error counts by the radius.
 
-use crate::accel::hierarchy::slabs::Direction;
+use crate::accel::hierarchy::direction::Direction;
 use crate::format::Kind;
 use crate::format::record::UnitBox;
 use crate::geometry::Shapes;
@@ -104,8 +104,8 @@ impl Reach {
 
 #[cfg(test)]
 mod tests {
-    use super::super::slabs::DIRECTIONS;
     use super::*;
+    use crate::accel::hierarchy::direction::DIRECTIONS;
 
     #[test]
     fn slabs_hold_corners_and_spheres() {

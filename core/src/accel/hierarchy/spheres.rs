@@ -9,9 +9,11 @@
 //! it, with room to spare (see [`Reach`]). Then a hit's point is in all of these balls, at no more
 //! than a radius from the ray's nearest point, and no ball above it is passed over.
 
-use crate::accel::cull::{Cull, Interval, PairCulling};
+use crate::accel::cull::{Cull, PairCulling};
+use crate::accel::cull_axis::Interval;
 use crate::accel::hierarchy::pairs::{PairArray, PairRecord, Walk, check_tree};
 use crate::accel::hierarchy::reach::Reach;
+use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
 use crate::accel::stack::StackView;
@@ -19,7 +21,6 @@ use crate::accel::traverse::Traverse;
 use crate::format::link::Node;
 use crate::format::record::{Ball, BallPair};
 use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
-use crate::number::Number;
 use crate::observe::count::Count;
 use crate::ray::Ray;
 

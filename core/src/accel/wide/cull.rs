@@ -5,16 +5,16 @@
 
 use crate::accel::cull;
 use crate::accel::cull::{Cull, Culling, PairCulling};
+use crate::accel::cull_axis::CullArithmetic;
 use crate::accel::single::Single;
 use crate::format::cluster::LANES;
 use crate::format::record::{UnitBox, WideNode};
-use crate::number::Number;
 use crate::ray::Ray;
 use crate::simd::{F32x8, Simd};
 use glam::Vec4;
 
 /// A form of a ray that culls eight boxes at once.
-pub trait WideCulling<N: Number>: Culling<N> {
+pub trait WideCulling<N: CullArithmetic>: Culling<N> {
     /// The limit for hits at or before a length.
     fn limit(t: N) -> i32;
     /// From where to where the ray is in a box up to a limit, in units: what [`children`] goes by.
@@ -47,7 +47,7 @@ impl WideLanes {
     }
 }
 
-impl<N: Number> Culling<N> for WideLanes {
+impl<N: CullArithmetic> Culling<N> for WideLanes {
     #[inline(always)]
     fn new(ray: &Ray<N>) -> Self {
         let Single { inverse, near, far } = Single::of(ray);
@@ -74,7 +74,7 @@ impl<N: Number> Culling<N> for WideLanes {
     }
 }
 
-impl<N: Number> WideCulling<N> for WideLanes {
+impl<N: CullArithmetic> WideCulling<N> for WideLanes {
     #[inline(always)]
     fn limit(t: N) -> i32 {
         Single::limit(t)
@@ -129,7 +129,7 @@ fn between<S: Simd>(
     )
 }
 
-impl<N: Number> WideCulling<N> for Cull {
+impl<N: CullArithmetic> WideCulling<N> for Cull {
     #[inline(always)]
     fn limit(t: N) -> i32 {
         t.to_cull().saturating_add(1)

@@ -17,15 +17,15 @@ pub mod cull;
 pub(super) use check::check_records;
 
 use crate::accel::cull::Culling;
+use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
 use crate::accel::stack::{Entry, StackView};
 use crate::accel::traverse::Traverse;
-use crate::format::Child;
 use crate::format::cluster::LANES;
 use crate::format::record::WideNode;
-use crate::format::{BlobError, Kind, Leaf, SectionKind, Sections, Structure};
-use crate::number::{Format, Number};
+use crate::format::{BlobError, Child, Kind, Leaf, SectionKind, Sections, Structure};
+use crate::number::Format;
 use crate::observe::count::Count;
 use crate::observe::event::{Event, NodeId};
 use crate::ray::Ray;

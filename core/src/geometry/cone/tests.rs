@@ -3,7 +3,7 @@
 
 use crate::format::record::UnitBox;
 use crate::geometry::cone::Cone;
-use crate::number::{Fixed, Format, Number};
+use crate::number::{Arithmetic, Fixed, Format};
 use crate::ray::Ray;
 
 const WORLD: UnitBox = UnitBox([[-32_767, 32_767]; 3]);
@@ -97,7 +97,7 @@ impl Exact {
 }
 
 /// By how many steps a crossing is off.
-fn steps_off<N: Number>(cone: &Cone, origin: Vector, direction: Vector) -> Option<f64> {
+fn steps_off<N: Arithmetic>(cone: &Cone, origin: Vector, direction: Vector) -> Option<f64> {
     let ray = Ray::<N>::from_f64(&WORLD, origin, direction, 0.0, 1e9).ok()?;
     let (start, slope) = (
         ray.origin.map(N::length_to_f64),
@@ -159,7 +159,7 @@ fn solid(random: &mut Random, sort: u64) -> Cone {
 }
 
 /// Holds random solids and rays to the bound; the ends of each crossing, and what is missed.
-fn hold<N: Number>(sort: u64) {
+fn hold<N: Arithmetic>(sort: u64) {
     let full = std::env::var_os("GRIDEL_FULL").is_some_and(|value| value == "1");
     let mut random = Random(0xc09e);
     let (mut worst, mut about) = (0.0, String::new());

@@ -1,8 +1,8 @@
 //! The exponential function, in integers.
 
-use crate::number::fixed::{Fixed, RATIO_BITS};
+use crate::number::fixed::base::{Fixed, RATIO_BITS};
 
-/// [`Number::exp_neg`](crate::number::Number::exp_neg).
+/// [`Number::exp_neg`](crate::number::Arithmetic::exp_neg).
 pub(super) fn exp_neg(length: Fixed, coefficient_q32: u32) -> Fixed {
     // The exponent in powers of two, with 30 fraction bits.
     const LOG2_E: u64 = 1_549_082_005;

@@ -1,8 +1,8 @@
 //! Products and quotients by halves, with the same bits: for the Cortex-M0, which multiplies 32 bits to
 //! 32, does not divide and does not count bits.
 
-use crate::number::NARROW_PRODUCTS;
-use crate::number::fixed::Fixed;
+use crate::number::fixed::base::Fixed;
+use crate::target::NARROW_PRODUCTS;
 
 /// A product in 64 bits.
 #[inline(always)]
@@ -66,7 +66,7 @@ pub(super) fn quotient(d: u32) -> u32 {
 
 /// How many bits are 0 above the highest that is 1. Of 0 all, or all but one.
 #[inline(always)]
-pub(super) const fn leading_zeros(x: u32) -> u32 {
+pub(crate) const fn leading_zeros(x: u32) -> u32 {
     if NARROW_PRODUCTS {
         leading_zeros_by_shifts(x)
     } else {
@@ -120,9 +120,9 @@ fn quotient_by_products(d: u32) -> u32 {
     guess
 }
 
-/// [`Number::surround`](crate::number::Number::surround) by the upper 16 bits of all coordinates;
+/// [`Number::surround`](crate::number::Arithmetic::surround) by the upper 16 bits of all coordinates;
 /// `None` where those leave it open.
-pub(super) fn surround(a: [Fixed; 2], b: [Fixed; 2], c: [Fixed; 2]) -> Option<bool> {
+pub(crate) fn surround(a: [Fixed; 2], b: [Fixed; 2], c: [Fixed; 2]) -> Option<bool> {
     let magnitude = |x: Fixed| x.0 ^ x.0 >> 31;
     let all = [a, b, c]
         .as_flattened()
@@ -155,7 +155,7 @@ pub(super) fn surround(a: [Fixed; 2], b: [Fixed; 2], c: [Fixed; 2]) -> Option<bo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::Number;
+    use crate::geometry::Project;
     use proptest::prelude::*;
 
     #[test]

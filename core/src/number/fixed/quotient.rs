@@ -1,8 +1,9 @@
 //! Quotients that are compared before anything is divided: of the three times at which a ray enters a
 //! box's slabs, only the last is asked for.
 
+use crate::number::fixed::base::{Fixed, with_sign};
 use crate::number::fixed::halves::{product, product_unsigned};
-use crate::number::fixed::{Fixed, reciprocal, with_sign};
+use crate::number::fixed::reciprocal::reciprocal;
 use core::cmp::Ordering;
 
 /// A number over another. The order is that of the exact quotients; where something is divided by 0,

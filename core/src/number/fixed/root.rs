@@ -1,7 +1,7 @@
 //! Square roots without a division.
 
-use crate::SMALL;
 use crate::number::fixed::halves::{product, product_unsigned};
+use crate::target::SMALL;
 
 /// (1 / sqrt(x) - 1) * 256 in the middle of x = i / 128 to (i + 1) / 128, from i = 32.
 const GUESSES: [u8; 96] = {

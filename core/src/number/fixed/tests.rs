@@ -1,4 +1,14 @@
-use super::*;
+use crate::geometry::Project;
+use crate::number::Convert;
+use crate::number::Fixed;
+use crate::number::Products;
+use crate::number::Scalar;
+use crate::number::Vectors;
+use crate::number::fixed::base::round_off;
+use crate::number::fixed::base::with_sign;
+use crate::number::fixed::reciprocal::reciprocal;
+use crate::number::fixed::root::nearest_root;
+use crate::number::fixed::wide::Product;
 use proptest::prelude::*;
 
 #[test]

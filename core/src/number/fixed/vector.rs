@@ -1,9 +1,12 @@
 //! Vectors of any length, brought to the bits that there are: norms, directions and slopes.
 
-use crate::number::Number;
+use crate::number::Products;
+use crate::number::Scalar;
+use crate::number::fixed::base::{Fixed, RATIO_BITS, with_sign};
 use crate::number::fixed::halves::{leading_zeros, product_unsigned, wide_leading_zeros};
+use crate::number::fixed::reciprocal::reciprocal;
 use crate::number::fixed::root::nearest_root;
-use crate::number::fixed::{Fixed, Product, RATIO_BITS, reciprocal, with_sign};
+use crate::number::fixed::wide::Product;
 
 /// `v >> bits` on the magnitude, so that rounding does not depend on the sign.
 #[cfg_attr(not(feature = "small"), inline(always))]

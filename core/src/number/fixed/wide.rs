@@ -1,16 +1,21 @@
 //! Wide numbers: products in 64 bits, and what they are multiplied with and divided by.
 
-use crate::number::NARROW_PRODUCTS;
+use crate::number::fixed::base::wrapping_sums;
+use crate::number::fixed::base::{Fixed, RATIO_BITS, keep, with_sign};
 use crate::number::fixed::halves::{product_unsigned, wide_leading_zeros};
-use crate::number::fixed::{Fixed, RATIO_BITS, keep, reciprocal, with_sign};
+use crate::number::fixed::reciprocal::reciprocal;
+use crate::target::NARROW_PRODUCTS;
+use core::ops::{Add, Neg, Sub};
 
 /// A product in 64 bits; its operators wrap like those of [`Fixed`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Product(pub i64);
 
+wrapping_sums!(Product);
+
 impl Product {
-    /// [`Number::wide_times`](crate::number::Number::wide_times).
+    /// [`Number::wide_times`](crate::number::Arithmetic::wide_times).
     #[inline(always)]
     pub(super) fn times(self, factor: i32) -> Self {
         if !NARROW_PRODUCTS {
@@ -59,7 +64,7 @@ impl Product {
         })
     }
 
-    /// [`Number::wide_over`](crate::number::Number::wide_over).
+    /// [`Number::wide_over`](crate::number::Arithmetic::wide_over).
     // Only cameras are set up with it.
     #[inline(never)]
     pub(super) fn over(self, divisor: i32) -> Self {
@@ -83,7 +88,7 @@ impl Product {
         })
     }
 
-    /// [`Number::wide_scale`](crate::number::Number::wide_scale).
+    /// [`Number::wide_scale`](crate::number::Arithmetic::wide_scale).
     #[cfg_attr(not(feature = "small"), inline(always))]
     pub(super) fn scaled(self, ratio: Fixed) -> Self {
         keep(|| i64::try_from((self.0 as i128 * ratio.0 as i128) >> RATIO_BITS).is_ok());
@@ -95,7 +100,7 @@ impl Product {
         Self((high << (32 - RATIO_BITS)).wrapping_add(low))
     }
 
-    /// [`Number::divide`](crate::number::Number::divide).
+    /// [`Number::divide`](crate::number::Arithmetic::divide).
     pub(super) fn divided_by(self, denominator: Self) -> Fixed {
         let sign = self.0 ^ denominator.0;
         let a = self.0.unsigned_abs();

@@ -1,9 +1,10 @@
+use crate::accel::Number;
 use crate::accel::clamp::accept_in_box;
 use crate::accel::cull::{Cull, Culling};
 use crate::format::record::{Cuboid, UnitBox, Vertex24};
 use crate::geometry::triangle::Projection;
 use crate::geometry::{Crossing, accept, sphere, triangle};
-use crate::number::{Fixed, Number};
+use crate::number::Fixed;
 use crate::ray::Ray;
 use proptest::prelude::*;
 

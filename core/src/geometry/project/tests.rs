@@ -1,4 +1,4 @@
-use super::*;
+use crate::geometry::Project;
 use proptest::prelude::*;
 
 /// Two plane vectors of integers, often all but parallel.

@@ -1,0 +1,159 @@
+//! The culling form of one axis of a ray.
+
+mod fixed;
+mod float;
+
+use crate::number::Arithmetic;
+use crate::target::NARROW_PRODUCTS;
+
+/// Arithmetic of culling.
+pub trait CullArithmetic: Arithmetic {
+    /// A length from culling steps, which are half units (see [`crate::accel::cull`]); exact.
+    fn from_cull(steps: i32) -> Self;
+    /// A length in culling steps, rounded towards zero or down; saturates.
+    fn to_cull(self) -> i32;
+    /// The culling form of one axis (see [`cull`](crate::accel)): for a slope and the origin's
+    /// coordinate, of at most 2^17 units, the inverse slope in culling steps a unit with 16 fraction
+    /// bits, limited to 2^29, with the sign of the slope; and what that times a plane lacks to the
+    /// step of entry and to that of exit, the margins included.
+    fn cull_axis(slope: Self, origin: Self) -> CullAxis;
+}
+
+/// The culling form of one axis: see [`Number::cull_axis`].
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
+pub struct CullAxis {
+    /// Steps a unit with 16 fraction bits, with the slope's sign.
+    pub(crate) inverse: i32,
+    /// What a near plane's product lacks to the step of entry.
+    pub(crate) near: i32,
+    /// What a far plane's product lacks to the step of exit.
+    pub(crate) far: i32,
+    /// 16 where the ray runs down the axis and the planes of a word change roles, else 0.
+    pub(crate) rotation: u32,
+}
+
+impl CullAxis {
+    #[inline(always)]
+    pub(in crate::accel) fn new(inverse: i32, near: i32, far: i32) -> Self {
+        Self {
+            inverse,
+            near,
+            far,
+            rotation: (inverse >> 31) as u32 & 16,
+        }
+    }
+}
+
+/// Where the upper half of a product comes for nothing, and there is no instruction for the upper
+/// 32 of 48 bits, as the extension for signal processing has it: small cores without floats.
+const UPPER_HALF: bool = cfg!(any(
+    all(target_arch = "arm", not(target_abi = "eabihf")),
+    target_arch = "riscv32"
+));
+
+/// Whether there is an instruction that rotates.
+const ROTATES: bool = !cfg!(target_arch = "riscv32");
+
+impl CullAxis {
+    /// The step at which the ray enters through a plane.
+    #[inline(always)]
+    pub(crate) fn entry(&self, plane: i16) -> i32 {
+        self.step(plane).wrapping_add(self.near)
+    }
+
+    /// The step at which the ray leaves through a plane.
+    #[inline(always)]
+    pub(crate) fn exit(&self, plane: i16) -> i32 {
+        self.step(plane).wrapping_add(self.far)
+    }
+
+    /// Whether the ray runs down the axis.
+    #[inline(always)]
+    pub(crate) fn descends(&self) -> bool {
+        self.rotation != 0
+    }
+
+    /// The upper half of a plane's product, the plane being the upper half of a word.
+    #[inline(always)]
+    fn upper_half(&self, word: u32) -> i32 {
+        ((self.inverse as i64 * word as i32 as i64) >> 32) as i32
+    }
+
+    /// A plane's product: the upper bits of 48.
+    #[inline(always)]
+    fn step(&self, plane: i16) -> i32 {
+        if NARROW_PRODUCTS {
+            // Both products fit 32 bits.
+            let (high, low) = (self.inverse >> 16, self.inverse & 0xffff);
+            let plane = plane as i32;
+            high.wrapping_mul(plane)
+                .wrapping_add(low.wrapping_mul(plane) >> 16)
+        } else if UPPER_HALF {
+            self.upper_half((plane as u32) << 16)
+        } else {
+            ((self.inverse as i64 * plane as i64) >> 16) as i32
+        }
+    }
+
+    /// The two planes of a word in the order in which the ray comes to them.
+    #[inline(always)]
+    pub(crate) fn ordered(&self, planes: u32) -> [i16; 2] {
+        let ordered = planes.rotate_right(self.rotation);
+        [ordered as i16, (ordered >> 16) as i16]
+    }
+
+    /// The steps at which the ray enters and leaves between the two planes of a word.
+    #[cfg_attr(not(feature = "small"), inline(always))]
+    pub(in crate::accel) fn between(&self, planes: u32) -> Interval {
+        let [near, far] = self.ordered(planes);
+        Interval {
+            near: self.entry(near),
+            far: self.exit(far),
+        }
+    }
+
+    /// The same to cull with: up to a unit wider, where that is cheaper.
+    #[inline(always)]
+    pub(crate) fn around(&self, planes: u32) -> Interval {
+        if ROTATES {
+            self.between(planes)
+        } else {
+            self.around_by_shifts(planes)
+        }
+    }
+
+    /// Each plane is shifted into the upper half of a word. Below it lies the other one or nothing, so that
+    /// it counts as up to a unit higher. Below another lies the lower half of the given word alone: its
+    /// upper half is where the ray leaves if it runs up the axis, and where it enters if it runs down.
+    /// Either way the interval grows.
+    #[cfg_attr(not(feature = "small"), inline(always))]
+    pub(in crate::accel) fn around_by_shifts(&self, planes: u32) -> Interval {
+        let near = planes.wrapping_shl(self.rotation ^ 16);
+        let far = planes.wrapping_shl(self.rotation);
+        Interval {
+            near: self.upper_half(near).wrapping_add(self.near),
+            far: self.upper_half(far).wrapping_add(self.far),
+        }
+    }
+}
+
+/// The steps at which a ray enters and leaves something; it misses where `near > far`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Interval {
+    /// The first step.
+    pub near: i32,
+    /// The last step.
+    pub far: i32,
+}
+
+impl Interval {
+    /// What two intervals share.
+    #[inline(always)]
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            near: self.near.max(other.near),
+            far: self.far.min(other.far),
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! What users ask of a number format.
+
+use crate::accel::cull::{Cull, PairCulling};
+use crate::accel::cull_axis::CullArithmetic;
+#[cfg(feature = "wide")]
+use crate::accel::wide::cull::{WideCulling, WideLanes};
+use crate::geometry::Project;
+use crate::number::Fixed;
+
+/// A number format, as queries and renderers take it: `fixed`, `f32` or `f64`.
+///
+/// All arithmetic, projection and culling in one bound; see [`number`](crate::number) for the quantities that a
+/// number stands for.
+pub trait Number: Project + CullArithmetic {
+    /// How rays of this format cull boxes on this machine.
+    type Cull: PairCulling<Self>;
+    /// How rays of this format cull eight boxes at once.
+    #[cfg(feature = "wide")]
+    type WideCull: WideCulling<Self>;
+}
+
+impl Number for Fixed {
+    type Cull = Cull;
+    #[cfg(feature = "wide")]
+    type WideCull = Cull;
+}
+
+impl Number for f32 {
+    type Cull = FloatCulling;
+    #[cfg(feature = "wide")]
+    type WideCull = WideLanes;
+}
+
+impl Number for f64 {
+    type Cull = FloatCulling;
+    #[cfg(feature = "wide")]
+    type WideCull = WideLanes;
+}
+
+/// The form in which rays of a float format cull on this machine.
+///
+/// Cores with SIMD registers take four planes at a time, the others integers. Neither can change
+/// an answer; only how many boxes are visited for nothing may differ, by the width of a margin.
+#[cfg(any(
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+))]
+type FloatCulling = crate::accel::lanes::Lanes;
+/// The form in which rays of a float format cull on this machine.
+#[cfg(not(any(
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+)))]
+type FloatCulling = Cull;

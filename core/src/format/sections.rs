@@ -1,0 +1,140 @@
+//! The section table: where each array of records lies.
+
+use crate::format::error::BlobError;
+use crate::format::record::{ALIGNMENT, Header, SectionEntry};
+use crate::format::section::SectionKind;
+use core::mem::size_of;
+
+/// A section's place, proved to lie in the blob.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Section<'a> {
+    pub(crate) bytes: &'a [u8],
+    pub(crate) stride: usize,
+}
+
+/// The bytes of a section; `None` if they do not lie in the blob.
+fn bytes_of<'a>(blob: &'a [u8], entry: &SectionEntry) -> Option<&'a [u8]> {
+    let length = (entry.count as usize).checked_mul(entry.stride.into())?;
+    let start = entry.offset as usize;
+    blob.get(start..start.checked_add(length)?)
+}
+
+/// The sections of a blob, found in its table when they are asked for; absent ones are empty.
+pub(crate) struct Sections<'a> {
+    blob: &'a [u8],
+    table: &'a [SectionEntry],
+}
+
+impl<'a> Sections<'a> {
+    /// Reads the section table. Proves that kinds are known and ascend, and that sections are
+    /// aligned, in order, disjoint and inside the blob.
+    pub(crate) fn read(blob: &'a [u8], count: u16) -> Result<Self, BlobError> {
+        let table_bytes = usize::from(count) * size_of::<SectionEntry>();
+        let table = blob
+            .get(size_of::<Header>()..size_of::<Header>() + table_bytes)
+            .ok_or(BlobError::Truncated {
+                needed: size_of::<Header>() + table_bytes,
+                found: blob.len(),
+            })?;
+        let entries: &[SectionEntry] =
+            bytemuck::try_cast_slice(table).map_err(|_| BlobError::Misaligned)?;
+        let mut end = size_of::<Header>() + table_bytes;
+        let mut last = 0;
+        for (index, entry) in entries.iter().enumerate() {
+            let malformed = |what, found, expected| BlobError::Table {
+                index,
+                what,
+                found,
+                expected,
+            };
+            let kinds = SectionKind::ALL.len() as u64;
+            if entry.kind == 0 || u64::from(entry.kind) > kinds {
+                return Err(malformed("kind", entry.kind.into(), kinds));
+            }
+            if entry.kind <= last {
+                return Err(malformed(
+                    "kind, which must ascend,",
+                    entry.kind.into(),
+                    u64::from(last) + 1,
+                ));
+            }
+            last = entry.kind;
+            if entry.spare != 0 {
+                return Err(malformed("spare word", entry.spare.into(), 0));
+            }
+            let start = entry.offset as usize;
+            let expected = end.checked_next_multiple_of(ALIGNMENT).unwrap_or(end);
+            if start != expected {
+                return Err(malformed("offset", entry.offset.into(), expected as u64));
+            }
+            let bytes = bytes_of(blob, entry).ok_or(malformed(
+                "last byte",
+                u64::from(entry.offset) + u64::from(entry.count) * u64::from(entry.stride),
+                blob.len() as u64,
+            ))?;
+            end = start.saturating_add(bytes.len());
+        }
+        if end != blob.len() {
+            return Err(BlobError::Truncated {
+                needed: end,
+                found: blob.len(),
+            });
+        }
+        Ok(Self {
+            blob,
+            table: entries,
+        })
+    }
+
+    pub(crate) fn get(&self, kind: SectionKind) -> Section<'a> {
+        let entry = self.table.iter().find(|entry| entry.kind == kind as u16);
+        let section = entry.and_then(|entry| {
+            let bytes = bytes_of(self.blob, entry)?;
+            let stride = entry.stride.into();
+            Some(Section { bytes, stride })
+        });
+        section.unwrap_or_default()
+    }
+
+    /// Number of records of a section.
+    pub(crate) fn len(&self, kind: SectionKind) -> usize {
+        let section = self.get(kind);
+        section.bytes.len() / section.stride.max(1)
+    }
+
+    /// The records of a section, which must have the stride of `T` unless it is empty.
+    pub(crate) fn records<T: bytemuck::Pod>(
+        &self,
+        kind: SectionKind,
+    ) -> Result<&'a [T], BlobError> {
+        let section = self.get(kind);
+        if section.bytes.is_empty() {
+            return Ok(&[]);
+        }
+        if section.stride != size_of::<T>() {
+            return Err(BlobError::Stride {
+                section: kind,
+                found: section.stride,
+                expected: size_of::<T>(),
+            });
+        }
+        bytemuck::try_cast_slice(section.bytes).map_err(|_| BlobError::Misaligned)
+    }
+
+    /// The words of a section whose records have so many each.
+    pub(crate) fn words(&self, kind: SectionKind, width: usize) -> Result<&'a [u32], BlobError> {
+        let section = self.get(kind);
+        let expected = width * size_of::<u32>();
+        if section.bytes.is_empty() {
+            return Ok(&[]);
+        }
+        if section.stride != expected {
+            return Err(BlobError::Stride {
+                section: kind,
+                found: section.stride,
+                expected,
+            });
+        }
+        bytemuck::try_cast_slice(section.bytes).map_err(|_| BlobError::Misaligned)
+    }
+}

@@ -1,0 +1,94 @@
+//! A number in fixed point, and its sums.
+
+use core::ops::{Add, Neg, Sub};
+
+/// A number in fixed point. Where its binary point lies depends on what it stands for: a length
+/// has 13 fraction bits, a ratio 30, a radiance 20 (see [`Number`]).
+///
+/// All operators wrap; none panics, whatever the build's overflow checks. Kernels stay within ranges
+/// that they document, and tests hold them to that with the feature `strict-ranges`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(transparent)]
+pub struct Fixed(pub i32);
+
+/// Nothing, or with the feature `strict-ranges` a panic where a kernel left the range that its
+/// documentation says it keeps.
+#[inline(always)]
+pub(crate) fn keep(in_range: impl FnOnce() -> bool) {
+    if cfg!(feature = "strict-ranges") {
+        assert!(in_range(), "a number left its range");
+    }
+}
+
+/// Fraction bits of a length.
+pub(crate) const LENGTH_BITS: u32 = 13;
+/// Fraction bits of a ratio.
+pub(crate) const RATIO_BITS: u32 = 30;
+/// Fraction bits of a radiance.
+pub(in crate::number) const RADIANCE_BITS: u32 = 20;
+
+/// A product's `bits` lowest bits, 1 to 31, rounded away: to nearest, ties away from zero, so that a
+/// mirrored scene gives mirrored numbers.
+#[inline(always)]
+pub(in crate::number) const fn round_off(product: i64, bits: u32) -> i64 {
+    // A half, less 1 where that turns a tie down: not negative, so that 64 bits are added up once.
+    let half = (1_u32 << (bits & 31) >> 1).wrapping_add((product >> 63) as u32);
+    product.wrapping_add(half as i64) >> (bits & 31)
+}
+
+#[inline(always)]
+pub(crate) const fn saturate(value: i64) -> Fixed {
+    if value > i32::MAX as i64 {
+        Fixed(i32::MAX)
+    } else if value < -(i32::MAX as i64) {
+        Fixed(-i32::MAX)
+    } else {
+        Fixed(value as i32)
+    }
+}
+
+/// Gives a magnitude the sign of `sign`.
+#[inline(always)]
+pub(in crate::number) const fn with_sign(magnitude: u64, sign: i64) -> Fixed {
+    let magnitude = if magnitude > i32::MAX as u64 {
+        i32::MAX
+    } else {
+        magnitude as i32
+    };
+    Fixed(if sign < 0 { -magnitude } else { magnitude })
+}
+
+/// Sums and differences that wrap, of numbers and of their products.
+macro_rules! wrapping_sums {
+    ($number:ident) => {
+        impl Add for $number {
+            type Output = Self;
+            #[inline(always)]
+            fn add(self, other: Self) -> Self {
+                keep(|| self.0.checked_add(other.0).is_some());
+                Self(self.0.wrapping_add(other.0))
+            }
+        }
+
+        impl Sub for $number {
+            type Output = Self;
+            #[inline(always)]
+            fn sub(self, other: Self) -> Self {
+                keep(|| self.0.checked_sub(other.0).is_some());
+                Self(self.0.wrapping_sub(other.0))
+            }
+        }
+
+        impl Neg for $number {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                keep(|| self.0.checked_neg().is_some());
+                Self(self.0.wrapping_neg())
+            }
+        }
+    };
+}
+pub(in crate::number) use wrapping_sums;
+
+wrapping_sums!(Fixed);

@@ -1,0 +1,26 @@
+//! The number formats.
+
+/// Which arithmetic a kernel runs in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// Integers only: no floating-point instruction from the camera to the pixel.
+    Fixed,
+    /// IEEE 754 single precision.
+    F32,
+    /// IEEE 754 double precision.
+    F64,
+}
+
+impl Format {
+    /// All formats, in the order of their names.
+    pub const ALL: [Format; 3] = [Format::Fixed, Format::F32, Format::F64];
+
+    /// The name that command lines and tables use.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Format::Fixed => "fixed",
+            Format::F32 => "f32",
+            Format::F64 => "f64",
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Pixels, rows and rectangles of a picture.
+
+use crate::accel::{Accel, Number};
+use crate::observe::count::Count;
+use crate::observe::event::Event;
+use crate::ray::Ray;
+use crate::render::samples::Samples;
+use crate::render::{Pixel, Renderer, WorkspaceView};
+use crate::shade::Color;
+impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
+    /// One pixel, linear, 65535 being white. Outside of the picture pixels go on.
+    pub fn linear<C: Count>(
+        &self,
+        x: u16,
+        y: u16,
+        space: &mut WorkspaceView<'_, N>,
+        count: &mut C,
+    ) -> [u16; 3] {
+        space.work.clear();
+        let mut samples = Samples::new();
+        loop {
+            if let Some(linear) = samples.step(self, [x, y], space, count) {
+                return linear;
+            }
+        }
+    }
+
+    /// What is seen along a ray of the caller's own, linear, 65535 being white.
+    pub fn linear_along<C: Count>(
+        &self,
+        ray: &Ray<N>,
+        space: &mut WorkspaceView<'_, N>,
+        count: &mut C,
+    ) -> [u16; 3] {
+        space.work.clear();
+        let tracing = self.tracing();
+        let mut radiance = Color::BLACK;
+        let camera = || Ok(*ray);
+        while !tracing.step::<N, A, C, EFFECTS>(camera, &mut radiance, space, count) {}
+        let seen = radiance.displayable();
+        if C::TELLS {
+            count.tell(Event::Seen {
+                place: None,
+                radiance: seen.told(),
+            });
+        }
+        self.to_linear(seen)
+    }
+
+    /// One pixel in a display's form.
+    pub fn pixel<P: Pixel, C: Count>(
+        &self,
+        x: u16,
+        y: u16,
+        space: &mut WorkspaceView<'_, N>,
+        count: &mut C,
+    ) -> P {
+        P::encode(
+            self.linear(x, y, space, count),
+            self.settings().dither.then_some([x, y]),
+        )
+    }
+
+    /// A part of a row: as many pixels as `row` has, from column `x` on.
+    pub fn row<P: Pixel, C: Count>(
+        &self,
+        x: u16,
+        y: u16,
+        row: &mut [P],
+        space: &mut WorkspaceView<'_, N>,
+        count: &mut C,
+    ) {
+        for (column, pixel) in (x..=u16::MAX).zip(row) {
+            *pixel = self.pixel(column, y, space, count);
+        }
+    }
+
+    /// Any rectangle, pixel by pixel, row by row from its upper left corner.
+    pub fn rectangle<P: Pixel, C: Count>(
+        &self,
+        corner: [u16; 2],
+        size: [u16; 2],
+        space: &mut WorkspaceView<'_, N>,
+        count: &mut C,
+        mut sink: impl FnMut(u16, u16, P),
+    ) {
+        for y in (corner[1]..=u16::MAX).take(size[1].into()) {
+            for x in (corner[0]..=u16::MAX).take(size[0].into()) {
+                sink(x, y, self.pixel(x, y, space, count));
+            }
+        }
+    }
+}
