@@ -3,7 +3,7 @@
 //!
 //! A host compiles a scene file into one binary blob (`gridel build`). [`Scene::from_bytes`] checks
 //! the blob once; after that nothing can fail. Firmware can have most of that done by the compiler:
-//! see [`Vouched`]. Two things can be asked of a scene:
+//! see [`Prevalidated`]. Two things can be asked of a scene:
 //!
 //! - **rays**: [`closest_hit`], [`closest_primitive`] and [`any_hit`], with a [`Ray`] of your own;
 //! - **pictures**: a [`Renderer`] gives pixels row by row or for any rectangle, and a
@@ -78,13 +78,13 @@ pub use accel::Spheres;
 #[cfg(feature = "wide")]
 pub use accel::Wide;
 pub use accel::{Accel, List, Number, Stack, StackView, StructureVisitor};
-pub use format::{Aligned, BlobError, Demand, Effects, Kind, Structure};
+pub use format::{Aligned, BlobError, Effects, Kind, Requirements, Structure};
 pub use number::{Fixed, Format};
-pub use observe::count::{Count, Counters, NoCount};
+pub use observe::count::{Counters, NoCount, Observer};
 pub use observe::event::{Event, RayKind};
 pub use query::{Found, Hit, any_hit, closest_hit, closest_primitive};
 pub use ray::{Pencil, Ray, RayError};
 pub use render::{Renderer, Rgb565, Rgb888, Settings, Workspace};
-pub use scene::{Scene, Vouched};
+pub use scene::{Prevalidated, Scene};
 #[cfg(feature = "wide")]
 pub use simd::SimdLevel;

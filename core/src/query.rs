@@ -19,7 +19,7 @@ use crate::geometry::{
 use crate::geometry::{Packs, Strips, pack};
 #[cfg(feature = "wide")]
 use crate::number::Format;
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::observe::event::{Event, Met};
 use crate::ray::Ray;
 use crate::scene::Scene;
@@ -63,7 +63,7 @@ pub struct Hit<N: Number> {
 
 /// The best hit so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Best<N> {
+struct Candidate<N> {
     t: N,
     place: PrimitiveId,
     part: Part,
@@ -80,7 +80,7 @@ struct Search<'s, 'a, N: Number, K> {
     strip_ray: StripRay<N>,
     /// No hit beyond this counts.
     tmax: N,
-    best: Option<Best<N>>,
+    best: Option<Candidate<N>>,
 }
 
 impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
@@ -102,48 +102,53 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         }
     }
 
-    /// Takes a crossing that beats the best hit: a smaller t, or the same t of an earlier primitive.
+    /// Considers a crossing; it is committed if it beats the best hit: a smaller t, or the same t of an earlier primitive.
     #[inline(always)]
-    fn take(&mut self, crossing: Crossing<N>, place: PrimitiveId) {
+    fn consider(&mut self, crossing: Crossing<N>, place: PrimitiveId) {
         if let Some(hit) = accept(self.ray, crossing, self.tmax) {
-            self.keep(hit, place);
+            self.commit(hit, place);
         }
     }
 
     /// The same of a primitive whose crossing may have been rounded out of its box.
     #[cfg_attr(not(feature = "small"), inline(always))]
     #[cfg_attr(feature = "small", inline(never))]
-    fn take_in_box(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: PrimitiveId) {
+    fn consider_in_box(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: PrimitiveId) {
         if let Some(hit) = accept_in_box(self.ray, self.cull, crossing, bounds, self.tmax) {
-            self.keep(hit, place);
+            self.commit(hit, place);
         }
     }
 
     /// The same, out of line, because few of the primitives that are tested come this far.
     #[cfg_attr(not(feature = "small"), inline(never))]
-    fn met(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: PrimitiveId) {
-        self.take_in_box(crossing, bounds, place);
+    fn consider_out_of_line(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: PrimitiveId) {
+        self.consider_in_box(crossing, bounds, place);
     }
 
-    /// Takes a hit in the interval that is left, unless an earlier primitive is met at the same t.
+    /// Commits a hit in the interval that is left, unless an earlier primitive is met at the same t.
     // Out of line on hosts, where many places come here and few rays.
     #[cfg_attr(feature = "wide", inline(never))]
     #[cfg_attr(not(feature = "wide"), inline(always))]
-    fn keep(&mut self, (t, part): (N, Part), place: PrimitiveId) {
+    fn commit(&mut self, (t, part): (N, Part), place: PrimitiveId) {
         // No hit lies beyond the best one, so this one is nearer, or as near.
         let tie = self.best.filter(|best| t >= best.t);
         if tie.is_some_and(|best| self.scene.key(best.place) <= self.scene.key(place)) {
             return;
         }
         self.tmax = t;
-        self.best = Some(Best { t, place, part });
+        self.best = Some(Candidate { t, place, part });
     }
 
     /// Tells of a primitive that was just tested, and considered if it was met.
     #[inline(always)]
-    fn tell<C: Count>(&self, place: PrimitiveId, crossing: Option<&Crossing<N>>, count: &mut C) {
-        if C::TELLS {
-            count.tell(Event::Candidate {
+    fn observe<C: Observer>(
+        &self,
+        place: PrimitiveId,
+        crossing: Option<&Crossing<N>>,
+        count: &mut C,
+    ) {
+        if C::ENABLED {
+            count.event(Event::Candidate {
                 kind: place.kind(),
                 primitive: self.scene.primitive_at(place),
                 crossing: crossing.map(|c| [c.enter.0, c.leave.0].map(N::length_to_f64)),
@@ -155,17 +160,22 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     /// Tells of those primitives of a cluster that lanes rejected.
     #[cfg(feature = "wide")]
     #[inline(always)]
-    fn tell_missed<C: Count>(&self, missed: u32, place: impl Fn(u8) -> PrimitiveId, count: &mut C) {
-        if C::TELLS {
+    fn observe_missed<C: Observer>(
+        &self,
+        missed: u32,
+        place: impl Fn(u8) -> PrimitiveId,
+        count: &mut C,
+    ) {
+        if C::ENABLED {
             for lane in (0..8).filter(|&lane| missed >> lane & 1 != 0) {
-                self.tell(place(lane), None, count);
+                self.observe(place(lane), None, count);
             }
         }
     }
 
     /// Tests the primitives of a leaf, or, where `ANY` hit will do, of a pack only until one is hit.
     #[inline(always)]
-    fn leaf<A: Accel, C: Count, const ANY: bool>(&mut self, leaf: Leaf, count: &mut C) {
+    fn leaf<A: Accel, C: Observer, const ANY: bool>(&mut self, leaf: Leaf, count: &mut C) {
         #[cfg(feature = "wide")]
         if A::HAS_CLUSTERS && leaf.count == 0 {
             let clusters = &self.scene.space.shapes.clusters;
@@ -187,14 +197,14 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     /// Tests the triangles of a strip.
     #[cfg(feature = "wide")]
     #[inline(always)]
-    fn strip<S: Strip, C: Count>(&mut self, strips: &[S], number: u32, count: &mut C) {
+    fn strip<S: Strip, C: Observer>(&mut self, strips: &[S], number: u32, count: &mut C) {
         let Some(strip) = strips.get(number as usize) else {
             return;
         };
         count.objects(strip.members().count());
         let mut met = self.strip_met(strip);
         let missed = strip.members().places() & !met;
-        self.tell_missed(missed, |place| PrimitiveId::Strip(number, place), count);
+        self.observe_missed(missed, |place| PrimitiveId::Strip(number, place), count);
         while met != 0 {
             let place = met.trailing_zeros();
             met &= met - 1;
@@ -220,7 +230,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     /// Takes a triangle of a strip that the ray meets somewhere on its line.
     #[cfg(feature = "wide")]
     #[inline(never)]
-    fn triangle_in_strip<S: Strip, C: Count>(
+    fn triangle_in_strip<S: Strip, C: Observer>(
         &mut self,
         strip: &S,
         place: PrimitiveId,
@@ -236,7 +246,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     /// Tests the spheres of a pack.
     #[cfg(feature = "wide")]
     #[inline(always)]
-    fn pack<P: Pack, C: Count, const ANY: bool>(
+    fn pack<P: Pack, C: Observer, const ANY: bool>(
         &mut self,
         pack: Option<&P>,
         number: u32,
@@ -257,16 +267,16 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             (self.ray, self.recip_norm2, pack, (), ()),
         ));
         let missed = pack.lanes() & !met.lanes;
-        self.tell_missed(missed, |lane| place(lane.into()), count);
+        self.observe_missed(missed, |lane| place(lane.into()), count);
         let mut lanes = met.lanes;
         while lanes != 0 {
             let lane = lanes.trailing_zeros();
             lanes &= lanes - 1;
             let crossing = met.crossing(self.recip_norm2, lane as usize);
-            self.take(crossing, place(lane));
-            self.tell(place(lane), Some(&crossing), count);
+            self.consider(crossing, place(lane));
+            self.observe(place(lane), Some(&crossing), count);
             // Lanes have tested the others, too, so all of them are told.
-            if ANY && !C::TELLS && self.best.is_some() {
+            if ANY && !C::ENABLED && self.best.is_some() {
                 return;
             }
         }
@@ -275,7 +285,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     /// Tests a sphere of a pack, in formats without lanes.
     #[cfg(feature = "wide")]
     #[inline(never)]
-    fn sphere_in_pack<P: Pack, C: Count>(
+    fn sphere_in_pack<P: Pack, C: Observer>(
         &mut self,
         pack: &P,
         lane: u32,
@@ -287,14 +297,14 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         };
         let crossing = sphere::cross(self.ray, self.recip_norm2, center, radius);
         if let Some(crossing) = crossing {
-            self.take(crossing, place);
+            self.consider(crossing, place);
         }
-        self.tell(place, crossing.as_ref(), count);
+        self.observe(place, crossing.as_ref(), count);
     }
 
     /// Tests the primitives of a range of slots.
     #[inline(always)]
-    fn slots<C: Count>(&mut self, leaf: Leaf, count: &mut C) {
+    fn slots<C: Observer>(&mut self, leaf: Leaf, count: &mut C) {
         let slots = leaf.slots();
         let shapes = &self.scene.space.shapes;
         match leaf.kind {
@@ -326,14 +336,16 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                 leaf,
                 count,
                 |search, cuboid| cuboid.cross(search.ray),
-                |search, crossing, _, place| search.take(crossing, place),
+                |search, crossing, _, place| search.consider(crossing, place),
             ),
             Kind::Disc => self.solids(
                 shapes.discs.get(slots),
                 leaf,
                 count,
                 |search, disc| disc.cross(search.ray),
-                |search, crossing, disc, place| search.met(crossing, disc.bounds, place),
+                |search, crossing, disc, place| {
+                    search.consider_out_of_line(crossing, disc.bounds, place)
+                },
             ),
             Kind::Cone => self.solids(
                 shapes.cones.get(slots),
@@ -346,44 +358,51 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                     }
                     cone.cross(search.ray, search.recip_norm2)
                 },
-                |search, crossing, cone, place| search.met(crossing, cone.bounds, place),
+                |search, crossing, cone, place| {
+                    search.consider_out_of_line(crossing, cone.bounds, place)
+                },
             ),
         }
     }
 
     /// Tests records one after the other, and takes those that are met.
     #[inline(always)]
-    fn solids<T, C: Count>(
+    fn solids<T, C: Observer>(
         &mut self,
         records: Option<&[T]>,
         leaf: Leaf,
         count: &mut C,
         cross: impl Fn(&Self, &T) -> Option<Crossing<N>>,
-        take: impl Fn(&mut Self, Crossing<N>, &T, PrimitiveId),
+        consider: impl Fn(&mut Self, Crossing<N>, &T, PrimitiveId),
     ) {
         for (index, record) in numbered(leaf, records) {
             let crossing = cross(self, record);
             let place = PrimitiveId::Slot(leaf.kind, index);
             if let Some(crossing) = crossing {
-                take(self, crossing, record, place);
+                consider(self, crossing, record, place);
             }
-            self.tell(place, crossing.as_ref(), count);
+            self.observe(place, crossing.as_ref(), count);
         }
     }
 
     #[inline(always)]
-    fn spheres<S: Sphere, C: Count>(&mut self, spheres: Option<&[S]>, leaf: Leaf, count: &mut C) {
+    fn spheres<S: Sphere, C: Observer>(
+        &mut self,
+        spheres: Option<&[S]>,
+        leaf: Leaf,
+        count: &mut C,
+    ) {
         let cross = |search: &Self, record: &S| {
             let (center, radius) = record.lattice();
             sphere::cross(search.ray, search.recip_norm2, center, radius)
         };
-        let take = |search: &mut Self, crossing, _: &S, place| search.take(crossing, place);
-        self.solids(spheres, leaf, count, cross, take);
+        let consider = |search: &mut Self, crossing, _: &S, place| search.consider(crossing, place);
+        self.solids(spheres, leaf, count, cross, consider);
     }
 
     /// Chooses the copy of the triangle test for the ray's major axis, where there is one for each.
     #[inline(always)]
-    fn triangles<V: Vertex, I: Corners, C: Count>(
+    fn triangles<V: Vertex, I: Corners, C: Observer>(
         &mut self,
         vertices: &&[V],
         triangles: Option<&[I]>,
@@ -408,7 +427,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     /// from: what is handed on and kept is little.
     // Apart from the walk both keep more of what they need in the few registers of small cores.
     #[cfg_attr(not(feature = "wide"), inline(never))]
-    fn triangles_along<const MAJOR: usize, V: Vertex, I: Corners, C: Count>(
+    fn triangles_along<const MAJOR: usize, V: Vertex, I: Corners, C: Observer>(
         &mut self,
         vertices: &&[V],
         mut triangles: &[I],
@@ -427,7 +446,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             if projection.meets::<MAJOR, V>(a, b, c) {
                 self.triangle_in_slot(vertices, record, index, count);
             } else {
-                self.tell(PrimitiveId::Slot(Kind::Triangle, index), None, count);
+                self.observe(PrimitiveId::Slot(Kind::Triangle, index), None, count);
             }
         }
     }
@@ -436,7 +455,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     ///
     /// Its corners are read again: handed on, they would take up memory for those that are not met.
     #[inline(never)]
-    fn triangle_in_slot<V: Vertex, I: Corners, C: Count>(
+    fn triangle_in_slot<V: Vertex, I: Corners, C: Observer>(
         &mut self,
         vertices: &&[V],
         record: &I,
@@ -453,18 +472,18 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
 
     /// Takes a triangle that the ray meets somewhere on its line.
     #[inline(always)]
-    fn triangle<C: Count>(&mut self, corners: [[i32; 3]; 3], place: PrimitiveId, count: &mut C) {
+    fn triangle<C: Observer>(&mut self, corners: [[i32; 3]; 3], place: PrimitiveId, count: &mut C) {
         let crossing = triangle::cross(self.ray, corners);
         if let Some((t, steeply)) = crossing {
             let crossing = Crossing::flat(t);
             if steeply {
-                self.take(crossing, place);
+                self.consider(crossing, place);
             } else {
-                self.take_in_box(crossing, triangle::bounds(corners), place);
+                self.consider_in_box(crossing, triangle::bounds(corners), place);
             }
         }
         let crossing = crossing.map(|(t, _)| Crossing::flat(t));
-        self.tell(place, crossing.as_ref(), count);
+        self.observe(place, crossing.as_ref(), count);
     }
 }
 
@@ -475,7 +494,7 @@ pub struct Found<N: Number> {
     pub t: N::Wide,
     /// The primitive, counted in scene-file order over all objects.
     pub primitive: u32,
-    best: Best<N>,
+    best: Candidate<N>,
 }
 
 /// The records of a leaf's slots, with the slots.
@@ -496,7 +515,7 @@ fn numbered<T>(leaf: Leaf, records: Option<&[T]>) -> impl Iterator<Item = (u32, 
 // Hosts have the room; a ray that goes through memory is waited for.
 #[cfg_attr(feature = "wide", inline(always))]
 #[cfg_attr(not(feature = "wide"), inline)]
-pub fn closest_primitive<N: Number, A: Accel, C: Count>(
+pub fn closest_primitive<N: Number, A: Accel, C: Observer>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
     stack: &mut StackView,
@@ -509,7 +528,7 @@ pub fn closest_primitive<N: Number, A: Accel, C: Count>(
 // For boards the compiler chooses by itself: less stack, and fewer instructions.
 #[cfg_attr(all(feature = "wide", not(feature = "small")), inline(always))]
 #[cfg_attr(feature = "small", inline(never))]
-fn search<N: Number, A: Accel, C: Count, const ANY: bool>(
+fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
     stack: &mut StackView,
@@ -521,8 +540,8 @@ fn search<N: Number, A: Accel, C: Count, const ANY: bool>(
     let views = A::views(&scene.structures);
     let cull = A::Cull::<N>::new(ray);
     let mut search = Search::new(scene, ray, &cull);
-    if C::TELLS {
-        count.tell(ray.query(any));
+    if C::ENABLED {
+        count.event(ray.query(any));
     }
     if ANY {
         A::walk_any(
@@ -651,7 +670,7 @@ impl<N: Number> Hit<N> {
 }
 
 /// The first hit of a ray in its interval: [`closest_primitive`] with its surface.
-pub fn closest_hit<N: Number, A: Accel, C: Count>(
+pub fn closest_hit<N: Number, A: Accel, C: Observer>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
     stack: &mut StackView,
@@ -659,8 +678,8 @@ pub fn closest_hit<N: Number, A: Accel, C: Count>(
 ) -> Option<Hit<N>> {
     let found = closest_primitive::<N, A, C>(scene, ray, stack, count);
     let hit = found.and_then(|found| found.hit(scene, ray));
-    if C::TELLS {
-        count.tell(Event::Nearest(hit.map(|hit| hit.met())));
+    if C::ENABLED {
+        count.event(Event::Nearest(hit.map(|hit| hit.met())));
     }
     hit
 }
@@ -668,7 +687,7 @@ pub fn closest_hit<N: Number, A: Accel, C: Count>(
 /// Whether a ray meets anything in its interval: whether [`closest_hit`] would find something.
 // As above.
 #[cfg_attr(feature = "wide", inline(always))]
-pub fn any_hit<N: Number, A: Accel, C: Count>(
+pub fn any_hit<N: Number, A: Accel, C: Observer>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
     stack: &mut StackView,
@@ -680,8 +699,8 @@ pub fn any_hit<N: Number, A: Accel, C: Count>(
         search::<N, A, C, true>(scene, ray, stack, count, true)
     };
     let any = found.is_some();
-    if C::TELLS {
-        count.tell(Event::Any(any));
+    if C::ENABLED {
+        count.event(Event::Any(any));
     }
     any
 }

@@ -150,7 +150,7 @@ fn is_near<N: Arithmetic>(origin: [N; 3], major: usize, moved: N) -> bool {
 /// Where a ray starts that is moved from an origin [near](is_near) the scene.
 #[inline(always)]
 fn near_start<N: Arithmetic>(origin: [N; 3], moved: N, slope: [N; 3]) -> [N; 3] {
-    let start = |axis: usize| N::settle(origin[axis] + moved * slope[axis]);
+    let start = |axis: usize| N::flush_tiny(origin[axis] + moved * slope[axis]);
     [start(0), start(1), start(2)]
 }
 
@@ -206,7 +206,7 @@ fn far_start_along<N: Arithmetic>(
 #[cold]
 #[inline(never)]
 fn far_coordinate<N: Arithmetic>(origin: N::Wide, moved: N::Wide, slope: N) -> N {
-    N::settle(N::narrow(origin + N::wide_scale(moved, slope)))
+    N::flush_tiny(N::narrow(origin + N::wide_scale(moved, slope)))
 }
 
 /// An error unless every coordinate of an origin is a number of at most [`FARTHEST`].
@@ -437,7 +437,7 @@ impl<N: Arithmetic> Ray<N> {
     ) -> Result<Self, RayError> {
         let exact = Ray::<f64>::new(bounds, origin, direction, tmin, tmax)?;
         Ok(Self {
-            origin: exact.origin.map(|x| N::settle(N::length_from_f64(x))),
+            origin: exact.origin.map(|x| N::flush_tiny(N::length_from_f64(x))),
             slope: exact.slope.map(N::ratio_from_f64),
             major: exact.major,
             moved: N::far_from_f64(exact.moved),

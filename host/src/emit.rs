@@ -2,7 +2,7 @@
 //! that have exactly the memory that it needs.
 
 use crate::board::Board;
-use gridel_core::{Format, Scene, Structure, Vouched};
+use gridel_core::{Format, Prevalidated, Scene, Structure};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -58,8 +58,12 @@ impl Emitted<'_> {
         let others = Structure::ALL.into_iter().filter(|&it| scene.holds(it));
         let vouched = others
             .into_iter()
-            .all(|it| Vouched::STRUCTURES.contains(&it));
-        let load = if vouched { LOAD_VOUCHED } else { LOAD_CHECKED };
+            .all(|it| Prevalidated::STRUCTURES.contains(&it));
+        let load = if vouched {
+            LOAD_PREVALIDATED
+        } else {
+            LOAD_CHECKED
+        };
         let features: Vec<_> = self.features().iter().map(|it| format!("{it:?}")).collect();
         format!(
             "{FIRST}; the scene is in `{BLOB}` beside this file.\n\
@@ -110,7 +114,7 @@ impl Emitted<'_> {
              \n\
              // A blob that asks for more than this was written for does not compile.\n\
              const _: () = {{\n    \
-             let Ok(demand) = gridel_core::Demand::of(BYTES) else {{\n        \
+             let Ok(demand) = gridel_core::Requirements::of(BYTES) else {{\n        \
              panic!(\"the blob was cut off: write it and this module again\")\n    }};\n    \
              assert!(\n        gridel_core::Effects(EFFECTS).contains(demand.effects),\n        \
              \"the blob calls for effects beyond EFFECTS: write this module again\"\n    );\n    \
@@ -138,16 +142,16 @@ impl Emitted<'_> {
 }
 
 /// Loading that was prepared while the module was compiled.
-const LOAD_VOUCHED: &str = "\
+const LOAD_PREVALIDATED: &str = "\
 /// The scene, in constant time: what makes every walk end was proved while this was compiled.
 #[allow(dead_code)]
 pub fn load() -> Result<gridel_core::Scene<'static>, gridel_core::BlobError> {
     #[allow(long_running_const_eval)]
-    static VOUCHED: gridel_core::Vouched<'static> = match gridel_core::Vouched::of(BLOB) {
+    static PREVALIDATED: gridel_core::Prevalidated<'static> = match gridel_core::Prevalidated::of(BLOB) {
         Ok(vouched) => vouched,
         Err(_) => panic!(\"the blob was damaged, or has other structures: write it and this module again\"),
     };
-    gridel_core::Scene::vouched(VOUCHED)
+    gridel_core::Scene::prevalidated(PREVALIDATED)
 }
 ";
 

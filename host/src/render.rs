@@ -7,7 +7,7 @@ use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
 use gridel_core::render::RenderError;
 use gridel_core::{
-    Accel, Count, Counters, DualSplit, Effects, Fixed, Format, NoCount, Number, Renderer, Scene,
+    Accel, Counters, DualSplit, Effects, Fixed, Format, NoCount, Number, Observer, Renderer, Scene,
     Settings, Structure, Wide, Workspace,
 };
 use rayon::prelude::*;
@@ -201,7 +201,7 @@ fn counted_row<N: Number, A: Accel, const EFFECTS: u32>(
 }
 
 /// One row; every pixel is counted on its own.
-fn render_row<N: Number, A: Accel, C: Count, const EFFECTS: u32>(
+fn render_row<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
     renderer: &Renderer<'_, '_, N, A, EFFECTS>,
     y: u16,
     pixels: &mut [[u16; 3]],

@@ -11,8 +11,8 @@ use glam::DVec3;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
-    Accel, Bvh, Count, Counters, DualSplit, Fixed, Flagged, Format, NoCount, Number, Ray, RayError,
-    RayKind, Scene, Stack, Structure, Wide, any_hit, closest_primitive,
+    Accel, Bvh, Counters, DualSplit, Fixed, Flagged, Format, NoCount, Number, Observer, Ray,
+    RayError, RayKind, Scene, Stack, Structure, Wide, any_hit, closest_primitive,
 };
 use std::ops::Range;
 
@@ -129,7 +129,7 @@ fn with_format<N: Number>(
     }
 }
 
-fn through<N: Number, A: Accel, C: Count>(
+fn through<N: Number, A: Accel, C: Observer>(
     scene: &Scene<'_>,
     rays: &[SceneRay],
     any: bool,
@@ -150,7 +150,7 @@ const BATCH: usize = 16;
 type Ready<N> = Result<(Ray<N>, Stride), Rejection>;
 
 /// Finds whether each ray meets anything.
-fn any_of_each<N: Number, A: Accel, C: Count>(
+fn any_of_each<N: Number, A: Accel, C: Observer>(
     scene: &Scene<'_>,
     rays: &[SceneRay],
     hits: &mut [SceneHit],
@@ -184,7 +184,7 @@ fn any_of_each<N: Number, A: Accel, C: Count>(
 }
 
 /// Finds what each ray meets first.
-fn closest_of_each<N: Number, A: Accel, C: Count>(
+fn closest_of_each<N: Number, A: Accel, C: Observer>(
     scene: &Scene<'_>,
     rays: &[SceneRay],
     hits: &mut [SceneHit],

@@ -7,7 +7,8 @@ use gridel_core::accel::hierarchy::bvh;
 use gridel_core::accel::{Space, StructureViews, Traverse};
 use gridel_core::format::Leaf;
 use gridel_core::{
-    Accel, Bvh, Count, Counters, Flagged, List, NoCount, Number, Ray, Scene, StackView, Structure,
+    Accel, Bvh, Counters, Flagged, List, NoCount, Number, Observer, Ray, Scene, StackView,
+    Structure,
 };
 
 /// The plain hierarchy, culled in integers as the flagged one is in every format: what floats may
@@ -25,7 +26,7 @@ impl Traverse for Plain {
     type Views<'a> = bvh::Views<'a>;
     type Cull<N: Number> = Cull;
 
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,

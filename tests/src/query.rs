@@ -5,7 +5,8 @@ pub use gridel_host::verify::{UnitRay, depart};
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
-    Accel, Count, Fixed, Hit, NoCount, Number, Ray, Scene, Stack, Structure, any_hit, closest_hit,
+    Accel, Fixed, Hit, NoCount, Number, Observer, Ray, Scene, Stack, Structure, any_hit,
+    closest_hit,
 };
 use std::any::Any;
 
@@ -39,7 +40,7 @@ impl HitBits {
 pub fn closest<N: Number, A: Accel>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
-    count: &mut impl Count,
+    count: &mut impl Observer,
 ) -> Option<Hit<N>> {
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
     closest_hit::<N, A, _>(scene, ray, stack.as_view(), count)

@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3, EulerRot};
 use gridel_core::accel::cull::Cull;
 use gridel_core::accel::{Space, StackView, StructureViews, Traverse};
 use gridel_core::format::Leaf;
-use gridel_core::{Accel, Count, Flagged, Hit, Kind, List, Number, Ray, Scene, Structure};
+use gridel_core::{Accel, Flagged, Hit, Kind, List, Number, Observer, Ray, Scene, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::scene::Shape;
 use gridel_host::verify::judge::{Answer, GRAZING, Judge, RoundedRay, STEPS};
@@ -285,7 +285,7 @@ impl Traverse for Forgetful {
     type Views<'a> = <Flagged as Traverse>::Views<'a>;
     type Cull<N: Number> = Cull;
 
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,

@@ -87,7 +87,7 @@ impl<N: CullArithmetic> Culling<N> for Cull {
     }
 
     fn units(step: i32) -> f64 {
-        Self::told(step)
+        Self::units_of(step)
     }
 }
 
@@ -145,7 +145,7 @@ impl<N: CullArithmetic> Culling<N> for Deferred {
     }
 
     fn units(step: i32) -> f64 {
-        Cull::told(step)
+        Cull::units_of(step)
     }
 
     #[inline(always)]
@@ -186,13 +186,13 @@ impl<N: CullArithmetic> Culling<N> for Deferred {
 
 impl Cull {
     /// A step in units.
-    fn told(step: i32) -> f64 {
+    fn units_of(step: i32) -> f64 {
         f64::from(step) / 2.0
     }
 
     /// From where to where in units, as events tell it.
     pub(crate) fn span(interval: Interval) -> [f64; 2] {
-        [interval.near, interval.far].map(Self::told)
+        [interval.near, interval.far].map(Self::units_of)
     }
 
     /// The step at which the ray enters what begins at a plane, as it comes along an axis.

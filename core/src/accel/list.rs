@@ -7,7 +7,7 @@ use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::{BlobError, Kind, Leaf, SectionKind, Sections, Structure};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::ray::Ray;
 
 /// Tests every primitive; needs no stack.
@@ -20,7 +20,7 @@ impl Traverse for List {
     const HAS_CLUSTERS: bool = cfg!(feature = "wide");
     type Cull<N: Number> = Cull;
 
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         _: &Self::Views<'_>,
         _: &Ray<N>,

@@ -14,7 +14,7 @@ use crate::format::Leaf;
 use crate::format::structure::structures;
 use crate::format::{BlobError, Sections, Structure};
 #[cfg(feature = "all-structures")]
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 #[cfg(feature = "all-structures")]
 use crate::ray::Ray;
 
@@ -76,7 +76,7 @@ macro_rules! registry {
                 space.chosen
             }
 
-            fn walk<N: Number, C: Count>(
+            fn walk<N: Number, C: Observer>(
                 space: &Space<'_>,
                 views: &StructureViews<'_>,
                 ray: &Ray<N>,

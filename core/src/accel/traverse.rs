@@ -5,7 +5,7 @@ use crate::accel::number::Number;
 use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::format::{Leaf, Structure};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::ray::Ray;
 use crate::target::SMALL;
 
@@ -32,7 +32,7 @@ pub trait Traverse: Send + Sync {
     /// Calls `leaf` for every leaf whose box the ray can meet, nearer ones first where the
     /// structure knows. `leaf` returns the t beyond which nothing counts any more, or `None` to
     /// end the walk.
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
@@ -44,7 +44,7 @@ pub trait Traverse: Send + Sync {
 
     /// The same for any hit: in any order, up to the first leaf of which `hits` is true.
     #[inline(always)]
-    fn walk_any<N: Number, C: Count>(
+    fn walk_any<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,

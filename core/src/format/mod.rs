@@ -32,7 +32,7 @@ pub use link::Link;
 #[cfg(feature = "wide")]
 pub use node::Child;
 pub use node::{ClassNode, NodeWord, OctreeNode};
-pub use requirements::Demand;
+pub use requirements::Requirements;
 pub use section::SectionKind;
 pub(crate) use sections::Sections;
 pub use structure::Structure;

@@ -389,7 +389,7 @@ impl WideNode {
 /// A bounding sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
-pub struct Ball {
+pub struct BoundingSphere {
     /// Centre in units.
     pub center: [i16; 3],
     /// Radius in units.
@@ -399,9 +399,9 @@ pub struct Ball {
 /// A pair of children in bounding spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
-pub struct BallPair {
+pub struct SpherePair {
     /// The left and the right child's.
-    pub balls: [Ball; 2],
+    pub balls: [BoundingSphere; 2],
     /// The children: the number of a pair, or that of a leaf with bit 31 set.
     pub children: [u32; 2],
 }
@@ -547,5 +547,5 @@ const _: () = {
     assert!(size_of::<ApexWindow>() == 32 && offset_of!(ApexWindow, cells) == 16);
     assert!(size_of::<Pair>() == 32 && size_of::<FlaggedPair>() == 16);
     assert!(size_of::<DualNode>() == 16);
-    assert!(size_of::<BallPair>() == 24 && size_of::<GridShape>() == 8);
+    assert!(size_of::<SpherePair>() == 24 && size_of::<GridShape>() == 8);
 };

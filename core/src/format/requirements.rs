@@ -7,20 +7,20 @@ use core::mem::offset_of;
 
 /// What a blob asks of the program that it is compiled into.
 ///
-/// [`Demand::of`] is a `const fn`: a program that compares what it provides with what its blob asks for,
+/// [`Requirements::of`] is a `const fn`: a program that compares what it provides with what its blob asks for,
 /// as the modules of `gridel build --emit-rust` do, does not compile with a blob that has outgrown it.
 ///
 /// ```ignore
 /// static BLOB: &[u8] = gridel_core::include_blob!("scene.gridel");
 /// const _: () = {
-///     let Ok(demand) = gridel_core::Demand::of(BLOB) else {
+///     let Ok(demand) = gridel_core::Requirements::of(BLOB) else {
 ///         panic!("the blob was damaged")
 ///     };
 ///     assert!(demand.stack_depth <= STACK_DEPTH);
 /// };
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Demand {
+pub struct Requirements {
     /// Entries of the traversal stack.
     pub stack_depth: usize,
     /// Places for rays that wait: the ray depth and one, or 0 where no ray causes another.
@@ -39,11 +39,11 @@ pub struct Demand {
     display_values: bool,
 }
 
-impl Demand {
+impl Requirements {
     /// Reads it. A few operations a section.
     ///
     /// # Errors
-    /// If the blob is cut off. Nothing else is proved: that is for [`Vouched`](crate::scene::Vouched).
+    /// If the blob is cut off. Nothing else is proved: that is for [`Prevalidated`](crate::scene::Prevalidated).
     pub const fn of(blob: &[u8]) -> Result<Self, BlobError> {
         let lattice_bits = proved!(half(blob, offset_of!(Header, lattice_bits))) & 0xff;
         let mut demand = Self {

@@ -127,7 +127,7 @@ kinds! {
     FlaggedSlabRoot = 49, "flagged-slab-root";
     /// Flagged pairs of slabs.
     FlaggedSlabPairs = 50, "flagged-slab-pairs";
-    /// [`BallPair`](crate::format::record::BallPair)s.
+    /// [`SpherePair`](crate::format::record::SpherePair)s.
     BallPairs = 51, "ball-pairs";
     /// One [`GridShape`](crate::format::record::GridShape).
     GridShape = 52, "grid-shape";

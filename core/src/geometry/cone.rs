@@ -195,8 +195,8 @@ impl Cone {
                 return None;
             }
         } else {
-            let base = (-half_height - q_axial).over(d_axial);
-            let apex = (half_height - q_axial).over(d_axial);
+            let base = (-half_height - q_axial).div(d_axial);
+            let apex = (half_height - q_axial).div(d_axial);
             (enter, leave) = if d_axial > N::ZERO {
                 ((base, BASE), (apex, APEX))
             } else {
@@ -287,9 +287,9 @@ impl Cone {
         let left = mantle - along * sin;
         if left <= N::ZERO {
             across = N::ZERO;
-            along = mantle.over(sin).max(-highest).min(highest);
+            along = mantle.div(sin).max(-highest).min(highest);
         } else if across * cos > left {
-            across = left.over(cos);
+            across = left.div(cos);
         }
         let k = |k: usize| middle[k] + along * axis[k] + across.max(N::ZERO) * outward[k];
         [k(0), k(1), k(2)]

@@ -11,28 +11,28 @@ use crate::number::Arithmetic;
 pub trait Project: Arithmetic {
     /// How vertices whose coordinates count `2^bits` steps a unit are seen along an axis, from a ray's
     /// origin and with its slope there.
-    fn sight(origin: Self, slope: Self, bits: u32) -> Sight<Self>;
-    /// The same along the ray's major axis, for depths to [`stray`](Self::stray) over.
+    fn axis_projection(origin: Self, slope: Self, bits: u32) -> AxisProjection<Self>;
+    /// The same along the ray's major axis, for depths to [`shear_by`](Self::shear_by) over.
     #[inline(always)]
-    fn depth_sight(origin: Self, slope: Self, bits: u32) -> Sight<Self> {
-        Self::sight(origin, slope, bits)
+    fn depth_projection(origin: Self, slope: Self, bits: u32) -> AxisProjection<Self> {
+        Self::axis_projection(origin, slope, bits)
     }
     /// Where a coordinate, of at most 24 bits, lies as seen so: in floats in steps, in [`Fixed`] a
     /// length, and in the direction in which the ray runs.
-    fn seen(coordinate: i32, sight: &Sight<Self>) -> Self;
-    /// How far what is [seen](Self::seen) strays from a ray along a minor axis for each step along its
+    fn project(coordinate: i32, sight: &AxisProjection<Self>) -> Self;
+    /// How far what is [seen](Self::project) strays from a ray along a minor axis for each step along its
     /// major one, given the slopes there.
     fn shear(slope: Self, major: Self) -> Self;
     /// How far it strays over a depth, of less than 2^17 units, by the same arithmetic for every
     /// vertex; in [`Fixed`] rounded down.
-    fn stray(depth: Self, shear: Self) -> Self;
+    fn shear_by(depth: Self, shear: Self) -> Self;
     /// Whether the triangle of three points of the plane holds the origin, edges included; not if
     /// all edges lead through it. Whichever way the points run, and always exact.
-    fn surround(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool;
+    fn surrounds_origin(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool;
     /// Whether three numbers are certain to be all above or all below zero, where that is cheaper to
     /// see than what comes of it.
     #[inline(always)]
-    fn beside(_: [Self; 3]) -> bool {
+    fn same_sign(_: [Self; 3]) -> bool {
         false
     }
     /// Whether the product of such a [`direction`](Self::direction) with a slope says that a ray comes at
@@ -44,9 +44,9 @@ pub trait Project: Arithmetic {
     }
 }
 
-/// How vertices are seen along one axis of a ray: see [`Number::sight`].
+/// How vertices are seen along one axis of a ray: see [`Project::axis_projection`].
 #[derive(Clone, Copy, Debug)]
-pub struct Sight<N> {
+pub struct AxisProjection<N> {
     /// What moves a coordinate, in the measure of what is seen, to where it lies as seen from the origin.
     pub(crate) offset: N,
     /// What makes a coordinate a length, with the sign of the slope; for integers.

@@ -2,7 +2,7 @@
 //!
 //! A vertex is projected along the ray onto the plane of the two minor axes, by arithmetic that
 //! depends on the vertex and the ray alone; so every triangle at a vertex computes the same point.
-//! The signs of the edge tests on those points are exact ([`Number::surround`]). Whatever the
+//! The signs of the edge tests on those points are exact ([`Project::surrounds_origin`]). Whatever the
 //! projection rounded, the projected mesh is a mesh, and no ray slips between two triangles of it
 //! (after Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013). `t` is not
 //! interpolated, which goes wrong on stretched triangles, but taken from the plane, whose normal is
@@ -11,7 +11,7 @@
 use crate::axis::pick;
 use crate::format::record::{UnitBox, Vertex};
 use crate::geometry::Project;
-use crate::geometry::project::Sight;
+use crate::geometry::project::AxisProjection;
 use crate::geometry::{Surface, cross_plane, plane};
 use crate::number::Arithmetic;
 use crate::number::fixed::halves::product;
@@ -21,7 +21,7 @@ use crate::ray::Ray;
 /// (the two minor ones, then the major one), and how far the ray strays for each step of depth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projection<N> {
-    pub(crate) sight: [Sight<N>; 3],
+    pub(crate) sight: [AxisProjection<N>; 3],
     pub(crate) shear: [N; 2],
     major: usize,
 }
@@ -46,8 +46,8 @@ impl<N: Project> Projection<N> {
     pub(crate) fn of<const MAJOR: usize, V: Vertex>(ray: &Ray<N>) -> Self {
         let slope = |role: usize| pick(ray.slope, axis::<MAJOR>(ray.major, role));
         let origin = |role: usize| pick(ray.origin, axis::<MAJOR>(ray.major, role));
-        let sight = |role: usize| N::sight(origin(role), slope(role), V::STEP_BITS);
-        let depth = N::depth_sight(origin(2), slope(2), V::STEP_BITS);
+        let sight = |role: usize| N::axis_projection(origin(role), slope(role), V::STEP_BITS);
+        let depth = N::depth_projection(origin(2), slope(2), V::STEP_BITS);
         let shear = |role: usize| N::shear(slope(role), slope(2));
         Self {
             sight: [sight(0), sight(1), depth],
@@ -64,7 +64,7 @@ impl<N: Project> Projection<N> {
     pub(crate) fn meets<const MAJOR: usize, V: Vertex>(&self, a: &V, b: &V, c: &V) -> bool {
         let seen = |vertex: &V, role: usize| {
             let coordinate = vertex.steps(axis::<MAJOR>(self.major, role));
-            N::seen(coordinate, &pick(self.sight, role))
+            N::project(coordinate, &pick(self.sight, role))
         };
         let depth = [seen(a, 2), seen(b, 2), seen(c, 2)];
         let across = |role: usize| {
@@ -74,20 +74,20 @@ impl<N: Project> Projection<N> {
                 self.shear[1]
             };
             [
-                seen(a, role) + N::stray(depth[0], shear),
-                seen(b, role) + N::stray(depth[1], shear),
-                seen(c, role) + N::stray(depth[2], shear),
+                seen(a, role) + N::shear_by(depth[0], shear),
+                seen(b, role) + N::shear_by(depth[1], shear),
+                seen(c, role) + N::shear_by(depth[2], shear),
             ]
         };
         let x = across(0);
-        if N::beside(x) {
+        if N::same_sign(x) {
             return false;
         }
         let y = across(1);
-        if N::beside(y) {
+        if N::same_sign(y) {
             return false;
         }
-        N::surround([x[0], y[0]], [x[1], y[1]], [x[2], y[2]])
+        N::surrounds_origin([x[0], y[0]], [x[1], y[1]], [x[2], y[2]])
     }
 }
 
@@ -96,7 +96,7 @@ impl<N: Project> Projection<N> {
 ///
 /// Met steeply, t needs no clamping to the interval of the triangle's box: there it is anyway. Let `q` be
 /// the point of the triangle that is seen where the ray is, and `t'` its depth. Beside the ray it lies by
-/// what the projection rounded ([`Number::stray`]), and `n . q` differs from what it is for the plane
+/// what the projection rounded ([`Project::shear_by`]), and `n . q` differs from what it is for the plane
 /// through the first corner by what the normal `n` lacks, less than a step a component, over the
 /// triangle's extent of less than 2^16 units. So in [`Fixed`](crate::number::Fixed), where `n` has 30
 /// fraction bits and a projected coordinate is off by less than 2^-13 unit, `|n . d| |t - t'|` is below

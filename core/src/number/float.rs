@@ -50,7 +50,7 @@ fn carry<N: Arithmetic<Wide = N>>(
     let rise = depth * slope;
     let rise_low = product_error(depth, slope, splitter) + (depth * slope_low + depth_low * slope);
     let (sum, sum_low) = two_sum(origin, rise);
-    (sum + (sum_low + rise_low)).settle()
+    (sum + (sum_low + rise_low)).flush_tiny()
 }
 
 /// 2^-60 and 2^-100: smaller numbers need care.
@@ -95,7 +95,7 @@ fn slope_of_extremes<N: Arithmetic<Wide = N>>(
     let scaled = near_one(scaled);
     let component = pick(scaled, axis);
     Some(if axis != major {
-        (component * N::ONE.over(extent(scaled)) + N::ZERO).settle()
+        (component * N::ONE.div(extent(scaled)) + N::ZERO).flush_tiny()
     } else if component < N::ZERO {
         -N::ONE
     } else {
@@ -117,7 +117,7 @@ fn slopes_of_extremes<N: Arithmetic<Wide = N>>(
 
 macro_rules! float_number {
     ($float:ident, $format:expr, $precision:expr, $smallest:expr, $sqrt:path, $exp:path,
-     $compare_products:path, $splitter:expr, $settle:expr, $direction:expr) => {
+     $compare_products:path, $splitter:expr, $flush_tiny:expr, $direction:expr) => {
         impl Sealed for $float {}
 
         impl Scalar for $float {
@@ -144,8 +144,8 @@ macro_rules! float_number {
             }
 
             #[inline(always)]
-            fn settle(self) -> Self {
-                $settle(self)
+            fn flush_tiny(self) -> Self {
+                $flush_tiny(self)
             }
 
             #[inline(always)]
@@ -310,9 +310,9 @@ macro_rules! float_number {
                 } else {
                     near_one([step, stride, 0.0])
                 };
-                let slope = step.over(stride);
+                let slope = step.div(stride);
                 let rest = (step - slope * stride) - product_error(slope, stride, $splitter);
-                let slope = (slope, rest.over(stride));
+                let slope = (slope, rest.div(stride));
                 carry(origin, two_sum(plane, -from), slope, $splitter)
             }
 
@@ -328,7 +328,7 @@ macro_rules! float_number {
 
             #[inline(always)]
             fn divide(numerator: Self, denominator: Self) -> Self {
-                numerator.over(denominator)
+                numerator.div(denominator)
             }
 
             #[inline(always)]
@@ -361,7 +361,8 @@ macro_rules! float_number {
                     |x: $float| magnitude(x).wrapping_sub(low) <= high.wrapping_sub(low);
                 let one = |x: $float| (1.0 as $float).copysign(x);
                 // Adding zero turns -0.0 into 0.0.
-                let over = |x: $float, largest: $float| $settle(x * (1.0 / largest.abs()) + 0.0);
+                let over =
+                    |x: $float, largest: $float| $flush_tiny(x * (1.0 / largest.abs()) + 0.0);
                 let [a, b, c] = v;
                 // Written out by axis, so that nothing is looked up.
                 if x >= y && x >= z {

@@ -51,7 +51,7 @@ pub trait Scalar:
     /// Half; exact in floats, rounded down in [`Fixed`].
     fn half(self) -> Self;
     /// A coordinate without digits so small that exact products would lose them: 0 in their place.
-    fn settle(self) -> Self;
+    fn flush_tiny(self) -> Self;
     /// The smaller; the first where they are equal.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
@@ -67,12 +67,12 @@ pub trait Scalar:
     /// Undoes `*`: length over ratio is a length, and two of one quantity make a ratio. Saturates
     /// at the range's end; anything over 0 saturates, 0 over 0 is 0.
     #[inline(always)]
-    fn over(self, divisor: Self) -> Self {
+    fn div(self, divisor: Self) -> Self {
         Self::rounded(self.quotient(divisor))
     }
     /// The same before it is rounded, to be compared.
     fn quotient(self, divisor: Self) -> Self::Quotient;
-    /// What [`over`](Self::over) gives.
+    /// What [`div`](Self::div) gives.
     fn rounded(quotient: Self::Quotient) -> Self;
     /// e to the power of minus the product of a non-negative length and a coefficient in 1/unit,
     /// given with 32 fraction bits: a ratio in \[0, 1\].

@@ -4,9 +4,9 @@ use crate::observe::event::{Event, RayKind};
 use core::any::Any;
 
 /// Receives counts and events; every method does nothing unless it is overridden.
-pub trait Count {
-    /// Whether [`tell`](Self::tell) is called.
-    const TELLS: bool = false;
+pub trait Observer {
+    /// Whether [`event`](Self::event) is called.
+    const ENABLED: bool = false;
 
     /// Planes of boxes were tested.
     #[inline(always)]
@@ -23,16 +23,16 @@ pub trait Count {
     /// A ray was cast: a [`Ray`](crate::Ray) of some number format.
     #[inline(always)]
     fn ray<R: Any>(&mut self, _: RayKind, _: &R) {}
-    /// Something happened. It is told only to those that say so by [`TELLS`](Self::TELLS), and the
-    /// code that tells is not even compiled for others.
-    fn tell(&mut self, _: Event) {}
+    /// Receives an event. Called only if [`ENABLED`](Self::ENABLED) is true; else the code of the call is not
+    /// compiled.
+    fn event(&mut self, _: Event) {}
 }
 
 /// Counts nothing, at no cost.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoCount;
 
-impl Count for NoCount {}
+impl Observer for NoCount {}
 
 /// Counts everything.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -81,7 +81,7 @@ impl Counters {
     }
 }
 
-impl Count for Counters {
+impl Observer for Counters {
     fn planes(&mut self, number: u32) {
         self.planes = self.planes.wrapping_add(number.into());
     }

@@ -1,10 +1,10 @@
-//! What happens to a ray, event by event, for whoever wants its story (see [`Count::tell`]).
+//! What happens to a ray, event by event, for whoever wants its story (see [`Observer::event`]).
 //!
 //! Events come from the very code that traces and renders, in the order in which it works. Points,
 //! lengths and t are in units (see [`Number`](crate::accel::Number)), t along the ray's major axis; colours
 //! are linear, 1 being display white. All are exactly what the number format holds.
 //!
-//! [`Count::tell`]: crate::Count::tell
+//! [`Observer::event`]: crate::Observer::event
 
 use crate::format::Kind;
 

@@ -2,7 +2,7 @@
 //! and go on later, so a call takes a bounded time and the picture is the same bit for bit.
 
 use crate::accel::{Accel, Number};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::render::pixel::Pixel;
 use crate::render::renderer::Renderer;
 use crate::render::samples::Samples;
@@ -68,7 +68,7 @@ impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> Cursor<'r, 's, 'a, N, 
 
     /// Traces at most so many rays, and hands out the pixels that they complete, row by row from
     /// the upper left corner.
-    pub fn step<P: Pixel, C: Count>(
+    pub fn step<P: Pixel, C: Observer>(
         &mut self,
         rays: u32,
         count: &mut C,

@@ -5,7 +5,7 @@
 //! time: hand each to [`DrawTarget::draw_iter`] as a `Pixel`.
 
 use crate::accel::{Accel, Number};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::render::pixel::{Pixel, luminance, quantize};
 use crate::render::renderer::Renderer;
 use crate::render::trace::WorkspaceView;
@@ -74,7 +74,7 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
     ) -> Result<(), D::Error>
     where
         D: DrawTarget<Color: Pixel + PixelColor>,
-        C: Count,
+        C: Observer,
     {
         let settings = self.settings();
         let size = Size::new(settings.width.into(), settings.height.into());

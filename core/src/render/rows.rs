@@ -1,7 +1,7 @@
 //! Pixels, rows and rectangles of a picture.
 
 use crate::accel::{Accel, Number};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::render::samples::Samples;
@@ -9,7 +9,7 @@ use crate::render::{Pixel, Renderer, WorkspaceView};
 use crate::shade::Color;
 impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
     /// One pixel, linear, 65535 being white. Outside of the picture pixels go on.
-    pub fn linear<C: Count>(
+    pub fn linear<C: Observer>(
         &self,
         x: u16,
         y: u16,
@@ -26,7 +26,7 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
     }
 
     /// What is seen along a ray of the caller's own, linear, 65535 being white.
-    pub fn linear_along<C: Count>(
+    pub fn linear_along<C: Observer>(
         &self,
         ray: &Ray<N>,
         space: &mut WorkspaceView<'_, N>,
@@ -38,17 +38,17 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
         let camera = || Ok(*ray);
         while !tracing.step::<N, A, C, EFFECTS>(camera, &mut radiance, space, count) {}
         let seen = radiance.displayable();
-        if C::TELLS {
-            count.tell(Event::Seen {
+        if C::ENABLED {
+            count.event(Event::Seen {
                 place: None,
-                radiance: seen.told(),
+                radiance: seen.to_f64(),
             });
         }
         self.to_linear(seen)
     }
 
     /// One pixel in a display's form.
-    pub fn pixel<P: Pixel, C: Count>(
+    pub fn pixel<P: Pixel, C: Observer>(
         &self,
         x: u16,
         y: u16,
@@ -62,7 +62,7 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
     }
 
     /// A part of a row: as many pixels as `row` has, from column `x` on.
-    pub fn row<P: Pixel, C: Count>(
+    pub fn row<P: Pixel, C: Observer>(
         &self,
         x: u16,
         y: u16,
@@ -76,7 +76,7 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
     }
 
     /// Any rectangle, pixel by pixel, row by row from its upper left corner.
-    pub fn rectangle<P: Pixel, C: Count>(
+    pub fn rectangle<P: Pixel, C: Observer>(
         &self,
         corner: [u16; 2],
         size: [u16; 2],

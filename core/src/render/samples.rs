@@ -1,7 +1,7 @@
 //! The samples of one pixel, ray by ray.
 
 use crate::accel::{Accel, Number};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::render::pixel::Linear;
 use crate::render::sample::place;
@@ -30,7 +30,7 @@ impl<N: Number> Samples<N> {
     /// Traces one ray; the pixel, linear, if that was its last. The work list holds rays of the
     /// pixel's current sample, and is empty when a sample begins.
     #[inline(always)]
-    pub(super) fn step<A: Accel, C: Count, const EFFECTS: u32>(
+    pub(super) fn step<A: Accel, C: Observer, const EFFECTS: u32>(
         &mut self,
         renderer: &Renderer<'_, '_, N, A, EFFECTS>,
         [x, y]: [u16; 2],
@@ -51,10 +51,10 @@ impl<N: Number> Samples<N> {
         // Clamped before they are averaged, so that the edge of a highlight is smooth.
         let seen = self.radiance.displayable();
         self.sum = self.sum.plus(seen);
-        if C::TELLS {
-            count.tell(Event::Seen {
+        if C::ENABLED {
+            count.event(Event::Seen {
                 place: Some(place([x, y], self.index, samples)),
-                radiance: seen.told(),
+                radiance: seen.to_f64(),
             });
         }
         self.radiance = Color::BLACK;

@@ -17,7 +17,7 @@ use crate::format::Effects;
 use crate::format::limits::MAX_RAY_DEPTH;
 use crate::format::record::{Light, Material};
 use crate::number::extent;
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::observe::event::{Event, RayKind, Source};
 use crate::query::{Hit, any_hit, closest_hit};
 use crate::ray::{Ray, RayError};
@@ -92,7 +92,7 @@ impl Loop<'_, '_> {
     /// Traces one ray and the shadow rays of what it meets: the last that waits, or else the one
     /// from the camera. Returns whether none waits any more.
     #[inline(always)]
-    pub(super) fn step<N: Number, A: Accel, C: Count, const EFFECTS: u32>(
+    pub(super) fn step<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
         &self,
         camera: impl FnOnce() -> Result<Ray<N>, RayError>,
         radiance: &mut Color<N>,
@@ -111,11 +111,11 @@ impl Loop<'_, '_> {
             None => (camera().ok(), Color::WHITE, 0, RayKind::Primary),
         };
         // A direction that cannot be told brings nothing.
-        if C::TELLS {
-            count.tell(Event::Taken {
+        if C::ENABLED {
+            count.event(Event::Taken {
                 kind,
                 depth,
-                weight: weight.told_ratios(),
+                weight: weight.ratios_to_f64(),
             });
         }
         if let Some(ray) = ray {
@@ -127,7 +127,7 @@ impl Loop<'_, '_> {
 
     /// Adds what one ray brings, and puts the rays that it causes on the work list.
     #[inline(always)]
-    fn add<N: Number, A: Accel, C: Count, const EFFECTS: u32>(
+    fn add<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
         &self,
         ray: &Ray<N>,
         mut weight: Color<N>,
@@ -143,10 +143,10 @@ impl Loop<'_, '_> {
         let Some((hit, material)) = surface else {
             let brought = Color::radiance(view.background).times(weight);
             *radiance = radiance.plus(brought);
-            if C::TELLS {
-                count.tell(Event::Added {
+            if C::ENABLED {
+                count.event(Event::Added {
                     source: Source::Background,
-                    radiance: brought.told(),
+                    radiance: brought.to_f64(),
                 });
             }
             return;
@@ -154,9 +154,9 @@ impl Loop<'_, '_> {
         let glass = effects.contains(Effects::GLASS) && material.transmit != [0; 3];
         if effects.contains(Effects::ABSORPTION) && glass && !hit.front {
             weight = weight.times(glass::absorb(material, path_length(ray, &hit)));
-            if C::TELLS {
-                count.tell(Event::Absorbed {
-                    weight: weight.told_ratios(),
+            if C::ENABLED {
+                count.event(Event::Absorbed {
+                    weight: weight.ratios_to_f64(),
                 });
             }
         }
@@ -190,25 +190,25 @@ impl Loop<'_, '_> {
                 count,
             );
             local = local.plus(lit);
-            if C::TELLS {
-                count.tell(Event::Lit {
+            if C::ENABLED {
+                count.event(Event::Lit {
                     number,
-                    radiance: lit.told(),
+                    radiance: lit.to_f64(),
                 });
             }
         }
         let brought = local.times(weight);
         *radiance = radiance.plus(brought);
-        if C::TELLS {
-            count.tell(Event::Added {
+        if C::ENABLED {
+            count.event(Event::Added {
                 source: Source::Surface,
-                radiance: brought.told(),
+                radiance: brought.to_f64(),
             });
         }
 
         if depth >= self.depth {
-            if C::TELLS && (glass || material.mirror != [0; 3]) {
-                count.tell(Event::TooDeep);
+            if C::ENABLED && (glass || material.mirror != [0; 3]) {
+                count.event(Event::TooDeep);
             }
             return;
         }
@@ -224,8 +224,8 @@ impl Loop<'_, '_> {
                 reflected,
                 refracted,
             } = glass::split(k, hit.front, direction, normal, cos_in);
-            if C::TELLS {
-                count.tell(Event::Split {
+            if C::ENABLED {
+                count.event(Event::Split {
                     reflected: reflected.ratio_to_f64(),
                 });
             }
@@ -258,7 +258,7 @@ impl Loop<'_, '_> {
     /// Puts a ray on the work list unless it would bring too little.
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "one secondary ray is this much")]
-    fn send<N: Number, C: Count>(
+    fn send<N: Number, C: Observer>(
         &self,
         space: &mut WorkspaceView<'_, N>,
         hit: &Hit<N>,
@@ -280,17 +280,17 @@ impl Loop<'_, '_> {
                 depth: depth.saturating_add(1),
                 kind,
             });
-            if C::TELLS {
-                count.tell(Event::Sent {
+            if C::ENABLED {
+                count.event(Event::Sent {
                     kind,
-                    weight: weight.told_ratios(),
+                    weight: weight.ratios_to_f64(),
                 });
             }
         } else {
-            if C::TELLS {
-                count.tell(Event::Dropped {
+            if C::ENABLED {
+                count.event(Event::Dropped {
                     kind,
-                    weight: weight.told_ratios(),
+                    weight: weight.ratios_to_f64(),
                 });
             }
         }
@@ -302,7 +302,7 @@ impl Loop<'_, '_> {
         clippy::too_many_arguments,
         reason = "one surface under one light is this much"
     )]
-    fn lit<N: Number, A: Accel, C: Count, const EFFECTS: u32>(
+    fn lit<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
         &self,
         number: u32,
         light: &Light,
@@ -322,8 +322,8 @@ impl Loop<'_, '_> {
         };
         let (to_light, _) = N::normalize(slopes);
         let cos = N::from_wide(N::dot(normal, to_light));
-        if C::TELLS {
-            count.tell(Event::Light {
+        if C::ENABLED {
+            count.event(Event::Light {
                 number,
                 cosine: cos.ratio_to_f64(),
             });
@@ -366,7 +366,7 @@ impl Loop<'_, '_> {
     ///
     /// Opaque things let nothing through. Light goes straight on through glass and loses at every
     /// surface what [`glass::straight_through`] says, and what is absorbed on the way inside.
-    fn through<N: Number, A: Accel, C: Count, const EFFECTS: u32>(
+    fn through<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
         &self,
         shadow: Shadow<N>,
         stack: &mut StackView,
@@ -408,9 +408,9 @@ impl Loop<'_, '_> {
             if effects.contains(Effects::ABSORPTION) && !hit.front {
                 left = left.times(glass::absorb(material, path_length(&ray, &hit)));
             }
-            if C::TELLS {
-                count.tell(Event::Filtered {
-                    left: left.told_ratios(),
+            if C::ENABLED {
+                count.event(Event::Filtered {
+                    left: left.ratios_to_f64(),
                 });
             }
             if left.peak() * N::radiance(1 << 20) <= N::radiance(self.scene.view.cutoff) {

@@ -2,7 +2,7 @@
 
 use crate::format::{BlobError, Sections};
 use crate::scene::blob::Scene;
-use crate::scene::prevalidated::Vouched;
+use crate::scene::prevalidated::Prevalidated;
 use crate::scene::{check, read};
 
 impl<'a> Scene<'a> {
@@ -29,14 +29,14 @@ impl<'a> Scene<'a> {
         Ok(scene)
     }
 
-    /// The view of a blob that was [vouched for](Vouched), in constant time.
+    /// Returns the view of a [prevalidated](Prevalidated) blob, in constant time.
     ///
     /// # Errors
     /// If the slice is not aligned, or the header, the section table or the view is not as it must
     /// be, or this build lacks what the scene calls for.
-    pub fn vouched(vouched: Vouched<'a>) -> Result<Self, BlobError> {
-        let header = read::header(vouched.blob)?;
-        let sections = Sections::read(vouched.blob, header.section_count)?;
+    pub fn prevalidated(blob: Prevalidated<'a>) -> Result<Self, BlobError> {
+        let header = read::header(blob.blob)?;
+        let sections = Sections::read(blob.blob, header.section_count)?;
         read::scene(header, &sections)
     }
 }

@@ -11,4 +11,4 @@ mod prevalidated;
 mod read;
 
 pub use blob::Scene;
-pub use prevalidated::Vouched;
+pub use prevalidated::Prevalidated;

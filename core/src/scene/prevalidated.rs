@@ -6,20 +6,20 @@ use crate::format::word::{half, proved, word};
 use crate::format::{BlobError, SectionKind, Structure, checksum};
 use core::mem::offset_of;
 
-/// A blob that the program itself vouches for: loading it with [`Scene::vouched`](crate::scene::Scene::vouched)
+/// A blob that was verified when the program was compiled: loading it with [`Scene::prevalidated`](crate::scene::Scene::prevalidated)
 /// takes constant time.
 ///
-/// [`Vouched::of`] is a `const fn`. Evaluated for a `static`, it runs in the compiler, and a program
+/// [`Prevalidated::of`] is a `const fn`. Evaluated for a `static`, it runs in the compiler, and a program
 /// whose blob fails does not compile:
 ///
 /// ```ignore
 /// static BLOB: &[u8] = gridel_core::include_blob!("scene.gridel");
-/// static VOUCHED: Vouched<'static> = match Vouched::of(BLOB) {
-///     Ok(vouched) => vouched,
+/// static PREVALIDATED: Prevalidated<'static> = match Prevalidated::of(BLOB) {
+///     Ok(blob) => blob,
 ///     Err(_) => panic!("the blob was damaged"),
 /// };
 ///
-/// let scene = Scene::vouched(VOUCHED)?;
+/// let scene = Scene::prevalidated(PREVALIDATED)?;
 /// ```
 ///
 /// **What is proved here**: the checksum, so the blob is what `gridel build` wrote, to the byte; and
@@ -34,14 +34,14 @@ use core::mem::offset_of;
 /// record but those that end with an array. Tests hold this to records of any content, with overflow
 /// checks on; and programs of such a blob hold no code that panics.
 ///
-/// Blobs for boards can be vouched for: those that hold no other structures than [`Self::STRUCTURES`].
+/// Blobs for boards can be prevalidated: those that hold no structures but [`Self::STRUCTURES`].
 #[derive(Clone, Copy, Debug)]
-pub struct Vouched<'a> {
+pub struct Prevalidated<'a> {
     pub(in crate::scene) blob: &'a [u8],
 }
 
-impl<'a> Vouched<'a> {
-    /// The structures that can be vouched for.
+impl<'a> Prevalidated<'a> {
+    /// The structures that can be prevalidated.
     pub const STRUCTURES: [Structure; 4] = [
         Structure::List,
         Structure::Bvh,

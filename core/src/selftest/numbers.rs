@@ -40,7 +40,7 @@ pub(super) fn products(checks: &mut Checks<'_>) {
         if b != 0 {
             checks.equal(
                 format_args!("{a} over {b}"),
-                x.over(y).0.into(),
+                x.div(y).0.into(),
                 saturated(nearest(a * one, b)),
             );
         }
@@ -65,8 +65,8 @@ pub(super) fn products(checks: &mut Checks<'_>) {
         }
     }
     let largest = Fixed(i32::MAX);
-    checks.equal(format_args!("1 over 0"), Fixed::ONE.over(Fixed(0)), largest);
-    checks.equal(format_args!("0 over 0"), Fixed(0).over(Fixed(0)), Fixed(0));
+    checks.equal(format_args!("1 over 0"), Fixed::ONE.div(Fixed(0)), largest);
+    checks.equal(format_args!("0 over 0"), Fixed(0).div(Fixed(0)), Fixed(0));
 }
 
 /// Names for what `Fixed` calls its products.
@@ -156,7 +156,7 @@ pub(super) fn fixed_signs(checks: &mut Checks<'_>) {
     for _ in 0..ROUNDS {
         let corners = triangle(&mut random, 31);
         let [a, b, c] = corners.map(|v| v.map(|x| Fixed(x as i32)));
-        let found = Fixed::surround(a, b, c);
+        let found = Fixed::surrounds_origin(a, b, c);
         let expected = surrounds_exactly(corners);
         checks.equal(format_args!("{corners:?}"), found, expected);
     }
@@ -167,12 +167,12 @@ pub(super) fn float_signs(checks: &mut Checks<'_>) {
     for _ in 0..ROUNDS {
         let corners = triangle(&mut random, 24);
         let [a, b, c] = corners.map(|v| v.map(|x| x as f32 / 256.0));
-        let found = f32::surround(a, b, c);
+        let found = f32::surrounds_origin(a, b, c);
         let expected = surrounds_exactly(corners);
         checks.equal(format_args!("f32 {corners:?}"), found, expected);
         let corners = triangle(&mut random, 52);
         let [a, b, c] = corners.map(|v| v.map(|x| x as f64 / 256.0));
-        let found = f64::surround(a, b, c);
+        let found = f64::surrounds_origin(a, b, c);
         let expected = surrounds_exactly(corners);
         checks.equal(format_args!("f64 {corners:?}"), found, expected);
     }

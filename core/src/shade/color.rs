@@ -59,12 +59,12 @@ impl<N: Number> Color<N> {
     }
 
     /// Radiance, as events tell it.
-    pub(crate) fn told(self) -> [f64; 3] {
+    pub(crate) fn to_f64(self) -> [f64; 3] {
         self.0.map(N::radiance_to_f64)
     }
 
     /// Ratios, as events tell them.
-    pub(crate) fn told_ratios(self) -> [f64; 3] {
+    pub(crate) fn ratios_to_f64(self) -> [f64; 3] {
         self.0.map(N::ratio_to_f64)
     }
 

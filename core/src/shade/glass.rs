@@ -20,7 +20,7 @@ pub(crate) struct Split<N> {
 /// The two polarisations swap when a ray goes the other way, so this serves both.
 fn fresnel<N: Number>(k: N, cos_in: N, cos_out: N) -> N {
     let part = |a: N, b: N| {
-        let amplitude = (a.half() - b.half()).over(a.half() + b.half());
+        let amplitude = (a.half() - b.half()).div(a.half() + b.half());
         amplitude * amplitude
     };
     let sum = part(k * cos_in, cos_out).half() + part(cos_in, k * cos_out).half();
@@ -54,7 +54,7 @@ pub(crate) fn split<N: Number>(
                 refracted: d,
             };
         }
-        cos_out = (N::ONE - sin2_in.over(k * k)).sqrt();
+        cos_out = (N::ONE - sin2_in.div(k * k)).sqrt();
         (scale, lift) = (N::ONE, cos_in - k * cos_out);
     }
     let axis = |i: usize| scale * d[i] + lift * normal[i];

@@ -4,7 +4,7 @@ use super::{Options, PictureRays, Works};
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
-    Accel, Count, Counters, NoCount, Number, Ray, Scene, Stack, Structure, StructureVisitor,
+    Accel, Counters, NoCount, Number, Observer, Ray, Scene, Stack, Structure, StructureVisitor,
     any_hit, closest_primitive,
 };
 use serde::Serialize;
@@ -84,7 +84,7 @@ pub fn ask<N: Number>(
     structure.visit(Ask(scene, question, rays, sink));
 }
 
-fn ask_through<N: Number, A: Accel, C: Count>(
+fn ask_through<N: Number, A: Accel, C: Observer>(
     scene: &Scene<'_>,
     question: Question,
     rays: Rays<'_, '_, N>,

@@ -3,7 +3,7 @@
 use super::CompareError;
 use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
 use gridel_core::{
-    Count, Effects, Flagged, Number, Ray, RayKind, Renderer, Scene, Settings, Workspace,
+    Effects, Flagged, Number, Observer, Ray, RayKind, Renderer, Scene, Settings, Workspace,
 };
 use rayon::prelude::*;
 use std::any::Any;
@@ -23,7 +23,7 @@ pub struct PictureRays<N: Number> {
 }
 
 /// Keeps every ray that is cast.
-impl<N: Number> Count for PictureRays<N> {
+impl<N: Number> Observer for PictureRays<N> {
     fn ray<R: Any>(&mut self, kind: RayKind, ray: &R) {
         let Some(&ray) = (ray as &dyn Any).downcast_ref::<Ray<N>>() else {
             return;

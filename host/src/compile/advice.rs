@@ -5,7 +5,7 @@ use super::{Options, compile, writer};
 use crate::blob::Blob;
 use crate::report::grouped;
 use crate::scene::Scene;
-use gridel_core::{Structure, Vouched};
+use gridel_core::{Prevalidated, Structure};
 
 /// What a structure takes of a blob.
 pub struct Size {
@@ -54,7 +54,7 @@ pub fn advice(
     let and_costs_time = |step| format!("{step} and costs time");
     let mut steps = Vec::new();
     // Tables take long to make: with them nothing is tried.
-    if asked.iter().all(|it| Vouched::STRUCTURES.contains(it)) {
+    if asked.iter().all(|it| Prevalidated::STRUCTURES.contains(it)) {
         let narrow = Options {
             lattice_bits: options.lattice_bits.min(16),
             ..options.clone()

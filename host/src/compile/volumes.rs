@@ -9,7 +9,7 @@ use gridel_core::Kind;
 use gridel_core::accel::hierarchy::direction::DIRECTIONS;
 use gridel_core::accel::hierarchy::reach::Reach;
 use gridel_core::accel::hierarchy::slabs::Volume;
-use gridel_core::format::record::{Ball, BallPair, plane_word};
+use gridel_core::format::record::{BoundingSphere, SpherePair, plane_word};
 use gridel_core::format::{Link, SectionKind};
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -104,11 +104,11 @@ impl<'t> Tree<'t> {
 
     /// Bounding spheres.
     pub fn balls(&self) -> Section {
-        let pairs: Vec<BallPair> = self
+        let pairs: Vec<SpherePair> = self
             .pairs()
             .into_par_iter()
             .zip(&self.flat.pairs)
-            .map(|(children, pair)| BallPair {
+            .map(|(children, pair)| SpherePair {
                 balls: children
                     .each_ref()
                     .map(|child| enclosing(&self.reaches[range(child)])),
@@ -136,7 +136,7 @@ fn range(node: &Node) -> Range<usize> {
 const STEPS: usize = 24;
 
 /// A small ball that holds all of some primitives' reach.
-fn enclosing(reaches: &[Reach]) -> Ball {
+fn enclosing(reaches: &[Reach]) -> BoundingSphere {
     // How far the farthest point of a primitive is, and where it is.
     let farthest = |center: DVec3, reach: &Reach| match *reach {
         Reach::Sphere(middle, radius) => {
@@ -194,5 +194,5 @@ fn enclosing(reaches: &[Reach]) -> Ball {
     while radius < u16::MAX && !reaches.iter().all(|reach| reach.in_ball(center, radius)) {
         radius += 1;
     }
-    Ball { center, radius }
+    BoundingSphere { center, radius }
 }

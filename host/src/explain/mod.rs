@@ -1,6 +1,6 @@
 //! The story of a ray or of a pixel: what was visited, what was met, what it brought.
 //!
-//! It is told by the code that renders, through [`Count::tell`], and only put in order here: `walk.rs`
+//! It is told by the code that renders, through [`Observer::event`], and only put in order here: `walk.rs`
 //! keeps a query's way through a structure, `story.rs` the rays of a pixel and what they add up to,
 //! `text.rs` writes it down for people.
 
@@ -18,7 +18,7 @@ use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
 use gridel_core::render::{Pixel, RenderError};
 use gridel_core::{
-    Count, Effects, Event, Fixed, Format, Number, Renderer, Rgb888, Scene, Settings, Structure,
+    Effects, Event, Fixed, Format, Number, Observer, Renderer, Rgb888, Scene, Settings, Structure,
     Workspace,
 };
 
@@ -116,10 +116,10 @@ struct Recorder {
 /// hundreds, a list as many as there are primitives.
 const MOST_STEPS: usize = 20_000;
 
-impl Count for Recorder {
-    const TELLS: bool = true;
+impl Observer for Recorder {
+    const ENABLED: bool = true;
 
-    fn tell(&mut self, event: Event) {
+    fn event(&mut self, event: Event) {
         match event {
             Event::Query { .. } => self.steps = 0,
             Event::Tested { .. }

@@ -16,7 +16,7 @@ use super::{MemoryMap, grouped, working_memory};
 use crate::blob::best_structures;
 use crate::board::Board;
 use gridel_core::accel::Entry;
-use gridel_core::{Effects, Format, Kind, Rgb565, Scene, Structure, Vouched};
+use gridel_core::{Effects, Format, Kind, Prevalidated, Rgb565, Scene, Structure};
 use serde::Serialize;
 
 /// A program that was built for every board, beside that of all parts.
@@ -132,7 +132,7 @@ impl Account {
 
 impl Ledger {
     /// The structures that were measured: those that firmware can vouch for.
-    pub const STRUCTURES: [Structure; 4] = Vouched::STRUCTURES;
+    pub const STRUCTURES: [Structure; 4] = Prevalidated::STRUCTURES;
 
     /// The ledger of a scene that `blob` holds, in one of the board's number formats, through the
     /// best structure that the blob holds.

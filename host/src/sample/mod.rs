@@ -15,7 +15,7 @@ pub use nanotube::nanotube;
 pub use obj::obj;
 pub use pdb::{PdbError, pdb};
 
-use crate::scene::molecule::{Ball, Element, Site, draw, perceive};
+use crate::scene::molecule::{BoundingSphere, Element, Site, draw, perceive};
 use crate::scene::{Camera, Light, MoleculeStyle, Place, Scene};
 use glam::DVec3;
 
@@ -35,7 +35,7 @@ fn carbon(positions: Vec<DVec3>, style: MoleculeStyle) -> Scene {
     let balls = sites
         .into_iter()
         .zip(1..)
-        .map(|(site, number)| Ball {
+        .map(|(site, number)| BoundingSphere {
             site,
             name: format!("C{number}"),
             place: Place::default(),

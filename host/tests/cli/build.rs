@@ -544,7 +544,7 @@ fn a_module_is_emitted_for_the_board() {
         "pub type Accel = gridel_core::DualSplit;",
         "\"dual-split\", \"triangle\", \"sphere\", \"box\", \"disc\", \"cone\", \"wide-lattice\"",
         "pub const WORK_DEPTH: usize = 7;",
-        "gridel_core::Scene::vouched(VOUCHED)",
+        "gridel_core::Scene::prevalidated(PREVALIDATED)",
         "the blob outgrew the flash of mps2-an386",
     ] {
         assert!(module.contains(line), "{line}: {module}");

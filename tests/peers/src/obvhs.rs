@@ -94,18 +94,18 @@ fn cwbvh(triangles: &[[Vec3; 3]]) -> Contender<'static> {
 
 /// A sphere for obvhs, which has none: the textbook's test in the library's own vectors.
 #[derive(Clone, Copy)]
-struct Ball {
+struct BoundingSphere {
     center: Vec3A,
     radius: f32,
 }
 
-impl Boundable for Ball {
+impl Boundable for BoundingSphere {
     fn aabb(&self) -> ::obvhs::aabb::Aabb {
         ::obvhs::aabb::Aabb::new(self.center - self.radius, self.center + self.radius)
     }
 }
 
-impl Ball {
+impl BoundingSphere {
     fn intersect(&self, ray: &Ray) -> f32 {
         let towards = self.center - ray.origin;
         let closest = towards.dot(ray.direction);
@@ -126,8 +126,8 @@ impl Ball {
     }
 }
 
-fn balls(spheres: &[(Vec3, f32)]) -> Vec<Ball> {
-    let each = |&(center, radius): &(Vec3, f32)| Ball {
+fn balls(spheres: &[(Vec3, f32)]) -> Vec<BoundingSphere> {
+    let each = |&(center, radius): &(Vec3, f32)| BoundingSphere {
         center: center.into(),
         radius,
     };
@@ -144,7 +144,7 @@ fn bvh2_of_spheres(spheres: &[(Vec3, f32)]) -> Contender<'static> {
     );
     let seconds = started.elapsed().as_secs_f64();
     let order = &structure.primitive_indices;
-    let ordered: Vec<Ball> = order.iter().map(|&it| all[it as usize]).collect();
+    let ordered: Vec<BoundingSphere> = order.iter().map(|&it| all[it as usize]).collect();
     // Centre and radius fit 16 bytes.
     let bytes = size_of_val(&structure.nodes[..]) + size_of_val(&order[..]) + 16 * ordered.len();
     obvhs!("obvhs Bvh2", structure, ordered, seconds, bytes)
@@ -160,7 +160,7 @@ fn cwbvh_of_spheres(spheres: &[(Vec3, f32)]) -> Contender<'static> {
     );
     let seconds = started.elapsed().as_secs_f64();
     let order = &structure.primitive_indices;
-    let ordered: Vec<Ball> = order.iter().map(|&it| all[it as usize]).collect();
+    let ordered: Vec<BoundingSphere> = order.iter().map(|&it| all[it as usize]).collect();
     let bytes = size_of_val(&structure.nodes[..]) + size_of_val(&order[..]) + 16 * ordered.len();
     obvhs!("obvhs CwBvh", structure, ordered, seconds, bytes)
 }
@@ -169,7 +169,7 @@ fn cwbvh_of_spheres(spheres: &[(Vec3, f32)]) -> Contender<'static> {
 pub struct Nearest {
     structure: ::obvhs::bvh2::Bvh2,
     triangles: Vec<Triangle>,
-    balls: Vec<Ball>,
+    balls: Vec<BoundingSphere>,
 }
 
 impl Nearest {

@@ -2,7 +2,7 @@
 
 use super::sealed;
 use gridel_core::format::record::{
-    BallPair, DualNode, FlaggedPair, Header, Pair, SectionEntry, UnitBox, WideNode, plane_word,
+    DualNode, FlaggedPair, Header, Pair, SectionEntry, SpherePair, UnitBox, WideNode, plane_word,
 };
 use gridel_core::format::{Child, SectionKind};
 use gridel_host::blob::Blob;
@@ -129,7 +129,7 @@ impl Parts {
                     })
                 }
                 kind if kind == SectionKind::BallPairs as u16 => {
-                    section.each(|pair: &mut BallPair| {
+                    section.each(|pair: &mut SpherePair| {
                         for ball in &mut pair.balls {
                             (ball.center, ball.radius) = ([0; 3], u16::MAX);
                         }

@@ -7,8 +7,8 @@ use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::format::record::{DualNode, FlaggedPair, Header, Pair, SectionEntry, View};
 use gridel_core::format::{Leaf, SectionKind};
 use gridel_core::{
-    BlobError, Counters, Demand, Number, Scene, Settings, Stack, Structure, Vouched, any_hit,
-    closest_hit,
+    BlobError, Counters, Number, Prevalidated, Requirements, Scene, Settings, Stack, Structure,
+    any_hit, closest_hit,
 };
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
@@ -27,7 +27,7 @@ const LINKS: [(SectionKind, usize, usize); 3] = [
 
 fn blob_for_boards(lattice_bits: u8) -> Vec<u8> {
     let options = Options {
-        structures: Vouched::STRUCTURES.to_vec(),
+        structures: Prevalidated::STRUCTURES.to_vec(),
         lattice_bits,
         ..Options::default()
     };
@@ -36,7 +36,7 @@ fn blob_for_boards(lattice_bits: u8) -> Vec<u8> {
 }
 
 fn vouched(blob: &Blob) -> Result<Scene<'_>, BlobError> {
-    Scene::vouched(Vouched::of(blob.bytes())?)
+    Scene::prevalidated(Prevalidated::of(blob.bytes())?)
 }
 
 #[test]
@@ -64,8 +64,8 @@ fn answers_are_those_of_a_blob_that_was_checked() {
 /// A const evaluation, as firmware has the compiler do it.
 #[test]
 fn blobs_are_vouched_for_while_a_program_is_compiled() {
-    const EMPTY: Result<Vouched<'static>, BlobError> = Vouched::of(&[]);
-    const SHORT: Result<Vouched<'static>, BlobError> = Vouched::of(&[0x47; 24]);
+    const EMPTY: Result<Prevalidated<'static>, BlobError> = Prevalidated::of(&[]);
+    const SHORT: Result<Prevalidated<'static>, BlobError> = Prevalidated::of(&[0x47; 24]);
     assert!(matches!(EMPTY, Err(BlobError::Truncated { found: 0, .. })));
     assert!(matches!(SHORT, Err(BlobError::Checksum { .. })));
 }
@@ -119,7 +119,7 @@ fn disorder_is_found() {
     let mut changed = bytes.clone();
     let place = offset_of!(Header, stack_depth);
     changed[place] -= 1;
-    let error = Vouched::of(sealed(&changed).bytes()).expect_err("too deep a hierarchy");
+    let error = Prevalidated::of(sealed(&changed).bytes()).expect_err("too deep a hierarchy");
     assert!(matches!(error, BlobError::Header { .. }), "{error}");
 }
 
@@ -133,8 +133,8 @@ fn tables_cannot_be_vouched_for() {
             ..Options::default()
         };
         let blob = compile(&small_scene(), &options).expect("compiles").blob;
-        let result = Vouched::of(blob.bytes());
-        if Vouched::STRUCTURES.contains(&structure) {
+        let result = Prevalidated::of(blob.bytes());
+        if Prevalidated::STRUCTURES.contains(&structure) {
             assert!(result.is_ok(), "{}", structure.name());
         } else {
             speaks(&result.expect_err(structure.name()));
@@ -229,7 +229,7 @@ fn walks_end<N: Number>(scene: &Scene<'_>, leaves: u32, rays_each: usize) {
         let Some(ready) = ray.ready::<N>(scene) else {
             continue;
         };
-        for structure in Vouched::STRUCTURES {
+        for structure in Prevalidated::STRUCTURES {
             let Some(scene) = scene.choose(structure) else {
                 continue;
             };
@@ -255,7 +255,7 @@ fn walks_end<N: Number>(scene: &Scene<'_>, leaves: u32, rays_each: usize) {
 #[test]
 fn demands_are_those_of_the_scene() {
     for (name, scene) in scenes::fixtures() {
-        for structure in Vouched::STRUCTURES {
+        for structure in Prevalidated::STRUCTURES {
             let options = Options {
                 structures: vec![structure],
                 ..Options::default()
@@ -263,7 +263,7 @@ fn demands_are_those_of_the_scene() {
             let blob = compile(&scene, &options).expect("compiles").blob;
             let scene = blob.scene().expect("a scene");
             let (demand, view) = (
-                Demand::of(blob.bytes()).expect("a whole blob"),
+                Requirements::of(blob.bytes()).expect("a whole blob"),
                 scene.view(),
             );
             assert_eq!(demand.stack_depth, scene.stack_depth(), "{name}");
@@ -288,7 +288,7 @@ fn demands_of_broken_blobs_are_read_or_refused() {
     let sections = usize::from(whole[offset_of!(Header, section_count)]);
     let table = size_of::<Header>() + sections * size_of::<SectionEntry>();
     for length in 0..whole.len() {
-        let cut_off = Demand::of(&whole[..length]).is_err();
+        let cut_off = Requirements::of(&whole[..length]).is_err();
         assert!(
             cut_off || length >= table + size_of::<View>() / 2,
             "{length}"
@@ -301,6 +301,6 @@ fn demands_of_broken_blobs_are_read_or_refused() {
             let place = random.below(600);
             broken[place] = random.below(256) as u8;
         }
-        let _ = Demand::of(&broken);
+        let _ = Requirements::of(&broken);
     }
 }

@@ -7,7 +7,7 @@ use crate::plan::Plan;
 use crate::programs::{Linked, footprint};
 use crate::scenes;
 use crate::{boards, measured_in_full, parts};
-use gridel_core::{Effects, Format, Structure, Vouched};
+use gridel_core::{Effects, Format, Prevalidated, Structure};
 use gridel_host::board::Board;
 use std::collections::BTreeMap;
 
@@ -115,7 +115,7 @@ fn everything_on_a_board(board: &'static Board, format: Format) {
     let mut linked = Linked::new();
     let in_full = board.kin(format) == (board, format);
     let measured = |&it: &Structure| in_full || it == Structure::DualSplit;
-    for structure in Vouched::STRUCTURES.into_iter().filter(measured) {
+    for structure in Prevalidated::STRUCTURES.into_iter().filter(measured) {
         let fast = || Build::new(board, format, structure, &scene);
         for build in [fast(), fast().small()] {
             let elf = build.program_with("bare", &["everything"]).elf();

@@ -52,7 +52,7 @@ use crate::accel::traverse::Traverse;
 use crate::axis::pick;
 use crate::format::record::{ApexDirection, ApexPoint, ApexWindow, Gridels, Pair};
 use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::ray::Ray;
 
 /// Lists for the rays of the camera and of lights, and the hierarchy for all others.
@@ -83,7 +83,7 @@ impl Traverse for Apex {
 
     // Once, and not for every set of effects that the ray loop is compiled for.
     #[inline(never)]
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,

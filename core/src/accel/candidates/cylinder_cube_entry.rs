@@ -19,7 +19,7 @@ use crate::accel::traverse::Traverse;
 use crate::format::link::Node;
 use crate::format::record::Pair;
 use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::ray::Ray;
 
 /// The cylinder cube whose lists hold nodes of the hierarchy.
@@ -38,7 +38,7 @@ impl Traverse for CylinderCubeEntry {
 
     // Once, and not for every set of effects that the ray loop is compiled for.
     #[inline(never)]
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,

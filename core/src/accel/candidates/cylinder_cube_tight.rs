@@ -18,7 +18,7 @@ use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::ray::Ray;
 
 /// The cylinder cube with tight, sorted lists; needs no stack.
@@ -32,7 +32,7 @@ impl Traverse for CylinderCubeTight {
 
     // Once, and not for every set of effects that the ray loop is compiled for.
     #[inline(never)]
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,

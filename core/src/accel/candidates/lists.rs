@@ -7,7 +7,7 @@
 //! neighbours lie: see [`Levels`].
 
 use crate::format::{BlobError, Indices, SectionKind, Sections};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::observe::event::{Event, NodeId};
 use core::ops::Range;
 
@@ -25,10 +25,10 @@ pub(in crate::accel) struct ListSections {
 
 /// Counts a cell whose list a ray goes through, and tells of it.
 #[inline(always)]
-pub(in crate::accel) fn look_up<C: Count>(cell: u32, count: &mut C) {
+pub(in crate::accel) fn look_up<C: Observer>(cell: u32, count: &mut C) {
     count.cells(1);
-    if C::TELLS {
-        count.tell(Event::Opened(NodeId {
+    if C::ENABLED {
+        count.event(Event::Opened(NodeId {
             what: "cell",
             number: cell,
         }));

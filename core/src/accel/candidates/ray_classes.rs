@@ -28,7 +28,7 @@ use crate::accel::traverse::Traverse;
 use crate::axis::pick;
 use crate::format::record::{Gridels, Pair, UnitBox};
 use crate::format::{BlobError, ClassNode, Leaf, SectionKind, Sections, Structure};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::ray::Ray;
 
 /// A tree over origin and direction with lists of candidates, and the hierarchy where it has none.
@@ -130,7 +130,7 @@ impl Traverse for RayClasses {
 
     // Once, and not for every set of effects that the ray loop is compiled for.
     #[inline(never)]
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,

@@ -28,7 +28,7 @@ use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::record::GridShape;
 use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::observe::event::{Event, NodeId};
 use crate::ray::Ray;
 
@@ -51,7 +51,7 @@ impl Traverse for Grid {
     type Views<'a> = Views<'a>;
     type Cull<N: Number> = Cull;
 
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
@@ -66,8 +66,8 @@ impl Traverse for Grid {
         count.boxes(1);
         let limit = <Cull as PairCulling<N>>::limit;
         let root = PairCulling::<N>::root(cull, space.bounds(), limit(ray.tmax));
-        if C::TELLS {
-            count.tell(Event::Tested {
+        if C::ENABLED {
+            count.event(Event::Tested {
                 place: NodeId {
                     what: "grid",
                     number: 0,

@@ -9,7 +9,7 @@ use crate::accel::space::Space;
 use crate::format::record::UnitBox;
 use crate::format::{BlobError, Indices, Kind, Leaf, SectionKind, Sections};
 use crate::geometry::Shapes;
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 
 /// The divisions of one axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -324,7 +324,7 @@ impl<'a, L> Tester<'a, L> {
     /// Tests a list. Returns the t beyond which nothing counts any more, if the list was not empty;
     /// `Err` to end the walk.
     #[inline(always)]
-    pub(in crate::accel) fn list<N, C: Count>(
+    pub(in crate::accel) fn list<N, C: Observer>(
         &mut self,
         list: usize,
         count: &mut C,

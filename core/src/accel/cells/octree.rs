@@ -21,7 +21,7 @@ use crate::accel::space::Space;
 use crate::accel::stack::{Entry, StackView};
 use crate::accel::traverse::Traverse;
 use crate::format::{BlobError, Leaf, OctreeNode, SectionKind, Sections, Structure};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::observe::event;
 use crate::observe::event::{Event, Sides};
 use crate::ray::Ray;
@@ -98,7 +98,7 @@ impl Traverse for Octree {
     type Views<'a> = Views<'a>;
     type Cull<N: Number> = Cull;
 
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
@@ -113,9 +113,9 @@ impl Traverse for Octree {
         count.planes(6);
         count.boxes(1);
         let root = PairCulling::<N>::root(cull, space.bounds(), end);
-        if C::TELLS {
-            count.tell(Event::Tested {
-                place: told(0),
+        if C::ENABLED {
+            count.event(Event::Tested {
+                place: node_id(0),
                 sides: space.bounds().0.map(|axis| axis.map(Some)),
                 span: Cull::span(root),
             });
@@ -130,8 +130,8 @@ impl Traverse for Octree {
         let (mut number, mut place) = (0_u32, Place::root(held.levels));
         stack.clear();
         loop {
-            if C::TELLS {
-                count.tell(Event::Opened(told(number)));
+            if C::ENABLED {
+                count.event(Event::Opened(node_id(number)));
             }
             let node = OctreeNode(held.nodes.get(number as usize).copied().unwrap_or(u32::MAX));
             if node == OctreeNode::EMPTY {
@@ -162,14 +162,14 @@ impl Traverse for Octree {
                     let far = x.far.min(y.far).min(z.far);
                     let child = node.0.wrapping_add(sides);
                     let empty = held.nodes.get(child as usize) == Some(&OctreeNode::EMPTY.0);
-                    if C::TELLS {
-                        count.tell(Event::Tested {
-                            place: told(child),
+                    if C::ENABLED {
+                        count.event(Event::Tested {
+                            place: node_id(child),
                             sides: place.child(sides).planes(&divisions),
                             span: Cull::span(Interval { near, far }),
                         });
                         if empty {
-                            count.tell(Event::Empty(told(child)));
+                            count.event(Event::Empty(node_id(child)));
                         }
                     }
                     if near > far || empty {
@@ -192,9 +192,9 @@ impl Traverse for Octree {
                     place = Place(entry.far as u32);
                     break;
                 }
-                if C::TELLS {
-                    count.tell(Event::GivenUp {
-                        place: told(entry.node),
+                if C::ENABLED {
+                    count.event(Event::GivenUp {
+                        place: node_id(entry.node),
                         enters: <Cull as Culling<N>>::units(entry.near),
                     });
                 }
@@ -204,7 +204,7 @@ impl Traverse for Octree {
 }
 
 /// A node as events tell it.
-fn told(number: u32) -> event::NodeId {
+fn node_id(number: u32) -> event::NodeId {
     event::NodeId {
         what: "node",
         number,

@@ -9,7 +9,7 @@ use crate::accel::traverse::Traverse;
 use crate::format::link::Node;
 use crate::format::record::{Pair, UnitBox};
 use crate::format::{Leaf, SectionKind, Structure};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::observe::event::Sides;
 use crate::ray::Ray;
 
@@ -26,7 +26,7 @@ impl Traverse for Bvh {
     type Cull<N: Number> = N::Cull;
 
     #[inline]
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
@@ -43,7 +43,7 @@ impl Traverse for Bvh {
 /// [`Cull`](crate::accel::cull::Cull) are those of the flagged hierarchy: only with them are the two
 /// compared plane for plane.
 #[inline]
-pub fn walk<N: Number, K: PairCulling<N>, C: Count>(
+pub fn walk<N: Number, K: PairCulling<N>, C: Observer>(
     space: &Space<'_>,
     pairs: &Pairs<'_, Pair>,
     ray: &Ray<N>,

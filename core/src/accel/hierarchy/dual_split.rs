@@ -34,7 +34,7 @@ use crate::accel::traverse::Traverse;
 use crate::format::limits::MAX_LEVELS;
 use crate::format::record::{DualNode, UnitBox};
 use crate::format::{BlobError, Leaf, NodeWord, SectionKind, Sections, Structure};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::observe::event::{Event, NodeId, Sides};
 use crate::ray::Ray;
 use crate::target::{NARROW_PRODUCTS, SMALL};
@@ -55,7 +55,7 @@ impl Traverse for DualSplit {
     type Cull<N: Number> = Cull;
 
     #[inline]
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
@@ -90,8 +90,8 @@ impl Traverse for DualSplit {
             let Some(record) = nodes.get(node as usize) else {
                 return;
             };
-            if C::TELLS {
-                count.tell(Event::Opened(place(node)));
+            if C::ENABLED {
+                count.event(Event::Opened(place(node)));
             }
             match visit(record, node, &mut interval, cull, count) {
                 Next::Near(child) => {
@@ -131,8 +131,8 @@ impl Traverse for DualSplit {
                     };
                     break;
                 }
-                if C::TELLS {
-                    count.tell(Event::GivenUp {
+                if C::ENABLED {
+                    count.event(Event::GivenUp {
                         place: place(entry.node),
                         enters: <Cull as Culling<N>>::units(entry.near),
                     });
@@ -152,11 +152,11 @@ fn place(number: u32) -> NodeId {
 
 /// Counts planes that were tested for a node, and tells of them.
 #[inline(always)]
-fn tested<C: Count>(count: &mut C, planes: u32, event: impl FnOnce() -> Event) {
+fn tested<C: Observer>(count: &mut C, planes: u32, event: impl FnOnce() -> Event) {
     count.planes(planes);
     count.boxes(1);
-    if C::TELLS {
-        count.tell(event());
+    if C::ENABLED {
+        count.event(event());
     }
 }
 
@@ -182,7 +182,7 @@ enum Next {
 /// Compiled for each pair of a first carve's axis and a split's, so that neither is looked up, unless
 /// code shall be small.
 #[inline(always)]
-fn visit<C: Count>(
+fn visit<C: Observer>(
     record: &DualNode,
     number: u32,
     interval: &mut Interval,
@@ -214,7 +214,7 @@ fn visit<C: Count>(
 const ANY: usize = 4;
 
 #[inline(always)]
-fn visit_kind<const SPLIT: usize, const CARVE: usize, C: Count>(
+fn visit_kind<const SPLIT: usize, const CARVE: usize, C: Observer>(
     record: &DualNode,
     number: u32,
     interval: &mut Interval,
@@ -249,7 +249,7 @@ fn visit_kind<const SPLIT: usize, const CARVE: usize, C: Count>(
 
 /// Narrows a ray's interval to what a carve leaves.
 #[inline(always)]
-fn carve_ray<C: Count>(
+fn carve_ray<C: Observer>(
     form: &CullAxis,
     axis: usize,
     planes: u32,
@@ -267,7 +267,7 @@ fn carve_ray<C: Count>(
 
 /// Chooses among the children of a split.
 #[inline(always)]
-fn split<C: Count>(
+fn split<C: Observer>(
     record: &DualNode,
     interval: &mut Interval,
     form: &CullAxis,
@@ -285,7 +285,7 @@ fn split<C: Count>(
     let whole = *interval;
     count.planes(2);
     count.boxes(2);
-    if C::TELLS {
+    if C::ENABLED {
         let to_near = [whole.near, whole.far.min(leave)];
         let to_far = [whole.near.max(enter), whole.far];
         for (child, [near, far]) in [(near, to_near), (far, to_far)] {
@@ -295,7 +295,7 @@ fn split<C: Count>(
             } else {
                 [planes[0], None]
             };
-            count.tell(Event::Tested {
+            count.event(Event::Tested {
                 place: place(child),
                 sides: sides(way.split(), planes),
                 span: Cull::span(Interval { near, far }),

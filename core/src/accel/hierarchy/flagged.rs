@@ -16,7 +16,7 @@ use crate::accel::traverse::Traverse;
 use crate::format::link::{Link, Node};
 use crate::format::record::{FlaggedPair, UnitBox};
 use crate::format::{Leaf, SectionKind, Structure};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::observe::event::Sides;
 use crate::ray::Ray;
 
@@ -33,7 +33,7 @@ impl Traverse for Flagged {
     type Cull<N: Number> = Cull;
 
     #[inline]
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,

@@ -12,7 +12,7 @@ use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::{Leaf, Structure};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::ray::Ray;
 
 /// The hierarchy of slabs with two planes a direction and pair.
@@ -27,7 +27,7 @@ impl Traverse for FlaggedSlabs {
     type Views<'a> = Views<'a>;
     type Cull<N: Number> = Cull;
 
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,

@@ -19,7 +19,7 @@ use crate::format::{BlobError, SectionKind};
 /// of each. Children then come after their parents, every node and every leaf is reached once, and
 /// a walk visits each of them once at most.
 ///
-/// It can be made while a program is compiled: see [`Vouched`](crate::Vouched).
+/// It can be made while a program is compiled: see [`Prevalidated`](crate::Prevalidated).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Order {
     section: SectionKind,

@@ -12,7 +12,7 @@ use crate::format::link::Node;
 use crate::format::record::UnitBox;
 use crate::format::{BlobError, Leaf, SectionKind, Sections};
 use crate::geometry::Shapes;
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::observe::event::{Event, NodeId, Sides};
 use heapless::Vec;
 
@@ -155,7 +155,7 @@ where
     /// Visits the leaves whose boxes the ray can meet, the nearer child first. Intervals are those
     /// of a culling form.
     #[inline(always)]
-    pub(in crate::accel) fn run<N: Number, K: PairCulling<N>, C: Count>(
+    pub(in crate::accel) fn run<N: Number, K: PairCulling<N>, C: Observer>(
         &self,
         tmax: N,
         stack: &mut StackView,
@@ -166,8 +166,8 @@ where
         count.boxes(1);
         let limit = K::limit(tmax);
         let interval = (self.root)(limit);
-        if C::TELLS {
-            count.tell(Event::Tested {
+        if C::ENABLED {
+            count.event(Event::Tested {
                 place: root(self.pairs).id(),
                 sides: self.space.bounds().0.map(|axis| axis.map(Some)),
                 span: span::<N, K>(interval),
@@ -181,7 +181,7 @@ where
     /// The same from a node on, whose box is not tested. For records whose children do not depend on
     /// their parent's interval.
     #[inline(always)]
-    pub(in crate::accel) fn enter<N: Number, K: PairCulling<N>, C: Count>(
+    pub(in crate::accel) fn enter<N: Number, K: PairCulling<N>, C: Observer>(
         &self,
         node: Node,
         tmax: N,
@@ -198,7 +198,7 @@ where
     }
 
     #[inline(always)]
-    fn descend<N: Number, K: PairCulling<N>, C: Count>(
+    fn descend<N: Number, K: PairCulling<N>, C: Observer>(
         &self,
         mut node: Node,
         mut interval: Interval,
@@ -209,8 +209,8 @@ where
     ) {
         stack.clear();
         loop {
-            if C::TELLS {
-                count.tell(Event::Opened(node.id()));
+            if C::ENABLED {
+                count.event(Event::Opened(node.id()));
             }
             if node.is_leaf() {
                 let Some(range) = self.space.leaf(node.number()) else {
@@ -228,11 +228,11 @@ where
                 count.planes(pair.planes());
                 count.boxes(2);
                 let number = node.number();
-                if C::TELLS {
-                    count.tell(pair.tested(number, 0, span::<N, K>(left)));
+                if C::ENABLED {
+                    count.event(pair.tested(number, 0, span::<N, K>(left)));
                 }
-                if C::TELLS {
-                    count.tell(pair.tested(number, 1, span::<N, K>(right)));
+                if C::ENABLED {
+                    count.event(pair.tested(number, 1, span::<N, K>(right)));
                 }
                 let meets_left = left.near <= left.far;
                 let meets_right = right.near <= right.far;
@@ -272,8 +272,8 @@ where
                     };
                     break;
                 }
-                if C::TELLS {
-                    count.tell(Event::GivenUp {
+                if C::ENABLED {
+                    count.event(Event::GivenUp {
                         place: Node(entry.node).id(),
                         enters: K::units(entry.near),
                     });

@@ -24,7 +24,7 @@ use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::link::{Link, Node};
 use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::ray::Ray;
 use heapless::Vec;
 
@@ -199,7 +199,7 @@ impl Traverse for Slabs {
     type Views<'a> = Views<'a>;
     type Cull<N: Number> = Cull;
 
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,

@@ -19,9 +19,9 @@ use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::link::Node;
-use crate::format::record::{Ball, BallPair};
+use crate::format::record::{BoundingSphere, SpherePair};
 use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::ray::Ray;
 
 /// The hierarchy of bounding spheres; no plane is tested below the root, but two balls a pair.
@@ -33,7 +33,7 @@ impl Traverse for Spheres {
     type Views<'a> = Views<'a>;
     type Cull<N: Number> = Cull;
 
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
@@ -44,7 +44,7 @@ impl Traverse for Spheres {
     ) {
         let recip_norm2 = N::recip_norm2(ray.slope);
         let start = cull.start();
-        let meet = |ball: Ball, limit: i32| {
+        let meet = |ball: BoundingSphere, limit: i32| {
             let whole = interval(ray, recip_norm2, ball);
             Interval {
                 near: whole.near.max(start),
@@ -56,7 +56,7 @@ impl Traverse for Spheres {
             pairs: views.0,
             root: |limit| PairCulling::<N>::root(cull, space.bounds(), limit),
             root_planes: 6,
-            narrow: |pair: &BallPair, _, limit| pair.balls.map(|ball| meet(ball, limit)),
+            narrow: |pair: &SpherePair, _, limit| pair.balls.map(|ball| meet(ball, limit)),
         };
         walk.run::<N, Cull, C>(ray.tmax, stack, count, leaf);
     }
@@ -64,7 +64,7 @@ impl Traverse for Spheres {
 
 /// The interval of a ball; empty where the ray passes it by.
 #[inline(always)]
-fn interval<N: Number>(ray: &Ray<N>, recip_norm2: N, ball: Ball) -> Interval {
+fn interval<N: Number>(ray: &Ray<N>, recip_norm2: N, ball: BoundingSphere) -> Interval {
     const NOWHERE: Interval = Interval { near: 1, far: 0 };
     let axis = |k: usize| N::from_unit(ball.center[k]) - ray.origin[k];
     let relative = [axis(0), axis(1), axis(2)];
@@ -89,9 +89,9 @@ fn interval<N: Number>(ray: &Ray<N>, recip_norm2: N, ball: Ball) -> Interval {
 
 /// The hierarchy of a scene.
 #[derive(Clone, Copy, Debug)]
-pub struct Views<'a>(pub(in crate::accel) &'a [BallPair]);
+pub struct Views<'a>(pub(in crate::accel) &'a [SpherePair]);
 
-impl PairRecord for &BallPair {
+impl PairRecord for &SpherePair {
     const SECTION: SectionKind = SectionKind::BallPairs;
 
     #[inline(always)]
@@ -115,7 +115,7 @@ impl<'a> Records<'a> for Views<'a> {
 
     /// At most [`MAX_LEVELS`](crate::format::limits::MAX_LEVELS) balls are asked about each primitive.
     fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
-        let holds = |leaf: Leaf, path: &[Ball]| {
+        let holds = |leaf: Leaf, path: &[BoundingSphere]| {
             let slots = leaf.first as usize..(leaf.first + leaf.count) as usize;
             // The first of the path stands for the root, whose box is tested.
             slots.into_iter().all(|index| {
@@ -127,7 +127,7 @@ impl<'a> Records<'a> for Views<'a> {
                 })
             })
         };
-        let root = Ball {
+        let root = BoundingSphere {
             center: [0; 3],
             radius: 0,
         };
@@ -135,11 +135,11 @@ impl<'a> Records<'a> for Views<'a> {
     }
 }
 
-impl<'a> PairArray for &'a [BallPair] {
-    type Pair = &'a BallPair;
+impl<'a> PairArray for &'a [SpherePair] {
+    type Pair = &'a SpherePair;
 
     fn len(self) -> usize {
-        <[BallPair]>::len(self)
+        <[SpherePair]>::len(self)
     }
 
     #[inline(always)]

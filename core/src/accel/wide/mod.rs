@@ -26,7 +26,7 @@ use crate::format::cluster::LANES;
 use crate::format::record::WideNode;
 use crate::format::{BlobError, Child, Kind, Leaf, SectionKind, Sections, Structure};
 use crate::number::Format;
-use crate::observe::count::Count;
+use crate::observe::count::Observer;
 use crate::observe::event::{Event, NodeId};
 use crate::ray::Ray;
 use crate::simd::{Simd, SimdLevel, with_simd};
@@ -84,7 +84,7 @@ impl Traverse for Wide {
     type Cull<N: Number> = N::WideCull;
 
     #[inline(always)]
-    fn walk<N: Number, C: Count>(
+    fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
@@ -106,8 +106,8 @@ impl Traverse for Wide {
             if current == Child::NONE {
                 return;
             }
-            if C::TELLS {
-                count.tell(Event::Opened(current.id()));
+            if C::ENABLED {
+                count.event(Event::Opened(current.id()));
             }
             let Some(tmax) = Leaf::from_word(current.0).and_then(|it| leaf(it, count)) else {
                 return;
@@ -121,7 +121,7 @@ impl Traverse for Wide {
     }
 
     #[inline(always)]
-    fn walk_any<N: Number, C: Count>(
+    fn walk_any<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
@@ -143,8 +143,8 @@ impl Traverse for Wide {
             if current == Child::NONE {
                 return;
             }
-            if C::TELLS {
-                count.tell(Event::Opened(current.id()));
+            if C::ENABLED {
+                count.event(Event::Opened(current.id()));
             }
             if Leaf::from_word(current.0).is_none_or(|it| hits(it, count)) {
                 return;
@@ -168,15 +168,15 @@ fn level<N: Number>(space: &Space<'_>) -> SimdLevel {
 
 /// The next child that waits and is entered before the limit.
 #[inline(always)]
-fn pop<N: Number, C: Count>(stack: &mut StackView, limit: i32, count: &mut C) -> Option<Child> {
+fn pop<N: Number, C: Observer>(stack: &mut StackView, limit: i32, count: &mut C) -> Option<Child> {
     loop {
         let entry = stack.pop()?;
         if entry.near <= limit {
             return Some(Child(entry.node));
         }
-        if C::TELLS {
+        if C::ENABLED {
             let place = Child(entry.node).id();
-            count.tell(Event::GivenUp {
+            count.event(Event::GivenUp {
                 place,
                 enters: N::WideCull::units(entry.near),
             });
@@ -197,7 +197,7 @@ fn pop_any(nodes: &[WideNode], stack: &mut StackView) -> Option<Child> {
 /// Called out of line, because the ray's constants for nodes and those for leaves do not fit the
 /// registers together.
 #[inline(always)]
-fn descend<S: Simd, N: Number, C: Count>(
+fn descend<S: Simd, N: Number, C: Observer>(
     simd: S,
     nodes: &[WideNode],
     cull: &N::WideCull,
@@ -245,7 +245,7 @@ fn descend<S: Simd, N: Number, C: Count>(
 /// Goes down from a node, each time to one of the children that are met, to a leaf or to none: what
 /// [`descend`] does where any order will do, for less.
 #[inline(always)]
-fn descend_any<S: Simd, N: Number, C: Count>(
+fn descend_any<S: Simd, N: Number, C: Observer>(
     simd: S,
     nodes: &[WideNode],
     cull: &N::WideCull,
@@ -275,7 +275,7 @@ fn descend_any<S: Simd, N: Number, C: Count>(
 /// Opens a node and [tests](WideCulling::children) its children: the node, which of them are met and
 /// where they are entered. `None` where none is met.
 #[inline(always)]
-fn open<'n, S: Simd, N: Number, C: Count>(
+fn open<'n, S: Simd, N: Number, C: Observer>(
     simd: S,
     nodes: &'n [WideNode],
     number: u32,
@@ -287,9 +287,9 @@ fn open<'n, S: Simd, N: Number, C: Count>(
     let children = children(node).count() as u32;
     count.planes(6 * children);
     count.boxes(children);
-    if C::TELLS {
-        count.tell(Event::Opened(Child::node(number).id()));
-        tell_tested::<N, C>(node, cull, limit, count);
+    if C::ENABLED {
+        count.event(Event::Opened(Child::node(number).id()));
+        observe_tested::<N, C>(node, cull, limit, count);
     }
     let (met, near) = cull.children(simd, node, limit);
     (met != 0).then_some((node, met, near))
@@ -317,7 +317,7 @@ fn children(node: &WideNode) -> impl Iterator<Item = usize> + '_ {
 }
 
 /// Tells of the tests of a node's children.
-fn tell_tested<N: Number, C: Count>(
+fn observe_tested<N: Number, C: Observer>(
     node: &WideNode,
     cull: &N::WideCull,
     limit: i32,
@@ -325,7 +325,7 @@ fn tell_tested<N: Number, C: Count>(
 ) {
     for lane in children(node) {
         let bounds = node.child_box(lane);
-        count.tell(Event::Tested {
+        count.event(Event::Tested {
             place: node.child(lane).id(),
             sides: bounds.0.map(|axis| axis.map(Some)),
             span: cull.span(&bounds, limit),

@@ -1,7 +1,7 @@
 //! Projection in fixed point.
 
 use crate::geometry::Project;
-use crate::geometry::project::Sight;
+use crate::geometry::project::AxisProjection;
 use crate::number::Fixed;
 use crate::number::Products;
 use crate::number::Scalar;
@@ -13,7 +13,7 @@ use crate::number::fixed::halves::product;
 use crate::number::fixed::wide::Product;
 use crate::target::NARROW_PRODUCTS;
 use crate::target::SMALL;
-/// [`Number::surround`] by the sides on which the edges leave the origin, where they differ: those that
+/// [`Project::surrounds_origin`] by the sides on which the edges leave the origin, where they differ: those that
 /// lead through it are on neither.
 fn surround_by_sides(sides: [i64; 3]) -> bool {
     let negative = sides.iter().any(|&side| side < 0);
@@ -23,12 +23,12 @@ fn surround_by_sides(sides: [i64; 3]) -> bool {
 
 impl Project for Fixed {
     #[inline(always)]
-    fn sight(origin: Self, slope: Self, bits: u32) -> Sight<Self> {
+    fn axis_projection(origin: Self, slope: Self, bits: u32) -> AxisProjection<Self> {
         // All that is seen is counted in the direction in which the ray runs, so that what is rounded
         // down is rounded alike in a mirrored scene.
         let turned = slope.0 >> 31;
         let turn = |x: i32| (x ^ turned).wrapping_sub(turned);
-        Sight {
+        AxisProjection {
             offset: Fixed(turn(origin.0.wrapping_neg())),
             scale: turn(1_i32.wrapping_shl(LENGTH_BITS.wrapping_sub(bits))),
         }
@@ -36,17 +36,17 @@ impl Project for Fixed {
 
     // Twice as far: with the 31 fraction bits of a shear, the upper half of a product is a length.
     #[inline(always)]
-    fn depth_sight(origin: Self, slope: Self, bits: u32) -> Sight<Self> {
-        let Sight { offset, scale } = Self::sight(origin, slope, bits);
+    fn depth_projection(origin: Self, slope: Self, bits: u32) -> AxisProjection<Self> {
+        let AxisProjection { offset, scale } = Self::axis_projection(origin, slope, bits);
         keep(|| offset.0.unsigned_abs() < 1 << 30);
-        Sight {
+        AxisProjection {
             offset: Fixed(offset.0.wrapping_shl(1)),
             scale: scale.wrapping_shl(1),
         }
     }
 
     #[inline(always)]
-    fn seen(coordinate: i32, sight: &Sight<Self>) -> Self {
+    fn project(coordinate: i32, sight: &AxisProjection<Self>) -> Self {
         Fixed(coordinate.wrapping_mul(sight.scale)) + sight.offset
     }
 
@@ -57,13 +57,13 @@ impl Project for Fixed {
     }
 
     #[inline(always)]
-    fn stray(depth: Self, shear: Self) -> Self {
+    fn shear_by(depth: Self, shear: Self) -> Self {
         // The upper half of a product, which costs least.
         Fixed((product(depth.0, shear.0) >> 32) as i32)
     }
 
     #[cfg_attr(not(feature = "small"), inline(always))]
-    fn surround(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool {
+    fn surrounds_origin(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool {
         if NARROW_PRODUCTS && let Some(surround) = halves::surround(a, b, c) {
             return surround;
         }
@@ -82,7 +82,7 @@ impl Project for Fixed {
     }
 
     #[inline(always)]
-    fn beside(v: [Self; 3]) -> bool {
+    fn same_sign(v: [Self; 3]) -> bool {
         let zero = Self::ZERO;
         v[0] < zero && v[1] < zero && v[2] < zero || v[0] > zero && v[1] > zero && v[2] > zero
     }

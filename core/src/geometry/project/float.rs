@@ -1,7 +1,7 @@
 //! Projection in floats.
 
 use crate::geometry::Project;
-use crate::geometry::project::Sight;
+use crate::geometry::project::AxisProjection;
 use crate::number::float::SPLITTER_F64;
 use crate::number::float::product_error;
 use core::cmp::Ordering;
@@ -25,7 +25,7 @@ fn compare_products_f64(a: f64, b: f64, c: f64, d: f64) -> Ordering {
     })
 }
 
-/// [`Number::surround`] by the exact signs of the edges, given how two products compare.
+/// [`Project::surrounds_origin`] by the exact signs of the edges, given how two products compare.
 #[cold]
 #[inline(never)]
 fn surround_exactly<F: Copy>(
@@ -43,15 +43,15 @@ macro_rules! project {
     ($float:ident, $compare_products:path) => {
         impl Project for $float {
             #[inline(always)]
-            fn sight(origin: Self, _: Self, bits: u32) -> Sight<Self> {
-                Sight {
+            fn axis_projection(origin: Self, _: Self, bits: u32) -> AxisProjection<Self> {
+                AxisProjection {
                     offset: -(origin * (1_u32 << (bits & 31)) as $float),
                     scale: 1,
                 }
             }
 
             #[inline(always)]
-            fn seen(coordinate: i32, sight: &Sight<Self>) -> Self {
+            fn project(coordinate: i32, sight: &AxisProjection<Self>) -> Self {
                 coordinate as $float + sight.offset
             }
 
@@ -62,12 +62,12 @@ macro_rules! project {
             }
 
             #[inline(always)]
-            fn stray(depth: Self, shear: Self) -> Self {
+            fn shear_by(depth: Self, shear: Self) -> Self {
                 depth * shear
             }
 
             #[inline(always)]
-            fn surround(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool {
+            fn surrounds_origin(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool {
                 // Rounding is monotone, so the difference of the rounded products has the right
                 // sign unless it is zero.
                 let cross = |a: [Self; 2], b: [Self; 2]| a[0] * b[1] - a[1] * b[0];

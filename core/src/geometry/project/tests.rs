@@ -41,13 +41,13 @@ proptest! {
     fn edges_are_judged_exactly(corners in triangles(24), shift in 0..40_i32) {
         let scale = f32::powi(2.0, -shift);
         let [a, b, c] = corners.map(|v| v.map(|x| x as f32 * scale));
-        prop_assert_eq!(f32::surround(a, b, c), surrounds_exactly(corners));
+        prop_assert_eq!(f32::surrounds_origin(a, b, c), surrounds_exactly(corners));
     }
 
     #[test]
     fn edges_are_judged_exactly_in_double(corners in triangles(53), shift in 0..120_i32) {
         let scale = f64::powi(2.0, -shift);
         let [a, b, c] = corners.map(|v| v.map(|x| x as f64 * scale));
-        prop_assert_eq!(f64::surround(a, b, c), surrounds_exactly(corners));
+        prop_assert_eq!(f64::surrounds_origin(a, b, c), surrounds_exactly(corners));
     }
 }

@@ -120,7 +120,7 @@ fn quotient_by_products(d: u32) -> u32 {
     guess
 }
 
-/// [`Number::surround`](crate::number::Arithmetic::surround) by the upper 16 bits of all coordinates;
+/// [`Project::surrounds_origin`](crate::number::Arithmetic::surrounds_origin) by the upper 16 bits of all coordinates;
 /// `None` where those leave it open.
 pub(crate) fn surround(a: [Fixed; 2], b: [Fixed; 2], c: [Fixed; 2]) -> Option<bool> {
     let magnitude = |x: Fixed| x.0 ^ x.0 >> 31;
@@ -184,7 +184,7 @@ mod tests {
         fn coarse_triangles_are_the_triangles(corners: [[i32; 2]; 3], shift in 1_u32..32) {
             let [a, b, c] = corners.map(|corner| corner.map(|x| Fixed(x >> shift)));
             if let Some(decided) = surround(a, b, c) {
-                prop_assert_eq!(decided, Fixed::surround(a, b, c));
+                prop_assert_eq!(decided, Fixed::surrounds_origin(a, b, c));
             }
         }
     }

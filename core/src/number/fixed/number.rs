@@ -56,7 +56,7 @@ impl Scalar for Fixed {
     }
 
     #[inline(always)]
-    fn settle(self) -> Self {
+    fn flush_tiny(self) -> Self {
         self
     }
 
@@ -184,7 +184,7 @@ impl Products for Fixed {
 
     #[inline(always)]
     fn wide_over(wide: Product, divisor: i32) -> Product {
-        wide.over(divisor)
+        wide.div(divisor)
     }
 
     #[inline(always)]

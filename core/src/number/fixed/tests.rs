@@ -86,7 +86,7 @@ proptest! {
         prop_assume!(b != 0);
         let exact = (i128::from(a) << 31) / i128::from(b);
         // Twice the quotient, rounded towards zero: half of it lies within one of the nearest.
-        let found = i128::from(Fixed(a).over(Fixed(b)).0);
+        let found = i128::from(Fixed(a).div(Fixed(b)).0);
         let saturated = exact.abs() / 2 >= i128::from(i32::MAX);
         prop_assert!(saturated && found.abs() == i128::from(i32::MAX) || (2 * found - exact).abs() <= 1);
     }
@@ -146,8 +146,8 @@ proptest! {
         };
         let sides = [cross(b, c), cross(c, a), cross(a, b)];
         let met = sides.contains(&-1) != sides.contains(&1);
-        prop_assert_eq!(Fixed::surround(a, b, c), met);
-        let beside = |axis: usize| Fixed::beside([a[axis], b[axis], c[axis]]);
+        prop_assert_eq!(Fixed::surrounds_origin(a, b, c), met);
+        let beside = |axis: usize| Fixed::same_sign([a[axis], b[axis], c[axis]]);
         prop_assert!(!met || !beside(0) && !beside(1));
     }
 
@@ -160,13 +160,13 @@ proptest! {
         let project = |turn: i32, turn_depth: i32| {
             let slope = Fixed(turn * slope);
             let major = Fixed(turn_depth * Fixed::ONE.0);
-            let across = Fixed::sight(Fixed(turn * origin), slope, 8);
-            let along = Fixed::depth_sight(Fixed(0), major, 8);
-            let stray = Fixed::stray(
-                Fixed::seen(turn_depth * depth, &along),
+            let across = Fixed::axis_projection(Fixed(turn * origin), slope, 8);
+            let along = Fixed::depth_projection(Fixed(0), major, 8);
+            let stray = Fixed::shear_by(
+                Fixed::project(turn_depth * depth, &along),
                 Fixed::shear(slope, major),
             );
-            let across = Fixed::seen(turn * vertex, &across) + stray;
+            let across = Fixed::project(turn * vertex, &across) + stray;
             // Without a slope there is no way in which the ray runs.
             if slope.0 == 0 { across.0.abs() } else { across.0 }
         };

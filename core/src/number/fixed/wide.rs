@@ -67,7 +67,7 @@ impl Product {
     /// [`Number::wide_over`](crate::number::Arithmetic::wide_over).
     // Only cameras are set up with it.
     #[inline(never)]
-    pub(super) fn over(self, divisor: i32) -> Self {
+    pub(super) fn div(self, divisor: i32) -> Self {
         keep(|| divisor > 0 && divisor < 1 << 24);
         let divisor = divisor.unsigned_abs();
         // Byte by byte, in 32 bits: cores without a division in 64 would need a kilobyte for one.

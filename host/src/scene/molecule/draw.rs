@@ -10,7 +10,7 @@ const BALL: f64 = 0.23;
 const STICK: f64 = 0.15;
 
 /// An atom with its name and place.
-pub(crate) struct Ball {
+pub(crate) struct BoundingSphere {
     pub(crate) site: Site,
     pub(crate) name: String,
     pub(crate) place: Place,
@@ -20,7 +20,7 @@ pub(crate) struct Ball {
 /// colours of the atoms at their ends. Materials are one for each element, in the order of their
 /// first atom, named by its symbol.
 pub(crate) fn draw(
-    balls: Vec<Ball>,
+    balls: Vec<BoundingSphere>,
     style: MoleculeStyle,
     bonds: &[[u32; 2]],
 ) -> (Vec<Material>, Vec<Object>) {

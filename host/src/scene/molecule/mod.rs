@@ -18,7 +18,7 @@ mod pdb;
 mod select;
 
 pub(crate) use bonds::perceive;
-pub(crate) use draw::{Ball, draw};
+pub(crate) use draw::{BoundingSphere, draw};
 pub(crate) use element::Element;
 
 use super::size::Size;
@@ -136,7 +136,7 @@ fn import(source: &Source, options: &MoleculeOptions) -> Result<Imported, SceneE
     check_size(source, &atoms, &bonds)?;
     let balls = atoms
         .into_iter()
-        .map(|atom| Ball {
+        .map(|atom| BoundingSphere {
             site: atom.site,
             name: atom.full_name(),
             place: source.place(atom.line),
