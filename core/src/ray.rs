@@ -13,7 +13,7 @@ use core::fmt;
 ///
 /// A ray is parametrised along the *major axis* of its direction, the one with the largest
 /// component: `point = origin + t * slope`, where the slope of the major axis is 1 or -1 and the
-/// others lie between. `t` is therefore a length in units (see [`Number`]), never
+/// others lie between. `t` is therefore a length in units (see [`Number`](crate::Number)), never
 /// overflows, and needs no normalised direction. For a direction `d` of any length, the parameter
 /// in multiples of `d` is `t / |d[major]|`.
 ///

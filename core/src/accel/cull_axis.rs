@@ -19,7 +19,7 @@ pub trait CullArithmetic: Arithmetic {
     fn cull_axis(slope: Self, origin: Self) -> CullAxis;
 }
 
-/// The culling form of one axis: see [`Number::cull_axis`].
+/// The culling form of one axis: see [`CullArithmetic::cull_axis`](crate::accel::cull_axis::CullArithmetic::cull_axis).
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct CullAxis {

@@ -33,7 +33,7 @@ pub trait StructureVisitor {
     fn visit<A: Accel>(self) -> Self::Output;
 }
 
-/// The structure that was chosen for a scene while the program runs, by [`Scene::choose`]: what is
+/// The structure that was chosen for a scene while the program runs, by [`Scene::choose`](crate::Scene::choose): what is
 /// built around queries is compiled once for it, and not for every structure. Costs a branch and the
 /// set-up of a culling form a query more than the structure itself.
 #[cfg(feature = "all-structures")]

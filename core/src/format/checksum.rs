@@ -36,7 +36,7 @@ pub const fn checksum(blob: &[u8]) -> u32 {
 #[repr(C, align(16))]
 pub struct Aligned<T: ?Sized>(pub T);
 
-/// Embeds a blob file with the alignment that [`Scene::from_bytes`] asks for.
+/// Embeds a blob file with the alignment that [`Scene::from_bytes`](crate::Scene::from_bytes) asks for.
 ///
 /// ```ignore
 /// static BLOB: &[u8] = gridel_core::include_blob!("scene.gridel");

@@ -30,7 +30,7 @@ pub struct Header {
     pub section_count: u16,
     /// Length of the blob in bytes, the header included.
     pub blob_bytes: u32,
-    /// [`checksum`](crate::format::checksum) of the blob with this field as 0.
+    /// [`checksum`](fn@crate::format::checksum) of the blob with this field as 0.
     pub checksum: u32,
     /// Acceleration structures that the blob holds: a bit for each [`Structure`](crate::format::Structure).
     pub structures: u32,
@@ -274,7 +274,7 @@ pub struct FlaggedPair {
     /// `[axis]`: the inner of the two children's lower sides in the low half, the inner of their
     /// upper sides in the high half.
     pub planes: [u32; 3],
-    /// What the children are, and which child owns each plane: see [`Link`](crate::accel::hierarchy::Link).
+    /// What the children are, and which child owns each plane: see [`Link`](crate::format::Link).
     pub link: u32,
 }
 

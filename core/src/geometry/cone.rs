@@ -159,7 +159,7 @@ impl Cone {
         [axis(0), axis(1), axis(2)]
     }
 
-    /// The crossing with the solid. `recip_norm2` is [`Number::recip_norm2`] of the ray's slopes.
+    /// The crossing with the solid. `recip_norm2` is [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2) of the ray's slopes.
     ///
     /// Cost: some 20 multiplications and additions to reject by the sphere around the solid; some
     /// 100, five divisions and six square roots to accept.

@@ -2,7 +2,7 @@
 //!
 //! One file a primitive. Each kernel gives the *crossing*: where the line of the ray enters and
 //! leaves the primitive, behind the origin too. What of that is a hit is decided once for
-//! all of them, in [`accept`].
+//! all of them, in `accept`.
 
 #[cfg(feature = "wide")]
 pub(crate) mod cluster;

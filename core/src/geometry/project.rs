@@ -17,14 +17,14 @@ pub trait Project: Arithmetic {
     fn depth_projection(origin: Self, slope: Self, bits: u32) -> AxisProjection<Self> {
         Self::axis_projection(origin, slope, bits)
     }
-    /// Where a coordinate, of at most 24 bits, lies as seen so: in floats in steps, in [`Fixed`] a
+    /// Where a coordinate, of at most 24 bits, lies as seen so: in floats in steps, in [`Fixed`](crate::Fixed) a
     /// length, and in the direction in which the ray runs.
     fn project(coordinate: i32, sight: &AxisProjection<Self>) -> Self;
     /// How far what is [seen](Self::project) strays from a ray along a minor axis for each step along its
     /// major one, given the slopes there.
     fn shear(slope: Self, major: Self) -> Self;
     /// How far it strays over a depth, of less than 2^17 units, by the same arithmetic for every
-    /// vertex; in [`Fixed`] rounded down.
+    /// vertex; in [`Fixed`](crate::Fixed) rounded down.
     fn shear_by(depth: Self, shear: Self) -> Self;
     /// Whether the triangle of three points of the plane holds the origin, edges included; not if
     /// all edges lead through it. Whichever way the points run, and always exact.
@@ -35,9 +35,9 @@ pub trait Project: Arithmetic {
     fn same_sign(_: [Self; 3]) -> bool {
         false
     }
-    /// Whether the product of such a [`direction`](Self::direction) with a slope says that a ray comes at
+    /// Whether the product of such a [`direction`](crate::number::Vectors::direction) with a slope says that a ray comes at
     /// a surface of this normal steeply, where that is known to bound the error of t: at least 2^-8 in
-    /// [`Fixed`], see `geometry/triangle.rs`.
+    /// [`Fixed`](crate::Fixed), see `geometry/triangle.rs`.
     #[inline(always)]
     fn is_steep(_: Self::Wide) -> bool {
         false

@@ -19,7 +19,7 @@ use crate::geometry::{Crossing, Surface};
 use crate::number::Arithmetic;
 use crate::ray::Ray;
 
-/// The crossing with a sphere. `recip_norm2` is [`Number::recip_norm2`] of the ray's slopes.
+/// The crossing with a sphere. `recip_norm2` is [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2) of the ray's slopes.
 ///
 /// Cost: 18 multiplications and additions to reject, and a square root to accept.
 #[inline(always)]

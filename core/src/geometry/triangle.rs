@@ -2,7 +2,7 @@
 //!
 //! A vertex is projected along the ray onto the plane of the two minor axes, by arithmetic that
 //! depends on the vertex and the ray alone; so every triangle at a vertex computes the same point.
-//! The signs of the edge tests on those points are exact ([`Project::surrounds_origin`]). Whatever the
+//! The signs of the edge tests on those points are exact ([`Project::surrounds_origin`](crate::geometry::Project::surrounds_origin)). Whatever the
 //! projection rounded, the projected mesh is a mesh, and no ray slips between two triangles of it
 //! (after Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013). `t` is not
 //! interpolated, which goes wrong on stretched triangles, but taken from the plane, whose normal is
@@ -96,7 +96,7 @@ impl<N: Project> Projection<N> {
 ///
 /// Met steeply, t needs no clamping to the interval of the triangle's box: there it is anyway. Let `q` be
 /// the point of the triangle that is seen where the ray is, and `t'` its depth. Beside the ray it lies by
-/// what the projection rounded ([`Project::shear_by`]), and `n . q` differs from what it is for the plane
+/// what the projection rounded ([`Project::shear_by`](crate::geometry::Project::shear_by)), and `n . q` differs from what it is for the plane
 /// through the first corner by what the normal `n` lacks, less than a step a component, over the
 /// triangle's extent of less than 2^16 units. So in [`Fixed`](crate::number::Fixed), where `n` has 30
 /// fraction bits and a projected coordinate is off by less than 2^-13 unit, `|n . d| |t - t'|` is below

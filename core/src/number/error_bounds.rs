@@ -4,7 +4,7 @@ use crate::number::scalar::Scalar;
 
 /// Error bounds of hits.
 pub trait ErrorBounds: Scalar {
-    /// The slope of [`error_bound`](Self::error_bound): zero in [`Fixed`], whose resolution is the same
+    /// The slope of [`error_bound`](Self::error_bound): zero in [`Fixed`](crate::Fixed), whose resolution is the same
     /// everywhere.
     const RELATIVE_ERROR: Self;
     /// The constant part of [`error_bound`](Self::error_bound), a length.

@@ -73,7 +73,7 @@ fn near_one<N: Arithmetic<Wide = N>>(mut v: [N; 3]) -> [N; 3] {
     v
 }
 
-/// One of the [`Number::slopes`] of a direction whose length is far from 1, by way of one that is
+/// One of the [`Vectors::slopes`](crate::number::Vectors::slopes) of a direction whose length is far from 1, by way of one that is
 /// not: magnitudes of \[2^-149, 2^128\] or \[2^-1074, 2^1024\] are halved or doubled until they
 /// fit. `None` where there are none.
 ///

@@ -21,10 +21,10 @@ pub trait Products: Scalar {
     fn upper(wide: Self::Wide) -> Self;
     /// A far coordinate from an integer with 13 fraction bits.
     fn far(q13: i64) -> Self::Wide;
-    /// `a - b` of far coordinates that may be any: wraps in [`Fixed`].
+    /// `a - b` of far coordinates that may be any: wraps in [`Fixed`](crate::Fixed).
     fn difference(a: Self::Wide, b: Self::Wide) -> Self::Wide;
     /// `a - b` of far coordinates, of which `a` is not the smaller, as a length: at most
-    /// [`FAR`](Self::FAR).
+    /// [`FAR`](crate::number::Scalar::FAR).
     fn excess(a: Self::Wide, b: Self::Wide) -> Self;
     /// Where a line comes to a plane far away, on one axis: `origin + (plane - from) * step / stride`
     /// in twice the precision of a far coordinate. `from` is the origin's coordinate on the plane's own

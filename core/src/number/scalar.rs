@@ -48,7 +48,7 @@ pub trait Scalar:
     const FAR: Self;
     /// Magnitude; the most negative number becomes the largest.
     fn abs(self) -> Self;
-    /// Half; exact in floats, rounded down in [`Fixed`].
+    /// Half; exact in floats, rounded down in [`Fixed`](crate::Fixed).
     fn half(self) -> Self;
     /// A coordinate without digits so small that exact products would lose them: 0 in their place.
     fn flush_tiny(self) -> Self;

@@ -10,7 +10,7 @@ use crate::simd::SimdLevel;
 /// A checked view of a blob: a few hundred bytes that borrow from it.
 ///
 /// Once it exists, no blob can make a query panic, run forever or leave its arrays: that was proved
-/// by [`Scene::from_bytes`], which proves that the answers are right as well, or by [`Prevalidated`].
+/// by [`Scene::from_bytes`], which proves that the answers are right as well, or by [`Prevalidated`](crate::Prevalidated).
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
     /// The scene's box, primitives and leaves.

@@ -13,7 +13,7 @@ impl<'a> Scene<'a> {
     /// is a tree in breadth-first order whose depth is what the header says, with boxes inside
     /// their parents' and primitives inside their leaves', each primitive in one leaf. After that
     /// a walk through any structure ends, and through a hierarchy it gives the same hits as testing
-    /// every primitive (see [`Structure::is_proved`] for the others).
+    /// every primitive (see [`Structure::is_proved`](crate::Structure::is_proved) for the others).
     ///
     /// Costs time linear in the blob's length and about 2 KiB of stack.
     ///

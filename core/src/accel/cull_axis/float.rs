@@ -5,7 +5,7 @@ use crate::accel::cull_axis::CullAxis;
 /// The largest inverse slope in culling.
 const STEEPEST: f64 = 536_870_912.0;
 
-/// [`Number::cull_axis`] of an axis along which the ray hardly moves, given what the steepest slope
+/// [`CullArithmetic::cull_axis`](crate::accel::cull_axis::CullArithmetic::cull_axis) of an axis along which the ray hardly moves, given what the steepest slope
 /// makes of the origin.
 #[cold]
 fn parallel_axis(offset: i32, descending: bool) -> CullAxis {

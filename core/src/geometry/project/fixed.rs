@@ -13,7 +13,7 @@ use crate::number::fixed::halves::product;
 use crate::number::fixed::wide::Product;
 use crate::target::NARROW_PRODUCTS;
 use crate::target::SMALL;
-/// [`Project::surrounds_origin`] by the sides on which the edges leave the origin, where they differ: those that
+/// [`Project::surrounds_origin`](crate::geometry::Project::surrounds_origin) by the sides on which the edges leave the origin, where they differ: those that
 /// lead through it are on neither.
 fn surround_by_sides(sides: [i64; 3]) -> bool {
     let negative = sides.iter().any(|&side| side < 0);

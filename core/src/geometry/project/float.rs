@@ -25,7 +25,7 @@ fn compare_products_f64(a: f64, b: f64, c: f64, d: f64) -> Ordering {
     })
 }
 
-/// [`Project::surrounds_origin`] by the exact signs of the edges, given how two products compare.
+/// [`Project::surrounds_origin`](crate::geometry::Project::surrounds_origin) by the exact signs of the edges, given how two products compare.
 #[cold]
 #[inline(never)]
 fn surround_exactly<F: Copy>(

@@ -2,7 +2,7 @@
 
 use crate::number::fixed::base::{Fixed, RATIO_BITS};
 
-/// [`Number::exp_neg`](crate::number::Arithmetic::exp_neg).
+/// [`Scalar::exp_neg`](crate::number::Scalar::exp_neg).
 pub(super) fn exp_neg(length: Fixed, coefficient_q32: u32) -> Fixed {
     // The exponent in powers of two, with 30 fraction bits.
     const LOG2_E: u64 = 1_549_082_005;

@@ -120,7 +120,7 @@ fn quotient_by_products(d: u32) -> u32 {
     guess
 }
 
-/// [`Project::surrounds_origin`](crate::number::Arithmetic::surrounds_origin) by the upper 16 bits of all coordinates;
+/// [`Project::surrounds_origin`](crate::geometry::Project::surrounds_origin) by the upper 16 bits of all coordinates;
 /// `None` where those leave it open.
 pub(crate) fn surround(a: [Fixed; 2], b: [Fixed; 2], c: [Fixed; 2]) -> Option<bool> {
     let magnitude = |x: Fixed| x.0 ^ x.0 >> 31;

@@ -52,7 +52,7 @@ fn excess_bits(v: [i64; 3], bits: i32) -> i32 {
     (64 - bits).wrapping_sub(wide_leading_zeros(all) as i32)
 }
 
-/// [`Number::wide_norm`].
+/// [`Products::wide_norm`](crate::number::Products::wide_norm).
 pub(super) fn wide_norm(v: [Product; 3]) -> Product {
     let v = v.map(|product| product.0);
     let bits = excess_bits(v, 31);
@@ -60,14 +60,14 @@ pub(super) fn wide_norm(v: [Product; 3]) -> Product {
     Product(shift_back(norm, bits) as i64)
 }
 
-/// [`Number::direction`].
+/// [`Vectors::direction`](crate::number::Vectors::direction).
 #[inline(always)]
 pub(super) fn direction(v: [i64; 3]) -> [Fixed; 3] {
     let bits = excess_bits(v, 30);
     v.map(|component| Fixed(shift_magnitude(component, bits)))
 }
 
-/// [`Number::slopes`].
+/// [`Vectors::slopes`](crate::number::Vectors::slopes).
 #[cfg_attr(not(feature = "small"), inline(always))]
 pub(super) fn slopes(v: [Product; 3]) -> Option<([Fixed; 3], usize)> {
     let v = v.map(|product| product.0);
@@ -80,19 +80,19 @@ pub(super) fn slopes(v: [Product; 3]) -> Option<([Fixed; 3], usize)> {
     }
 }
 
-/// [`Number::slopes_of`].
+/// [`Vectors::slopes_of`](crate::number::Vectors::slopes_of).
 #[inline(always)]
 pub(super) fn slopes_of(v: [Fixed; 3]) -> Option<([Fixed; 3], usize)> {
     slopes_of_narrow(v.map(|component| component.0))
 }
 
-/// [`Number::slopes`] of a vector beyond 31 bits.
+/// [`Vectors::slopes`](crate::number::Vectors::slopes) of a vector beyond 31 bits.
 fn slopes_of_wide(v: [i64; 3]) -> Option<([Fixed; 3], usize)> {
     let bits = excess_bits(v, 31);
     slopes_of_narrow(v.map(|component| shift_magnitude(component, bits)))
 }
 
-/// [`Number::slopes`] of a vector of at most 31 bits and a sign.
+/// [`Vectors::slopes`](crate::number::Vectors::slopes) of a vector of at most 31 bits and a sign.
 #[cfg_attr(not(feature = "small"), inline(always))]
 fn slopes_of_narrow(v: [i32; 3]) -> Option<([Fixed; 3], usize)> {
     let [x, y, z] = v.map(i32::unsigned_abs);
@@ -133,7 +133,7 @@ fn slopes_of_narrow(v: [i32; 3]) -> Option<([Fixed; 3], usize)> {
     Some((slopes, axis))
 }
 
-/// [`Number::recip_norm2`].
+/// [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2).
 #[cfg_attr(not(feature = "small"), inline(always))]
 pub(super) fn recip_norm2(d: [Fixed; 3]) -> Fixed {
     // d . d has 60 fraction bits: as 29, 1 to 3 lies in [2^29, 2^31).
@@ -143,7 +143,7 @@ pub(super) fn recip_norm2(d: [Fixed; 3]) -> Fixed {
     Fixed((reciprocal(norm2 << (up & 1)) >> (2 - (up & 1))) as i32)
 }
 
-/// [`Number::normalize`].
+/// [`Vectors::normalize`](crate::number::Vectors::normalize).
 pub(super) fn normalize(v: [Fixed; 3]) -> ([Fixed; 3], Fixed) {
     let wide = v.map(|component| component.0 as i64);
     let bits = excess_bits(wide, 31);

@@ -15,7 +15,7 @@ pub struct Product(pub i64);
 wrapping_sums!(Product);
 
 impl Product {
-    /// [`Number::wide_times`](crate::number::Arithmetic::wide_times).
+    /// [`Products::wide_times`](crate::number::Products::wide_times).
     #[inline(always)]
     pub(super) fn times(self, factor: i32) -> Self {
         if !NARROW_PRODUCTS {
@@ -64,7 +64,7 @@ impl Product {
         })
     }
 
-    /// [`Number::wide_over`](crate::number::Arithmetic::wide_over).
+    /// [`Products::wide_over`](crate::number::Products::wide_over).
     // Only cameras are set up with it.
     #[inline(never)]
     pub(super) fn div(self, divisor: i32) -> Self {
@@ -88,7 +88,7 @@ impl Product {
         })
     }
 
-    /// [`Number::wide_scale`](crate::number::Arithmetic::wide_scale).
+    /// [`Products::wide_scale`](crate::number::Products::wide_scale).
     #[cfg_attr(not(feature = "small"), inline(always))]
     pub(super) fn scaled(self, ratio: Fixed) -> Self {
         keep(|| i64::try_from((self.0 as i128 * ratio.0 as i128) >> RATIO_BITS).is_ok());
@@ -100,7 +100,7 @@ impl Product {
         Self((high << (32 - RATIO_BITS)).wrapping_add(low))
     }
 
-    /// [`Number::divide`](crate::number::Arithmetic::divide).
+    /// [`Products::divide`](crate::number::Products::divide).
     pub(super) fn divided_by(self, denominator: Self) -> Fixed {
         let sign = self.0 ^ denominator.0;
         let a = self.0.unsigned_abs();
