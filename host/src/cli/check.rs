@@ -9,16 +9,13 @@ use gridel_host::output::Files;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Hold scenes to their recorded pictures and to budgets of memory and work
+/// Test scenes against recorded pictures and budgets of memory and work
 ///
-/// A manifest lists scenes or blobs, the hashes of their pictures or pictures that they must look
-/// like, and the most that they may cost: bytes of the blob, working memory, entries of the stack,
-/// tests a ray, flash, RAM and call stack of a target board by the memory report, instructions on a
-/// board that QEMU emulates. `cargo doc` documents the manifest
-/// (`gridel_host::check`); the project's own is fixtures/check.toml.
+/// A manifest lists scenes or blobs. Each has expected pictures, as hashes or as files, and budgets:
+/// bytes of the blob, working memory, stack entries, tests per ray, flash, RAM and call stack of a
+/// board, and instructions on an emulated board. `gridel help check` describes the manifest.
 ///
-/// What cannot be run here, because an emulator or a Rust target is missing, is neither held nor
-/// broken, and is said not to have been run.
+/// A board is skipped if its emulator or its Rust target is not installed.
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
@@ -26,25 +23,25 @@ pub struct Arguments {
     #[arg(value_name = "MANIFEST.toml")]
     manifest: PathBuf,
 
-    /// Record what was found in place of what is broken, and print the change of the manifest;
-    /// its comments and layout stay
+    /// Record the figures and pictures that were found, and print the change of the manifest.
+    /// Comments and layout stay
     #[arg(long)]
     bless: bool,
 
-    /// Write a picture for each that is broken into this folder: expected, rendered, and their
-    /// difference, side by side, as far as there are
+    /// Write a picture of each failure into this folder: expected, rendered, and their difference,
+    /// side by side
     #[arg(long, value_name = "DIR")]
     diff: Option<PathBuf>,
 
-    /// Also write the findings as JUnit XML
+    /// Write the results as JUnit XML too
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
 
-    /// Boards that cannot be run count as broken
+    /// Fail if a board is skipped
     #[arg(long)]
     require_boards: bool,
 
-    /// Print the findings as JSON
+    /// Print the results as JSON
     #[arg(long)]
     json: bool,
 }
