@@ -9,6 +9,7 @@ mod paper;
 mod peers;
 mod pictures;
 mod times;
+mod variables;
 
 use gridel_core::Structure;
 use gridel_host::compile::{Options, compile};
