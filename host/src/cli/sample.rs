@@ -50,7 +50,7 @@ macro_rules! fixture {
             summary: $summary,
             text: || {
                 Ok(String::from(include_str!(concat!(
-                    "../../../fixtures/",
+                    "../../scenes/",
                     $name,
                     ".toml"
                 ))))
