@@ -15,14 +15,14 @@ use std::error::Error;
 use std::fs::File;
 use std::path::Path;
 
-/// Traces a ray straight down through the middle of the world, and renders the scene's own picture.
+/// Traces a ray straight down, and renders the scene's own picture.
 pub fn run(scene_file: &Path, picture_file: &Path) -> Result<SceneHit, Box<dyn Error>> {
     let imported = load(scene_file, &MoleculeOptions::default())?;
     let blob = compile(&imported.scene, &Options::default())?.blob;
     let scene = blob.scene()?;
 
     let ray = SceneRay {
-        origin: DVec3::new(0.0, 100.0, 0.0),
+        origin: DVec3::new(0.5, 100.0, 0.5),
         tmin: 0.0,
         direction: DVec3::NEG_Y,
         tmax: f64::INFINITY,

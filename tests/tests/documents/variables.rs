@@ -36,7 +36,9 @@ fn contributing_page_lists_exactly_the_environment_variables() {
     }
     names(&text(".ci/run"), &mut used);
     let page = text("CONTRIBUTING.md");
-    let rows = page.lines().filter_map(|line| line.strip_prefix("| `GRIDEL_"));
+    let rows = page
+        .lines()
+        .filter_map(|line| line.strip_prefix("| `GRIDEL_"));
     let listed = rows.filter_map(|row| row.split_once('`'));
     let listed: BTreeSet<_> = listed.map(|(name, _)| format!("GRIDEL_{name}")).collect();
     assert_eq!(listed, used);
