@@ -6,6 +6,7 @@ use super::progress::Progress;
 use clap::Args;
 use gridel_host::check::{self, Blessed, Manifest, Outcome, Report};
 use gridel_host::output::Files;
+use gridel_host::report::counted;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -69,7 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.require_boards {
         for finding in &mut report.findings {
             if let Outcome::NotRun(why) = &finding.outcome {
-                finding.outcome = Outcome::Broken(format!("it was not run: {why}"));
+                finding.outcome = Outcome::Broken(format!("skipped: {why}"));
             }
         }
     }
@@ -141,14 +142,15 @@ fn tell(arguments: &Arguments, report: &Report, blessed: Option<&Blessed>) -> Re
             Some(_) => format!("{recorded} recorded, "),
             None => String::new(),
         };
-        let summary = format!("{held} held, {recorded}{broken} broken, {not_run} not run\n");
+        let summary = format!("{held} passed, {recorded}{broken} failed, {not_run} skipped\n");
         let diff = blessed.map(Blessed::diff).unwrap_or_default();
         let reasons = reasons(report);
         print(format!("{}{reasons}{summary}{diff}", report.table()))
     };
     if not_run > 0 {
         warn(format!(
-            "NOT RUN: {not_run} of the figures on boards; --require-boards makes that a failure"
+            "skipped {} on boards; --require-boards makes that a failure",
+            counted(not_run, "figure")
         ));
     }
     for what in blessed.into_iter().flat_map(|blessed| &blessed.left) {

@@ -33,7 +33,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use peak_alloc::PeakAlloc;
 use std::process::ExitCode;
 
-/// Compiles scenes into blobs that are ray traced in place, on a microcontroller or on a host
+/// Compile scenes into blobs, and ray trace them on a microcontroller or on a host
 #[derive(Parser)]
 #[command(
     name = "gridel",
@@ -63,14 +63,14 @@ enum Verb {
     Help(help::Arguments),
 }
 
-/// What scripts can rely on; every verb's help shows it.
+/// The exit codes for scripts; the help of every command shows them.
 const EXIT_CODES: &str = "\
 Exit codes:
-  0  done
-  1  failed: an input is broken, a file cannot be read or written, or a check does not hold
-  2  the command line is wrong, by itself or for this input
-  3  refused: the scene would not fit the memory that it is given
-  130  interrupted; no output is left half written";
+  0    success
+  1    an input is invalid, a file cannot be read or written, or a check fails
+  2    the command line is wrong, by itself or for this input
+  3    the scene does not fit the given memory
+  130  interrupted; no output is incomplete";
 
 /// Runs the program.
 ///
