@@ -176,11 +176,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if pixels > MOST_PIXELS {
         return Err(Failure::usage(
             format!(
-                "{} pixels are more than the {} that are measured",
+                "{} pixels exceed the largest size of {}",
                 grouped(pixels),
                 grouped(MOST_PIXELS)
             ),
-            "ask for a smaller `--size`: errors and times a ray hardly depend on it",
+            "ask for a smaller `--size`: errors, and times per ray, hardly depend on it",
         ));
     }
     let failed = |error: MeasureError| Failure::in_file(path, error);
@@ -191,7 +191,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.reference_samples < least {
         return Err(Failure::usage(
             format!(
-                "a reference of {} a pixel is no better than what is measured",
+                "a reference of {} per pixel is no better than the measured settings",
                 counted(arguments.reference_samples.into(), "sample")
             ),
             format!("ask for at least {least} with `--reference-samples`, or leave it out"),
@@ -488,8 +488,8 @@ fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Choice
         ("FLIP", Align::Right),
         ("other objects", Align::Right),
         ("t", Align::Right),
-        ("rays a pixel", Align::Right),
-        ("tests a ray", Align::Right),
+        ("rays per pixel", Align::Right),
+        ("tests per ray", Align::Right),
         ("blob", Align::Right),
         ("RAM", Align::Right),
     ]);

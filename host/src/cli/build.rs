@@ -33,7 +33,7 @@ pub struct Arguments {
     output: PathBuf,
 
     /// Acceleration structure of the blob; give it again for each further one. Every blob has the
-    /// list [default: dual-split]
+    /// list
     #[arg(
         long,
         value_name = "NAME",
@@ -286,7 +286,7 @@ impl<'r> Built<'r> {
         line(
             "bytes",
             match each {
-                Some(each) => format!("{}, {each:.1} a primitive", grouped(self.bytes)),
+                Some(each) => format!("{}, {each:.1} per primitive", grouped(self.bytes)),
                 None => grouped(self.bytes),
             },
         );

@@ -161,7 +161,7 @@ impl Inspection {
             ("stride", Align::Right),
             ("bytes", Align::Right),
             ("share", Align::Right),
-            ("bytes a primitive", Align::Right),
+            ("bytes per primitive", Align::Right),
         ]);
         for part in &self.memory_map.parts {
             map.row([

@@ -287,7 +287,7 @@ impl Rendered {
             format!(", rows {first}..{end}")
         };
         let mut text = format!(
-            "{}: {} x {}{rows}, {}, {}, {} a pixel, {:.3} s with {}\n",
+            "{}: {} x {}{rows}, {}, {}, {} per pixel, {:.3} s with {}\n",
             self.picture,
             self.width,
             self.height,
@@ -316,7 +316,7 @@ impl Stats {
         let mut table = Table::new([
             ("counted", Align::Left),
             ("number", Align::Right),
-            ("a ray", Align::Right),
+            ("per ray", Align::Right),
         ]);
         let a_ray = |count: u64| format!("{:.2}", count as f64 / self.rays.max(1) as f64);
         for (what, count) in [
