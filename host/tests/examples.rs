@@ -1,8 +1,14 @@
-//! The examples, run: displays show the pixels that `render` makes.
+//! Runs the examples. Displays show the pixels that `render` makes.
 
+#[allow(dead_code)]
+#[path = "../examples/build_scene.rs"]
+mod build_scene;
 #[allow(dead_code)]
 #[path = "../examples/display.rs"]
 mod display;
+#[allow(dead_code)]
+#[path = "../examples/quickstart.rs"]
+mod quickstart;
 #[allow(dead_code)]
 #[path = "../examples/spi_display.rs"]
 mod spi_display;
@@ -53,6 +59,25 @@ fn rendered(blob: &Blob, [width, height]: [u16; 2]) -> Vec<u16> {
         Rgb565::encode(linear, Some(place)).0
     });
     pixels.collect()
+}
+
+#[test]
+fn quickstart_traces_and_renders() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let picture = folder.path().join("picture.png");
+    let hit = quickstart::run(&fixture("glass-chess.toml"), &picture).expect("a picture");
+    // The squares' upper sides are at height 0, and the ray starts at height 100.
+    assert!((hit.t - 100.0).abs() < 0.01, "{hit:?}");
+    let bytes = std::fs::read(&picture).expect("the picture");
+    assert!(bytes.starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn scene_built_in_rust_compiles_into_a_blob_with_its_objects() {
+    let blob = build_scene::blob().expect("compiles");
+    let scene = blob.scene().expect("the compiler's blob");
+    assert_eq!(scene.header().objects, 2);
+    assert!(scene.effects().contains(Effects::SHADOW));
 }
 
 #[test]

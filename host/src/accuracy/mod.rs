@@ -124,7 +124,7 @@ pub fn sentences(base: &Setting, points: &[Point]) -> Vec<String> {
             Lever::Samples,
             |s| -f64::from(s.samples).log2(),
             1.0,
-            "Halving the samples a pixel",
+            "Halving the samples per pixel",
         ),
         (
             Lever::LatticeBits,

@@ -152,7 +152,7 @@ fn plot((title, error): Metric, results: &Results, best: &[bool]) -> io::Result<
             .build_cartesian_2d(times.log_scale(), errors.log_scale())?;
         chart
             .configure_mesh()
-            .x_desc("milliseconds a frame, one thread")
+            .x_desc("milliseconds per frame, one thread")
             .y_desc(title)
             .x_label_formatter(&|x| significant((x * 1e3).round() / 1e3))
             .y_label_formatter(&|y| format!("{y:.1e}"))
@@ -217,11 +217,11 @@ fn table(results: &Results, best: &[bool]) -> String {
     let mut table = String::from(
         "<h2>All settings</h2>\n<p>Black: what the scene file states; blue: one lever turned; \
          grey: several. Errors are of display values from 0 to 1; t counts units of the last place \
-         of single precision. Instructions a pixel on boards are estimates: the rays times the \
+         of single precision. Instructions per pixel on boards are estimates: the rays times the \
          least and the most that a ray of a recorded picture takes.</p>\n<div class=\"scroll\"><table>\n\
          <tr><th>#</th><th>setting</th><th>ms</th><th>spread</th><th>RMSE</th><th>largest</th>\
          <th>pixels off</th><th>SSIM</th><th>FLIP</th><th>other objects</th><th>t, median</th>\
-         <th>t, largest</th><th>rays a pixel</th><th>tests a ray</th><th>blob</th><th>RAM</th>",
+         <th>t, largest</th><th>rays per pixel</th><th>tests per ray</th><th>blob</th><th>RAM</th>",
     );
     for board in boards::names() {
         let _ = write!(table, "<th>{board}</th>");

@@ -57,7 +57,7 @@ impl Lever {
         match self {
             Lever::Format => "number format",
             Lever::LatticeBits => "lattice bits",
-            Lever::Samples => "samples a pixel",
+            Lever::Samples => "samples per pixel",
             Lever::Depth => "ray depth",
             Lever::Cutoff => "contribution cut-off",
         }
@@ -184,7 +184,7 @@ pub fn sweep(base: Setting, secondary: bool) -> Vec<Setting> {
     settings
 }
 
-/// The fewest samples a pixel of a reference that is better than every setting of a sweep: twice the
+/// The fewest samples per pixel of a reference that is better than every setting of a sweep: twice the
 /// most of theirs, as far as pictures can have so many.
 pub fn least_reference_samples(settings: &[Setting]) -> u16 {
     let most = settings.iter().map(|setting| setting.samples).max();

@@ -144,10 +144,10 @@ impl Report {
                 figure(&finding.found),
                 figure(&finding.allowed),
                 match &finding.outcome {
-                    Outcome::Held => String::from("held"),
-                    Outcome::Broken(_) => String::from("BROKEN"),
+                    Outcome::Held => String::from("passed"),
+                    Outcome::Broken(_) => String::from("FAILED"),
                     Outcome::Recorded => String::from("recorded"),
-                    Outcome::NotRun(_) => String::from("NOT RUN"),
+                    Outcome::NotRun(_) => String::from("skipped"),
                 },
             ]);
         }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::scene::SceneError;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use tempfile::TempDir;
 
 /// A ball, and a manifest beside it.
@@ -473,19 +473,12 @@ fn junit_names_suites_cases_and_reasons() {
     assert!(xml.contains("blob_bytes is"), "{xml}");
 }
 
-/// The example of the documentation is a manifest.
 #[test]
-fn the_documented_example_reads() {
-    let source = fs::read_to_string(Path::new(file!()).with_file_name("mod.rs"));
-    // Tests run in the package's folder, and the path is the workspace's.
-    let source = source
-        .or_else(|_| fs::read_to_string("src/check/mod.rs"))
-        .unwrap();
-    let (_, block) = source.split_once("//! ```toml\n").unwrap();
-    let (block, _) = block.split_once("//! ```").unwrap();
-    let lines = block.lines().map(|line| line.trim_start_matches("//!"));
-    let text: Vec<_> = lines.collect();
-    let manifest = Folder::new().manifest(&text.join("\n")).unwrap();
+fn documented_example_is_a_valid_manifest() {
+    let document = include_str!("../../docs/CHECK.md");
+    let (_, example) = document.split_once("```toml\n").unwrap();
+    let (example, _) = example.split_once("```").unwrap();
+    let manifest = Folder::new().manifest(example).unwrap();
     assert_eq!(manifest.checks[0].boards[0].budget.len(), 2);
 }
 

@@ -30,73 +30,75 @@ const MOST_PIXELS: usize = 1 << 22;
 
 /// Show what accuracy costs in time
 ///
-/// Turns five levers, each alone and in combinations: number format, lattice bits (10, 12, 16, 20,
-/// 24), samples a pixel (1 to 64), ray depth, and the contribution below which a secondary ray is not
-/// cast. Every setting is built and rendered and compared with a reference (f64, 24 bits, ray depth
-/// 16, samples as --reference-samples says).
+/// Changes five settings, each alone and in combinations: number format, lattice bits (10, 12, 16, 20,
+/// 24), samples per pixel (1 to 64), ray depth, and the cutoff below which a secondary ray is not
+/// traced. Builds and renders the scene with every setting, and compares the picture with a reference:
+/// f64, 24 bits, ray depth 16, and the samples of --reference-samples.
 ///
 /// Errors, of display values (sRGB) from 0 to 1:
 ///   RMSE           root of the mean square difference, over all pixels and channels
 ///   largest        largest difference
-///   pixels off     pixels of which a channel is off by more than 1/255
+///   pixels off     pixels with a channel that differs by more than 1/255
 ///   SSIM           mean structural similarity of the grey pictures in windows of 8 by 8; 1 is equal
 ///   FLIP           mean difference that an eye sees when pictures alternate; 0 is equal
-///   other objects  rays through the middles of pixels that meet another object, or none
+///   other objects  rays through the middles of pixels that hit another object, or none
 ///   t              error of the distance of the others, in units of the last place of single
 ///                  precision: the median and the largest
 ///
-/// A star marks a setting if no other is as right at a cost that is surely no higher. A cost is higher
-/// where all repeats of one setting take longer than all of the other; where repeats overlap, rays and
-/// tests decide within a number format, because they are the same in every run.
+/// Costs:
+///   time           milliseconds per frame on one thread: the median of the runs, and their spread
+///   rays, tests    rays per pixel; boxes and primitives tested per ray
+///   bytes          of the blob, and of the workspace on a 32-bit board
+///   instructions   per pixel on boards, estimated from the rays and a recorded picture
 ///
-/// Costs: milliseconds a frame on one thread, the median of repeats that take turns, and their spread;
-/// rays a pixel; boxes and primitives tested a ray; bytes of the blob, and of the workspace on a 32-bit
-/// board; instructions a pixel on boards, estimated as the rays times the least and the most that a
-/// ray of a recorded picture takes.
+/// A star marks a setting that no other one beats: no other has a smaller error at a cost that is
+/// surely not higher. A cost is higher if every run takes longer than every run of the other setting.
+/// Where runs overlap, rays and tests decide within a number format.
 ///
-/// Writes into a folder: page.html with plots, sentences and pictures, which loads nothing from
-/// anywhere; results.csv; and results.json, to which every step is added as it is done. After an
-/// interruption the same command goes on where it stopped.
+/// Writes a folder: page.html with plots, sentences and pictures, which loads nothing else;
+/// results.csv; and results.json, which grows with every step. After an interruption, the same command
+/// continues where it stopped.
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES, verbatim_doc_comment)]
 pub struct Arguments {
     /// Scene file: .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif
     scene: PathBuf,
 
-    /// The folder to write into; it is made if need be. A run of the same scene and options goes on
-    /// there, and no other is replaced [default: accuracy-SCENE]
+    /// Folder to write into; it is created if it is missing. A run with the same scene and options
+    /// continues there, and no other run is overwritten [default: accuracy-SCENE]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
 
-    /// Find the cheapest setting whose RMSE is at most this, from 0 to 1, and print the options of
-    /// `build` and `render` for it
+    /// Largest RMSE, 0 to 1: find the cheapest setting within it, and print its options of `build`
+    /// and `render`
     #[arg(long, value_name = "E", value_parser = share)]
     max_error: Option<f64>,
 
-    /// What is cheap for --max-error: instructions on this board instead of time on this machine
+    /// Cost for --max-error: instructions on this board [default: time on this machine]
     #[arg(long, value_name = "NAME", value_parser = board(), requires = "max_error")]
     board: Option<String>,
 
-    /// Size of the pictures [default: the scene file's, made smaller to 128 pixels a side]
+    /// Size of the pictures, such as 80x60 [default: that of the scene file, reduced to at most 128
+    /// pixels per side]
     #[arg(long, value_name = "WxH", value_parser = arguments::size)]
     size: Option<[u16; 2]>,
 
-    /// How often each setting is timed
+    /// Number of timed runs per setting
     #[arg(long, value_name = "N", default_value_t = 3,
         value_parser = clap::value_parser!(u16).range(1..=1000))]
     repeat: u16,
 
-    /// Samples a pixel of the reference, at least twice the most that are measured
+    /// Samples per pixel of the reference, at least twice the most that are measured
     #[arg(long, value_name = "N", default_value_t = 256,
         value_parser = clap::value_parser!(u16).range(1..=256))]
     reference_samples: u16,
 
-    /// Acceleration structure; boards' figures are for dual-split nodes
+    /// Acceleration structure; the figures of boards are those of dual-split
     #[arg(long, value_name = "NAME", value_parser = arguments::structure(),
         default_value = Structure::DualSplit.name())]
     accel: Structure,
 
-    /// Time taken to build the structure wide [default: good]
+    /// Time to spend on building wide [default: good]
     #[arg(long, value_name = "NAME")]
     quality: Option<Quality>,
 
@@ -104,8 +106,8 @@ pub struct Arguments {
     #[arg(long)]
     json: bool,
 
-    /// Do not cast secondary rays that can change no channel by more than this, 1 being display
-    /// white [default: what the scene file states]
+    /// Do not trace secondary rays that change every channel by less than this; 1 is display white
+    /// [default: that of the scene file]
     #[arg(long, value_name = "X", value_parser = arguments::cutoff, allow_hyphen_values = true,
         help_heading = "Options for scene files")]
     cutoff: Option<f64>,
@@ -175,11 +177,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if pixels > MOST_PIXELS {
         return Err(Failure::usage(
             format!(
-                "{} pixels are more than the {} that are measured",
+                "{} pixels exceed the largest size of {}",
                 grouped(pixels),
                 grouped(MOST_PIXELS)
             ),
-            "ask for a smaller `--size`: errors and times a ray hardly depend on it",
+            "ask for a smaller `--size`: errors, and times per ray, hardly depend on it",
         ));
     }
     let failed = |error: MeasureError| Failure::in_file(path, error);
@@ -190,7 +192,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.reference_samples < least {
         return Err(Failure::usage(
             format!(
-                "a reference of {} a pixel is no better than what is measured",
+                "a reference of {} per pixel is no better than the measured settings",
                 counted(arguments.reference_samples.into(), "sample")
             ),
             format!("ask for at least {least} with `--reference-samples`, or leave it out"),
@@ -487,8 +489,8 @@ fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Choice
         ("FLIP", Align::Right),
         ("other objects", Align::Right),
         ("t", Align::Right),
-        ("rays a pixel", Align::Right),
-        ("tests a ray", Align::Right),
+        ("rays per pixel", Align::Right),
+        ("tests per ray", Align::Right),
         ("blob", Align::Right),
         ("RAM", Align::Right),
     ]);

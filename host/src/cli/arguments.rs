@@ -17,16 +17,16 @@ use std::ops::Range;
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Options for boards")]
 pub struct TargetOptions {
-    /// The board, on which code and call stack were measured, of a fast build and of one with the
-    /// feature `small`: `gridel inspect` tells more [default: stm32vldiscovery, if memory is given]
+    /// Board that must hold the scene, by the code and call stack measured for it [default:
+    /// stm32vldiscovery, if --ram or --flash is given]
     #[arg(long, value_name = "BOARD", value_parser = board())]
     target: Option<&'static Board>,
 
-    /// Bytes of RAM; 8K is understood [default: the board's]
+    /// Bytes of RAM, such as 8192 or 8K [default: the board's]
     #[arg(long, value_name = "N", value_parser = bytes)]
     ram: Option<u64>,
 
-    /// Bytes of flash; 128K is understood [default: the board's]
+    /// Bytes of flash, such as 131072 or 128K [default: the board's]
     #[arg(long, value_name = "N", value_parser = bytes)]
     flash: Option<u64>,
 }
@@ -82,16 +82,16 @@ fn board() -> impl TypedValueParser<Value = &'static Board> {
 /// What rays are traced with.
 #[derive(Args, Clone, Debug)]
 pub struct TraceOptions {
-    /// Arithmetic to trace in
+    /// Number format
     #[arg(long, value_name = "NAME", value_parser = format(), default_value = "f32")]
     pub format: Format,
 
-    /// Acceleration structure [default: the best that the blob holds; of a scene file, render and
+    /// Acceleration structure [default: the best that the blob holds; for a scene file, render and
     /// trace build wide]
     #[arg(long, value_name = "NAME", value_parser = structure())]
     pub accel: Option<Structure>,
 
-    /// Time taken to build the structure wide of a scene file [default: good]
+    /// Time to spend on building wide, for a scene file [default: good]
     #[arg(long, value_name = "NAME")]
     pub quality: Option<Quality>,
 }
@@ -99,11 +99,11 @@ pub struct TraceOptions {
 /// What of a picture's settings is not as the scene states it.
 #[derive(Args, Clone, Debug)]
 pub struct PictureOptions {
-    /// Size of the whole picture, such as 640x480
+    /// Size of the whole picture, such as 640x480 [default: that of the scene]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u16; 2]>,
 
-    /// Samples a pixel, 1 to 256
+    /// Samples per pixel, 1 to 256 [default: that of the scene]
     #[arg(
         long,
         value_name = "N",
@@ -111,7 +111,7 @@ pub struct PictureOptions {
     )]
     samples: Option<u16>,
 
-    /// How often a ray may be reflected or refracted, 0 to 16
+    /// Reflections and refractions of a ray, 0 to 16 [default: that of the scene]
     #[arg(
         long,
         value_name = "N",
@@ -147,8 +147,8 @@ impl PictureOptions {
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Options for scene files")]
 pub struct SceneOptions {
-    /// Do not cast secondary rays that can change no channel by more than this, 1 being display
-    /// white [default: what the scene file states]
+    /// Do not trace secondary rays that change every channel by less than this; 1 is display white
+    /// [default: that of the scene file]
     #[arg(long, value_name = "X", value_parser = cutoff, allow_hyphen_values = true)]
     pub cutoff: Option<f64>,
 
@@ -160,8 +160,8 @@ pub struct SceneOptions {
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for scene files")]
 pub struct GeometryOptions {
-    /// Bits of the lattice that coordinates are snapped to, 10 to 24; 16 or fewer make the blob
-    /// smaller [default: 24]
+    /// Bits of the lattice for coordinates, 10 to 24; 16 or fewer make the blob smaller [default:
+    /// 24]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(10..=24))]
     pub lattice_bits: Option<u8>,
 
@@ -173,7 +173,7 @@ pub struct GeometryOptions {
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for scene files")]
 pub struct ImportOptions {
-    /// Read files that the scene file names outside of its folder
+    /// Allow the scene file to name files outside of its folder
     #[arg(long)]
     pub allow_outside: bool,
 
@@ -185,15 +185,15 @@ pub struct ImportOptions {
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for scene files")]
 pub struct MoleculeOptions {
-    /// How molecules look [default: space-filling]
+    /// Style of molecules [default: space-filling]
     #[arg(long, value_parser = style())]
     style: Option<MoleculeStyle>,
 
-    /// Which model of a molecule file, counted from 1 [default: 1]
+    /// Model of a molecule file, counted from 1 [default: 1]
     #[arg(long, value_name = "N")]
     model: Option<NonZeroUsize>,
 
-    /// Which alternate location of atoms [default: the first of each residue]
+    /// Alternate location of atoms [default: the first of each residue]
     #[arg(long, value_name = "C")]
     altloc: Option<char>,
 }
@@ -308,27 +308,27 @@ pub fn cutoff(text: &str) -> Result<f64, String> {
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Options for structures")]
 pub struct StructureOptions {
-    /// Directions of slabs: 3, 7 or 13 [default: 7]
+    /// Number of directions of slabs [default: 7]
     #[arg(long, value_name = "N", value_parser = directions())]
     slabs: Option<usize>,
 
     /// Divisions of the grid, 1 to 1024: one number for all axes, or three, such as 8x8x2 [default:
-    /// four cells a primitive, fewer where these would take more than 256M to build]
+    /// four cells per primitive, fewer if their build needs more than 256M]
     #[arg(long, value_name = "N|NxNxN", value_parser = divisions)]
     grid: Option<[u32; 3]>,
 
-    /// Gridels along a side of a cylinder cube's faces, 1 to 64 [default: as many as the budget
-    /// holds, the paper's 4 at the most for `cylinder-cube`]
+    /// Gridels (rectangles) per side of a cylinder cube's faces, 1 to 64 [default: as many as
+    /// --budget allows; at most 4, as in the paper, for `cylinder-cube`]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     gridels: Option<u32>,
 
-    /// Most bytes of each table of candidate lists, for `apex` of those of each point or direction; 64K and
-    /// 1M are understood [default: 48M for `cylinder-cube`, 4M for `cylinder-cube-tight` and
+    /// Largest size in bytes of a table of candidate lists, such as 64K or 1M; for `apex`, per
+    /// point or direction [default: 48M for `cylinder-cube`, 4M for `cylinder-cube-tight` and
     /// `ray-classes`, 2M for `cylinder-cube-entry`, 1M for `apex`]
     #[arg(long, value_name = "N", value_parser = bytes)]
     budget: Option<u64>,
 
-    /// Time taken to build the structure wide [default: good]
+    /// Time to spend on building wide [default: good]
     #[arg(long, value_name = "NAME")]
     quality: Option<Quality>,
 }

@@ -19,20 +19,21 @@ use std::{fs, io};
 
 /// Compile a scene file into a blob
 ///
-/// The scene is snapped to a lattice, an acceleration structure is built over it, and the effects
-/// that it calls for are found. The blob is checked as a device would check it, and written whole
-/// or not at all.
+/// Snaps the scene to a lattice, builds an acceleration structure over it, and finds the effects
+/// that it requires. The blob is checked as a device would check it. It is written completely or
+/// not at all.
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
     /// Scene file: .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif
     scene: PathBuf,
 
-    /// The blob to write
+    /// Blob to write
     #[arg(short, long, value_name = "BLOB")]
     output: PathBuf,
 
-    /// Acceleration structure, once for each that the blob shall hold; the list is always there
+    /// Acceleration structure of the blob; give it again for each further one. Every blob has the
+    /// list
     #[arg(
         long,
         value_name = "NAME",
@@ -41,8 +42,8 @@ pub struct Arguments {
     )]
     accel: Vec<Structure>,
 
-    /// Make leaves of up to N primitives, 1 to 31, for fewer nodes and slower rays; where this is
-    /// not given, what rays pay decides
+    /// Largest number of primitives per leaf, 1 to 31; more means fewer nodes and slower rays
+    /// [default: chosen by the estimated cost per ray]
     #[arg(
         long,
         value_name = "N",
@@ -50,16 +51,17 @@ pub struct Arguments {
     )]
     leaf_size: Option<u8>,
 
-    /// How the hierarchy is built that the structures share [default: sah]
+    /// Builder of the hierarchies [default: sah]
     #[arg(long, value_name = "NAME", value_parser = arguments::builder())]
     builder: Option<Builder>,
 
-    /// Refuse to write a blob of more bytes, and say what to change; 64K and 1M are understood
+    /// Largest size of the blob in bytes, such as 65536, 64K or 1M; a larger blob is rejected with
+    /// advice [default: no limit]
     #[arg(long, value_name = "N", value_parser = arguments::bytes)]
     max_bytes: Option<u64>,
 
-    /// Write the scene as a Rust module, scene.rs and scene.gridel, into this folder as well, over those
-    /// that were written there before; into src, `mod scene;` takes it in
+    /// Write a Rust module (scene.rs and scene.gridel) into this folder too. Overwrites files from
+    /// an earlier run. Add `mod scene;` to your crate
     #[arg(long, value_name = "DIR")]
     emit_rust: Option<PathBuf>,
 
@@ -120,7 +122,7 @@ const NAMED: usize = 5;
 /// Builds a blob and reports on it.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     refuse_same(&arguments.scene, &arguments.output)?;
-    check_extension(&arguments.output, &["gridel", "bin"], "a blob")?;
+    check_extension(&arguments.output, &["gridel", "bin"], "blob")?;
     refuse_foreign(&arguments.output, "blob", is_blob)?;
     if let Some(folder) = &arguments.emit_rust {
         if folder.exists() && !folder.is_dir() {
@@ -284,7 +286,7 @@ impl<'r> Built<'r> {
         line(
             "bytes",
             match each {
-                Some(each) => format!("{}, {each:.1} a primitive", grouped(self.bytes)),
+                Some(each) => format!("{}, {each:.1} per primitive", grouped(self.bytes)),
                 None => grouped(self.bytes),
             },
         );

@@ -6,19 +6,17 @@ use super::progress::Progress;
 use clap::Args;
 use gridel_host::check::{self, Blessed, Manifest, Outcome, Report};
 use gridel_host::output::Files;
+use gridel_host::report::counted;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Hold scenes to their recorded pictures and to budgets of memory and work
+/// Test scenes against recorded pictures and budgets of memory and work
 ///
-/// A manifest lists scenes or blobs, the hashes of their pictures or pictures that they must look
-/// like, and the most that they may cost: bytes of the blob, working memory, entries of the stack,
-/// tests a ray, flash, RAM and call stack of a target board by the memory report, instructions on a
-/// board that QEMU emulates. `cargo doc` documents the manifest
-/// (`gridel_host::check`); the project's own is fixtures/check.toml.
+/// A manifest lists scenes or blobs. Each has expected pictures, as hashes or as files, and budgets:
+/// bytes of the blob, working memory, stack entries, tests per ray, flash, RAM and call stack of a
+/// board, and instructions on an emulated board. `gridel help check` describes the manifest.
 ///
-/// What cannot be run here, because an emulator or a Rust target is missing, is neither held nor
-/// broken, and is said not to have been run.
+/// A board is skipped if its emulator or its Rust target is not installed.
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
@@ -26,25 +24,25 @@ pub struct Arguments {
     #[arg(value_name = "MANIFEST.toml")]
     manifest: PathBuf,
 
-    /// Record what was found in place of what is broken, and print the change of the manifest;
-    /// its comments and layout stay
+    /// Record the figures and pictures that were found, and print the change of the manifest.
+    /// Comments and layout stay
     #[arg(long)]
     bless: bool,
 
-    /// Write a picture for each that is broken into this folder: expected, rendered, and their
-    /// difference, side by side, as far as there are
+    /// Write a picture of each failure into this folder: expected, rendered, and their difference,
+    /// side by side
     #[arg(long, value_name = "DIR")]
     diff: Option<PathBuf>,
 
-    /// Also write the findings as JUnit XML
+    /// Write the results as JUnit XML too
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
 
-    /// Boards that cannot be run count as broken
+    /// Fail if a board is skipped
     #[arg(long)]
     require_boards: bool,
 
-    /// Print the findings as JSON
+    /// Print the results as JSON
     #[arg(long)]
     json: bool,
 }
@@ -72,7 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.require_boards {
         for finding in &mut report.findings {
             if let Outcome::NotRun(why) = &finding.outcome {
-                finding.outcome = Outcome::Broken(format!("it was not run: {why}"));
+                finding.outcome = Outcome::Broken(format!("skipped: {why}"));
             }
         }
     }
@@ -144,14 +142,15 @@ fn tell(arguments: &Arguments, report: &Report, blessed: Option<&Blessed>) -> Re
             Some(_) => format!("{recorded} recorded, "),
             None => String::new(),
         };
-        let summary = format!("{held} held, {recorded}{broken} broken, {not_run} not run\n");
+        let summary = format!("{held} passed, {recorded}{broken} failed, {not_run} skipped\n");
         let diff = blessed.map(Blessed::diff).unwrap_or_default();
         let reasons = reasons(report);
         print(format!("{}{reasons}{summary}{diff}", report.table()))
     };
     if not_run > 0 {
         warn(format!(
-            "NOT RUN: {not_run} of the figures on boards; --require-boards makes that a failure"
+            "skipped {} on boards; --require-boards makes that a failure",
+            counted(not_run, "figure")
         ));
     }
     for what in blessed.into_iter().flat_map(|blessed| &blessed.left) {

@@ -18,47 +18,45 @@ use std::path::PathBuf;
 
 /// Compare acceleration structures on a scene
 ///
-/// Each structure is compiled into a blob of its own, and all trace the same rays: those of the
-/// scene's own picture, one sample a pixel, with the shadow, mirrored and refracted rays that it
-/// causes. All answers are compared with the list's, primitive and t to the last bit; a structure
-/// that differs is marked wrong and not measured, and the exit code is 1.
+/// Compiles a blob for each structure, and traces the rays of the scene's own picture through all
+/// of them: one sample per pixel, with shadow, reflected and refracted rays. Compares primitive and
+/// t of every answer with brute force, bit for bit. A structure that differs is marked as wrong and
+/// not measured, and the exit code is 1.
 ///
-/// Times are medians on one thread, the structures taking turns. Only ratios within one run mean
-/// anything.
+/// Times are medians on one thread; the structures take turns. Compare times within one run only.
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
     /// Scene file: .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif
     scene: PathBuf,
 
-    /// Acceleration structure, once for each that shall be compared [default: all]
+    /// Acceleration structure to compare; give it again for each further one [default: all]
     #[arg(long, value_name = "NAME", value_parser = arguments::structure())]
     accel: Vec<Structure>,
 
-    /// How the hierarchy is built that structures share; given several times, each structure is
-    /// built in each way [default: sah]
+    /// Builder of the hierarchies; give it again to compare builders [default: sah]
     #[arg(long, value_name = "NAME", value_parser = arguments::builder())]
     builder: Vec<Builder>,
 
-    /// Arithmetic to trace in
+    /// Number format
     #[arg(long, value_name = "NAME", value_parser = arguments::format(), default_value = "f32")]
     format: Format,
 
-    /// Size of the picture whose rays are traced
+    /// Size of the picture whose rays are traced, such as 640x480
     #[arg(long, value_name = "WxH", value_parser = arguments::size, default_value = "256x256")]
     size: [u16; 2],
 
-    /// How often everything is timed; 0 for counts alone, which take less time
+    /// Number of timed runs; 0 counts tests only, which is faster
     #[arg(long, value_name = "N", default_value_t = 5,
         value_parser = clap::value_parser!(u16).range(0..=1000))]
     repeat: u16,
 
-    /// Write charts into a folder, as SVG: tests and rates, and how rates, set-up and bytes grow
-    /// over parts of the scene
+    /// Write SVG charts into this folder: tests, rates, and the growth of rates, build times and
+    /// bytes with the scene
     #[arg(long, value_name = "DIR")]
     plot: Option<PathBuf>,
 
-    /// Print everything as JSON
+    /// Print the results as JSON
     #[arg(long)]
     json: bool,
 

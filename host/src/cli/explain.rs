@@ -11,15 +11,15 @@ use gridel_host::explain::{ExplainError, Shown, Subject, explain};
 use gridel_host::trace::SceneRay;
 use std::path::PathBuf;
 
-/// Tell why a pixel looks as it does, or what a ray meets
+/// Explain the color of a pixel, or the hit of a ray
 ///
-/// Shows the rays of a pixel as a tree: what each met and how precisely that is known, which lights
-/// shine there and what blocks the others, what mirrors and glass add, and what every ray brings; the
-/// parts add up to the pixel. Then the way of the ray through the acceleration structure: which nodes
-/// it went into, which were left out and because of which planes, and every primitive that was tested.
+/// Prints the rays of a pixel as a tree: what each ray hits and with what error bound, which lights
+/// reach the surface and what blocks the others, and what mirrors, glass and each ray contribute.
+/// The contributions add up to the pixel. Then it prints the nodes that the ray visits, the nodes
+/// that it skips with the planes that exclude them, and every primitive that is tested.
 ///
-/// It is told by the very code that renders. Points and distances are in scene units, distances
-/// along the ray; colours are linear, 1 being display white.
+/// The code that renders reports all of this. Points and distances are in scene units, distances
+/// along the ray. Colors are linear; 1 is display white.
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES, group = ArgGroup::new("subject").required(true))]
 pub struct Arguments {
@@ -27,13 +27,13 @@ pub struct Arguments {
     #[arg(value_name = "BLOB|SCENE")]
     input: PathBuf,
 
-    /// The pixel to explain, counted from the upper left corner
+    /// Pixel to explain, counted from the upper left corner, which is 0,0
     #[arg(long, value_name = "X,Y", value_parser = pixel, group = "subject",
         allow_hyphen_values = true)]
     pixel: Option<[u16; 2]>,
 
-    /// The ray to explain: origin, direction of any length, and the interval in multiples of the
-    /// direction that counts [default interval: 0,inf]
+    /// Ray to explain: origin, direction of any length, and an interval in multiples of the
+    /// direction [default interval: 0,inf]
     #[arg(
         long,
         value_name = "OX,OY,OZ,DX,DY,DZ[,TMIN,TMAX]",
@@ -49,11 +49,11 @@ pub struct Arguments {
     #[command(flatten)]
     picture: PictureOptions,
 
-    /// Show the way of every ray through the structure, those of shadow rays too
+    /// Show the nodes of every ray, of shadow rays too
     #[arg(long)]
     all_walks: bool,
 
-    /// Print everything as JSON
+    /// Print the results as JSON
     #[arg(long)]
     json: bool,
 

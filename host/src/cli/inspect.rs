@@ -18,10 +18,10 @@ use std::path::PathBuf;
 
 /// Show the memory map of a blob, its limits and the RAM that it needs
 ///
-/// A scene file is compiled first, as `gridel build` would by default, and not written anywhere.
-/// Working memory is what the caller provides beside the call stack; it is exact for 32-bit boards,
-/// on which an f64 is aligned to 8 bytes, and for this machine. A scene that does not fit the board that
-/// is given is shown as well, and refused.
+/// Compiles a scene file as `gridel build` does by default, without writing a blob. Working memory
+/// is what the caller provides besides the call stack. It is exact for this machine, and for 32-bit
+/// boards that align an f64 to 8 bytes. A scene that does not fit the board of --target is shown,
+/// and the exit code is 3.
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
@@ -29,7 +29,7 @@ pub struct Arguments {
     #[arg(value_name = "BLOB|SCENE")]
     input: PathBuf,
 
-    /// Print everything as JSON
+    /// Print the results as JSON
     #[arg(long)]
     json: bool,
 
@@ -161,7 +161,7 @@ impl Inspection {
             ("stride", Align::Right),
             ("bytes", Align::Right),
             ("share", Align::Right),
-            ("bytes a primitive", Align::Right),
+            ("bytes per primitive", Align::Right),
         ]);
         for part in &self.memory_map.parts {
             map.row([

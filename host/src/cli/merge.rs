@@ -1,7 +1,7 @@
 //! `gridel merge`: parts of a picture become one.
 
 use super::failure::Failure;
-use super::output::{print, print_json, refuse_same, write_file};
+use super::output::{print, print_json, refuse_same, unsupported, write_file};
 use super::progress::Progress;
 use clap::Args;
 use gridel_host::merge::{Merge, MergeError, Part};
@@ -11,12 +11,11 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Put a picture together from parts that `render --rows` wrote
+/// Join parts of a picture that `render --rows` wrote
 ///
-/// A part says in its file which rows of which picture it has, of which blob and with which
-/// settings, so several machines can share a picture and the parts may come in any order. Parts may
-/// overlap if they agree; parts that were made differently are refused. The picture has the bytes
-/// that one machine would have written.
+/// Each part stores its rows, its blob and its settings. Parts can come from several machines, in
+/// any order, and can overlap if they agree. Parts of different pictures are rejected. The result
+/// has the bytes that one machine writes.
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
@@ -24,11 +23,11 @@ pub struct Arguments {
     #[arg(required = true, value_name = "PART")]
     parts: Vec<PathBuf>,
 
-    /// The picture to write, with the extension of the parts
+    /// Picture to write, with the extension of the parts
     #[arg(short, long, value_name = "PICTURE")]
     output: PathBuf,
 
-    /// Print what was done as JSON
+    /// Print the results as JSON
     #[arg(long)]
     json: bool,
 }
@@ -101,10 +100,7 @@ fn format_of(path: &Path) -> Result<PictureFormat, Failure> {
             "render parts as .png or .ppm; .rgb565 files have nothing but pixels, and joined in the \
              order of their rows, as with `cat`, they are the whole",
         )),
-        None => Err(Failure::usage(
-            format!("{} does not end as a picture's name does", path.display()),
-            "use .png or .ppm",
-        )),
+        None => Err(unsupported(path, "image", ".png or .ppm")),
     }
 }
 

@@ -21,6 +21,7 @@ mod build;
 mod check;
 mod compare;
 mod explain;
+mod help;
 mod inspect;
 mod merge;
 mod render;
@@ -28,13 +29,19 @@ mod sample;
 mod trace;
 mod verify;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use peak_alloc::PeakAlloc;
 use std::process::ExitCode;
 
-/// Compiles scenes into blobs that are ray traced in place, on a microcontroller or on a host
+/// Compile scenes into blobs, and ray trace them on a microcontroller or on a host
 #[derive(Parser)]
-#[command(name = "gridel", version, after_help = EXIT_CODES, arg_required_else_help = true)]
+#[command(
+    name = "gridel",
+    version,
+    after_help = format!("{}\n\n{EXIT_CODES}", help::TOPIC_LIST),
+    arg_required_else_help = true,
+    disable_help_subcommand = true
+)]
 struct Program {
     #[command(subcommand)]
     verb: Verb,
@@ -53,16 +60,17 @@ enum Verb {
     Explain(explain::Arguments),
     Sample(sample::Arguments),
     Check(check::Arguments),
+    Help(help::Arguments),
 }
 
-/// What scripts can rely on; every verb's help shows it.
+/// The exit codes for scripts; the help of every command shows them.
 const EXIT_CODES: &str = "\
 Exit codes:
-  0  done
-  1  failed: an input is broken, a file cannot be read or written, or a check does not hold
-  2  the command line is wrong, by itself or for this input
-  3  refused: the scene would not fit the memory that it is given
-  130  interrupted; no output is left half written";
+  0    success
+  1    an input is invalid, a file cannot be read or written, or a check fails
+  2    the command line is wrong, by itself or for this input
+  3    the scene does not fit the given memory
+  130  interrupted; no output is incomplete";
 
 /// Runs the program.
 ///
@@ -87,6 +95,7 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
         Verb::Explain(arguments) => explain::run(&arguments),
         Verb::Sample(arguments) => sample::run(&arguments),
         Verb::Check(arguments) => check::run(&arguments),
+        Verb::Help(arguments) => help::run(&arguments, Program::command()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -97,7 +106,6 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_command_line_is_consistent() {

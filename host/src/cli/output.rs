@@ -80,7 +80,7 @@ pub fn refuse_inputs<'i>(
     Ok(())
 }
 
-/// Refuses a name that ends as that of a file of another sort; one without extension says nothing.
+/// Rejects an extension of another kind of file; a name without one is accepted.
 pub fn check_extension(path: &Path, wanted: &[&str], what: &str) -> Result<(), Failure> {
     let Some(extension) = path.extension() else {
         return Ok(());
@@ -88,10 +88,26 @@ pub fn check_extension(path: &Path, wanted: &[&str], what: &str) -> Result<(), F
     if wanted.iter().any(|it| extension.eq_ignore_ascii_case(it)) {
         return Ok(());
     }
-    Err(Failure::usage(
-        format!("{} does not end as the name of {what} does", path.display()),
-        format!("use .{}", wanted.join(" or .")),
+    Err(unsupported(
+        path,
+        what,
+        &format!(".{}", wanted.join(" or .")),
     ))
+}
+
+/// The error of a file name whose extension names no format of such files.
+pub fn unsupported(path: &Path, what: &str, supported: &str) -> Failure {
+    let shown = path.display();
+    let cause = match path.extension() {
+        Some(extension) => {
+            format!(
+                "{shown}: unsupported {what} format `.{}`",
+                extension.display()
+            )
+        }
+        None => format!("{shown}: the name has no extension, which selects the {what} format"),
+    };
+    Failure::usage(cause, format!("use {supported}"))
 }
 
 /// Prints on standard output.

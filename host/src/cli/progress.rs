@@ -25,7 +25,7 @@ impl Progress {
         Self::new(ProgressBar::new(steps), what, template)
     }
 
-    /// Work that cannot be told how far it is.
+    /// Indeterminate progress.
     pub fn unknown(what: &'static str) -> Self {
         Self::new(
             ProgressBar::new_spinner(),

@@ -2,7 +2,9 @@
 
 use super::arguments::{self, PictureOptions, SceneOptions, TraceOptions};
 use super::failure::Failure;
-use super::output::{Content, print, print_json_warned, prove, refuse_same, write_files};
+use super::output::{
+    Content, print, print_json_warned, prove, refuse_same, unsupported, write_files,
+};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
@@ -19,8 +21,8 @@ use std::time::{Duration, Instant};
 
 /// Render a picture from a blob or a scene file
 ///
-/// What is not given comes from the scene file. The picture is the same, bit for bit, with any
-/// number of threads, on every machine, and through every acceleration structure.
+/// Options that are not given come from the scene file. The picture is the same, bit for bit, with
+/// any number of threads, on every machine, and in every acceleration structure.
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
@@ -28,8 +30,8 @@ pub struct Arguments {
     #[arg(value_name = "BLOB|SCENE")]
     input: PathBuf,
 
-    /// The picture to write; the extension says how: .png, .ppm, or .rgb565 (two bytes a pixel,
-    /// little-endian, without a header)
+    /// Picture to write: .png, .ppm, or .rgb565 (two bytes per pixel, little-endian, without a
+    /// header)
     #[arg(short, long, value_name = "PICTURE")]
     output: PathBuf,
 
@@ -39,29 +41,29 @@ pub struct Arguments {
     #[command(flatten)]
     picture: PictureOptions,
 
-    /// Threads, 1 to 1024 [default: one a core]
+    /// Number of threads, 1 to 1024 [default: one per core]
     #[arg(long, value_name = "N", value_parser = arguments::threads())]
     threads: Option<usize>,
 
-    /// Render these rows only: from row A to the one before B, counted from 0 at the top
+    /// Render only rows A to B - 1, counted from 0 at the top
     #[arg(long, value_name = "A..B", value_parser = arguments::rows, allow_hyphen_values = true)]
     rows: Option<Range<u16>>,
 
-    /// Dither, which hides the steps between the colours of a display
+    /// Dither, to hide steps between the colors of a display
     #[arg(long)]
     dither: bool,
 
-    /// Count rays and tests; the time that is told includes the counting
+    /// Count rays and tests; the time then includes the counting
     #[arg(long)]
     stats: bool,
 
-    /// Also write the work for each pixel as a PNG: boxes and primitives tested, by their square
-    /// root, from black for none over blue, red and yellow to white for the maximum, which is told
-    /// and named in the file
+    /// Write the work per pixel as a PNG too: the square root of the boxes and primitives tested,
+    /// from black (none) over blue, red and yellow to white (the maximum, which is printed and
+    /// stored in the file)
     #[arg(long, value_name = "FILE")]
     heat_map: Option<PathBuf>,
 
-    /// Print what was done as JSON
+    /// Print the results as JSON
     #[arg(long)]
     json: bool,
 
@@ -192,19 +194,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// The picture's format; an error for names that cannot be written to.
 fn check_outputs(arguments: &Arguments) -> Result<PictureFormat, Failure> {
     let output = &arguments.output;
-    let format = PictureFormat::of(output).ok_or_else(|| {
-        Failure::usage(
-            format!("{} does not end as a picture's name does", output.display()),
-            "use .png, .ppm or .rgb565",
-        )
-    })?;
+    let format = PictureFormat::of(output)
+        .ok_or_else(|| unsupported(output, "image", ".png, .ppm or .rgb565"))?;
     refuse_same(&arguments.input, output)?;
     if let Some(heat_map) = &arguments.heat_map {
         if PictureFormat::of(heat_map) != Some(PictureFormat::Png) {
-            return Err(Failure::usage(
-                format!("{} does not end with .png", heat_map.display()),
-                "heat maps are PNG files: give it such a name",
-            ));
+            return Err(unsupported(heat_map, "heat map", ".png"));
         }
         refuse_same(&arguments.input, heat_map)?;
         if place(heat_map) == place(output) {
@@ -292,7 +287,7 @@ impl Rendered {
             format!(", rows {first}..{end}")
         };
         let mut text = format!(
-            "{}: {} x {}{rows}, {}, {}, {} a pixel, {:.3} s with {}\n",
+            "{}: {} x {}{rows}, {}, {}, {} per pixel, {:.3} s with {}\n",
             self.picture,
             self.width,
             self.height,
@@ -321,7 +316,7 @@ impl Stats {
         let mut table = Table::new([
             ("counted", Align::Left),
             ("number", Align::Right),
-            ("a ray", Align::Right),
+            ("per ray", Align::Right),
         ]);
         let a_ray = |count: u64| format!("{:.2}", count as f64 / self.rays.max(1) as f64);
         for (what, count) in [

@@ -13,11 +13,11 @@ use std::path::{Path, PathBuf};
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
-    /// Which sample to write; without one they are listed
+    /// Sample to write [default: list the samples]
     #[arg(value_parser = name())]
     name: Option<&'static Sample>,
 
-    /// The file to write [default: the sample's own name, in the current folder]
+    /// File to write [default: the sample's name, in the current folder]
     #[arg(short, long, value_name = "FILE", requires = "name")]
     output: Option<PathBuf>,
 
@@ -50,7 +50,7 @@ macro_rules! fixture {
             summary: $summary,
             text: || {
                 Ok(String::from(include_str!(concat!(
-                    "../../../fixtures/",
+                    "../../scenes/",
                     $name,
                     ".toml"
                 ))))

@@ -20,16 +20,16 @@ use std::time::Instant;
 /// Trace rays from a NumPy file through a blob or a scene file
 ///
 /// Rays are a float32 or float64 array of shape (N, 8): origin x y z, tmin, direction x y z, tmax,
-/// in scene units. The direction may have any length, and t counts multiples of it.
+/// in scene units. The direction can have any length; t is in multiples of it.
 ///
-/// Hits are a structured array with the fields t (f8, inf on a miss), object and primitive (u4,
-/// 0xffffffff on a miss; counted in scene-file order) and normal (3 f4, of length 1, pointing
-/// outward; 0 on a miss).
+/// Hits are a structured array with the fields t (f8, inf for a miss), object and primitive (u4,
+/// 0xffffffff for a miss, counted in the order of the scene file) and normal (3 f4 of length 1,
+/// pointing outward; 0 for a miss).
 ///
-/// A ray is rejected if its direction is zero, if it holds a NaN or an infinite origin or direction, if
-/// its tmin is greater than its tmax, if its origin is more than 2^20 times the scene's width away, or if
-/// t would not be a number of double precision. Its t is nan in the file. Rejected rays are counted apart
-/// from misses, and the first is printed with its row and the reason.
+/// A ray is rejected if its direction is zero, if it has a NaN, if its origin or direction is
+/// infinite, if tmin is greater than tmax, if its origin is more than 2^20 times the scene's width
+/// away, or if t exceeds double precision. Its t is nan in the file. Rejected rays are counted
+/// separately from misses. The first one is printed with its row and the reason.
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
@@ -37,32 +37,31 @@ pub struct Arguments {
     #[arg(value_name = "BLOB|SCENE")]
     input: PathBuf,
 
-    /// The rays to trace
+    /// Rays to trace, a NumPy file
     #[arg(long, value_name = "RAYS.npy")]
     rays: PathBuf,
 
-    /// Where to write the hits
+    /// Hits to write, a NumPy file
     #[arg(short, long, value_name = "HITS.npy")]
     output: PathBuf,
 
     #[command(flatten)]
     with: TraceOptions,
 
-    /// Only find out whether each ray meets anything; what it meets is not told, so t, object,
-    /// primitive and normal are 0 for each that does
+    /// Only test whether each ray hits anything; t, object, primitive and normal of a hit are 0
     #[arg(long)]
     any: bool,
 
-    /// Trace all rays so many times, 1 to 1000, to measure
+    /// Number of timed runs, 1 to 1000
     #[arg(long, value_name = "N", default_value_t = 1,
         value_parser = clap::value_parser!(u32).range(1..=1000))]
     repeat: u32,
 
-    /// Threads, 1 to 1024
+    /// Number of threads, 1 to 1024
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = arguments::threads())]
     threads: usize,
 
-    /// Print counts and times as JSON; counters come from one more pass, before those that are timed
+    /// Print counts and times as JSON; an extra run, before the timed ones, counts the tests
     #[arg(long)]
     json: bool,
 
@@ -115,7 +114,7 @@ struct Tests {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     refuse_same(&arguments.input, &arguments.output)?;
     refuse_same(&arguments.rays, &arguments.output)?;
-    check_extension(&arguments.output, &["npy"], "a NumPy file")?;
+    check_extension(&arguments.output, &["npy"], "hits")?;
     prove(&arguments.output)?;
     let options = arguments.geometry.clone().into();
     let source = Source::to_trace(&arguments.input, &options, &arguments.with, Structure::Wide)?;

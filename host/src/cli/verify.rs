@@ -13,21 +13,23 @@ use gridel_host::verify::{RAYS, Report, judge, steps, verify};
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// Throw hard rays at a scene and check that every promise is kept
+/// Test a scene with hard rays
 ///
-/// Rays at every sort of vertex, along edges, in the faces of boxes, cells and gridels, along axes with
-/// both signs of zero, grazing, from far away, from inside, from on a surface, with huge and tiny
-/// directions, with windows of t. Every structure of the blob in every number format is compared
-/// with the list, the list with double precision, and where they disagree, and now and then where
-/// they do not, with arithmetic of 320 bits that shares no code with the kernels. The rays are the
-/// same every time.
+/// Traces rays at vertices of every kind, along edges, in the faces of boxes and cells, along axes
+/// with both signs of zero, grazing, from far away, from inside, from surfaces, with huge and tiny
+/// directions, and with intervals of t. The rays are the same in every run.
 ///
-/// Promises: every structure gives the list's bits; any hit and nearest hit agree; hits are those
-/// of exact arithmetic, for a shape that is larger or smaller by at most 8 steps; their numbers are
-/// finite; secondary rays do not meet the surface that they leave; no ray leaves a closed mesh unseen.
+/// Compares every structure of the blob, in every number format, with brute force, and brute force
+/// with double precision. Arithmetic of 320 bits, which shares no code with the kernels, judges all
+/// rays that disagree and a sample of the others.
 ///
-/// A step is a rounding of the largest coordinate (2^-24 of it in f32, 2^-53 in f64), or 2^-13
-/// unit in fixed.
+/// A scene passes if every structure gives the bits of brute force, any hit and closest hit agree,
+/// hits are those of exact arithmetic for a shape that is larger or smaller by at most 8 steps, all
+/// numbers are finite, secondary rays do not hit the surface that they leave, and no ray leaks out
+/// of a closed mesh.
+///
+/// A step is a rounding of the largest coordinate (2^-24 of it in f32, 2^-53 in f64), or 2^-13 unit
+/// in fixed.
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
@@ -35,17 +37,17 @@ pub struct Arguments {
     #[arg(value_name = "BLOB|SCENE")]
     input: PathBuf,
 
-    /// Rays of all sorts, and as many more from inside of closed meshes; each is put to the list, so
+    /// Number of rays, and as many more from inside closed meshes; brute force traces each, so
     /// large scenes take long
     #[arg(long, value_name = "N", default_value_t = RAYS,
         value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     rays: u64,
 
-    /// Acceleration structure that a scene file is compiled with, once for each [default: all]
+    /// Acceleration structure for a scene file; give it again for each further one [default: all]
     #[arg(long, value_name = "NAME", value_parser = arguments::structure())]
     accel: Vec<Structure>,
 
-    /// Time taken to build the structure wide of a scene file [default: good]
+    /// Time to spend on building wide, for a scene file [default: good]
     #[arg(long, value_name = "NAME")]
     quality: Option<Quality>,
 

@@ -49,7 +49,7 @@ pub fn charts(
     Ok(vec![
         (
             "tests.svg",
-            bars(&title("tests a ray"), "tests", &groups, &tests)?,
+            bars(&title("tests per ray"), "tests", &groups, &tests)?,
         ),
         (
             "rates.svg",

@@ -37,7 +37,7 @@ const MEASURES: [Measure; 7] = [
     Measure::timed("primary rays a second", primary_rate, true),
     Measure::timed("shadow rays a second", shadow_rate, true),
     Measure::timed("bounced rays a second", bounced_rate, true),
-    Measure::counted("tests a ray", tests),
+    Measure::counted("tests per ray", tests),
     Measure::counted("bytes", |row| Some(row.own_bytes as f64)),
     Measure::timed("set-up", |row| Some(row.setup_seconds), false),
     Measure::counted("working RAM", |row| Some(row.stack_bytes as f64)),

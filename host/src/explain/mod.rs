@@ -49,7 +49,7 @@ pub enum ExplainError {
 /// without: what else it is compiled for changes neither bits nor ways.
 ///
 /// # Errors
-/// If the blob lacks the structure, a setting is out of its range, or the ray is none.
+/// If the blob lacks the structure, a setting is out of its range, or the ray is invalid.
 pub fn explain(
     scene: &Scene<'_>,
     format: Format,

@@ -304,8 +304,8 @@ mod tests {
             values: vec![Some(12.0), None],
         }];
         let groups = ["one", "other"].map(String::from);
-        let svg = bars("tests a ray", "tests", &groups, &series).unwrap();
-        for word in ["planes", "one", "other", "tests a ray"] {
+        let svg = bars("tests per ray", "tests", &groups, &series).unwrap();
+        for word in ["planes", "one", "other", "tests per ray"] {
             assert!(svg.contains(word), "{word}");
         }
         let curve = Curve {

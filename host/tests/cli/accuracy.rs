@@ -37,7 +37,7 @@ fn what_a_single_repeat_cannot_tell_is_not_told() {
         .unwrap();
     assert_eq!(columns[name + 2], "-", "{line}");
     let page = String::from_utf8(folder.read("out/page.html")).unwrap();
-    assert!(page.contains("256 samples a pixel"), "no samples");
+    assert!(page.contains("256 samples per pixel"), "no samples");
     assert!(page.contains("<code>fixed</code>") && !page.contains('`'));
     assert!(page.contains("<td>-</td>"));
 }

@@ -29,7 +29,7 @@ fn blessing_makes_checks_hold() {
     ]);
     assert_eq!(first.code, Some(1), "{}", first.stderr);
     assert!(
-        first.stdout.contains("2 held, 3 broken, 0 not run"),
+        first.stdout.contains("2 passed, 3 failed, 0 skipped"),
         "{}",
         first.stdout
     );
@@ -50,7 +50,8 @@ fn blessing_makes_checks_hold() {
 
     let blessed = folder.done(&["check", "check.toml", "--bless"]);
     assert!(
-        blessed.contains("2 held, 3 recorded, 0 broken, 0 not run") && !blessed.contains("BROKEN"),
+        blessed.contains("2 passed, 3 recorded, 0 failed, 0 skipped")
+            && !blessed.contains("FAILED"),
         "{blessed}"
     );
     for line in [
@@ -132,7 +133,7 @@ fn warnings_of_importers_are_passed_on() {
     assert_eq!(run.stderr.matches("lost.mtl").count(), 1, "{}", run.stderr);
 }
 
-/// A board that cannot be run is said not to have been run, and fails where boards are required.
+/// A board that cannot run is skipped, and fails where boards are required.
 #[test]
 fn boards_that_are_missing_are_named() {
     let folder = folder();
@@ -141,7 +142,11 @@ fn boards_that_are_missing_are_named() {
     folder.write("check.toml", manifest.as_bytes());
     let run = folder.run(&["check", "check.toml"]);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
-    assert!(run.stderr.contains("NOT RUN: 1"), "{}", run.stderr);
+    assert!(
+        run.stderr.contains("skipped 1 figure on boards"),
+        "{}",
+        run.stderr
+    );
     assert!(
         run.stdout.contains("no-such-emulator is not installed"),
         "{}",
@@ -212,7 +217,7 @@ fn only_pictures_become_references() {
     for word in [
         "check.toml:4: notes.txt cannot be read",
         "write the path of a PNG",
-        "0 recorded, 1 broken",
+        "0 recorded, 1 failed",
     ] {
         assert!(run.stdout.contains(word), "{}", run.stdout);
     }
@@ -285,7 +290,7 @@ fn findings_are_not_lost_with_a_report() {
     let run = folder.run(&[&bless[..], &["--diff", "shown", "--junit", "x.xml"]].concat());
     assert_eq!(run.code, Some(1), "{}", run.stderr);
     assert!(run.stderr.contains("quick-f32.png"), "{}", run.stderr);
-    for word in ["2 held, 3 recorded, 0 broken", "\n+hash = { fixed = \""] {
+    for word in ["2 passed, 3 recorded, 0 failed", "\n+hash = { fixed = \""] {
         assert!(run.stdout.contains(word), "{}", run.stdout);
     }
     assert!(folder.path("x.xml").is_file());
@@ -306,7 +311,7 @@ fn all_is_recorded_or_nothing() {
         run.stderr
     );
     assert!(
-        run.stdout.contains("2 held, 0 recorded, 5 broken"),
+        run.stdout.contains("2 passed, 0 recorded, 5 failed"),
         "{}",
         run.stdout
     );

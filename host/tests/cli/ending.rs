@@ -12,7 +12,7 @@ fn help_tells_the_exit_codes() {
     for verb in VERBS {
         assert!(help.contains(&format!("\n  {verb}")), "{help}");
         let help = folder.done(&[verb, "--help"]);
-        assert!(help.contains("3  refused"), "{help}");
+        assert!(help.contains("3    the scene does not fit"), "{help}");
     }
     assert!(folder.done(&["--version"]).starts_with("gridel "));
 }

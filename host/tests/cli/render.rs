@@ -171,6 +171,11 @@ fn wrong_numbers_are_usage_errors() {
             &[".png, .ppm or .rgb565"],
         );
     }
+    folder.fails(
+        2,
+        &["render", "quick.gridel", "-o", "a.jpg"],
+        &["a.jpg: unsupported image format `.jpg`"],
+    );
 }
 
 #[test]

@@ -9,6 +9,7 @@
 //! | `emitted` | renders from what `gridel build --emit-rust` wrote |
 //! | `selftest` | runs the core's own tests |
 //! | `bare` | renders and talks to nobody: what it links is what a product would flash |
+//! | `range` | casts rays down onto the scene and prints their lengths |
 //! | `example` | the README's example |
 //!
 //! The first five run in QEMU, or in Node, and print what they measured, a line each: a name and

@@ -1,6 +1,6 @@
-//! What the board tests recorded.
+//! Figures that the board tests recorded.
 
-use super::{holds_table, text};
+use super::{MEMORY, README, holds_table, text};
 use gridel_core::{Format, Structure};
 use gridel_host::board::Board;
 use gridel_host::report::grouped;
@@ -26,21 +26,70 @@ fn of_build(build: String) -> impl Fn(&str) -> u64 {
     }
 }
 
-/// What pictures and primary rays take on boards, as their tests recorded it. `GRIDEL_BLESS=1` writes
-/// it anew.
+/// A board's core and a number format.
+fn place(board: &str, format: &str) -> String {
+    let core = Board::named(board).expect("a board").core;
+    format!("{core}, `{format}`")
+}
+
+fn cells(figure: &dyn Fn(&str) -> u64, names: &[&str]) -> String {
+    let cells = names.iter().map(|name| grouped(figure(name)));
+    cells.collect::<Vec<_>>().join(" | ")
+}
+
+/// Instructions, in millions.
+fn millions(instructions: u64) -> String {
+    format!("{:.1}", instructions as f64 / 1e6)
+}
+
 #[test]
-fn the_readme_shows_what_boards_take() {
-    let place = |board: &str, format: &str| {
-        let core = Board::named(board).expect("a board").core;
-        format!("{core}, `{format}`")
-    };
-    let cells = |figure: &dyn Fn(&str) -> u64, names: &[&str]| {
-        let cells = names.iter().map(|name| grouped(figure(name)));
-        cells.collect::<Vec<_>>().join(" | ")
-    };
+fn readme_shows_recorded_memory_on_boards() {
+    let mut table = String::from(
+        "| scene | board | RAM, bytes | flash, bytes | per primary ray | per shadow ray | \
+         picture, millions |\n|---|---|---|---|---|---|---|\n",
+    );
+    for (scene, shown, board, format) in [
+        (
+            "glass-chess-64",
+            "glass chessboard",
+            "stm32vldiscovery",
+            "fixed",
+        ),
+        (
+            "nanotube",
+            "molecule, 2,800 spheres",
+            "stm32vldiscovery",
+            "fixed",
+        ),
+        ("torus", "mesh, 2,048 triangles", "microbit", "fixed"),
+        ("glass-chess", "glass chessboard", "sifive_e", "fixed"),
+        ("glass-chess", "glass chessboard", "mps2-an386", "f32"),
+        ("quick", "every shape and effect", "mps2-an500", "f64"),
+    ] {
+        let figure = on_board(scene, board, format);
+        let figures = cells(
+            &figure,
+            &[
+                "ram-bytes",
+                "flash-bytes",
+                "ray-instructions",
+                "shadow-ray-instructions",
+            ],
+        );
+        table += &format!(
+            "| {shown} | {} | {figures} | {} |\n",
+            place(board, format),
+            millions(figure("picture-instructions"))
+        );
+    }
+    holds_table(README, "memory", &table);
+}
+
+#[test]
+fn memory_page_shows_recorded_pictures_and_rays() {
     let mut pictures = String::from(
-        "| scene | board, format | call stack | RAM | flash | instructions to load | a primary ray | \
-         a shadow ray | the picture |\n|---|---|---|---|---|---|---|---|---|\n",
+        "| scene, board, format | call stack | RAM | flash | load | per primary ray | \
+         per shadow ray | picture |\n|---|---|---|---|---|---|---|---|\n",
     );
     for (scene, board, format) in [
         ("glass-chess-64", "stm32vldiscovery", "fixed"),
@@ -66,15 +115,15 @@ fn the_readme_shows_what_boards_take() {
         ];
         let figures = cells(&on_board(scene, board, format), &figures);
         pictures += &format!(
-            "| {scene} | {board}, {} | {figures} |\n",
+            "| {scene}, {board}, {} | {figures} |\n",
             place(board, format)
         );
     }
-    holds_table("boards", &pictures);
+    holds_table(MEMORY, "boards", &pictures);
 
     let mut rays = String::from(
-        "| board, format | call stack | of casts | stack of the traversal | instructions to load | \
-         a cast | a ray | a ray, 16 bits |\n|---|---|---|---|---|---|---|---|\n",
+        "| board, format | call stack | call stack of casts | traversal stack | load | \
+         per cast | per primary ray | per primary ray, 16 bits |\n|---|---|---|---|---|---|---|---|\n",
     );
     for (board, format) in [
         ("mps2-an386", "f32"),
@@ -99,7 +148,7 @@ fn the_readme_shows_what_boards_take() {
             grouped(narrow)
         );
     }
-    holds_table("rays", &rays);
+    holds_table(MEMORY, "rays", &rays);
 }
 
 /// What programs with code for triangles and a part take on the smallest board: the fast one, and that
@@ -118,9 +167,8 @@ fn program(part: &str) -> Vec<Footprint> {
     program.fast.into_iter().chain(program.small).collect()
 }
 
-/// What each shape and effect takes, as the board tests recorded it. `GRIDEL_BLESS=1` writes it anew.
 #[test]
-fn the_readme_shows_what_parts_cost() {
+fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
     let figure = |part: &str, figure: &str| {
         let figure = match figure {
             "code-bytes" => program(part)[0].code,
@@ -144,7 +192,7 @@ fn the_readme_shows_what_parts_cost() {
         ("sphere, triangle, shadow", "base"),
     ];
     let mut table = String::from(
-        "| | code, bytes | call stack, bytes | instructions of the picture |\n|---|---|---|---|\n",
+        "| part | code, bytes | call stack, bytes | instructions per picture |\n|---|---|---|---|\n",
     );
     for (part, without) in parts {
         let cell = |name: &str| match without {
@@ -163,21 +211,22 @@ fn the_readme_shows_what_parts_cost() {
             ["code-bytes", "call-stack-bytes", "picture-instructions"].map(cell);
         table += &format!("| {name} | {code} | {stack} | {work} |\n");
     }
-    holds_table("parts", &table);
+    holds_table(MEMORY, "parts", &table);
 }
 
-/// What the feature `small` saves and costs, as the board tests recorded it. `GRIDEL_BLESS=1` writes it
-/// anew.
 #[test]
-fn the_readme_shows_what_small_code_costs() {
+fn memory_page_shows_recorded_cost_of_small_code() {
     let mut table = String::from(
-        "| | code, bytes | the vector table among them | call stack, bytes | instructions to load | \
-         a primary ray | a shadow ray | the picture |\n|---|---|---|---|---|---|---|---|\n",
+        "| build | code, bytes | vector table, bytes | call stack, bytes | load | \
+         per primary ray | per shadow ray | picture |\n|---|---|---|---|---|---|---|---|\n",
     );
     let part = "sphere, triangle, shadow";
     for ((name, suffix), footprint) in [
-        ("`opt-level = 3`, all proofs at the start", ""),
-        ("`small`, `opt-level = \"z\"`, vouched for", " small"),
+        ("`opt-level = 3`, blob verified at start", ""),
+        (
+            "`small`, `opt-level = \"z\"`, blob verified at compile time",
+            " small",
+        ),
     ]
     .into_iter()
     .zip(program(part))
@@ -200,5 +249,5 @@ fn the_readme_shows_what_small_code_costs() {
         .map(|name| grouped(figure(name)));
         table += &format!("| {name} | {} |\n", cells.join(" | "));
     }
-    holds_table("small", &table);
+    holds_table(MEMORY, "small", &table);
 }

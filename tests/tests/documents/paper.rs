@@ -1,13 +1,13 @@
-//! The paper's tables beside ours.
+//! The paper's tables and ours.
 
 use super::boards::boards;
-use super::{holds_table, text};
+use super::{PAPER, holds_table, text};
 use gridel_host::board::Board;
 use gridel_host::report::grouped;
 
-/// The paper's tables beside ours, as the test `tables` recorded them.
+/// The counts are those that the test `tables` recorded.
 #[test]
-fn the_readme_shows_the_papers_tables() {
+fn paper_page_shows_recorded_counts() {
     let recorded = text("fixtures/recorded/structures.json");
     let recorded: serde_json::Value = serde_json::from_str(&recorded).expect("tables");
     let scenes = &recorded["256 by 256 pixels"];
@@ -19,8 +19,8 @@ fn the_readme_shows_the_papers_tables() {
     };
 
     let mut hierarchies = String::from(
-        "| objects, theirs / ours | time, theirs | planes a ray, boxes | below the root | slabs | \
-         below the root | bytes, boxes | slabs |\n|---|---|---|---|---|---|---|---|\n",
+        "| objects, paper / ours | time, paper | planes per ray, boxes | below the root | slabs | \
+         below the root | bytes, boxes | bytes, slabs |\n|---|---|---|---|---|---|---|---|\n",
     );
     for scene in scenes {
         let paper = &scene["paper"];
@@ -45,33 +45,32 @@ fn the_readme_shows_the_papers_tables() {
         }
         hierarchies += "\n";
     }
-    holds_table("paper-hierarchies", &hierarchies);
+    holds_table(PAPER, "paper-hierarchies", &hierarchies);
 
-    let mut cubes = String::from("| |");
+    let mut cubes = String::new();
     for scene in scenes {
-        let primitives = grouped(whole(&scene["primitives"]));
-        cubes += &format!(" {primitives} objects: planes, cells, objects | longest list | bytes |");
-    }
-    cubes += "\n|---|---|---|---|---|---|---|---|---|---|\n";
-    for structure in [
-        "grid 4x4x4",
-        "grid",
-        "octree",
-        "cylinder-cube",
-        "cylinder-cube-tight",
-        "cylinder-cube-entry",
-        "apex",
-        "ray-classes",
-        "bvh",
-        "flagged",
-        "dual-split",
-        "spheres",
-    ] {
-        cubes += &format!("| `{structure}` |");
-        for scene in scenes {
+        cubes += &format!(
+            "\n{} objects:\n\n| structure | planes | cells | objects | longest list | bytes |\n\
+             |---|---|---|---|---|---|\n",
+            grouped(whole(&scene["primitives"]))
+        );
+        for structure in [
+            "grid 4x4x4",
+            "grid",
+            "octree",
+            "cylinder-cube",
+            "cylinder-cube-tight",
+            "cylinder-cube-entry",
+            "apex",
+            "ray-classes",
+            "bvh",
+            "flagged",
+            "dual-split",
+            "spheres",
+        ] {
             let count = |what| count(scene, structure, what);
             cubes += &format!(
-                " {:.1}, {:.1}, {:.1} | {} | {} |",
+                "| `{structure}` | {:.1} | {:.1} | {:.1} | {} | {} |\n",
                 count("planes"),
                 count("cells"),
                 count("objects"),
@@ -79,9 +78,9 @@ fn the_readme_shows_the_papers_tables() {
                 grouped(count("bytes") as u64)
             );
         }
-        cubes += "\n";
     }
-    holds_table("paper-cube", &cubes);
+    cubes += "\n";
+    holds_table(PAPER, "paper-cube", &cubes);
 }
 
 /// Where the paper's scenes are measured, and what of a ray of theirs.
@@ -103,9 +102,8 @@ fn paper_on_board(
     Some([primary, figure("shadow-ray")?, picture])
 }
 
-/// The paper's tables in instructions.
 #[test]
-fn the_readme_shows_the_papers_tables_on_boards() {
+fn paper_page_shows_recorded_instructions() {
     let boards = boards();
     let recorded = text("fixtures/recorded/structures.json");
     let recorded: serde_json::Value = serde_json::from_str(&recorded).expect("tables");
@@ -114,11 +112,10 @@ fn the_readme_shows_the_papers_tables_on_boards() {
         0 => String::from("-"),
         _ => format!("{:.1}", instructions as f64 / 1e6),
     };
-    let mut hierarchies = String::from("| objects | time, theirs |");
+    let mut hierarchies = String::from("| objects | time, paper |");
     for (board, format) in PAPER_BOARDS {
         let core = Board::named(board).expect("a board").core;
-        hierarchies +=
-            &format!(" {core}, `{format}`: plain : flagged : dual-split | plain takes |");
+        hierarchies += &format!(" {core}, `{format}`: `bvh` : `flagged` : `dual-split` | ratios |");
     }
     hierarchies += "\n|---|---|---|---|---|---|\n";
     for (scene, name) in [
@@ -150,11 +147,12 @@ fn the_readme_shows_the_papers_tables_on_boards() {
         }
         hierarchies += "\n";
     }
-    holds_table("board-hierarchies", &hierarchies);
+    holds_table(PAPER, "board-hierarchies", &hierarchies);
 
     for place in PAPER_BOARDS {
         let mut cubes = String::from(
-            "| | 156 objects | 2,833 objects | the same, filling the picture | 27,079 objects |\n\
+            "| structure | 156 objects | 2,833 objects | 2,833 objects that fill the picture | \
+             27,079 objects |\n\
              |---|---|---|---|---|\n",
         );
         for structure in [
@@ -181,7 +179,7 @@ fn the_readme_shows_the_papers_tables_on_boards() {
             }
             cubes += "\n";
         }
-        holds_table(&format!("board-cube-{}", place.1), &cubes);
+        holds_table(PAPER, &format!("board-cube-{}", place.1), &cubes);
     }
 }
 
@@ -214,14 +212,14 @@ fn apex_lists_are_ahead_on_boards() {
     }
 }
 
-/// What the paper's cylinder cube takes, as the test `cylinder_cube` recorded it.
+/// The counts are those that the test `cylinder_cube` recorded.
 #[test]
-fn the_readme_explains_the_papers_loss() {
+fn paper_page_shows_recorded_lists_of_the_cylinder_cube() {
     let recorded = text("fixtures/recorded/cylinder-cube.toml");
     let recorded: toml::Table = toml::from_str(&recorded).expect("figures");
     let mut table = String::from(
-        "| objects | lists | count | objects a list | longest | entries | 2 bytes | 4 bytes | \
-         8 bytes |\n|---|---|---|---|---|---|---|---|---|\n",
+        "| objects | lists | objects per list | longest | entries | 2 bytes | 4 bytes | 8 bytes |\n\
+         |---|---|---|---|---|---|---|---|\n",
     );
     for scene in ["glass-chess", "diamond-2800", "diamond-27000"] {
         let figure = |name: &str| {
@@ -236,7 +234,7 @@ fn the_readme_explains_the_papers_loss() {
             let of = |what: &str| figure(&format!("{kind}-{what}"));
             let (lists, entries) = (of("lists"), of("entries"));
             table += &format!(
-                "| {} | {name} | {} | {:.1} | {} | {} | {} | {} | {} |\n",
+                "| {} | {name}: {} | {:.1} | {} | {} | {} | {} | {} |\n",
                 grouped(figure("objects")),
                 grouped(lists),
                 entries as f64 / lists as f64,
@@ -248,5 +246,5 @@ fn the_readme_explains_the_papers_loss() {
             );
         }
     }
-    holds_table("paper-loss", &table);
+    holds_table(PAPER, "paper-loss", &table);
 }

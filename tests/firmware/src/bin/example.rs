@@ -12,7 +12,7 @@ type Picture<'s> = Renderer<'s, 'static, f32, DualSplit, { Effects::ALL.0 }>;
 
 #[entry]
 fn main() -> ! {
-    // Entries of the traversal stack, at least as many as `gridel inspect` tells; the ray depth and one.
+    // The sizes are those that `gridel inspect` prints, and the ray depth plus one.
     static mut SPACE: Workspace<f32, 12, 7> = Workspace::new();
     static mut ROW: [Rgb565; 320] = [Rgb565(0); 320];
     let scene = Scene::from_bytes(BLOB).unwrap_or_else(|_| halt());

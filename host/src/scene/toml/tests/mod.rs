@@ -38,16 +38,11 @@ fn refusal(text: &str) -> SceneError {
     }
 }
 
-/// The example in the documentation of the module.
-fn example() -> String {
-    let lines = include_str!("../mod.rs").lines();
-    let code = lines
-        .skip_while(|line| *line != "//! ```toml")
-        .skip(1)
-        .take_while(|line| *line != "//! ```");
-    code.map(|line| line.strip_prefix("//!").unwrap().trim_start())
-        .collect::<Vec<_>>()
-        .join("\n")
+/// The example at the end of the format's document.
+fn example() -> &'static str {
+    let document = include_str!("../../../../docs/SCENE.md");
+    let (_, example) = document.rsplit_once("```toml\n").unwrap();
+    example.split_once("```").unwrap().0
 }
 
 fn named<'s>(scene: &'s Scene, name: &str) -> &'s Object {

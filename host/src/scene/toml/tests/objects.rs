@@ -6,7 +6,7 @@ use glam::DVec3;
 
 #[test]
 fn the_documented_example_holds_what_it_says() {
-    let imported = load(&example()).unwrap();
+    let imported = load(example()).unwrap();
     assert_eq!(imported.warnings, Vec::<String>::new());
     let scene = imported.scene;
     let names: Vec<_> = scene

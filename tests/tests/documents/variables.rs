@@ -1,0 +1,45 @@
+//! CONTRIBUTING.md lists every environment variable that the project reads.
+
+use super::{repository, text};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+/// Names that begin with `GRIDEL_`.
+fn names(source: &str, into: &mut BTreeSet<String>) {
+    for rest in source.split("GRIDEL_").skip(1) {
+        let end = rest.find(|c: char| !c.is_ascii_uppercase() && c != '_');
+        let name = &rest[..end.unwrap_or(rest.len())];
+        if !name.is_empty() {
+            into.insert(format!("GRIDEL_{name}"));
+        }
+    }
+}
+
+fn names_in_folder(folder: &Path, into: &mut BTreeSet<String>) {
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let is_output = path.file_name().is_some_and(|name| name == "target");
+        if path.is_dir() && !is_output {
+            names_in_folder(&path, into);
+        } else if path.extension().is_some_and(|it| it == "rs") {
+            names(&fs::read_to_string(&path).expect("a source"), into);
+        }
+    }
+}
+
+#[test]
+fn contributing_page_lists_exactly_the_environment_variables() {
+    let mut used = BTreeSet::new();
+    for folder in ["core", "host", "tests"] {
+        names_in_folder(&repository().join(folder), &mut used);
+    }
+    names(&text(".ci/run"), &mut used);
+    let page = text("CONTRIBUTING.md");
+    let rows = page
+        .lines()
+        .filter_map(|line| line.strip_prefix("| `GRIDEL_"));
+    let listed = rows.filter_map(|row| row.split_once('`'));
+    let listed: BTreeSet<_> = listed.map(|(name, _)| format!("GRIDEL_{name}")).collect();
+    assert_eq!(listed, used);
+}
