@@ -1,6 +1,9 @@
 //! `gridel accuracy`: what accuracy costs in time.
 
-use super::arguments::{self, GeometryOptions, ImportOptions, SceneOptions, check_quality, quoted};
+use super::arguments::{
+    self, GeometryOptions, ImportOptions, SceneOptions, check_quality, quoted, scene_help,
+    scene_long_help,
+};
 use super::failure::Failure;
 use super::output::{print, print_json_warned, prove, write_file, write_texts};
 use super::progress::Progress;
@@ -59,7 +62,7 @@ const MOST_PIXELS: usize = 1 << 22;
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES, verbatim_doc_comment)]
 pub struct Arguments {
-    /// Scene file: .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif
+    #[arg(help = scene_help(), long_help = scene_long_help())]
     scene: PathBuf,
 
     /// The folder to write into; it is made if need be. A run of the same scene and options goes on

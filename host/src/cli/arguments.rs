@@ -96,6 +96,20 @@ pub struct TraceOptions {
     pub quality: Option<Quality>,
 }
 
+/// Help for the argument that names a scene file.
+pub fn scene_help() -> String {
+    format!("Scene file: {}", scene::extensions())
+}
+
+/// Help for the argument that names a scene file, with a line for each format.
+pub fn scene_long_help() -> String {
+    let lines = scene::IMPORTERS.iter().map(|it| it.to_string());
+    format!(
+        "Scene file; it may be gzipped:\n{}",
+        lines.collect::<Vec<_>>().join("\n")
+    )
+}
+
 /// What of a picture's settings is not as the scene states it.
 #[derive(Args, Clone, Debug)]
 pub struct PictureOptions {

@@ -1,6 +1,9 @@
 //! `gridel build`: a scene file becomes a blob.
 
-use super::arguments::{self, SceneOptions, StructureOptions, TargetOptions, check_hierarchy};
+use super::arguments::{
+    self, SceneOptions, StructureOptions, TargetOptions, check_hierarchy, scene_help,
+    scene_long_help,
+};
 use super::effects::CalledFor;
 use super::failure::Failure;
 use super::output::{Content, check_extension, print, print_json, refuse_same, write_files};
@@ -25,7 +28,7 @@ use std::{fs, io};
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
-    /// Scene file: .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif
+    #[arg(help = scene_help(), long_help = scene_long_help())]
     scene: PathBuf,
 
     /// The blob to write

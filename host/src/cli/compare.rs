@@ -1,6 +1,8 @@
 //! `gridel compare`: structures side by side on a scene's own rays.
 
-use super::arguments::{self, SceneOptions, StructureOptions, check_hierarchy, distinct};
+use super::arguments::{
+    self, SceneOptions, StructureOptions, check_hierarchy, distinct, scene_help, scene_long_help,
+};
 use super::failure::Failure;
 use super::output::{print, print_json_warned, write_texts};
 use super::progress::Progress;
@@ -28,7 +30,7 @@ use std::path::PathBuf;
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
-    /// Scene file: .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif
+    #[arg(help = scene_help(), long_help = scene_long_help())]
     scene: PathBuf,
 
     /// Acceleration structure, once for each that shall be compared [default: all]

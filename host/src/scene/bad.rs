@@ -87,7 +87,7 @@ const FILES: [(&str, Expected); 64] = [
     ("gltf-validator/two_bin_chunks.glb.report.json", Rejected(NO_FORMAT)),
     ("gltf-validator/wrong_bytelength.glb.report.json", Rejected(NO_FORMAT)),
     // The folder of the files before.
-    ("gltf-validator", Rejected(NO_FORMAT)),
+    ("gltf-validator", Rejected("cannot be read: it is not a file")),
 ];
 
 #[test]
