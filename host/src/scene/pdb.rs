@@ -6,7 +6,7 @@
 //! `*****` or hexadecimal, and everything after the coordinates may be missing.
 
 use super::importer::{Importer, Input};
-use super::molecule::{self, Atom, Element, End, Parsed, Site};
+use super::molecule::{self, Atom, Element, End, Model, Parsed, Site};
 use super::text::{Source, Warnings};
 use super::{Imported, SceneError};
 use glam::DVec3;
@@ -47,7 +47,11 @@ fn parse<'a>(source: &'a Source, warnings: &mut Warnings) -> Result<Parsed<'a>, 
     for (number, line) in source.lines() {
         match columns(line, 1, 6).trim_end() {
             "ATOM" | "HETATM" => {
-                parsed.models.extend(next_model.take());
+                let model = next_model.take().map(|text| Model {
+                    number: text,
+                    line: number,
+                });
+                parsed.models.extend(model);
                 let model = parsed.models.len() - 1;
                 parsed
                     .atoms

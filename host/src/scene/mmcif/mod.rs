@@ -7,7 +7,7 @@
 mod cif;
 
 use super::importer::{Importer, Input};
-use super::molecule::{self, Atom, Element, End, Parsed, Site};
+use super::molecule::{self, Atom, Element, End, Model, Parsed, Site};
 use super::text::{Source, Warnings};
 use super::{Imported, SceneError};
 use cif::{Token, Tokens};
@@ -241,7 +241,10 @@ impl<'a> Parser<'a, '_> {
         };
         let models = &mut self.parsed.models;
         let model = *self.model_index.entry(number).or_insert_with(|| {
-            models.push(number);
+            models.push(Model {
+                number,
+                line: table.line,
+            });
             models.len() - 1
         });
         self.parsed.atoms.push(Atom {

@@ -81,12 +81,19 @@ pub(super) enum End<'a> {
     Name([&'a str; 4]),
 }
 
+/// One of the models of a file.
+pub(super) struct Model<'a> {
+    /// The number that the file gives it; empty where files do not number them.
+    pub(super) number: &'a str,
+    pub(super) line: usize,
+}
+
 /// What a file says, before one model and one set of alternate locations is chosen.
 #[derive(Default)]
 pub(super) struct Parsed<'a> {
     pub(super) atoms: Vec<Atom<'a>>,
-    /// The numbers that the file gives to its models, in file order.
-    pub(super) models: Vec<&'a str>,
+    /// In file order.
+    pub(super) models: Vec<Model<'a>>,
     /// The ends of each, and its line.
     pub(super) bonds: Vec<(usize, [End<'a>; 2])>,
 }
@@ -106,16 +113,13 @@ pub(super) fn import(
     let parsed = parse(source, &mut warnings)?;
     let atoms = select::select(source, &parsed, options)?;
     if parsed.models.len() > 1 {
-        let other = parsed
-            .atoms
-            .iter()
-            .find(|atom| atom.model + 1 != options.model);
+        let other = usize::from(options.model == 1);
         let sentence = format!(
             "the file has {} models, of which model {} is drawn; `--model N` chooses another",
             parsed.models.len(),
             options.model
         );
-        warnings.add(source, other.map_or(0, |atom| atom.line), sentence);
+        warnings.add(source, parsed.models[other].line, sentence);
     }
     missing_ends(source, &parsed, &mut warnings);
     let bonds = match options.style {
