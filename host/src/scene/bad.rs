@@ -43,7 +43,7 @@ const FILES: [(&str, Expected); 64] = [
     ("insertion-code.pdb", Read(4, &["\"A\" is unknown"])),
     ("insertion_codes.pdb", Read(6, &[])),
     ("invalid-face-definition.obj", Rejected("the file has no faces")),
-    ("invalid.off", Rejected(NO_FORMAT)),
+    ("invalid.off", Rejected(":7: face 1 (from 0) uses vertex 20, and there are 3 vertices")),
     ("invalid_magic.glb", Rejected("it begins with the bytes 00 00 00 00, not with `glTF`")),
     ("invalid_syntax.gltf", Rejected(":1: the JSON is broken: key must be a string")),
     ("issue-140-zero-face-idx.obj", Rejected(":16: a face has the vertex index 0")),

@@ -19,6 +19,7 @@ mod size;
 #[cfg(test)]
 mod test_scenes;
 mod text;
+mod words;
 
 pub use error::SceneError;
 pub use importer::{Importer, extensions};
@@ -35,6 +36,7 @@ importer::formats! {
     mod gltf;
     mod stl;
     mod ply;
+    mod off;
     mod nff;
     mod pdb;
     mod mmcif;
