@@ -33,7 +33,7 @@ const FILES: [(&str, Expected); 64] = [
     ("biopython_occupancy.pdb", Read(3, &[])),
     ("box_without_lineending.obj", Read(1, &[UNDEFINED])),
     ("count-line-too-short.sdf", Rejected(NO_FORMAT)),
-    ("count_mismatch.xyz", Rejected(NO_FORMAT)),
+    ("count_mismatch.xyz", Rejected(":1: the file ends behind 4 of the 8 atoms of a frame")),
     ("crystal-maker.pdb", Read(8, &[])),
     ("cube-vertex-w-component.obj", Read(6, &[NO_MATERIALS, UNDEFINED, UNDEFINED, UNDEFINED])),
     ("empty.ply", Rejected(NO_FACES)),

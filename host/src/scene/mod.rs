@@ -40,6 +40,7 @@ importer::formats! {
     mod nff;
     mod pdb;
     mod mmcif;
+    mod xyz;
 }
 
 /// A linear RGB colour; components at or above 0, 1.0 being display white.

@@ -233,10 +233,10 @@ fn files_are_read_once() {
 
 #[test]
 fn other_formats_are_imported_by_their_extension() {
-    let folder = folder(&[("a.xyz", "")]);
+    let folder = folder(&[("a.fbx", "")]);
     let error = load_in(
         folder.path(),
-        "[[object]]\nkind = \"import\"\nfile = \"a.xyz\"\n",
+        "[[object]]\nkind = \"import\"\nfile = \"a.fbx\"\n",
     )
     .unwrap_err();
     assert!(
