@@ -3,7 +3,7 @@
 use super::access::Access;
 use super::gzip;
 use super::text::{Source, check_encoding, read_file};
-use super::{IMPORTERS, Imported, MoleculeOptions, SceneError};
+use super::{IMPORTERS, Imported, MoleculeOptions, SceneError, Up};
 use std::fmt;
 use std::path::Path;
 
@@ -17,13 +17,15 @@ pub struct Importer {
     /// Extensions of its files, in lower case and without a dot, the usual one first. Behind each of
     /// them `.gz` may stand.
     pub extensions: &'static [&'static str],
+    /// Which way is up in its scenes, where a file has no camera that says so.
+    pub up: Up,
     /// Whether its files may be binary; all formats have a text form.
     pub binary: bool,
     /// A small file in the format, which tests and fuzzers start from.
     pub example: &'static str,
     /// Recognises a whole file by its content. At most one importer recognises a file.
     pub(super) recognizes: fn(&[u8]) -> bool,
-    /// Reads a file.
+    /// Reads a file, all but the scene's `up`.
     pub(super) read: fn(Input<'_>) -> Result<Imported, SceneError>,
 }
 
@@ -39,6 +41,13 @@ macro_rules! formats {
 pub(super) use formats;
 
 impl Importer {
+    /// Reads a file.
+    pub(super) fn import(&self, input: Input<'_>) -> Result<Imported, SceneError> {
+        let mut imported = (self.read)(input)?;
+        imported.scene.up = self.up;
+        Ok(imported)
+    }
+
     /// The importer of a file with this name: `None` for a name without an extension.
     ///
     /// # Errors
@@ -75,12 +84,20 @@ impl Importer {
     }
 }
 
-/// The line that documents a format, such as `NFF (.nff): Haines's Neutral File Format`.
+/// The line that documents a format, such as `OFF (.off): Geomview's meshes of polygons; y is up`.
 impl fmt::Display for Importer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let kinds = if self.binary { ", text or binary" } else { "" };
         let extensions = dotted(self.extensions).join(", ");
-        write!(f, "{} ({extensions}{kinds}): {}", self.name, self.about)
+        let up = match self.up {
+            Up::Y => "y",
+            Up::Z => "z",
+        };
+        write!(
+            f,
+            "{} ({extensions}{kinds}): {}; {up} is up",
+            self.name, self.about
+        )
     }
 }
 

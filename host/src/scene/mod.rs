@@ -23,6 +23,7 @@ mod words;
 
 pub use error::SceneError;
 pub use importer::{Importer, extensions};
+pub use size::MOST_INPUT;
 
 use access::Access;
 use glam::DVec3;
@@ -49,10 +50,14 @@ pub type Color = [f64; 3];
 /// Everything a scene file says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Where the picture is taken from; without one the compiler frames the scene's bounds.
+    /// Where the picture is taken from; without one [the compiler frames](fn@crate::compile::framing) the
+    /// scene's bounds.
     pub camera: Option<Camera>,
-    /// What a ray that meets nothing sees.
-    pub background: Color,
+    /// Which way is up, for that frame.
+    pub up: Up,
+    /// What a ray that meets nothing sees; without one it is black, or light if there is no camera
+    /// either.
+    pub background: Option<Color>,
     /// Whether colours and lights are display values, which are added up and shown as they are: what
     /// ray tracers did before pictures were encoded. Linear without.
     pub display_values: bool,
@@ -68,6 +73,23 @@ pub struct Scene {
     pub render: RenderSettings,
 }
 
+/// Which axis points up, where a scene has no camera that says so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Up {
+    Y,
+    Z,
+}
+
+impl Up {
+    /// The axis.
+    pub fn vector(self) -> DVec3 {
+        match self {
+            Self::Y => DVec3::Y,
+            Self::Z => DVec3::Z,
+        }
+    }
+}
+
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -78,6 +100,13 @@ pub struct Camera {
     pub up: DVec3,
     /// Full vertical field of view in degrees, in (0, 180).
     pub fov_degrees: f64,
+}
+
+impl Camera {
+    /// Whether the camera looks along `up`, or one of both has no length.
+    pub fn is_along_up(&self) -> bool {
+        toml::parallel(self.target - self.eye, self.up)
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -217,7 +246,8 @@ impl Default for Scene {
     fn default() -> Self {
         Self {
             camera: None,
-            background: [0.0; 3],
+            up: Up::Y,
+            background: None,
             display_values: false,
             ambient: [0.0; 3],
             lights: Vec::new(),
@@ -300,7 +330,7 @@ pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneEr
 pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, SceneError> {
     let access = Access::of(path, options.allow_outside);
     let (importer, input) = Input::open(path, &options.molecule, &access)?;
-    (importer.read)(input)
+    importer.import(input)
 }
 
 /// Reads a scene from bytes as [`load_with`] reads a file of this name, which need not exist. Files
@@ -311,7 +341,7 @@ pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, Scene
 pub fn read(name: &Path, bytes: Vec<u8>, options: &ImportOptions) -> Result<Imported, SceneError> {
     let access = Access::of(name, options.allow_outside);
     let (importer, input) = Input::new(name, bytes, &options.molecule, &access)?;
-    (importer.read)(input)
+    importer.import(input)
 }
 
 /// A place in a scene file, for messages.

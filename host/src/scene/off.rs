@@ -10,13 +10,15 @@ use super::polygon::{self, MAX_CONCAVE};
 use super::size::Size;
 use super::text::{Source, Warnings};
 use super::words::Words;
-use super::{Imported, Material, Object, Place, Scene, SceneError, Shape};
+use super::{Imported, Material, Object, Place, Scene, SceneError, Shape, Up};
 use glam::DVec3;
 
 pub(super) const IMPORTER: Importer = Importer {
     name: "OFF",
     about: "Geomview's meshes of polygons",
     extensions: &["off"],
+    // The format says nothing; Geomview's own camera has y up and looks along -z.
+    up: Up::Y,
     binary: false,
     example: "OFF\n# an arrowhead\n4 1 4\n1 0 0\n0 2 0\n-1 0 0\n0 .5 0\n4 0 1 2 3\n",
     recognizes: |bytes| {
@@ -123,7 +125,7 @@ fn header<'a>(
     let first = words.expect("the keyword `OFF`")?;
     let keyword = Keyword::of(first);
     if let Some(keyword) = keyword {
-        if keyword.dimension != "" {
+        if !keyword.dimension.is_empty() {
             return Err(source.error_at(
                 first,
                 format!("the vertices of {first} have not three coordinates"),

@@ -8,13 +8,15 @@
 use super::importer::{Importer, Input};
 use super::molecule::{self, Atom, Element, End, Model, Parsed, Site};
 use super::text::{Source, Warnings};
-use super::{Imported, SceneError};
+use super::{Imported, SceneError, Up};
 use glam::DVec3;
 
 pub(super) const IMPORTER: Importer = Importer {
     name: "PDB",
     about: "molecules in the columns of the Protein Data Bank",
     extensions: &["pdb", "ent"],
+    // Molecules have no up; viewers show them along -z with y up.
+    up: Up::Y,
     binary: false,
     example: "\
 ATOM      1  N   CYS A   3      11.000   2.000   3.000  1.00  0.00           N

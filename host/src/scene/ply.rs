@@ -7,7 +7,7 @@
 use super::importer::{Importer, Input, stem};
 use super::polygon::{self, MAX_CONCAVE};
 use super::text::{Warnings, check_encoding};
-use super::{Imported, Material, Object, Place, Scene, SceneError, Shape};
+use super::{Imported, Material, Object, Place, Scene, SceneError, Shape, Up};
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyAccessResult};
@@ -17,6 +17,8 @@ pub(super) const IMPORTER: Importer = Importer {
     name: "PLY",
     about: "the Stanford scans' meshes",
     extensions: &["ply"],
+    // The format says nothing; the Stanford scans stand along y.
+    up: Up::Y,
     binary: true,
     example: "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
               property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\

@@ -9,7 +9,7 @@
 
 use super::importer::{Importer, Input, stem};
 use super::text::{Source, Warnings, check_encoding};
-use super::{Imported, Material, Object, Place, Scene, SceneError, Shape};
+use super::{Imported, Material, Object, Place, Scene, SceneError, Shape, Up};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::path::Path;
@@ -23,6 +23,8 @@ pub(super) const IMPORTER: Importer = Importer {
     name: "STL",
     about: "triangles, as printers and CAD programs use them",
     extensions: &["stl"],
+    // The format says nothing; CAD programs and printers have the plate in x and y.
+    up: Up::Z,
     binary: true,
     example: "solid tip\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
               endloop\nendfacet\nendsolid tip\n",

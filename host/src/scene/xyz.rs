@@ -8,13 +8,15 @@
 use super::importer::{Importer, Input};
 use super::molecule::{self, Atom, Element, Model, Parsed, Site};
 use super::text::{Source, Warnings};
-use super::{Imported, SceneError};
+use super::{Imported, SceneError, Up};
 use glam::DVec3;
 
 pub(super) const IMPORTER: Importer = Importer {
     name: "XYZ",
     about: "molecules of elements and positions",
     extensions: &["xyz"],
+    // As PDB.
+    up: Up::Y,
     binary: false,
     example: "3\nwater\nO 0 0 0\nH 0.9572 0 0\nH -0.24 0.9266 0\n",
     recognizes: |bytes| {

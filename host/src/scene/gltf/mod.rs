@@ -15,7 +15,7 @@ mod view;
 use super::importer::{Importer as Entry, Input};
 use super::size::Size;
 use super::text::Warnings;
-use super::{Imported, Object, Place, Scene, SceneError, Shape};
+use super::{Imported, Object, Place, Scene, SceneError, Shape, Up};
 use buffers::Buffers;
 use glam::{DMat4, DQuat, DVec3};
 use gltf::mesh::Mode;
@@ -35,6 +35,8 @@ pub(super) const IMPORTER: Entry = Entry {
     name: "glTF",
     about: "scenes of meshes, with materials, cameras and lights",
     extensions: &["gltf", "glb"],
+    // GlTF 2.0, chapter 3.4.
+    up: Up::Y,
     binary: true,
     example: r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
 "nodes": [{"name": "tip", "mesh": 0}],

@@ -9,7 +9,7 @@ mod cif;
 use super::importer::{Importer, Input};
 use super::molecule::{self, Atom, Element, End, Model, Parsed, Site};
 use super::text::{Source, Warnings};
-use super::{Imported, SceneError};
+use super::{Imported, SceneError, Up};
 use cif::{Token, Tokens};
 use glam::DVec3;
 use std::collections::HashMap;
@@ -18,6 +18,8 @@ pub(super) const IMPORTER: Importer = Importer {
     name: "mmCIF",
     about: "molecules as the Protein Data Bank archives them",
     extensions: &["cif", "mmcif"],
+    // As PDB.
+    up: Up::Y,
     binary: false,
     example: "data_t\nloop_\n_atom_site.id\n_atom_site.type_symbol\n_atom_site.label_atom_id\n\
               _atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n1 C CA 0 0 0\n2 O O 1.2 0 0\n",

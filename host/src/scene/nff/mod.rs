@@ -21,7 +21,7 @@ mod view;
 
 use super::importer::{Importer as Entry, Input};
 use super::text::{Source, Warnings};
-use super::{Color, Diffuse, Imported, Light, Material, Scene, SceneError};
+use super::{Color, Diffuse, Imported, Light, Material, Scene, SceneError, Up};
 use glam::DVec3;
 use reader::{Line, Lines};
 use std::collections::{BTreeSet, HashMap};
@@ -33,6 +33,8 @@ pub(super) const IMPORTER: Entry = Entry {
     name: "NFF",
     about: "Haines's Neutral File Format, with camera and lights",
     extensions: &["nff"],
+    // Files have a camera; in the databases' own scenes z is up.
+    up: Up::Z,
     binary: false,
     example: "b 0 0 .5\nv\nfrom 0 0 9\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 64 48\n\
               l 1 2 3\nf 1 .5 0 .8 .25 20 .5 1.5\ns 1 2 3 4\n",
@@ -130,7 +132,7 @@ impl<'a> Importer<'a> {
 
     fn background(&mut self, line: &Line<'a>) -> Result<(), SceneError> {
         let numbers = line.numbers::<3>(self.source, &mut self.warnings, 1, "b r g b")?;
-        self.scene.background = self.color(line, numbers)?;
+        self.scene.background = Some(self.color(line, numbers)?);
         Ok(())
     }
 

@@ -28,7 +28,7 @@ fn everything_the_format_has() {
         ["t.nff:21: the normals of a patch are ignored; its surface is shaded flat"]
     );
     assert!(scene.display_values);
-    assert_eq!(scene.background, [0.1, 0.2, 0.3]);
+    assert_eq!(scene.background, Some([0.1, 0.2, 0.3]));
     let camera = scene.camera.unwrap();
     assert_eq!(
         (camera.eye, camera.fov_degrees),

@@ -18,7 +18,7 @@ use super::importer::{Importer, Input};
 use super::polygon::{self, MAX_CONCAVE};
 use super::size::Size;
 use super::text::{Source, Warnings};
-use super::{Imported, Material, Object, Scene, SceneError, Shape};
+use super::{Imported, Material, Object, Scene, SceneError, Shape, Up};
 use glam::DVec3;
 use parser::{Parsed, Part};
 use std::collections::{HashMap, HashSet};
@@ -27,6 +27,8 @@ pub(super) const IMPORTER: Importer = Importer {
     name: "OBJ",
     about: "Wavefront's meshes, with MTL materials",
     extensions: &["obj"],
+    // The format says nothing; modelling programs export y up unless they are told otherwise.
+    up: Up::Y,
     binary: false,
     example: "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 1 0\nf 1 2 3 4\n",
     recognizes: |bytes| {

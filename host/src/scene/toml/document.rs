@@ -60,7 +60,8 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
 
     let mut scene = Scene {
         camera,
-        background: background.unwrap_or(BLACK),
+        up: super::IMPORTER.up,
+        background,
         display_values: false,
         ambient: ambient.unwrap_or(BLACK),
         lights,
@@ -83,9 +84,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
                 scene.lights.push(moved_light(&source, item, light)?);
             }
         }
-        if background.is_none() && scene.background == BLACK {
-            scene.background = import.background;
-        }
+        scene.background = scene.background.or(import.background);
         if ambient.is_none() && scene.ambient == BLACK {
             scene.ambient = import.ambient;
         }

@@ -94,7 +94,7 @@ impl Imports {
             if importer.name == super::IMPORTER.name {
                 return self.nested(input, canonical.clone());
             }
-            let imported = (importer.read)(input)?;
+            let imported = importer.import(input)?;
             self.warnings.extend(imported.warnings);
             self.molecules |= imported.molecules;
             Ok(imported.scene)

@@ -9,9 +9,9 @@
 //!
 //! | key | type | default |
 //! |---|---|---|
-//! | `background` | colour that a ray sees which meets nothing | black |
+//! | `background` | colour that a ray sees which meets nothing | black, or light grey without a camera |
 //! | `ambient` | colour of light that reaches every surface from everywhere | black |
-//! | `camera`, `render` | tables, below | framed by the compiler; as below |
+//! | `camera`, `render` | tables, below | everything is seen along -z and takes 80 % of the picture; as below |
 //! | `light`, `object` | arrays of tables, below | none |
 //! | `material`, `group` | named tables, below | none |
 //!
@@ -112,8 +112,8 @@
 //!
 //! An import in the scene's own list, outside groups, also lends what this scene does not state,
 //! after the transform of the import: the camera and the render settings (both of the first
-//! import that has a camera), all lights if this scene has none, and the first background and the
-//! first ambient light that are not black. With the lights of an NFF file comes that colours and
+//! import that has a camera), all lights if this scene has none, the first background, and the first
+//! ambient light that is not black. With the lights of an NFF file comes that colours and
 //! lights are display values, not linear ones.
 //!
 //! # Example
@@ -244,13 +244,16 @@ mod view;
 mod tests;
 
 use super::importer::{Importer, Input};
-use super::{Imported, SceneError};
+use super::{Imported, SceneError, Up};
 use import::Imports;
+pub(super) use transform::parallel;
 
 pub(super) const IMPORTER: Importer = Importer {
     name: "TOML",
     about: "Gridel's own format, which a person writes",
     extensions: &["toml"],
+    // The camera's `up` is y as well where it is not given.
+    up: Up::Y,
     binary: false,
     example: "[[light]]\nkind = \"point\"\nposition = [2, 3, 4]\n\n[[object]]\nkind = \"sphere\"\n\
               center = [0, 0, 0]\nradius = 1\n",
