@@ -8,6 +8,7 @@ use super::failure::Failure;
 use super::output::{print, print_json_warned, prove, write_file, write_texts};
 use super::progress::Progress;
 use super::source::import;
+use super::view::ViewOptions;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use gridel_core::{Rgb888, Structure, render::Pixel};
@@ -158,6 +159,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     check_quality(arguments.quality, &[arguments.accel])?;
     let options = SceneOptions {
         cutoff: arguments.cutoff,
+        view: ViewOptions::default(),
         geometry: GeometryOptions {
             lattice_bits: None,
             import: arguments.import.clone(),

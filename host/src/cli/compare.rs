@@ -7,6 +7,7 @@ use super::failure::Failure;
 use super::output::{print, print_json_warned, write_texts};
 use super::progress::Progress;
 use super::source::import;
+use super::view::Aim;
 use clap::Args;
 use gridel_core::{Format, Structure};
 use gridel_host::compare::{
@@ -69,6 +70,9 @@ pub struct Arguments {
 
     #[command(flatten)]
     scene_options: SceneOptions,
+
+    #[command(flatten)]
+    aim: Aim,
 }
 
 #[derive(Serialize)]
@@ -97,7 +101,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         lattice_bits: lattice_bits.unwrap_or(default.compiling.lattice_bits),
         ..default.compiling
     })?;
-    let imported = import(path, &arguments.scene_options)?;
+    let imported = import(path, &arguments.aim.aimed(&arguments.scene_options))?;
     if let Some(folder) = &arguments.plot {
         std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
     }

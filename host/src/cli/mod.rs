@@ -4,17 +4,21 @@
 //! |---|---|
 //! | `failure.rs` | why a verb ends, and the exit code that says so |
 //! | `arguments.rs` | options that several verbs have |
+//! | `input.rs` | a file or standard input |
 //! | `source.rs` | the blob or scene file that a verb works on |
 //! | `effects.rs` | what calls for the effects of a scene |
 //! | `output.rs` | files and standard output |
+//! | `view.rs` | from where a scene file is seen |
 //! | `progress.rs` | the sign of life of long work |
 
 mod arguments;
 mod effects;
 mod failure;
+mod input;
 mod output;
 mod progress;
 mod source;
+mod view;
 
 mod accuracy;
 mod build;

@@ -11,6 +11,8 @@ mod import;
 mod inspect;
 mod merge;
 mod options;
+mod pipe;
 mod render;
 mod sample;
 mod trace;
+mod view;
