@@ -9,6 +9,7 @@
 //! | `effects.rs` | what calls for the effects of a scene |
 //! | `output.rs` | files and standard output |
 //! | `view.rs` | from where a scene file is seen |
+//! | `shell.rs` | what shells and the manual are told of the program |
 //! | `progress.rs` | the sign of life of long work |
 
 mod arguments;
@@ -29,9 +30,13 @@ mod inspect;
 mod merge;
 mod render;
 mod sample;
+#[cfg(feature = "shell")]
+mod shell;
 mod trace;
 mod verify;
 
+#[cfg(any(feature = "shell", test))]
+use clap::CommandFactory;
 use clap::{Parser, Subcommand};
 use peak_alloc::PeakAlloc;
 use std::process::ExitCode;
@@ -57,6 +62,10 @@ enum Verb {
     Explain(explain::Arguments),
     Sample(sample::Arguments),
     Check(check::Arguments),
+    #[cfg(feature = "shell")]
+    Completions(shell::CompletionArguments),
+    #[cfg(feature = "shell")]
+    Man(shell::ManArguments),
 }
 
 /// What scripts can rely on; every verb's help shows it.
@@ -91,6 +100,10 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
         Verb::Explain(arguments) => explain::run(&arguments),
         Verb::Sample(arguments) => sample::run(&arguments),
         Verb::Check(arguments) => check::run(&arguments),
+        #[cfg(feature = "shell")]
+        Verb::Completions(arguments) => shell::completions(&arguments, Program::command()),
+        #[cfg(feature = "shell")]
+        Verb::Man(arguments) => shell::man(&arguments, Program::command()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -101,7 +114,6 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_command_line_is_consistent() {

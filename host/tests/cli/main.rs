@@ -14,5 +14,7 @@ mod options;
 mod pipe;
 mod render;
 mod sample;
+#[cfg(feature = "shell")]
+mod shell;
 mod trace;
 mod view;
