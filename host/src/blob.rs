@@ -68,7 +68,12 @@ pub fn is_blob(path: &Path) -> io::Result<bool> {
     let named = path
         .extension()
         .is_some_and(|extension| extension == "gridel");
-    Ok(named || start == MAGIC[..6])
+    Ok(named || begins_as_blob(&start))
+}
+
+/// Whether bytes begin as a blob does, the last two bytes of the magic aside.
+pub fn begins_as_blob(bytes: &[u8]) -> bool {
+    bytes.starts_with(&MAGIC[..6])
 }
 
 /// The structures that a scene holds, the one that a verb takes unless it is told first.

@@ -5,7 +5,7 @@ use glam::DVec3;
 use gridel_core::Structure;
 use gridel_host::blob::Blob;
 use gridel_host::compile::{CompileError, Options, compile};
-use gridel_host::scene::{Material, MoleculeOptions, Object, Place, Scene, Shape, load};
+use gridel_host::scene::{Camera, Material, MoleculeOptions, Object, Place, Scene, Shape, load};
 use std::path::{Path, PathBuf};
 
 /// A scene of shapes of one plain material.
@@ -113,6 +113,35 @@ pub fn real(name: &str) -> Option<PathBuf> {
         path.display()
     );
     None
+}
+
+/// A scene of spheres from above its front right corner: the view in which costs of molecules were
+/// recorded from the beginning.
+pub fn from_its_corner(mut scene: Scene) -> Scene {
+    let spheres = scene
+        .objects
+        .iter()
+        .filter_map(|object| match object.shape {
+            Shape::Sphere { center, radius } => Some((center - radius, center + radius)),
+            _ => None,
+        });
+    let nowhere = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (lowest, highest) = spheres.fold(nowhere, |(lowest, highest), (low, high)| {
+        (lowest.min(low), highest.max(high))
+    });
+    let target = (lowest + highest) * 0.5;
+    let diagonal = highest - lowest;
+    let longest = diagonal.max_element();
+    let radius = 0.5 * longest * (diagonal / longest).length();
+    let fov_degrees: f64 = 40.0;
+    let distance = radius / (fov_degrees.to_radians() * 0.5).sin();
+    scene.camera = Some(Camera {
+        eye: target + DVec3::new(0.45, 0.35, 1.0).normalize() * distance,
+        target,
+        up: DVec3::Y,
+        fov_degrees,
+    });
+    scene
 }
 
 fn point(random: &mut Random, size: f64) -> DVec3 {

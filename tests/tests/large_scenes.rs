@@ -167,7 +167,7 @@ fn ball_on(ground: Ground, extent: f64, shift: DVec3) -> Scene {
         },
     ];
     scene.objects[1].material = 1;
-    scene.background = [0.3, 0.5, 0.8];
+    scene.background = Some([0.3, 0.5, 0.8]);
     scene.ambient = [0.2; 3];
     scene.lights = vec![Light::Directional {
         direction: DVec3::new(-1.0, -2.0, -0.75),

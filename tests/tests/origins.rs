@@ -572,7 +572,7 @@ fn glass_seen_from_inside_from_far_away_absorbs_all() {
         // Its front is turned away.
         triangles: vec![[0, 2, 1]],
     }]);
-    scene.background = [0.5; 3];
+    scene.background = Some([0.5; 3]);
     let glass = &mut scene.materials[0];
     (glass.transmit, glass.absorption) = ([1.0; 3], [1.0; 3]);
     let [fixed, single, double] = [

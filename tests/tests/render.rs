@@ -135,7 +135,7 @@ fn ball_on_floor(material: Material, shadows: bool) -> Blob {
         position: DVec3::new(3.0, 6.0, 4.0),
         color: [0.9, 0.8, 0.7],
     }];
-    scene.background = [0.2, 0.3, 0.5];
+    scene.background = Some([0.2, 0.3, 0.5]);
     scene.ambient = [0.1; 3];
     scene.render.shadows = shadows;
     scenes::blob(&scene, 24)
@@ -343,7 +343,7 @@ fn furnace() -> SceneFile {
         ior: 1.5,
         ..Material::default()
     }];
-    scene.background = [1.0; 3];
+    scene.background = Some([1.0; 3]);
     scene.camera = Some(Camera {
         eye: DVec3::new(0.3, -0.2, 40.0),
         target: DVec3::new(0.3, -0.2, 0.1),

@@ -235,7 +235,7 @@ fn lights_near_a_surface_shine_on_it() {
                 ..Material::default()
             }];
             file.ambient = [0.0; 3];
-            file.background = [0.0; 3];
+            file.background = Some([0.0; 3]);
             file.lights = vec![Light::Point {
                 position: DVec3::new(0.0, height, 0.0),
                 color: [1.0; 3],

@@ -80,7 +80,7 @@ fn scenes() -> [(&'static str, scene::Scene); 3] {
         let text = sample::pdb(&sample::diamond(radius)).expect("fits the format");
         let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
         fs::write(&path, text).expect("the target folder can be written to");
-        scenes::read(&path)
+        scenes::from_its_corner(scenes::read(&path))
     };
     let chess = scenes::fixture_folder().join("glass-chess.toml");
     [

@@ -1,10 +1,14 @@
 //! `gridel accuracy`: what accuracy costs in time.
 
-use super::arguments::{self, GeometryOptions, ImportOptions, SceneOptions, check_quality, quoted};
+use super::arguments::{
+    self, GeometryOptions, ImportOptions, SceneOptions, check_quality, quoted, scene_help,
+    scene_long_help,
+};
 use super::failure::Failure;
 use super::output::{print, print_json_warned, prove, write_file, write_texts};
 use super::progress::Progress;
 use super::source::import;
+use super::view::ViewOptions;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use gridel_core::render::Pixel;
@@ -61,7 +65,7 @@ const MOST_PIXELS: usize = 1 << 22;
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES, verbatim_doc_comment)]
 pub struct Arguments {
-    /// Scene file: .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif
+    #[arg(help = scene_help(), long_help = scene_long_help())]
     scene: PathBuf,
 
     /// Folder to write into; it is created if it is missing. A run with the same scene and options
@@ -158,6 +162,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     check_quality(arguments.quality, &[arguments.accel])?;
     let options = SceneOptions {
         cutoff: arguments.cutoff,
+        view: ViewOptions::default(),
         geometry: GeometryOptions {
             lattice_bits: None,
             import: arguments.import.clone(),

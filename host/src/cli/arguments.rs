@@ -1,8 +1,10 @@
 //! Options that several verbs have, and how their values are written.
 
 use super::failure::Failure;
+use super::view::{ViewOptions, vector};
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use glam::DVec3;
 use gridel_core::accel::hierarchy::direction::DIRECTION_COUNTS;
 use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use gridel_core::{Format, Scene as CoreScene, Settings, Structure};
@@ -10,6 +12,7 @@ use gridel_host::board::{BOARDS, Board};
 use gridel_host::compile::{self, Builder, Quality, takes_hierarchy};
 use gridel_host::report::{Ledger, NotMeasured, Target};
 use gridel_host::scene::{self, MoleculeStyle};
+use std::ffi::OsStr;
 use std::num::NonZeroUsize;
 use std::ops::Range;
 
@@ -19,8 +22,10 @@ use std::ops::Range;
 pub struct TargetOptions {
     /// Board that must hold the scene, by the code and call stack measured for it [default:
     /// stm32vldiscovery, if --ram or --flash is given]
-    #[arg(long, value_name = "BOARD", value_parser = board())]
-    target: Option<&'static Board>,
+    ///
+    /// A point X,Y,Z is not a board, but what the camera of a scene file looks at.
+    #[arg(long, value_name = "BOARD|X,Y,Z", value_parser = TargetParser, allow_hyphen_values = true)]
+    target: Vec<BoardOrPoint>,
 
     /// Bytes of RAM, such as 8192 or 8K [default: the board's]
     #[arg(long, value_name = "N", value_parser = bytes)]
@@ -34,15 +39,34 @@ pub struct TargetOptions {
 impl TargetOptions {
     /// The memory, if any of it is given.
     pub fn target(&self) -> Option<Target> {
-        if self.target.is_none() && self.ram.is_none() && self.flash.is_none() {
+        let board = self.target.iter().find_map(BoardOrPoint::board);
+        if board.is_none() && self.ram.is_none() && self.flash.is_none() {
             return None;
         }
-        let board = self.target.unwrap_or(&BOARDS[0]);
+        let board = board.unwrap_or(&BOARDS[0]);
         Some(Target {
             board,
             flash: self.flash.unwrap_or(board.flash),
             ram: self.ram.unwrap_or(board.ram),
         })
+    }
+
+    /// The options for scene files, with the point that the camera is to look at.
+    ///
+    /// # Errors
+    /// If two boards or two points were given.
+    pub fn aimed(&self, options: &SceneOptions) -> Result<SceneOptions, Failure> {
+        let mut points = self.target.iter().filter_map(BoardOrPoint::point);
+        let boards = self.target.iter().filter_map(BoardOrPoint::board);
+        if points.clone().count() > 1 || boards.count() > 1 {
+            return Err(Failure::usage(
+                "--target is given twice for the same",
+                "give it once for a board, and once for the point that the camera looks at",
+            ));
+        }
+        let mut options = options.clone();
+        options.view.target = points.next();
+        Ok(options)
     }
 
     /// What a scene takes of it, in a number format of the board's.
@@ -74,6 +98,59 @@ impl TargetOptions {
     }
 }
 
+/// What `--target` names where both make sense.
+#[derive(Clone, Copy, Debug)]
+enum BoardOrPoint {
+    Board(&'static Board),
+    Point(DVec3),
+}
+
+impl BoardOrPoint {
+    fn board(&self) -> Option<&'static Board> {
+        match self {
+            Self::Board(board) => Some(board),
+            Self::Point(_) => None,
+        }
+    }
+
+    fn point(&self) -> Option<DVec3> {
+        match self {
+            Self::Board(_) => None,
+            Self::Point(point) => Some(*point),
+        }
+    }
+}
+
+/// Points have commas, and boards have none.
+#[derive(Clone)]
+struct TargetParser;
+
+impl TypedValueParser for TargetParser {
+    type Value = BoardOrPoint;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        argument: Option<&clap::Arg>,
+        value: &OsStr,
+    ) -> Result<BoardOrPoint, clap::Error> {
+        if value.to_string_lossy().contains(',') {
+            let point = |text: &str| vector(text).map(BoardOrPoint::Point);
+            return point.parse_ref(command, argument, value);
+        }
+        let board = board().map(BoardOrPoint::Board);
+        board.parse_ref(command, argument, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(
+            BOARDS
+                .map(|board| PossibleValue::new(board.name))
+                .into_iter(),
+        ))
+    }
+}
+
 fn board() -> impl TypedValueParser<Value = &'static Board> {
     PossibleValuesParser::new(BOARDS.map(|board| board.name))
         .try_map(|name| Board::named(&name).ok_or("no such board"))
@@ -94,6 +171,23 @@ pub struct TraceOptions {
     /// Time to spend on building wide, for a scene file [default: good]
     #[arg(long, value_name = "NAME")]
     pub quality: Option<Quality>,
+}
+
+/// Help for the argument that names a scene file.
+pub fn scene_help() -> String {
+    format!(
+        "Scene file: {}; or `-` for standard input",
+        scene::extensions()
+    )
+}
+
+/// Help for the argument that names a scene file, with a line for each format.
+pub fn scene_long_help() -> String {
+    let lines = scene::IMPORTERS.iter().map(|it| it.to_string());
+    format!(
+        "Scene file, which may be gzipped; or `-` for standard input:\n{}",
+        lines.collect::<Vec<_>>().join("\n")
+    )
 }
 
 /// What of a picture's settings is not as the scene states it.
@@ -153,6 +247,9 @@ pub struct SceneOptions {
     pub cutoff: Option<f64>,
 
     #[command(flatten)]
+    pub view: ViewOptions,
+
+    #[command(flatten)]
     pub geometry: GeometryOptions,
 }
 
@@ -201,12 +298,17 @@ pub struct MoleculeOptions {
 impl SceneOptions {
     /// The name of an option that was given, if one was.
     pub fn given(&self) -> Option<&'static str> {
-        let Self { cutoff, geometry } = self;
+        let Self {
+            cutoff,
+            view,
+            geometry,
+        } = self;
         first_given([
             (geometry.lattice_bits.is_some(), "--lattice-bits"),
             (cutoff.is_some(), "--cutoff"),
             (geometry.import.allow_outside, "--allow-outside"),
         ])
+        .or(first_given(view.given()))
         .or(geometry.import.molecule.given())
     }
 }
@@ -215,6 +317,7 @@ impl From<GeometryOptions> for SceneOptions {
     fn from(geometry: GeometryOptions) -> Self {
         Self {
             cutoff: None,
+            view: ViewOptions::default(),
             geometry,
         }
     }

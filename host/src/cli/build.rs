@@ -1,9 +1,13 @@
 //! `gridel build`: a scene file becomes a blob.
 
-use super::arguments::{self, SceneOptions, StructureOptions, TargetOptions, check_hierarchy};
+use super::arguments::{
+    self, SceneOptions, StructureOptions, TargetOptions, check_hierarchy, scene_help,
+    scene_long_help,
+};
 use super::effects::CalledFor;
 use super::failure::Failure;
-use super::output::{Content, check_extension, print, print_json, refuse_same, write_files};
+use super::input::is_standard;
+use super::output::{Content, check_extension, json, print_about, prove, refuse_same, write_files};
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Format, Scene, Structure};
@@ -25,10 +29,10 @@ use std::{fs, io};
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
-    /// Scene file: .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif
+    #[arg(help = scene_help(), long_help = scene_long_help())]
     scene: PathBuf,
 
-    /// Blob to write
+    /// Blob to write; with `-` it goes to standard output, and the report to standard error
     #[arg(short, long, value_name = "BLOB")]
     output: PathBuf,
 
@@ -123,7 +127,11 @@ const NAMED: usize = 5;
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     refuse_same(&arguments.scene, &arguments.output)?;
     check_extension(&arguments.output, &["gridel", "bin"], "blob")?;
-    refuse_foreign(&arguments.output, "blob", is_blob)?;
+    if is_standard(&arguments.output) {
+        prove(&arguments.output)?;
+    } else {
+        refuse_foreign(&arguments.output, "blob", is_blob)?;
+    }
     if let Some(folder) = &arguments.emit_rust {
         if folder.exists() && !folder.is_dir() {
             return Err(Failure::usage(
@@ -148,7 +156,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         max_bytes: arguments.max_bytes,
         ..compile::Options::default()
     })?;
-    let source = Source::compile(&arguments.scene, &arguments.scene_options, compiling)?;
+    let scene_options = arguments.target.aimed(&arguments.scene_options)?;
+    let source = Source::compile(&arguments.scene, &scene_options, compiling)?;
     let scene = source.scene()?;
     let target = arguments.target.target();
     let board = target.map(|target| target.board);
@@ -214,11 +223,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         unresolved: &unresolved,
         ..Built::new(&name, &scene, report, &source.warnings)
     };
-    if arguments.json {
-        print_json(&built)
-    } else {
-        print(built.text())
-    }
+    let report = match arguments.json {
+        true => json(&built)?,
+        false => built.text(),
+    };
+    print_about(&arguments.output, report)
 }
 
 /// Refuses to write over a file of another sort, such as the buffer of a glTF scene, or a program's own.

@@ -1,10 +1,13 @@
 //! `gridel compare`: structures side by side on a scene's own rays.
 
-use super::arguments::{self, SceneOptions, StructureOptions, check_hierarchy, distinct};
+use super::arguments::{
+    self, SceneOptions, StructureOptions, check_hierarchy, distinct, scene_help, scene_long_help,
+};
 use super::failure::Failure;
 use super::output::{print, print_json_warned, write_texts};
 use super::progress::Progress;
 use super::source::import;
+use super::view::Aim;
 use clap::Args;
 use gridel_core::{Format, Structure};
 use gridel_host::compare::{
@@ -27,7 +30,7 @@ use std::path::PathBuf;
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
-    /// Scene file: .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif
+    #[arg(help = scene_help(), long_help = scene_long_help())]
     scene: PathBuf,
 
     /// Acceleration structure to compare; give it again for each further one [default: all]
@@ -65,6 +68,9 @@ pub struct Arguments {
 
     #[command(flatten)]
     scene_options: SceneOptions,
+
+    #[command(flatten)]
+    aim: Aim,
 }
 
 #[derive(Serialize)]
@@ -93,7 +99,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         lattice_bits: lattice_bits.unwrap_or(default.compiling.lattice_bits),
         ..default.compiling
     })?;
-    let imported = import(path, &arguments.scene_options)?;
+    let imported = import(path, &arguments.aim.aimed(&arguments.scene_options))?;
     if let Some(folder) = &arguments.plot {
         std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
     }

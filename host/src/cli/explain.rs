@@ -4,6 +4,7 @@ use super::arguments::{PictureOptions, SceneOptions, TraceOptions};
 use super::failure::Failure;
 use super::output::{print, print_json_warned};
 use super::source::Source;
+use super::view::Aim;
 use clap::{ArgGroup, Args};
 use glam::DVec3;
 use gridel_core::{Settings, Structure};
@@ -23,7 +24,7 @@ use std::path::PathBuf;
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES, group = ArgGroup::new("subject").required(true))]
 pub struct Arguments {
-    /// Blob or scene file
+    /// Blob or scene file, or `-` for standard input
     #[arg(value_name = "BLOB|SCENE")]
     input: PathBuf,
 
@@ -59,6 +60,9 @@ pub struct Arguments {
 
     #[command(flatten)]
     scene_options: SceneOptions,
+
+    #[command(flatten)]
+    aim: Aim,
 }
 
 /// Tells a story.
@@ -73,7 +77,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let source = Source::to_trace(
         &arguments.input,
-        &arguments.scene_options,
+        &arguments.aim.aimed(&arguments.scene_options),
         &arguments.with,
         Structure::DualSplit,
     )?;

@@ -25,7 +25,7 @@ use std::path::PathBuf;
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
-    /// Blob or scene file
+    /// Blob or scene file, or `-` for standard input
     #[arg(value_name = "BLOB|SCENE")]
     input: PathBuf,
 
@@ -82,7 +82,8 @@ struct Contents {
 /// Shows what is in a blob.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let compiling = compile::Options::default();
-    let source = Source::open(&arguments.input, &arguments.scene_options, None, compiling)?;
+    let scene_options = arguments.target.aimed(&arguments.scene_options)?;
+    let source = Source::open(&arguments.input, &scene_options, None, compiling)?;
     let scene = source.scene()?;
     let target = arguments.target.target();
     let format = target.map_or(Format::Fixed, |target| target.board.format());

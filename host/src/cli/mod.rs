@@ -4,17 +4,22 @@
 //! |---|---|
 //! | `failure.rs` | why a verb ends, and the exit code that says so |
 //! | `arguments.rs` | options that several verbs have |
+//! | `input.rs` | a file or standard input |
 //! | `source.rs` | the blob or scene file that a verb works on |
 //! | `effects.rs` | what calls for the effects of a scene |
 //! | `output.rs` | files and standard output |
+//! | `view.rs` | from where a scene file is seen |
+//! | `shell.rs` | what shells and the manual are told of the program |
 //! | `progress.rs` | the sign of life of long work |
 
 mod arguments;
 mod effects;
 mod failure;
+mod input;
 mod output;
 mod progress;
 mod source;
+mod view;
 
 mod accuracy;
 mod build;
@@ -26,6 +31,8 @@ mod inspect;
 mod merge;
 mod render;
 mod sample;
+#[cfg(feature = "shell")]
+mod shell;
 mod trace;
 mod verify;
 
@@ -61,6 +68,10 @@ enum Verb {
     Sample(sample::Arguments),
     Check(check::Arguments),
     Help(help::Arguments),
+    #[cfg(feature = "shell")]
+    Completions(shell::CompletionArguments),
+    #[cfg(feature = "shell")]
+    Man(shell::ManArguments),
 }
 
 /// The exit codes for scripts; the help of every command shows them.
@@ -96,6 +107,10 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
         Verb::Sample(arguments) => sample::run(&arguments),
         Verb::Check(arguments) => check::run(&arguments),
         Verb::Help(arguments) => help::run(&arguments, Program::command()),
+        #[cfg(feature = "shell")]
+        Verb::Completions(arguments) => shell::completions(&arguments, Program::command()),
+        #[cfg(feature = "shell")]
+        Verb::Man(arguments) => shell::man(&arguments, Program::command()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

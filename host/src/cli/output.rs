@@ -1,23 +1,49 @@
 //! Where results go: files, and standard output.
 
 use super::failure::Failure;
+use super::input::is_standard;
 use gridel_host::output::{self, Files, place, write_whole};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::fmt::Display;
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
-/// Writes a file whole or not at all.
+/// Writes a file whole or not at all, or standard output.
 pub fn write_file(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Failure> {
+    if is_standard(path) {
+        return write_standard(write);
+    }
     write_whole(path, write).map_err(|error| Failure::writing(path, &error))
+}
+
+/// Refuses to write bytes to a terminal, which would take some of them for commands.
+fn refuse_terminal() -> Result<(), Failure> {
+    if io::stdout().is_terminal() {
+        return Err(Failure::usage(
+            "standard output is a terminal, and what is written is binary",
+            "redirect it to a file or a pipe, or name a file in place of `-`",
+        ));
+    }
+    Ok(())
+}
+
+/// Writes all at once, so that an error on the way leaves nothing written.
+fn write_standard(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
+    refuse_terminal()?;
+    let mut bytes = Vec::new();
+    write(&mut bytes).map_err(|error| Failure::writing(Path::new("<stdout>"), &error))?;
+    to_standard_output(&bytes)
 }
 
 /// Proves that a file can be written, before any work that it shall hold.
 pub fn prove(path: &Path) -> Result<(), Failure> {
+    if is_standard(path) {
+        return refuse_terminal();
+    }
     output::prove(path).map_err(|error| Failure::writing(path, &error))
 }
 
@@ -27,12 +53,17 @@ pub type Content<'c> = &'c dyn Fn(&mut dyn Write) -> io::Result<()>;
 /// Writes files that belong together, all of them or none.
 pub fn write_files(files: &[(&Path, Content<'_>)]) -> Result<(), Failure> {
     let mut together = Files::default();
-    for &(path, write) in files {
+    let is_stream = |(path, _): &&(&Path, Content<'_>)| is_standard(path);
+    for &(path, write) in files.iter().filter(|file| !is_stream(file)) {
         together
             .add(path, write)
             .map_err(|error| Failure::writing(path, &error))?;
     }
-    keep(together)
+    keep(together)?;
+    files
+        .iter()
+        .filter(is_stream)
+        .try_for_each(|(_, write)| write_standard(write))
 }
 
 /// Writes texts into a folder, by the names of their files, all of them or none.
@@ -64,10 +95,11 @@ pub fn refuse_inputs<'i>(
     outputs: impl IntoIterator<Item = impl AsRef<Path>>,
     role: &str,
 ) -> Result<(), Failure> {
-    let inputs: BTreeSet<_> = inputs.into_iter().map(place).collect();
+    let inputs = inputs.into_iter().filter(|input| !is_standard(input));
+    let inputs: BTreeSet<_> = inputs.map(place).collect();
     for output in outputs {
         let output = output.as_ref();
-        if inputs.contains(&place(output)) {
+        if !is_standard(output) && inputs.contains(&place(output)) {
             return Err(Failure::usage(
                 format!(
                     "the output {} is {role}, which would be lost",
@@ -112,26 +144,44 @@ pub fn unsupported(path: &Path, what: &str, supported: &str) -> Failure {
 
 /// Prints on standard output.
 pub fn print(text: impl Display) -> Result<(), Failure> {
-    to_standard_output(format!("{text}").as_bytes())
+    to_standard_output(text.to_string().as_bytes())
 }
 
 /// Prints one JSON document on standard output.
 pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
-    let mut text = serde_json::to_vec_pretty(value)
-        .map_err(|error| Failure::failed(error.to_string(), "report this as a fault of gridel"))?;
-    text.push(b'\n');
-    to_standard_output(&text)
+    print(json(value)?)
 }
 
 /// Prints one JSON document about a scene, to which it adds what its importer warned of.
 pub fn print_json_warned(value: &impl Serialize, warnings: &[String]) -> Result<(), Failure> {
-    #[derive(Serialize)]
-    struct Warned<'w, T: Serialize> {
-        #[serde(flatten)]
-        value: &'w T,
-        warnings: &'w [String],
+    print(json(&Warned { value, warnings })?)
+}
+
+/// A value, to which is added what an importer warned of.
+#[derive(Serialize)]
+pub struct Warned<'w, T: Serialize> {
+    #[serde(flatten)]
+    pub value: &'w T,
+    pub warnings: &'w [String],
+}
+
+/// One JSON document.
+pub fn json(value: &impl Serialize) -> Result<String, Failure> {
+    let text = serde_json::to_string_pretty(value);
+    let text = text
+        .map_err(|error| Failure::failed(error.to_string(), "report this as a fault of gridel"))?;
+    Ok(text + "\n")
+}
+
+/// Prints a report about what was written to `output`: on standard output, or on standard error if the
+/// output itself is there.
+pub fn print_about(output: &Path, text: impl Display) -> Result<(), Failure> {
+    if is_standard(output) {
+        // Standard error may be closed; the output is written.
+        let _ = write!(io::stderr(), "{text}");
+        return Ok(());
     }
-    print_json(&Warned { value, warnings })
+    print(text)
 }
 
 fn to_standard_output(text: &[u8]) -> Result<(), Failure> {
@@ -140,8 +190,8 @@ fn to_standard_output(text: &[u8]) -> Result<(), Failure> {
     match written {
         // A reader that has seen enough is nobody's fault, and changes nothing of what was found.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::failed(
-            format!("the report cannot be written: {error}"),
-            "check where standard output leads; the files that were asked for are written",
+            format!("standard output cannot be written: {error}"),
+            "check where it leads; files that were asked for are written",
         )),
         _ => Ok(()),
     }

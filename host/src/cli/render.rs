@@ -2,11 +2,13 @@
 
 use super::arguments::{self, PictureOptions, SceneOptions, TraceOptions};
 use super::failure::Failure;
+use super::input::is_standard;
 use super::output::{
-    Content, print, print_json_warned, prove, refuse_same, unsupported, write_files,
+    Content, Warned, json, print_about, prove, refuse_same, unsupported, write_files,
 };
 use super::progress::Progress;
 use super::source::Source;
+use super::view::Aim;
 use clap::Args;
 use gridel_core::{Counters, Scene, Settings, Structure};
 use gridel_host::output::place;
@@ -26,12 +28,12 @@ use std::time::{Duration, Instant};
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
-    /// Blob or scene file
+    /// Blob or scene file, or `-` for standard input
     #[arg(value_name = "BLOB|SCENE")]
     input: PathBuf,
 
     /// Picture to write: .png, .ppm, or .rgb565 (two bytes per pixel, little-endian, without a
-    /// header)
+    /// header). With `-` a PNG goes to standard output, and the report to standard error
     #[arg(short, long, value_name = "PICTURE")]
     output: PathBuf,
 
@@ -69,6 +71,9 @@ pub struct Arguments {
 
     #[command(flatten)]
     scene_options: SceneOptions,
+
+    #[command(flatten)]
+    aim: Aim,
 }
 
 /// Pixels that are held at once.
@@ -122,7 +127,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let format = check_outputs(arguments)?;
     let source = Source::to_trace(
         &arguments.input,
-        &arguments.scene_options,
+        &arguments.aim.aimed(&arguments.scene_options),
         &arguments.with,
         Structure::Wide,
     )?;
@@ -184,17 +189,22 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         heat_map,
         unresolved,
     };
-    if arguments.json {
-        print_json_warned(&rendered, &source.warnings)
-    } else {
-        print(rendered.text())
-    }
+    let report = match arguments.json {
+        true => json(&Warned {
+            value: &rendered,
+            warnings: &source.warnings,
+        })?,
+        false => rendered.text(),
+    };
+    print_about(&arguments.output, report)
 }
 
 /// The picture's format; an error for names that cannot be written to.
 fn check_outputs(arguments: &Arguments) -> Result<PictureFormat, Failure> {
     let output = &arguments.output;
-    let format = PictureFormat::of(output)
+    let stream = is_standard(output).then_some(PictureFormat::Png);
+    let format = stream
+        .or(PictureFormat::of(output))
         .ok_or_else(|| unsupported(output, "image", ".png, .ppm or .rgb565"))?;
     refuse_same(&arguments.input, output)?;
     if let Some(heat_map) = &arguments.heat_map {

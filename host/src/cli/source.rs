@@ -3,6 +3,7 @@
 
 use super::arguments::{SceneOptions, TraceOptions, check_quality};
 use super::failure::Failure;
+use super::input::Input;
 use super::output::warn;
 use super::progress::Progress;
 use gridel_core::{BlobError, Format, Scene, Structure};
@@ -12,11 +13,11 @@ use gridel_host::explain::Names;
 use gridel_host::report::{Fit, Ledger, counted, grouped, significant};
 use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
 use gridel_host::scene::{self, Imported};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A blob, from wherever it came.
 pub struct Source {
-    path: PathBuf,
+    input: Input,
     pub blob: Blob,
     /// What compiling told, for a scene file.
     pub report: Option<compile::Report>,
@@ -42,11 +43,12 @@ impl Source {
             quality: with.quality.unwrap_or_default(),
             ..compile::Options::default()
         };
+        let input = Input::open(path)?;
         let quality = with.quality.map(|_| "--quality");
-        if quality.is_some() && !is_blob(path)? {
+        if quality.is_some() && !input.is_blob()? {
             check_quality(with.quality, &compiling.structures)?;
         }
-        Self::open(path, options, quality, compiling)
+        Self::read(input, options, quality, compiling)
     }
 
     /// Reads a blob, or compiles a scene file; the lattice's bits are those of `options`. A blob is
@@ -57,21 +59,30 @@ impl Source {
         other: Option<&'static str>,
         compiling: compile::Options,
     ) -> Result<Self, Failure> {
-        if !is_blob(path)? {
-            return Self::compile(path, options, compiling);
+        Self::read(Input::open(path)?, options, other, compiling)
+    }
+
+    fn read(
+        input: Input,
+        options: &SceneOptions,
+        other: Option<&'static str>,
+        compiling: compile::Options,
+    ) -> Result<Self, Failure> {
+        if !input.is_blob()? {
+            return Self::build(input, options, compiling);
         }
         if let Some(option) = options.given().or(other) {
             return Err(Failure::usage(
                 format!(
                     "{option} is for scene files, and {} is a blob",
-                    path.display()
+                    input.path().display()
                 ),
                 "leave the option out, or give the scene file that the blob was built from",
             ));
         }
         Ok(Self {
-            path: path.to_owned(),
-            blob: Blob::read(path).map_err(|error| Failure::reading(path, &error))?,
+            blob: input.blob()?,
+            input,
             report: None,
             warnings: Vec::new(),
             names: Names::default(),
@@ -83,9 +94,17 @@ impl Source {
     pub fn compile(
         path: &Path,
         options: &SceneOptions,
+        compiling: compile::Options,
+    ) -> Result<Self, Failure> {
+        Self::build(Input::open(path)?, options, compiling)
+    }
+
+    fn build(
+        input: Input,
+        options: &SceneOptions,
         mut compiling: compile::Options,
     ) -> Result<Self, Failure> {
-        let imported = import(path, options)?;
+        let imported = import_from(&input, options)?;
         if let Some(bits) = options.geometry.lattice_bits {
             compiling.lattice_bits = bits;
         }
@@ -99,14 +118,14 @@ impl Source {
         let compiled = compile::compile_telling(&imported.scene, &compiling, &tell);
         drop(progress);
         let Compiled { blob, report } =
-            compiled.map_err(|error| Failure::compiling(path, error))?;
+            compiled.map_err(|error| Failure::compiling(input.path(), error))?;
         let mut warnings = imported.warnings;
         if let Some(warning) = far_moved(&report, compiling.lattice_bits) {
             warn(&warning);
             warnings.push(warning);
         }
         Ok(Self {
-            path: path.to_owned(),
+            input,
             blob,
             report: Some(report),
             warnings,
@@ -133,7 +152,7 @@ impl Source {
     /// What makes the blob of a scene file smaller: what is said where no byte is allowed.
     fn smaller(&self) -> Option<String> {
         let (importing, compiling) = self.made_by.as_ref()?;
-        let imported = scene::load_with(&self.path, importing).ok()?;
+        let imported = self.input.scene(importing).ok()?;
         let nothing = compile::Options {
             max_bytes: Some(0),
             ..compiling.clone()
@@ -157,7 +176,7 @@ impl Source {
                 }
                 (None, _) => "build it again with `gridel build`",
             };
-            Failure::failed(format!("{}: {error}", self.path.display()), remedy)
+            Failure::failed(format!("{}: {error}", self.input.path().display()), remedy)
         })
     }
 
@@ -176,7 +195,7 @@ impl Source {
                 Err(Failure::usage(
                     format!(
                         "{} holds no structure {}, only: {}",
-                        self.path.display(),
+                        self.input.path().display(),
                         structure.name(),
                         held.join(", ")
                     ),
@@ -198,7 +217,7 @@ impl Source {
             if left_out.count() > 0 {
                 warn(format!(
                     "{}: {} {why}, left out; `gridel build` names the first",
-                    self.path.display(),
+                    self.input.path().display(),
                     counted(left_out.count(), "primitive")
                 ));
             }
@@ -218,7 +237,7 @@ impl Source {
                 |it: &Unresolved| it.formats.iter().any(|it| it.format == format.name());
             found.retain(is_coarse);
         }
-        let file = self.path.display();
+        let file = self.input.path().display();
         for it in found.iter().take(NAMED) {
             let name = self.names.objects.get(it.object as usize);
             let name = name.map_or(String::new(), |name| format!(" `{name}`"));
@@ -262,7 +281,12 @@ fn far_moved(report: &compile::Report, lattice_bits: u8) -> Option<String> {
 
 /// Reads a scene file, warns of what its importer passed over, and changes what was asked for.
 pub fn import(path: &Path, options: &SceneOptions) -> Result<Imported, Failure> {
-    if is_blob(path)? {
+    import_from(&Input::open(path)?, options)
+}
+
+fn import_from(input: &Input, options: &SceneOptions) -> Result<Imported, Failure> {
+    let path = input.path();
+    if input.is_blob()? {
         return Err(Failure::failed(
             format!("{} is a blob already, not a scene file", path.display()),
             "give the scene file that it was built from; `gridel inspect` and `gridel render` take \
@@ -271,7 +295,7 @@ pub fn import(path: &Path, options: &SceneOptions) -> Result<Imported, Failure> 
     }
     let importing = &options.geometry.import;
     let progress = Progress::unknown("reading");
-    let imported = scene::load_with(path, &importing.for_import());
+    let imported = input.scene(&importing.for_import());
     drop(progress);
     let mut imported = imported.map_err(|error| Failure::Failed(miette::Report::new(error)))?;
     if let Some(option) = importing.molecule.given().filter(|_| !imported.molecules) {
@@ -286,6 +310,7 @@ pub fn import(path: &Path, options: &SceneOptions) -> Result<Imported, Failure> 
     if let Some(cutoff) = options.cutoff {
         imported.scene.render.cutoff = cutoff;
     }
+    options.view.apply(&mut imported.scene)?;
     Ok(imported)
 }
 
@@ -295,8 +320,4 @@ fn names(scene: &scene::Scene) -> Names {
         objects: scene.objects.iter().map(|o| o.name.clone()).collect(),
         materials: scene.objects.iter().map(material).collect(),
     }
-}
-
-fn is_blob(path: &Path) -> Result<bool, Failure> {
-    blob::is_blob(path).map_err(|error| Failure::reading(path, &error))
 }

@@ -2,7 +2,8 @@
 
 use super::arguments::{self, GeometryOptions, TraceOptions};
 use super::failure::Failure;
-use super::output::{check_extension, print, print_json_warned, prove, refuse_same, write_file};
+use super::input::{is_standard, standard_input};
+use super::output::{Warned, check_extension, json, print_about, prove, refuse_same, write_file};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
@@ -33,15 +34,15 @@ use std::time::Instant;
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
-    /// Blob or scene file
+    /// Blob or scene file, or `-` for standard input
     #[arg(value_name = "BLOB|SCENE")]
     input: PathBuf,
 
-    /// Rays to trace, a NumPy file
+    /// Rays to trace, a NumPy file, or `-` for standard input
     #[arg(long, value_name = "RAYS.npy")]
     rays: PathBuf,
 
-    /// Hits to write, a NumPy file
+    /// Hits to write, a NumPy file; with `-` they go to standard output, and the counts to standard error
     #[arg(short, long, value_name = "HITS.npy")]
     output: PathBuf,
 
@@ -116,6 +117,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     refuse_same(&arguments.rays, &arguments.output)?;
     check_extension(&arguments.output, &["npy"], "hits")?;
     prove(&arguments.output)?;
+    if is_standard(&arguments.input) && is_standard(&arguments.rays) {
+        return Err(Failure::usage(
+            "scene and rays are both to come from standard input",
+            "name a file for one of them",
+        ));
+    }
     let options = arguments.geometry.clone().into();
     let source = Source::to_trace(&arguments.input, &options, &arguments.with, Structure::Wide)?;
     let scene = source.scene()?;
@@ -197,14 +204,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             objects: counters.objects,
         }),
     };
-    if arguments.json {
-        print_json_warned(&traced, &source.warnings)
-    } else {
-        print(traced.text(&arguments.output))
-    }
+    let report = match arguments.json {
+        true => json(&Warned {
+            value: &traced,
+            warnings: &source.warnings,
+        })?,
+        false => traced.text(&arguments.output),
+    };
+    print_about(&arguments.output, report)
 }
 
 fn read(path: &Path) -> Result<Vec<SceneRay>, Failure> {
+    if is_standard(path) {
+        let rays = read_rays(&standard_input()?);
+        return rays.map_err(|error| Failure::in_file(Path::new("<stdin>"), error));
+    }
     let bytes = std::fs::metadata(path)
         .and_then(|metadata| match metadata.is_file() {
             true => std::fs::read(path),

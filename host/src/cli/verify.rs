@@ -33,7 +33,7 @@ use std::path::PathBuf;
 #[derive(Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub struct Arguments {
-    /// Blob or scene file
+    /// Blob or scene file, or `-` for standard input
     #[arg(value_name = "BLOB|SCENE")]
     input: PathBuf,
 

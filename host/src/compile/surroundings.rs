@@ -1,6 +1,7 @@
 //! Camera, lights and materials as records, and the effects that they call for.
 
 use super::CompileError;
+use super::framing::{BACKGROUND, framing};
 use super::lattice::Lattice;
 use crate::scene::{Camera, Color, Diffuse, Light, Material, Scene, Shape};
 use glam::DVec3;
@@ -36,7 +37,11 @@ impl Surroundings {
         let mut supplied = Vec::new();
         let camera = scene.camera.unwrap_or_else(|| {
             supplied.push(String::from("a camera that shows the whole scene"));
-            framing(lowest, highest)
+            framing(scene, None)
+        });
+        let background = scene.background.unwrap_or(match scene.camera {
+            Some(_) => [0.0; 3],
+            None => BACKGROUND,
         });
         let (mut lights, mut ambient) = (scene.lights.clone(), scene.ambient);
         if lights.is_empty() && ambient == [0.0; 3] {
@@ -51,6 +56,9 @@ impl Surroundings {
                 color: [1.0 - AMBIENT; 3],
             });
             ambient = [AMBIENT; 3];
+        }
+        if scene.camera.is_none() && scene.background.is_none() {
+            supplied.push(String::from("a light background"));
         }
         let size = (highest - lowest).max_element();
         let far = |what: String, point: DVec3| -> Result<[i64; 3], CompileError> {
@@ -109,7 +117,7 @@ impl Surroundings {
             .collect::<Result<_, _>>()?;
         let view = view_record(
             scene,
-            ambient,
+            [background, ambient],
             &camera,
             far(String::from("camera"), camera.eye)?,
         );
@@ -122,28 +130,6 @@ impl Surroundings {
             called_for,
             supplied,
         })
-    }
-}
-
-/// A camera that shows a box from above its front right corner.
-fn framing(lowest: DVec3, highest: DVec3) -> Camera {
-    let target = (lowest + highest) * 0.5;
-    let diagonal = highest - lowest;
-    let longest = diagonal.max_element();
-    // A scene without extent is seen from as far as it lies from the origin.
-    let radius = if longest > 0.0 {
-        0.5 * longest * (diagonal / longest).length()
-    } else {
-        target.abs().max_element().max(1.0)
-    };
-    let fov_degrees: f64 = 40.0;
-    let distance = radius / (fov_degrees.to_radians() * 0.5).sin();
-    let eye = target + DVec3::new(0.45, 0.35, 1.0).normalize() * distance;
-    Camera {
-        eye,
-        target,
-        up: DVec3::Y,
-        fov_degrees,
     }
 }
 
@@ -202,7 +188,12 @@ fn unit(v: DVec3) -> DVec3 {
 }
 
 /// Vectors of the picture's frame, scaled so that their largest component has 28 bits.
-fn view_record(scene: &Scene, ambient: Color, camera: &Camera, eye: [i64; 3]) -> record::View {
+fn view_record(
+    scene: &Scene,
+    [background, ambient]: [Color; 2],
+    camera: &Camera,
+    eye: [i64; 3],
+) -> record::View {
     let forward = unit(camera.target - camera.eye);
     let right = unit(forward.cross(unit(camera.up)));
     let half = (camera.fov_degrees.to_radians() * 0.5).tan();
@@ -219,7 +210,7 @@ fn view_record(scene: &Scene, ambient: Color, camera: &Camera, eye: [i64; 3]) ->
         forward,
         right,
         up,
-        background: radiance(scene.background),
+        background: radiance(background),
         ambient: radiance(ambient),
         cutoff: radiance([render.cutoff; 3])[0],
         width: render.width.clamp(1, u16::MAX.into()) as u16,

@@ -78,7 +78,7 @@ fn lit(scene: Scene, points: &[DVec3], margin: f64) -> Scene {
             up: DVec3::Z,
             fov_degrees,
         }),
-        background: [0.05, 0.06, 0.08],
+        background: Some([0.05, 0.06, 0.08]),
         ambient: [0.15; 3],
         lights: vec![
             Light::Directional {

@@ -33,7 +33,7 @@ const FILES: [(&str, Expected); 64] = [
     ("biopython_occupancy.pdb", Read(3, &[])),
     ("box_without_lineending.obj", Read(1, &[UNDEFINED])),
     ("count-line-too-short.sdf", Rejected(NO_FORMAT)),
-    ("count_mismatch.xyz", Rejected(NO_FORMAT)),
+    ("count_mismatch.xyz", Rejected(":1: the file ends behind 4 of the 8 atoms of a frame")),
     ("crystal-maker.pdb", Read(8, &[])),
     ("cube-vertex-w-component.obj", Read(6, &[NO_MATERIALS, UNDEFINED, UNDEFINED, UNDEFINED])),
     ("empty.ply", Rejected(NO_FACES)),
@@ -43,7 +43,7 @@ const FILES: [(&str, Expected); 64] = [
     ("insertion-code.pdb", Read(4, &["\"A\" is unknown"])),
     ("insertion_codes.pdb", Read(6, &[])),
     ("invalid-face-definition.obj", Rejected("the file has no faces")),
-    ("invalid.off", Rejected(NO_FORMAT)),
+    ("invalid.off", Rejected(":7: face 1 (from 0) uses vertex 20, and there are 3 vertices")),
     ("invalid_magic.glb", Rejected("it begins with the bytes 00 00 00 00, not with `glTF`")),
     ("invalid_syntax.gltf", Rejected(":1: the JSON is broken: key must be a string")),
     ("issue-140-zero-face-idx.obj", Rejected(":16: a face has the vertex index 0")),
@@ -87,7 +87,7 @@ const FILES: [(&str, Expected); 64] = [
     ("gltf-validator/two_bin_chunks.glb.report.json", Rejected(NO_FORMAT)),
     ("gltf-validator/wrong_bytelength.glb.report.json", Rejected(NO_FORMAT)),
     // The folder of the files before.
-    ("gltf-validator", Rejected(NO_FORMAT)),
+    ("gltf-validator", Rejected("cannot be read: it is not a file")),
 ];
 
 #[test]

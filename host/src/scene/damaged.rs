@@ -1,7 +1,7 @@
 //! Damaged scene files: whatever is cut off or overwritten, an importer answers with a scene that
 //! holds together or with an error that says what to do, and does so at once.
 
-use super::{MoleculeOptions, MoleculeStyle, Scene, Shape, load, test_scenes};
+use super::{IMPORTERS, Importer, MoleculeOptions, MoleculeStyle, Scene, Shape, load, test_scenes};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -120,6 +120,28 @@ fn damaged_files() {
     damage("glb", &binary, binary.len(), 3000);
 }
 
+/// Formats whose files are never empty; what becomes of damaged TOML, its own tests say.
+fn damageable() -> impl Iterator<Item = &'static Importer> {
+    IMPORTERS.iter().filter(|it| it.name != "TOML")
+}
+
+#[test]
+fn damaged_examples_of_every_format() {
+    for importer in damageable() {
+        let text = importer.example.as_bytes();
+        damage(importer.extensions[0], text, text.len(), 500);
+    }
+}
+
+#[test]
+fn damaged_gzipped_files() {
+    for importer in damageable() {
+        let bytes = test_scenes::gzipped(importer.example.as_bytes());
+        let extension = format!("{}.gz", importer.extensions[0]);
+        damage(&extension, &bytes, bytes.len(), 100);
+    }
+}
+
 #[test]
 fn bad_files_of_other_projects() {
     let Some(folder) = test_scenes::find("bad") else {
@@ -128,7 +150,10 @@ fn bad_files_of_other_projects() {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-        if ["obj", "gltf", "glb", "nff", "pdb", "stl", "ply"].contains(&extension) {
+        if IMPORTERS
+            .iter()
+            .any(|it| it.extensions.contains(&extension))
+        {
             damage(extension, &std::fs::read(&path).unwrap(), 100, 100);
         }
     }

@@ -11,25 +11,38 @@ mod bad;
 #[cfg(test)]
 mod damaged;
 mod error;
-mod gltf;
+mod gzip;
+mod importer;
 pub(crate) mod molecule;
-mod nff;
-mod obj;
-mod ply;
 mod polygon;
 mod size;
-mod stl;
 #[cfg(test)]
 mod test_scenes;
 mod text;
-pub mod toml;
+mod words;
 
 pub use error::SceneError;
+pub use importer::{Importer, extensions};
+pub use size::MOST_INPUT;
 
 use access::Access;
 use glam::DVec3;
+use importer::Input;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+importer::formats! {
+    pub mod toml;
+    mod obj;
+    mod gltf;
+    mod stl;
+    mod ply;
+    mod off;
+    mod nff;
+    mod pdb;
+    mod mmcif;
+    mod xyz;
+}
 
 /// A linear RGB colour; components at or above 0, 1.0 being display white.
 pub type Color = [f64; 3];
@@ -37,10 +50,14 @@ pub type Color = [f64; 3];
 /// Everything a scene file says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Where the picture is taken from; without one the compiler frames the scene's bounds.
+    /// Where the picture is taken from; without one [the compiler frames](fn@crate::compile::framing) the
+    /// scene's bounds.
     pub camera: Option<Camera>,
-    /// What a ray that meets nothing sees.
-    pub background: Color,
+    /// Which way is up, for that frame.
+    pub up: Up,
+    /// What a ray that meets nothing sees; without one it is black, or light if there is no camera
+    /// either.
+    pub background: Option<Color>,
     /// Whether colours and lights are display values, which are added up and shown as they are: what
     /// ray tracers did before pictures were encoded. Linear without.
     pub display_values: bool,
@@ -56,6 +73,23 @@ pub struct Scene {
     pub render: RenderSettings,
 }
 
+/// Which axis points up, where a scene has no camera that says so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Up {
+    Y,
+    Z,
+}
+
+impl Up {
+    /// The axis.
+    pub fn vector(self) -> DVec3 {
+        match self {
+            Self::Y => DVec3::Y,
+            Self::Z => DVec3::Z,
+        }
+    }
+}
+
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -66,6 +100,13 @@ pub struct Camera {
     pub up: DVec3,
     /// Full vertical field of view in degrees, in (0, 180).
     pub fov_degrees: f64,
+}
+
+impl Camera {
+    /// Whether the camera looks along `up`, or one of both has no length.
+    pub fn is_along_up(&self) -> bool {
+        toml::parallel(self.target - self.eye, self.up)
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -205,7 +246,8 @@ impl Default for Scene {
     fn default() -> Self {
         Self {
             camera: None,
-            background: [0.0; 3],
+            up: Up::Y,
+            background: None,
             display_values: false,
             ambient: [0.0; 3],
             lights: Vec::new(),
@@ -264,11 +306,11 @@ pub struct ImportOptions {
     pub allow_outside: bool,
 }
 
-/// Reads a scene file; its extension says which format it is in. It may only name files in its own
-/// folder and below: see [`load_with`].
+/// Reads a scene file; its extension says which format it is in, its content if it has none. It may
+/// only name files in its own folder and below: see [`load_with`].
 ///
 /// # Errors
-/// If the file cannot be read, its extension is unknown, or its content is broken.
+/// If the file cannot be read, its format is unknown, or its content is broken.
 pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneError> {
     load_with(
         path,
@@ -279,41 +321,27 @@ pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneEr
     )
 }
 
-/// Reads a scene file; its extension says which format it is in.
+/// Reads a scene file; its extension says which format it is in, its content if it has none. The file
+/// may be gzipped.
 ///
 /// # Errors
-/// If the file cannot be read, its extension is unknown, its content is broken, or it names a file
+/// If the file cannot be read, its format is unknown, its content is broken, or it names a file
 /// outside of its folder and may not.
 pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, SceneError> {
     let access = Access::of(path, options.allow_outside);
-    load_within(path, &options.molecule, &access)
+    let (importer, input) = Input::open(path, &options.molecule, &access)?;
+    importer.import(input)
 }
 
-/// Reads a scene file as a part of the scene that has this access.
-fn load_within(
-    path: &Path,
-    molecule: &MoleculeOptions,
-    access: &Access,
-) -> Result<Imported, SceneError> {
-    let extension = path
-        .extension()
-        .and_then(|e| e.to_str())
-        .unwrap_or("")
-        .to_ascii_lowercase();
-    match extension.as_str() {
-        "toml" => toml::load(path, molecule, access),
-        "obj" => obj::load(path, access),
-        "gltf" | "glb" => gltf::load(path, access),
-        "stl" => stl::load(path),
-        "ply" => ply::load(path),
-        "nff" => nff::load(path),
-        "pdb" | "ent" | "cif" | "mmcif" => molecule::load(path, molecule),
-        _ => Err(SceneError::new(
-            path,
-            format!("the extension {extension:?} names no scene format"),
-            "use .toml, .obj, .gltf, .glb, .stl, .ply, .nff, .pdb, .ent, .cif or .mmcif",
-        )),
-    }
+/// Reads a scene from bytes as [`load_with`] reads a file of this name, which need not exist. Files
+/// that the scene names lie beside it: for a name without a folder in the current folder.
+///
+/// # Errors
+/// As [`load_with`].
+pub fn read(name: &Path, bytes: Vec<u8>, options: &ImportOptions) -> Result<Imported, SceneError> {
+    let access = Access::of(name, options.allow_outside);
+    let (importer, input) = Input::new(name, bytes, &options.molecule, &access)?;
+    importer.import(input)
 }
 
 /// A place in a scene file, for messages.

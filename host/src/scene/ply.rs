@@ -4,21 +4,36 @@
 //! strip) into theirs. Colours, normals, textures and elements of other names are ignored, with a
 //! warning each.
 
+use super::importer::{Importer, Input, stem};
 use super::polygon::{self, MAX_CONCAVE};
-use super::text::{Warnings, check_encoding, read_file};
-use super::{Imported, Material, Object, Place, Scene, SceneError, Shape};
+use super::text::{Warnings, check_encoding};
+use super::{Imported, Material, Object, Place, Scene, SceneError, Shape, Up};
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyAccessResult};
 use std::path::Path;
 
+pub(super) const IMPORTER: Importer = Importer {
+    name: "PLY",
+    about: "the Stanford scans' meshes",
+    extensions: &["ply"],
+    // The format says nothing; the Stanford scans stand along y.
+    up: Up::Y,
+    binary: true,
+    example: "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+              property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+              0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+    recognizes: |bytes| bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r"),
+    read,
+};
+
 /// Reads a PLY file. It has no camera and no lights; the compiler adds them.
 ///
 /// # Errors
-/// If the file cannot be read, has no faces, or its content is broken; the error names the line
-/// where there are lines, else the vertex or the face.
-pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
-    let bytes = read_file(path)?;
+/// If the file has no faces, or its content is broken; the error names the line where there are lines,
+/// else the vertex or the face.
+fn read(input: Input<'_>) -> Result<Imported, SceneError> {
+    let Input { path, bytes, .. } = input;
     check_encoding(path, &bytes)?;
     let broken = |error: ParseError| {
         let cause = error.to_string();
@@ -73,7 +88,7 @@ pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
     let scene = Scene {
         materials: vec![Material::default()],
         objects: vec![Object {
-            name: path.file_stem().unwrap_or_default().display().to_string(),
+            name: stem(path),
             material: 0,
             shape,
             place: Place::of(path),

@@ -7,8 +7,9 @@
 //! triangles meet without a gap. Normals are passed over, since the order of the corners says the
 //! same, and so are the colours that some programs put into binary files, with a warning.
 
-use super::text::{Source, Warnings, check_encoding, read_file};
-use super::{Imported, Material, Object, Place, Scene, SceneError, Shape};
+use super::importer::{Importer, Input, stem};
+use super::text::{Source, Warnings, check_encoding};
+use super::{Imported, Material, Object, Place, Scene, SceneError, Shape, Up};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::path::Path;
@@ -18,30 +19,53 @@ const HEAD: usize = 84;
 /// Bytes of a triangle: normal, three corners, attributes.
 const TRIANGLE: usize = 50;
 
+pub(super) const IMPORTER: Importer = Importer {
+    name: "STL",
+    about: "triangles, as printers and CAD programs use them",
+    extensions: &["stl"],
+    // The format says nothing; CAD programs and printers have the plate in x and y.
+    up: Up::Z,
+    binary: true,
+    example: "solid tip\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
+              endloop\nendfacet\nendsolid tip\n",
+    recognizes: |bytes| {
+        is_text(bytes) || announced(bytes).is_some_and(|it| length(it) == bytes.len() as u64)
+    },
+    read,
+};
+
+/// The number of triangles that a binary file states.
+fn announced(bytes: &[u8]) -> Option<u32> {
+    let count = bytes.get(HEAD - 4..HEAD)?.first_chunk()?;
+    Some(u32::from_le_bytes(*count))
+}
+
+/// How many bytes a binary file of so many triangles has.
+fn length(triangles: u32) -> u64 {
+    HEAD as u64 + TRIANGLE as u64 * u64::from(triangles)
+}
+
+fn is_text(bytes: &[u8]) -> bool {
+    let head = bytes.trim_ascii_start().get(..5);
+    head.is_some_and(|it| it.eq_ignore_ascii_case(b"solid"))
+}
+
 /// Reads an STL file. It has no camera and no lights; the compiler adds them.
 ///
 /// # Errors
-/// If the file cannot be read, is cut off, has no triangles, or its content is broken; the error
-/// names the line or the triangle.
-pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
-    let bytes = read_file(path)?;
+/// If the file is cut off, has no triangles, or its content is broken; the error names the line or the
+/// triangle.
+fn read(input: Input<'_>) -> Result<Imported, SceneError> {
+    let Input { path, bytes, .. } = input;
     // Binary files may begin with "solid" as well; their length tells.
-    let announced = bytes
-        .get(HEAD - 4..HEAD)
-        .and_then(|count| count.try_into().ok());
-    let announced = announced.map(u32::from_le_bytes);
-    let length = |count: u32| HEAD as u64 + TRIANGLE as u64 * u64::from(count);
+    let announced = announced(&bytes);
     let found = bytes.len() as u64;
-    let is_text = bytes
-        .trim_ascii_start()
-        .get(..5)
-        .is_some_and(|it| it.eq_ignore_ascii_case(b"solid"));
     if announced.is_none_or(|count| length(count) != found) {
         check_encoding(path, &bytes)?;
     }
     match announced {
         Some(count) if length(count) == found => binary(path, &bytes, Warnings::default()),
-        _ if is_text => text(&Source::from_bytes(path, &bytes)),
+        _ if is_text(&bytes) => text(&Source::from_bytes(path, bytes)),
         Some(count) if length(count) < found => {
             let more = found - length(count);
             let mut warnings = Warnings::default();
@@ -66,10 +90,7 @@ pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
 }
 
 fn binary(path: &Path, bytes: &[u8], mut warnings: Warnings) -> Result<Imported, SceneError> {
-    let announced = bytes
-        .get(HEAD - 4..HEAD)
-        .and_then(|count| count.try_into().ok());
-    let count = u32::from_le_bytes(announced.unwrap_or_default()) as usize;
+    let count = announced(bytes).unwrap_or_default() as usize;
     let mut soup = Soup::default();
     let mut coloured = 0;
     for (number, triangle) in bytes[HEAD..].chunks_exact(TRIANGLE).take(count).enumerate() {
@@ -97,9 +118,10 @@ fn binary(path: &Path, bytes: &[u8], mut warnings: Warnings) -> Result<Imported,
                         ignored; the surface has one colour";
         warnings.add_times(Place::of(path), coloured, sentence);
     }
-    let name = path.file_stem().unwrap_or_default().display().to_string();
-    let place = Place::of(path);
-    let objects = soup.object(name, place).into_iter().collect();
+    let objects = soup
+        .object(stem(path), Place::of(path))
+        .into_iter()
+        .collect();
     scene(path, objects, warnings.into_sentences())
 }
 

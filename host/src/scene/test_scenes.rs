@@ -1,8 +1,11 @@
-//! What the tests of all importers ask for: real scene files, which are not in the repository because
-//! of their size or licence, and the meshes that came of a file.
+//! What the tests of all importers use: scenes from bytes and files, real scene files, which are not in
+//! the repository because of their size or licence, and the meshes that came of a file.
 
-use super::{Object, Shape};
+use super::{ImportOptions, Imported, Object, SceneError, Shape};
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use glam::DVec3;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// A file below the folder that the environment variable `GRIDEL_SCENES` names, or else below
@@ -21,6 +24,32 @@ pub(super) fn find(name: &str) -> Option<PathBuf> {
         return None;
     }
     Some(path)
+}
+
+/// Reads a scene from the bytes of a file of this name.
+pub(super) fn read(name: &str, bytes: impl Into<Vec<u8>>) -> Result<Imported, SceneError> {
+    super::read(Path::new(name), bytes.into(), &ImportOptions::default())
+}
+
+/// The bytes, gzipped.
+pub(super) fn gzipped(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
+    encoder.write_all(bytes).unwrap();
+    encoder.finish().unwrap()
+}
+
+/// Reads a file that may name files of its own folder alone.
+pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
+    super::load_with(path, &ImportOptions::default())
+}
+
+/// Reads a file that may name any file.
+pub(super) fn load_allowing_outside(path: &Path) -> Result<Imported, SceneError> {
+    let options = ImportOptions {
+        allow_outside: true,
+        ..ImportOptions::default()
+    };
+    super::load_with(path, &options)
 }
 
 /// The vertices and triangles of an object that must be a mesh.

@@ -1,9 +1,10 @@
 //! Text files as the importers read them: words that know their place, finite numbers, and
 //! warnings that do not flood.
 
-use super::{Place, SceneError};
+use super::{Place, SceneError, gzip};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::string::FromUtf8Error;
 use std::sync::Arc;
 
 /// A text file in memory. Bytes that are not UTF-8 become U+FFFD: harmless in a comment or a
@@ -15,13 +16,14 @@ pub(super) struct Source {
 
 impl Source {
     pub(super) fn read(path: &Path) -> Result<Self, SceneError> {
-        let bytes = read_file(path)?;
+        let bytes = gzip::inflate(path, read_file(path)?)?;
         check_encoding(path, &bytes)?;
-        Ok(Self::from_bytes(path, &bytes))
+        Ok(Self::from_bytes(path, bytes))
     }
 
-    pub(super) fn from_bytes(path: &Path, bytes: &[u8]) -> Self {
-        let mut text = String::from_utf8_lossy(bytes).into_owned();
+    pub(super) fn from_bytes(path: &Path, bytes: Vec<u8>) -> Self {
+        let lossy = |error: FromUtf8Error| String::from_utf8_lossy(error.as_bytes()).into_owned();
+        let mut text = String::from_utf8(bytes).unwrap_or_else(lossy);
         if text.starts_with('\u{feff}') {
             text.remove(0);
         }
@@ -172,7 +174,7 @@ mod tests {
 
     #[test]
     fn an_error_underlines_the_word_and_names_its_line() {
-        let source = Source::from_bytes(Path::new("a.nff"), b"one\ntwo nan\n");
+        let source = Source::from_bytes(Path::new("a.nff"), b"one\ntwo nan\n".to_vec());
         let word = source.lines().nth(1).map(|(_, line)| &line[4..]).unwrap();
         let error = source.number(word, "the radius").unwrap_err();
         assert_eq!(
@@ -223,7 +225,7 @@ mod tests {
             b"a\rb\rc",
             b"\xef\xbb\xbfa\nb\nc",
         ] {
-            let source = Source::from_bytes(Path::new("a"), bytes);
+            let source = Source::from_bytes(Path::new("a"), bytes.to_vec());
             let lines: Vec<_> = source.lines().collect();
             assert_eq!(lines, [(1, "a"), (2, "b"), (3, "c")]);
         }
@@ -231,7 +233,7 @@ mod tests {
 
     #[test]
     fn equal_warnings_are_counted() {
-        let source = Source::from_bytes(Path::new("a.obj"), b"");
+        let source = Source::from_bytes(Path::new("a.obj"), Vec::new());
         let mut warnings = Warnings::default();
         for line in [3, 5, 9] {
             warnings.add(&source, line, "a face is skipped");

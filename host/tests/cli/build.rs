@@ -123,7 +123,7 @@ fn the_lattice_is_that_asked_for_and_its_losses_are_named() {
     let fine = folder.json(&build);
     assert_eq!(fine["collapsed"], json!([]));
     assert_eq!(fine["lattice_bits"], 24);
-    assert_eq!(fine["supplied"].as_array().unwrap().len(), 2);
+    assert_eq!(fine["supplied"].as_array().unwrap().len(), 3);
 
     let coarse = [&build[..], &["--lattice-bits", "10"]].concat();
     let report = folder.json(&coarse);
@@ -170,8 +170,8 @@ fn what_is_no_scene_is_told() {
     fails("blob.toml", &["is a blob already"]);
     fails("absent.toml", &["absent.toml cannot be read"]);
     fails(".", &["not a file"]);
-    folder.write("scene.xyz", b"");
-    fails("scene.xyz", &["xyz", ".toml, .obj"]);
+    folder.write("scene.fbx", b"");
+    fails("scene.fbx", &["fbx", ".toml, .obj"]);
     folder.write(
         "wrong.toml",
         b"[camera]\neye = [0, 0, 5]\ntraget = [0, 0, 0]\n",

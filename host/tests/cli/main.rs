@@ -12,6 +12,10 @@ mod import;
 mod inspect;
 mod merge;
 mod options;
+mod pipe;
 mod render;
 mod sample;
+#[cfg(feature = "shell")]
+mod shell;
 mod trace;
+mod view;

@@ -7,7 +7,7 @@ use gridel_host::blob::Blob;
 use gridel_host::trace::{Query, SceneHit, SceneRay, trace};
 
 /// A file of rays as `numpy.save` writes it.
-fn npy(element: &str, rows: &[[f64; 8]]) -> Vec<u8> {
+pub fn npy(element: &str, rows: &[[f64; 8]]) -> Vec<u8> {
     let shape = format!("({}, 8)", rows.len());
     let header = format!("{{'descr': '{element}', 'fortran_order': False, 'shape': {shape}, }}");
     let mut file = b"\x93NUMPY\x01\x00".to_vec();
@@ -24,7 +24,7 @@ fn npy(element: &str, rows: &[[f64; 8]]) -> Vec<u8> {
 }
 
 /// Rays through the scene from all around; all numbers are exact in single precision.
-fn rows(count: u32) -> Vec<[f64; 8]> {
+pub fn rows(count: u32) -> Vec<[f64; 8]> {
     let mut state = 1_u32;
     let mut random = || {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

@@ -7,12 +7,9 @@ use gridel_core::Structure;
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_host::npy::read_rays;
-use gridel_host::scene::{MoleculeOptions, Scene, Shape, load};
+use gridel_host::scene::{IMPORTERS, Importer, MoleculeOptions, Scene, Shape, load};
 use std::sync::OnceLock;
 use tempfile::TempDir;
-
-/// The formats that [`import`] reads, by extension.
-pub const IMPORTED: [&str; 8] = ["obj", "gltf", "glb", "stl", "ply", "nff", "pdb", "cif"];
 
 /// Primitives of a scene that is compiled; larger ones take long and tell no more.
 const MOST_PRIMITIVES: usize = 2000;
@@ -23,12 +20,24 @@ pub fn import(data: &[u8]) {
     let Some(end) = data.iter().position(|&byte| byte == b'\n') else {
         return;
     };
-    let extension = IMPORTED
-        .into_iter()
-        .find(|it| it.as_bytes() == &data[..end]);
-    if let Some(extension) = extension {
+    let mut extensions = IMPORTERS.iter().flat_map(|it| it.extensions);
+    if let Some(extension) = extensions.find(|it| it.as_bytes() == &data[..end]) {
         read(extension, &data[end + 1..]);
     }
+}
+
+/// What fuzzing of an importer starts from: the format's example, and what a corpus has in the format.
+pub fn seeds(importer: &Importer, corpus: &[Vec<u8>]) -> Vec<Vec<u8>> {
+    let is_in_format = |input: &&Vec<u8>| {
+        let mut extensions = importer.extensions.iter();
+        extensions.any(|it| input.starts_with(format!("{it}\n").as_bytes()))
+    };
+    let example = format!("{}\n{}", importer.extensions[0], importer.example);
+    let committed = corpus.iter().filter(is_in_format).cloned();
+    [example.into_bytes()]
+        .into_iter()
+        .chain(committed)
+        .collect()
 }
 
 /// Reads a scene file in TOML, compiles it and loads the blob.

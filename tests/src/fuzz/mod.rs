@@ -10,7 +10,7 @@ mod import;
 mod parts;
 
 pub use forge::Forger;
-pub use import::{IMPORTED, import, npy, toml};
+pub use import::{import, npy, seeds, toml};
 pub use parts::Base;
 
 use crate::query::{HitBits, UnitRay, held, through};

@@ -1,9 +1,10 @@
 //! The fuzz targets, a bounded number of times from their committed corpora: what libFuzzer runs
 //! without an end (see `tests/fuzz`).
 
+use gridel_host::scene::IMPORTERS;
 use gridel_tests::effort::part_of;
 use gridel_tests::fuzz::bounded::{corpus, run};
-use gridel_tests::fuzz::{blob, import, npy, toml};
+use gridel_tests::fuzz::{blob, import, npy, seeds, toml};
 use gridel_tests::scenes::fixture_folder;
 use std::path::{Path, PathBuf};
 
@@ -23,11 +24,10 @@ fn fuzzed_blobs_are_refused_or_answer_as_brute_force() {
 
 #[test]
 fn fuzzed_scene_files_are_refused_or_compile_and_load() {
-    run(
-        &corpus(&corpus_folder("import")),
-        part_of(4_000, 40_000),
-        import,
-    );
+    let corpus = corpus(&corpus_folder("import"));
+    for importer in IMPORTERS {
+        run(&seeds(importer, &corpus), part_of(500, 5_000), import);
+    }
 }
 
 #[test]

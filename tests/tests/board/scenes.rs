@@ -8,6 +8,7 @@ use gridel_host::compile::{self, Options};
 use gridel_host::render::{Job, render};
 use gridel_host::sample;
 use gridel_host::scene::{self, Camera, Light, Material, Object, Place, Scene, Shape};
+use gridel_tests::scenes::from_its_corner;
 use std::env;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -96,7 +97,8 @@ pub const SUZANNE: &str = "meshes/suzanne.obj";
 
 /// A protein of about as many atoms.
 pub fn protein() -> Compiled {
-    compile_with("3dqb", load(&real(PROTEIN)), [64, 64], small())
+    let scene = from_its_corner(load(&real(PROTEIN)));
+    compile_with("3dqb", scene, [64, 64], small())
 }
 
 /// A torus of 2,048 triangles, lit from the side on which it is seen.

@@ -2,6 +2,7 @@
 
 use crate::scene::Place;
 use crate::scene::SceneError;
+use crate::scene::importer::extension;
 use crate::scene::text::{Warnings, check_encoding};
 use std::path::Path;
 
@@ -38,10 +39,8 @@ pub(super) fn split<'b>(
         warnings.add_times(Place::of(path), 1, sentence);
     }
     let text = text.unwrap_or(bytes);
-    let binary = path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("glb"));
-    if binary && !text.trim_ascii_start().starts_with(b"{") {
+    let named_binary = extension(path).is_some_and(|it| it == "glb");
+    if named_binary && !text.trim_ascii_start().starts_with(b"{") {
         let magic: Vec<String> = bytes.iter().take(4).map(|b| format!("{b:02x}")).collect();
         return Err(SceneError::new(
             path,

@@ -12,10 +12,10 @@ mod document;
 mod material;
 mod view;
 
-use super::access::Access;
+use super::importer::{Importer as Entry, Input};
 use super::size::Size;
-use super::text::{Warnings, read_file};
-use super::{Imported, Object, Place, Scene, SceneError, Shape};
+use super::text::Warnings;
+use super::{Imported, Object, Place, Scene, SceneError, Shape, Up};
 use buffers::Buffers;
 use glam::{DMat4, DQuat, DVec3};
 use gltf::mesh::Mode;
@@ -31,15 +31,45 @@ const MOST_ELEMENTS: usize = 16 * MOST;
 /// Most vertices and triangles of a file, each instance counted: what a blob can hold.
 const MOST: usize = 1 << 24;
 
+pub(super) const IMPORTER: Entry = Entry {
+    name: "glTF",
+    about: "scenes of meshes, with materials, cameras and lights",
+    extensions: &["gltf", "glb"],
+    // GlTF 2.0, chapter 3.4.
+    up: Up::Y,
+    binary: true,
+    example: r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+"nodes": [{"name": "tip", "mesh": 0}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+"min": [0, 0, 0], "max": [1, 1, 0]}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}],
+"buffers": [{"byteLength": 36, "uri":
+"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}
+"#,
+    recognizes: |bytes| {
+        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        bytes.starts_with(b"glTF") || text.trim_ascii_start().starts_with(b"{")
+    },
+    read,
+};
+
 /// Reads a glTF file, and the buffers it names, which lie beside it. Where it has no camera or no
 /// lights, the compiler adds them.
 ///
 /// # Errors
-/// If the file or a buffer cannot be read, a required extension is not understood, or the content
-/// is broken; the error names the line of broken JSON, else the element.
-pub(super) fn load(path: &Path, access: &Access) -> Result<Imported, SceneError> {
+/// If a buffer cannot be read, a required extension is not understood, or the content is broken; the
+/// error names the line of broken JSON, else the element.
+fn read(input: Input<'_>) -> Result<Imported, SceneError> {
+    let Input {
+        path,
+        bytes,
+        access,
+        ..
+    } = input;
     let mut warnings = Warnings::default();
-    let (document, blob) = document::read(path, &read_file(path)?, &mut warnings)?;
+    let (document, blob) = document::read(path, &bytes, &mut warnings)?;
+    drop(bytes);
     let mut importer = Importer {
         path,
         place: Place::of(path),

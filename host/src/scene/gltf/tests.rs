@@ -1,5 +1,6 @@
 use super::*;
-use crate::scene::{Camera, Diffuse, Light, Material, test_scenes, test_scenes::mesh};
+use crate::scene::test_scenes::{self, load, load_allowing_outside, mesh};
+use crate::scene::{Camera, Diffuse, Light, Material};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
@@ -66,11 +67,6 @@ pub(in crate::scene) fn binary() -> Vec<u8> {
         file.extend(bytes);
     }
     file
-}
-
-/// Loads a file that may name files of its own folder alone.
-fn load(path: &Path) -> Result<Imported, SceneError> {
-    super::load(path, &Access::of(path, false))
 }
 
 fn read(bytes: &[u8]) -> Result<Imported, SceneError> {
@@ -622,7 +618,7 @@ fn buffers_outside_of_the_folder_are_rejected() {
         &format!("file://{absolute}"),
     ] {
         write(uri);
-        let imported = super::load(&path, &Access::of(&path, true));
+        let imported = load_allowing_outside(&path);
         assert_eq!(imported.unwrap().scene.objects.len(), 1, "{uri}");
     }
     for uri in ["near.bin", "./near.bin", "%6eear.bin"] {

@@ -24,6 +24,13 @@ impl Element {
         u8::try_from(index).ok().map(Self)
     }
 
+    /// Finds an element by its atomic number.
+    pub(crate) fn from_number(number: u8) -> Option<Self> {
+        (1..ELEMENTS.len())
+            .contains(&number.into())
+            .then_some(Self(number))
+    }
+
     /// The symbol, such as `Fe`; `X` for what is unknown.
     pub(crate) fn symbol(self) -> &'static str {
         ELEMENTS[usize::from(self.0)].0
@@ -208,6 +215,15 @@ mod tests {
                 Some(Element(number)),
                 "{symbol}"
             );
+        }
+    }
+
+    #[test]
+    fn atomic_numbers_end_with_the_table() {
+        assert_eq!(Element::from_number(1), Some(Element::HYDROGEN));
+        assert_eq!(Element::from_number(109).map(Element::symbol), Some("Mt"));
+        for nothing in [0, 110, 255] {
+            assert_eq!(Element::from_number(nothing), None);
         }
     }
 

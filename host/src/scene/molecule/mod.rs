@@ -1,4 +1,4 @@
-//! Reads molecules from PDB and mmCIF files. Scene units are angstroms.
+//! Molecules, as the importers of their formats read them. Scene units are angstroms.
 //!
 //! Atoms are spheres of their van der Waals radius, or small spheres joined by sticks. Every atom
 //! is one object, in file order, named like `A/CYS 3/CA`; hydrogens and waters are included.
@@ -10,23 +10,20 @@
 //! neither CONECT nor struct_conn, and knows no lines for mmCIF.
 
 mod bonds;
-mod cif;
 mod draw;
 mod element;
-mod mmcif;
-mod pdb;
 mod select;
 
 pub(crate) use bonds::perceive;
 pub(crate) use draw::{BoundingSphere, draw};
 pub(crate) use element::Element;
 
+use super::importer::Input;
 use super::size::Size;
 use super::text::{Source, Warnings};
-use super::{Imported, MoleculeOptions, MoleculeStyle, Scene, SceneError};
+use super::{Imported, MoleculeStyle, Scene, SceneError};
 use glam::DVec3;
 use std::collections::{HashMap, HashSet};
-use std::path::Path;
 
 /// An element at a position in angstroms.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,19 +33,19 @@ pub(crate) struct Site {
 }
 
 /// An atom as the file has it; what it does not say is empty.
-struct Atom<'a> {
-    site: Site,
-    line: usize,
+pub(super) struct Atom<'a> {
+    pub(super) site: Site,
+    pub(super) line: usize,
     /// Index of its model in the file, counted from 0.
-    model: usize,
-    serial: &'a str,
-    name: &'a str,
-    altloc: &'a str,
-    chain: &'a str,
-    residue: &'a str,
+    pub(super) model: usize,
+    pub(super) serial: &'a str,
+    pub(super) name: &'a str,
+    pub(super) altloc: &'a str,
+    pub(super) chain: &'a str,
+    pub(super) residue: &'a str,
     /// Number of the residue in its chain, and the code of residues inserted after it.
-    number: &'a str,
-    insertion: &'a str,
+    pub(super) number: &'a str,
+    pub(super) insertion: &'a str,
 }
 
 impl<'a> Atom<'a> {
@@ -77,56 +74,52 @@ impl<'a> Atom<'a> {
 
 /// One end of a bond that the file states.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
-enum End<'a> {
+pub(super) enum End<'a> {
     /// An atom's serial number, in PDB.
     Serial(&'a str),
     /// Chain, residue number, insertion code and atom name, in mmCIF.
     Name([&'a str; 4]),
 }
 
+/// One of the models of a file.
+pub(super) struct Model<'a> {
+    /// The number that the file gives it; empty where files do not number them.
+    pub(super) number: &'a str,
+    pub(super) line: usize,
+}
+
 /// What a file says, before one model and one set of alternate locations is chosen.
 #[derive(Default)]
-struct Parsed<'a> {
-    atoms: Vec<Atom<'a>>,
-    /// The numbers that the file gives to its models, in file order.
-    models: Vec<&'a str>,
+pub(super) struct Parsed<'a> {
+    pub(super) atoms: Vec<Atom<'a>>,
+    /// In file order.
+    pub(super) models: Vec<Model<'a>>,
     /// The ends of each, and its line.
-    bonds: Vec<(usize, [End<'a>; 2])>,
+    pub(super) bonds: Vec<(usize, [End<'a>; 2])>,
 }
 
-/// Reads a PDB (`.pdb`, `.ent`) or mmCIF (`.cif`, `.mmcif`) file.
+/// Makes a scene of what `parse` reads from a file.
 ///
 /// # Errors
-/// If the file cannot be read, has no atoms, its content is broken (the error names the line), or
-/// it lacks the model or the alternate location asked for.
-pub(super) fn load(path: &Path, options: &MoleculeOptions) -> Result<Imported, SceneError> {
-    import(&Source::read(path)?, options)
-}
-
-fn import(source: &Source, options: &MoleculeOptions) -> Result<Imported, SceneError> {
+/// If the file has no atoms, its content is broken (the error names the line), or it lacks the model or
+/// the alternate location asked for.
+pub(super) fn import(
+    input: Input<'_>,
+    parse: impl for<'a> Fn(&'a Source, &mut Warnings) -> Result<Parsed<'a>, SceneError>,
+) -> Result<Imported, SceneError> {
+    let options = input.molecule;
+    let source = &input.into_source()?;
     let mut warnings = Warnings::default();
-    let extension = source
-        .path
-        .extension()
-        .and_then(|e| e.to_str())
-        .unwrap_or("")
-        .to_ascii_lowercase();
-    let parsed = match extension.as_str() {
-        "cif" | "mmcif" => mmcif::parse(source, &mut warnings)?,
-        _ => pdb::parse(source, &mut warnings)?,
-    };
+    let parsed = parse(source, &mut warnings)?;
     let atoms = select::select(source, &parsed, options)?;
     if parsed.models.len() > 1 {
-        let other = parsed
-            .atoms
-            .iter()
-            .find(|atom| atom.model + 1 != options.model);
+        let other = usize::from(options.model == 1);
         let sentence = format!(
             "the file has {} models, of which model {} is drawn; `--model N` chooses another",
             parsed.models.len(),
             options.model
         );
-        warnings.add(source, other.map_or(0, |atom| atom.line), sentence);
+        warnings.add(source, parsed.models[other].line, sentence);
     }
     missing_ends(source, &parsed, &mut warnings);
     let bonds = match options.style {

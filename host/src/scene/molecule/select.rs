@@ -1,6 +1,6 @@
 //! Chooses one model and one alternate location of each residue.
 
-use super::{Atom, Parsed};
+use super::{Atom, Model, Parsed};
 use crate::scene::text::Source;
 use crate::scene::{MoleculeOptions, SceneError};
 use std::collections::{BTreeSet, HashMap};
@@ -14,21 +14,25 @@ pub(super) fn select<'p, 'a>(
     options: &MoleculeOptions,
 ) -> Result<Vec<&'p Atom<'a>>, SceneError> {
     let count = parsed.models.len();
-    if parsed.atoms.is_empty() {
-        return Err(source.error(
-            "the file has no atoms",
+    let empty = |what: String| {
+        source.error(
+            format!("{what} has no atoms"),
             "check that the file is complete, and that its extension names its format",
-        ));
+        )
+    };
+    if count == 0 {
+        return Err(empty(String::from("the file")));
     }
     if !(1..=count).contains(&options.model) {
-        let numbers = if count <= 20 {
-            parsed.models.join(", ")
-        } else {
-            format!("{} ...", parsed.models[..20].join(", "))
-        };
         return Err(source.error(
-            format!("there is no model {}, since the file has {count}", options.model),
-            format!("choose a model from 1 to {count}, counted in file order (the file itself numbers them {numbers})"),
+            format!(
+                "there is no model {}, since the file has {count}",
+                options.model
+            ),
+            format!(
+                "choose a model from 1 to {count}, counted in file order{}",
+                own_numbers(&parsed.models)
+            ),
         ));
     }
     let of_model = || {
@@ -62,9 +66,25 @@ pub(super) fn select<'p, 'a>(
         let cause = format!("model {} has no alternate location {wanted}", options.model);
         return Err(source.error(cause, remedy));
     }
-    Ok(of_model()
+    let selected: Vec<_> = of_model()
         .filter(|atom| {
             atom.altloc.is_empty() || chosen.get(&atom.residue_key()) == Some(&atom.altloc)
         })
-        .collect())
+        .collect();
+    if selected.is_empty() {
+        return Err(empty(format!("model {} of the file", options.model)));
+    }
+    Ok(selected)
+}
+
+/// How a file numbers its models, for files that do.
+fn own_numbers(models: &[Model<'_>]) -> String {
+    const NAMED: usize = 20;
+    let numbers = models.iter().take(NAMED).map(|model| model.number);
+    let numbers = numbers.collect::<Vec<_>>().join(", ");
+    let more = if models.len() > NAMED { " ..." } else { "" };
+    if models.iter().all(|model| model.number.is_empty()) {
+        return String::new();
+    }
+    format!(" (the file itself numbers them {numbers}{more})")
 }

@@ -1,13 +1,15 @@
 mod real;
 
 use super::*;
-use crate::scene::Shape;
+use crate::scene::{ImportOptions, MoleculeOptions, Shape};
+use std::path::Path;
 
 fn read(file: &str, text: &str, options: &MoleculeOptions) -> Result<Imported, SceneError> {
-    import(
-        &Source::from_bytes(Path::new(file), text.as_bytes()),
-        options,
-    )
+    let options = ImportOptions {
+        molecule: *options,
+        ..ImportOptions::default()
+    };
+    crate::scene::read(Path::new(file), text.into(), &options)
 }
 
 fn pdb(text: &str) -> Result<Imported, SceneError> {

@@ -19,25 +19,55 @@ mod reader;
 mod shapes;
 mod view;
 
+use super::importer::{Importer as Entry, Input};
 use super::text::{Source, Warnings};
-use super::{Color, Diffuse, Imported, Light, Material, Scene, SceneError};
+use super::{Color, Diffuse, Imported, Light, Material, Scene, SceneError, Up};
 use glam::DVec3;
 use reader::{Line, Lines};
 use std::collections::{BTreeSet, HashMap};
-use std::path::Path;
 
 /// What turns the exponent of Phong's cosine into that of the halfway vector's.
 const PHONG_TO_HALFWAY: f64 = 4.0;
 
+pub(super) const IMPORTER: Entry = Entry {
+    name: "NFF",
+    about: "Haines's Neutral File Format, with camera and lights",
+    extensions: &["nff"],
+    // Files have a camera; in the databases' own scenes z is up.
+    up: Up::Z,
+    binary: false,
+    example: "b 0 0 .5\nv\nfrom 0 0 9\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 64 48\n\
+              l 1 2 3\nf 1 .5 0 .8 .25 20 .5 1.5\ns 1 2 3 4\n",
+    recognizes: |bytes| {
+        let mut lines = bytes.split(|&byte| byte == b'\n');
+        let mut words = lines.find_map(|line| {
+            let mut words = str::from_utf8(line).ok()?.split_ascii_whitespace();
+            let first = words.next().filter(|word| !word.starts_with('#'))?;
+            Some((first, words.count()))
+        });
+        // The first entity, and how many numbers follow it on its line.
+        matches!(
+            words.take(),
+            Some(
+                ("v", 0)
+                    | ("b", 3)
+                    | ("l", 3 | 6)
+                    | ("f", 8)
+                    | ("s", 4)
+                    | ("c", 0)
+                    | ("p" | "pp", 1)
+            )
+        )
+    },
+    read,
+};
+
 /// Reads an NFF file.
 ///
 /// # Errors
-/// If the file cannot be read or its content is broken; the error names the line.
-pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
-    import(&Source::read(path)?)
-}
-
-fn import(source: &Source) -> Result<Imported, SceneError> {
+/// If its content is broken; the error names the line.
+fn read(input: Input<'_>) -> Result<Imported, SceneError> {
+    let source = &input.into_source()?;
     let mut importer = Importer::new(source);
     let mut lines = Lines::new(source);
     while let Some(line) = lines.next() {
@@ -102,7 +132,7 @@ impl<'a> Importer<'a> {
 
     fn background(&mut self, line: &Line<'a>) -> Result<(), SceneError> {
         let numbers = line.numbers::<3>(self.source, &mut self.warnings, 1, "b r g b")?;
-        self.scene.background = self.color(line, numbers)?;
+        self.scene.background = Some(self.color(line, numbers)?);
         Ok(())
     }
 

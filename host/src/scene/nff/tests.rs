@@ -1,9 +1,10 @@
 use super::*;
-use crate::scene::{Shape, test_scenes};
+use crate::scene::test_scenes::{self, load};
+use crate::scene::{Imported, Shape};
 use std::collections::BTreeMap;
 
 fn read(text: &str) -> Result<Imported, SceneError> {
-    import(&Source::from_bytes(Path::new("t.nff"), text.as_bytes()))
+    test_scenes::read("t.nff", text)
 }
 
 fn fault(text: &str) -> String {
@@ -27,7 +28,7 @@ fn everything_the_format_has() {
         ["t.nff:21: the normals of a patch are ignored; its surface is shaded flat"]
     );
     assert!(scene.display_values);
-    assert_eq!(scene.background, [0.1, 0.2, 0.3]);
+    assert_eq!(scene.background, Some([0.1, 0.2, 0.3]));
     let camera = scene.camera.unwrap();
     assert_eq!(
         (camera.eye, camera.fov_degrees),
@@ -186,7 +187,7 @@ fn dialects_are_read_with_warnings() {
 
 #[test]
 fn bytes_that_are_not_utf8_are_harmless_in_comments_alone() {
-    let read = |bytes: &[u8]| import(&Source::from_bytes(Path::new("t.nff"), bytes));
+    let read = |bytes: &[u8]| test_scenes::read("t.nff", bytes);
     assert!(read(b"# caf\xe9\ns 0 0 0 1\n").is_ok());
     let error = read(b"# caf\xe9\ns 0 0 \xe9 1\n").unwrap_err();
     assert_eq!(error.line, Some(2));

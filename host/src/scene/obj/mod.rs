@@ -14,22 +14,45 @@ mod mtl;
 mod parser;
 
 use super::access::Access;
+use super::importer::{Importer, Input};
 use super::polygon::{self, MAX_CONCAVE};
 use super::size::Size;
 use super::text::{Source, Warnings};
-use super::{Imported, Material, Object, Scene, SceneError, Shape};
+use super::{Imported, Material, Object, Scene, SceneError, Shape, Up};
 use glam::DVec3;
 use parser::{Parsed, Part};
 use std::collections::{HashMap, HashSet};
-use std::path::Path;
+
+pub(super) const IMPORTER: Importer = Importer {
+    name: "OBJ",
+    about: "Wavefront's meshes, with MTL materials",
+    extensions: &["obj"],
+    // The format says nothing; modelling programs export y up unless they are told otherwise.
+    up: Up::Y,
+    binary: false,
+    example: "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 1 0\nf 1 2 3 4\n",
+    recognizes: |bytes| {
+        let mut vertices = bytes.split(|&byte| byte == b'\n').filter_map(|line| {
+            let numbers = line.trim_ascii().strip_prefix(b"v ")?;
+            Some(str::from_utf8(numbers).ok()?.split_ascii_whitespace())
+        });
+        // NFF has lines of a `v` as well, but without numbers.
+        vertices.next().is_some_and(|mut numbers| {
+            let is_number = |word: Option<&str>| word.is_some_and(|it| it.parse::<f64>().is_ok());
+            (0..3).all(|_| is_number(numbers.next()))
+        })
+    },
+    read,
+};
 
 /// Reads an OBJ file and the material files it names, which lie beside it. It has no camera and
 /// no lights; the compiler adds them.
 ///
 /// # Errors
-/// If the file cannot be read, has no faces, or its content is broken; the error names the line.
-pub(super) fn load(path: &Path, access: &Access) -> Result<Imported, SceneError> {
-    import(&Source::read(path)?, access)
+/// If the file has no faces, or its content is broken; the error names the line.
+fn read(input: Input<'_>) -> Result<Imported, SceneError> {
+    let access = input.access;
+    import(&input.into_source()?, access)
 }
 
 fn import(source: &Source, access: &Access) -> Result<Imported, SceneError> {

@@ -1,16 +1,10 @@
 use super::*;
-use crate::scene::{Diffuse, test_scenes, test_scenes::mesh};
+use crate::scene::test_scenes::{self, load, load_allowing_outside, mesh};
+use crate::scene::{Diffuse, Imported};
+use std::path::Path;
 
 fn read(text: &str) -> Result<Imported, SceneError> {
-    let path = Path::new("t.obj");
-    import(
-        &Source::from_bytes(path, text.as_bytes()),
-        &Access::of(path, false),
-    )
-}
-
-fn load(path: &Path) -> Result<Imported, SceneError> {
-    super::load(path, &Access::of(path, false))
+    test_scenes::read("t.obj", text)
 }
 
 fn fault(text: &str) -> String {
@@ -143,7 +137,7 @@ fn concave_faces_keep_their_area() {
 
 fn material(text: &str) -> (Material, Vec<String>) {
     let mut warnings = Warnings::default();
-    let source = Source::from_bytes(Path::new("t.mtl"), text.as_bytes());
+    let source = Source::from_bytes(Path::new("t.mtl"), text.into());
     let mut all = mtl::read(&source, &mut warnings).unwrap();
     (all.remove(0).1, warnings.into_sentences())
 }
@@ -179,7 +173,7 @@ fn materials() {
 #[test]
 fn material_faults_name_their_own_file() {
     let fault = |text: &str| {
-        let source = Source::from_bytes(Path::new("t.mtl"), text.as_bytes());
+        let source = Source::from_bytes(Path::new("t.mtl"), text.into());
         mtl::read(&source, &mut Warnings::default())
             .unwrap_err()
             .to_string()
@@ -349,7 +343,7 @@ fn material_files_outside_of_the_folder_are_rejected() {
         format!("mtllib ../secret.mtl\n{CORNERS}usemtl a\nf 1 2 3\n"),
     )
     .unwrap();
-    let imported = super::load(&path, &Access::of(&path, true)).unwrap();
+    let imported = load_allowing_outside(&path).unwrap();
     assert_eq!(imported.warnings, [] as [&str; 0]);
     assert_eq!(
         imported.scene.materials[0].diffuse,

@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::test_scenes::{self, mesh};
+use crate::scene::test_scenes::{self, load, mesh};
 
 /// A square and a line, with colours and an element that nobody knows.
 pub(in crate::scene) const SQUARE: &str = "\
@@ -26,10 +26,7 @@ end_header
 ";
 
 fn read(bytes: &[u8]) -> Result<Imported, SceneError> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("thing.ply");
-    std::fs::write(&path, bytes).unwrap();
-    load(&path)
+    test_scenes::read("thing.ply", bytes)
 }
 
 #[test]

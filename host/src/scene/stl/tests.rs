@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::test_scenes::{self, mesh};
+use crate::scene::test_scenes::{self, load, mesh};
 
 /// Two solids, the second with a name of two words and keywords in capitals.
 pub(in crate::scene) const TWO_SOLIDS: &str = "\
@@ -31,10 +31,7 @@ ENDSOLID The Other
 ";
 
 fn read(bytes: &[u8]) -> Result<Imported, SceneError> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("thing.stl");
-    std::fs::write(&path, bytes).unwrap();
-    load(&path)
+    test_scenes::read("thing.stl", bytes)
 }
 
 /// A binary file of triangles.

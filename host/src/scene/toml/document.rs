@@ -9,10 +9,10 @@ use super::source::Source;
 use super::transform::parallel;
 use super::value::Fields;
 use super::view;
-use crate::scene::{Camera, Color, Light, MoleculeOptions, Scene, SceneError};
+use crate::scene::importer::Input;
+use crate::scene::{Camera, Color, Light, Scene, SceneError};
 use glam::DVec3;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 const KEYS: &[&str] = &[
     "camera",
@@ -27,12 +27,9 @@ const KEYS: &[&str] = &[
 
 const BLACK: Color = [0.0; 3];
 
-pub(super) fn read(
-    path: &Path,
-    imports: &mut Imports,
-    molecule: &MoleculeOptions,
-) -> Result<Scene, SceneError> {
-    let source = Source::read(path)?;
+pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, SceneError> {
+    let molecule = input.molecule;
+    let source = Source::new(input.path, input.bytes)?;
     let document = source.parse()?;
     let root = Fields::new(
         &source,
@@ -63,7 +60,8 @@ pub(super) fn read(
 
     let mut scene = Scene {
         camera,
-        background: background.unwrap_or(BLACK),
+        up: super::IMPORTER.up,
+        background,
         display_values: false,
         ambient: ambient.unwrap_or(BLACK),
         lights,
@@ -86,9 +84,7 @@ pub(super) fn read(
                 scene.lights.push(moved_light(&source, item, light)?);
             }
         }
-        if background.is_none() && scene.background == BLACK {
-            scene.background = import.background;
-        }
+        scene.background = scene.background.or(import.background);
         if ambient.is_none() && scene.ambient == BLACK {
             scene.ambient = import.ambient;
         }

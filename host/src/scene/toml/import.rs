@@ -3,9 +3,10 @@
 use super::document;
 use super::source::{Name, Source};
 use crate::scene::access::Access;
-use crate::scene::{self, MoleculeOptions, Scene, SceneError};
+use crate::scene::importer::Input;
+use crate::scene::{MoleculeOptions, Scene, SceneError};
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::rc::Rc;
 
 /// How many files may be open inside each other; each takes stack.
@@ -39,24 +40,15 @@ impl Imports {
     }
 
     /// Reads the scene file from which everything starts.
-    pub(super) fn root(
-        &mut self,
-        path: &Path,
-        options: &MoleculeOptions,
-    ) -> Result<Scene, SceneError> {
-        // A path that cannot be resolved cannot be read either, and reading says why.
-        let canonical = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        self.nested(path, canonical, options)
+    pub(super) fn root(&mut self, input: Input<'_>) -> Result<Scene, SceneError> {
+        // A path that leads nowhere is that of standard input, which nothing can import.
+        let canonical = std::fs::canonicalize(input.path).unwrap_or_else(|_| input.path.to_owned());
+        self.nested(input, canonical)
     }
 
-    fn nested(
-        &mut self,
-        path: &Path,
-        canonical: PathBuf,
-        options: &MoleculeOptions,
-    ) -> Result<Scene, SceneError> {
+    fn nested(&mut self, input: Input<'_>, canonical: PathBuf) -> Result<Scene, SceneError> {
         self.open.push(canonical);
-        let scene = document::read(path, self, options)?;
+        let scene = document::read(input, self)?;
         self.open.pop();
         Ok(scene)
     }
@@ -97,18 +89,16 @@ impl Imports {
         if let Some((_, scene)) = done.into_iter().find(|(with, _)| with == options) {
             return Ok(Rc::clone(scene));
         }
-        let is_toml = path
-            .extension()
-            .is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-        let scene = if is_toml {
-            self.nested(&path, canonical.clone(), options)
-        } else {
-            scene::load_within(&path, options, &self.access).map(|imported| {
-                self.warnings.extend(imported.warnings);
-                self.molecules |= imported.molecules;
-                imported.scene
-            })
-        };
+        let access = self.access.clone();
+        let scene = Input::open(&path, options, &access).and_then(|(importer, input)| {
+            if importer.name == super::IMPORTER.name {
+                return self.nested(input, canonical.clone());
+            }
+            let imported = importer.import(input)?;
+            self.warnings.extend(imported.warnings);
+            self.molecules |= imported.molecules;
+            Ok(imported.scene)
+        });
         let scene = scene.map(Rc::new).map_err(|mut error| {
             error.cause = format!("{} (imported by {})", error.cause, source.place(&file.span));
             error

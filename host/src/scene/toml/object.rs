@@ -6,6 +6,7 @@ use super::material::Palette;
 use super::source::{Name, Source, Span};
 use super::value::{Fields, Value};
 use super::{shape, transform};
+use crate::scene::importer::stem;
 use crate::scene::{MoleculeOptions, MoleculeStyle, Scene, SceneError, Shape};
 use glam::DAffine3;
 use std::collections::BTreeMap;
@@ -119,7 +120,7 @@ impl Reader<'_> {
         let material = fields.or("material", None, |value| value.name().map(Some))?;
         let name = match fields.get("name") {
             Some(name) => name.filled()?.to_owned(),
-            None if kind == "import" => stem(fields.require("file")?.filled()?),
+            None if kind == "import" => stem(Path::new(fields.require("file")?.filled()?)),
             None => format!("{kind} {number}"),
         };
         let content = match kind {
@@ -158,12 +159,6 @@ impl Reader<'_> {
         };
         self.imports.import(self.source, &file, &molecule)
     }
-}
-
-/// The name of a file without folder and extension.
-fn stem(file: &str) -> String {
-    let stem = Path::new(file).file_stem().unwrap_or_default();
-    stem.to_string_lossy().into_owned()
 }
 
 fn style(value: Value<'_>) -> Result<MoleculeStyle, SceneError> {

@@ -1,6 +1,6 @@
 //! The text of a TOML file, and errors and places in it.
 
-use crate::scene::text::check_encoding;
+use crate::scene::text::{check_encoding, read_file};
 use crate::scene::{Place, SceneError};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -29,13 +29,10 @@ pub(crate) struct Name {
 
 impl Source {
     pub(crate) fn read(path: &Path) -> Result<Self, SceneError> {
-        let bytes = std::fs::read(path).map_err(|error| {
-            SceneError::new(
-                path,
-                format!("the file cannot be read: {error}"),
-                "check the path and the permissions of the file",
-            )
-        })?;
+        Self::new(path, read_file(path)?)
+    }
+
+    pub(crate) fn new(path: &Path, bytes: Vec<u8>) -> Result<Self, SceneError> {
         check_encoding(path, &bytes)?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let good = error.utf8_error().valid_up_to();

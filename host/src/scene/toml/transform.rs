@@ -81,7 +81,7 @@ pub(super) fn unit(vector: DVec3) -> DVec3 {
 }
 
 /// Whether two vectors are parallel, or one of them has no length.
-pub(super) fn parallel(a: DVec3, b: DVec3) -> bool {
+pub(in crate::scene) fn parallel(a: DVec3, b: DVec3) -> bool {
     let sine = unit(a).cross(unit(b)).length();
     sine.is_nan() || sine <= TOLERANCE
 }

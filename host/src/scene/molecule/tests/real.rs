@@ -1,7 +1,7 @@
 //! Molecules of the Protein Data Bank and other projects.
 
 use super::*;
-use crate::scene::test_scenes;
+use crate::scene::{load, test_scenes};
 use std::collections::BTreeMap;
 
 /// Elements as the facts have them, such as `C202 N55`.

@@ -99,7 +99,7 @@ fn the_quick_scene_shows_every_shape_and_every_effect() {
     ));
     assert!(any(|material| material.mirror != [0.0; 3]));
     assert!(any(|material| material.highlight != [0.0; 3]));
-    assert!(scene.background != black && scene.ambient != black);
+    assert!(scene.background.is_some_and(|it| it != black) && scene.ambient != black);
     assert!(matches!(
         scene.lights[..],
         [Light::Point { .. }, Light::Directional { .. }]

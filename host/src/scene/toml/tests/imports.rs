@@ -62,7 +62,7 @@ fn an_import_brings_objects_and_lends_the_view() {
     assert!(object.place.file.ends_with("parts/ball.toml") && object.place.line == 13);
     assert_eq!(scene.camera.unwrap().eye, DVec3::new(0.0, 2.0, 10.0));
     assert_eq!(scene.render.width, 64);
-    assert_eq!(scene.background, [0.0, 0.0, 1.0]);
+    assert_eq!(scene.background, Some([0.0, 0.0, 1.0]));
     assert_eq!(
         scene.lights,
         [Light::Directional {
@@ -81,7 +81,7 @@ fn what_the_importing_scene_states_counts() {
         .scene;
     assert_eq!(scene.camera.unwrap().eye, DVec3::new(0.0, 0.0, 9.0));
     assert_eq!(scene.render.width, 320);
-    assert_eq!(scene.background, [0.0; 3]);
+    assert_eq!(scene.background, Some([0.0; 3]));
     assert!(matches!(scene.lights[..], [Light::Point { .. }]));
 }
 
@@ -233,10 +233,10 @@ fn files_are_read_once() {
 
 #[test]
 fn other_formats_are_imported_by_their_extension() {
-    let folder = folder(&[("a.xyz", "")]);
+    let folder = folder(&[("a.fbx", "")]);
     let error = load_in(
         folder.path(),
-        "[[object]]\nkind = \"import\"\nfile = \"a.xyz\"\n",
+        "[[object]]\nkind = \"import\"\nfile = \"a.fbx\"\n",
     )
     .unwrap_err();
     assert!(

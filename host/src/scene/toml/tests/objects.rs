@@ -93,12 +93,12 @@ fn a_material_called_default_serves_objects_without_one() {
 
 #[test]
 fn colours_have_three_spellings() {
-    assert_eq!(scene("background = 0.5").background, [0.5; 3]);
+    assert_eq!(scene("background = 0.5").background, Some([0.5; 3]));
     assert_eq!(
         scene("background = [0, 0.5, 2]").background,
-        [0.0, 0.5, 2.0]
+        Some([0.0, 0.5, 2.0])
     );
-    let [red, green, blue] = scene("background = \"#ff8000\"").background;
+    let [red, green, blue] = scene("background = \"#ff8000\"").background.unwrap();
     assert_eq!((red, blue), (1.0, 0.0));
     // The value of the code 128 by IEC 61966-2-1.
     assert!((green - 0.215_860_500_113_899_26).abs() < 1e-15);

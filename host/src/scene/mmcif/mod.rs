@@ -4,21 +4,44 @@
 //! The author's chain and residue names (`auth_`) come before the archive's (`label_`), as in PDB
 //! files of the same structure.
 
-use super::cif::{Token, Tokens};
-use super::{Atom, Element, End, Parsed, Site};
-use crate::scene::SceneError;
-use crate::scene::text::{Source, Warnings};
+mod cif;
+
+use super::importer::{Importer, Input};
+use super::molecule::{self, Atom, Element, End, Model, Parsed, Site};
+use super::text::{Source, Warnings};
+use super::{Imported, SceneError, Up};
+use cif::{Token, Tokens};
 use glam::DVec3;
 use std::collections::HashMap;
+
+pub(super) const IMPORTER: Importer = Importer {
+    name: "mmCIF",
+    about: "molecules as the Protein Data Bank archives them",
+    extensions: &["cif", "mmcif"],
+    // As PDB.
+    up: Up::Y,
+    binary: false,
+    example: "data_t\nloop_\n_atom_site.id\n_atom_site.type_symbol\n_atom_site.label_atom_id\n\
+              _atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n1 C CA 0 0 0\n2 O O 1.2 0 0\n",
+    recognizes: |bytes| {
+        let lines = bytes.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
+        let mut lines = lines.filter(|line| !line.is_empty() && !line.starts_with(b"#"));
+        let head = lines.next().and_then(|line| line.get(..5));
+        head.is_some_and(|it| it.eq_ignore_ascii_case(b"data_"))
+    },
+    read,
+};
+
+/// Reads an mmCIF file. It has no camera and no lights; the compiler adds them.
+fn read(input: Input<'_>) -> Result<Imported, SceneError> {
+    molecule::import(input, parse)
+}
 
 /// Reads the first data block that has atoms.
 ///
 /// # Errors
 /// If the syntax is broken, a table is incomplete, or coordinates are no finite numbers.
-pub(super) fn parse<'a>(
-    source: &'a Source,
-    warnings: &mut Warnings,
-) -> Result<Parsed<'a>, SceneError> {
+fn parse<'a>(source: &'a Source, warnings: &mut Warnings) -> Result<Parsed<'a>, SceneError> {
     let mut parser = Parser {
         source,
         warnings,
@@ -220,7 +243,10 @@ impl<'a> Parser<'a, '_> {
         };
         let models = &mut self.parsed.models;
         let model = *self.model_index.entry(number).or_insert_with(|| {
-            models.push(number);
+            models.push(Model {
+                number,
+                line: table.line,
+            });
             models.len() - 1
         });
         self.parsed.atoms.push(Atom {

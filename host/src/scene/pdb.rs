@@ -5,26 +5,55 @@
 //! not read, so that files that leave it out or bend its rules are welcome: serial numbers may be
 //! `*****` or hexadecimal, and everything after the coordinates may be missing.
 
-use super::{Atom, Element, End, Parsed, Site};
-use crate::scene::SceneError;
-use crate::scene::text::{Source, Warnings};
+use super::importer::{Importer, Input};
+use super::molecule::{self, Atom, Element, End, Model, Parsed, Site};
+use super::text::{Source, Warnings};
+use super::{Imported, SceneError, Up};
 use glam::DVec3;
+
+pub(super) const IMPORTER: Importer = Importer {
+    name: "PDB",
+    about: "molecules in the columns of the Protein Data Bank",
+    extensions: &["pdb", "ent"],
+    // Molecules have no up; viewers show them along -z with y up.
+    up: Up::Y,
+    binary: false,
+    example: "\
+ATOM      1  N   CYS A   3      11.000   2.000   3.000  1.00  0.00           N
+ATOM      2  CA  CYS A   3      12.400   2.000   3.000  1.00  0.00           C
+END
+",
+    recognizes: |bytes| {
+        const RECORDS: [&[u8]; 12] = [
+            b"HEADER", b"OBSLTE", b"TITLE ", b"COMPND", b"AUTHOR", b"REMARK", b"CRYST1", b"MODEL ",
+            b"ATOM  ", b"HETATM", b"SEQRES", b"ORIGX1",
+        ];
+        RECORDS.iter().any(|record| bytes.starts_with(record))
+    },
+    read,
+};
+
+/// Reads a PDB file. It has no camera and no lights; the compiler adds them.
+fn read(input: Input<'_>) -> Result<Imported, SceneError> {
+    molecule::import(input, parse)
+}
 
 /// Reads all models.
 ///
 /// # Errors
 /// If a line of an atom is too short, or its coordinates are no finite numbers.
-pub(super) fn parse<'a>(
-    source: &'a Source,
-    warnings: &mut Warnings,
-) -> Result<Parsed<'a>, SceneError> {
+fn parse<'a>(source: &'a Source, warnings: &mut Warnings) -> Result<Parsed<'a>, SceneError> {
     let mut parsed = Parsed::default();
     // Whether the next atom starts a model, and what number the file gives that.
     let mut next_model = Some("1");
     for (number, line) in source.lines() {
         match columns(line, 1, 6).trim_end() {
             "ATOM" | "HETATM" => {
-                parsed.models.extend(next_model.take());
+                let model = next_model.take().map(|text| Model {
+                    number: text,
+                    line: number,
+                });
+                parsed.models.extend(model);
                 let model = parsed.models.len() - 1;
                 parsed
                     .atoms

@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn tokens_and_their_lines() {
         let text = "data_1ABC # c\nloop_\n_a.b _a.c\n'it''s' \"C1'\" . ?\n;two\nlines\n;\nDATA_x save_f a#b ;c";
-        let source = Source::from_bytes(Path::new("t.cif"), text.as_bytes());
+        let source = Source::from_bytes(Path::new("t.cif"), text.into());
         let mut tokens = Tokens::new(&source);
         let mut found = Vec::new();
         while let Some(token) = tokens.next().unwrap() {
@@ -183,7 +183,7 @@ mod tests {
             ("a\n'b c\n", "t.cif:2: a quoted value has no end"),
             ("a\n\n;b\nc;\n", "t.cif:3: a text field has no end"),
         ] {
-            let source = Source::from_bytes(Path::new("t.cif"), text.as_bytes());
+            let source = Source::from_bytes(Path::new("t.cif"), text.into());
             let mut tokens = Tokens::new(&source);
             tokens.next().unwrap();
             assert_eq!(tokens.next().unwrap_err().to_string(), message);

@@ -1,0 +1,63 @@
+//! `gridel completions` and `gridel man`: what shells and `man` are told of the program.
+
+use super::failure::Failure;
+use super::output::{print, write_texts};
+use clap::{Args, Command};
+use clap_complete::Shell;
+use clap_mangen::Man;
+use std::path::PathBuf;
+
+/// Print the completions of a shell
+///
+/// For bash, for example: `gridel completions bash >~/.local/share/bash-completion/completions/gridel`
+#[derive(Args)]
+#[command(after_help = super::EXIT_CODES)]
+pub struct CompletionArguments {
+    /// The shell
+    #[arg(value_enum)]
+    shell: Shell,
+}
+
+/// Write the manual's pages, one for each verb, into a folder
+///
+/// `man -l DIR/gridel-build.1` shows one of them.
+#[derive(Args)]
+#[command(after_help = super::EXIT_CODES)]
+pub struct ManArguments {
+    /// The folder; it is made if need be
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+}
+
+/// Prints completions.
+pub fn completions(arguments: &CompletionArguments, mut program: Command) -> Result<(), Failure> {
+    let mut text = Vec::new();
+    clap_complete::generate(arguments.shell, &mut program, "gridel", &mut text);
+    print(String::from_utf8_lossy(&text))
+}
+
+/// Writes pages.
+pub fn man(arguments: &ManArguments, mut program: Command) -> Result<(), Failure> {
+    let folder = &arguments.folder;
+    program.build();
+    let verbs = program
+        .get_subcommands()
+        .filter(|verb| verb.get_name() != "help");
+    let pages: Vec<(String, String)> = std::iter::once(&program)
+        .chain(verbs)
+        .map(|command| {
+            let page = Man::new(command.clone());
+            let mut text = Vec::new();
+            // Writing to memory cannot fail.
+            let _ = page.render(&mut text);
+            let text = String::from_utf8_lossy(&text).into_owned();
+            (page.get_filename(), text)
+        })
+        .collect();
+    std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
+    let pages: Vec<(&str, String)> = pages
+        .iter()
+        .map(|(name, text)| (name.as_str(), text.clone()))
+        .collect();
+    write_texts(folder, &pages)
+}

@@ -1,0 +1,204 @@
+//! Options that say from where a scene file is seen.
+
+use super::arguments::SceneOptions;
+use super::failure::Failure;
+use clap::Args;
+use glam::DVec3;
+use gridel_host::compile;
+use gridel_host::scene::{Color, Scene, Up};
+
+/// From where a scene file is seen, in place of what it states.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Options for scene files")]
+pub struct ViewOptions {
+    /// Place the camera here, in scene units [default: the file's, or where everything is seen]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    eye: Option<DVec3>,
+
+    /// What [`Aim`] holds, or `--target` of a verb that takes boards, too.
+    #[arg(skip)]
+    pub target: Option<DVec3>,
+
+    /// Point this direction up [default: the file's, or y; z for STL and NFF]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    up: Option<DVec3>,
+
+    /// See this vertical angle, in degrees between 0 and 180 [default: the file's, or 40]
+    #[arg(long, value_name = "DEG", value_parser = degrees, allow_hyphen_values = true)]
+    fov: Option<f64>,
+
+    /// Show this linear colour where nothing is, 1 being display white [default: the file's, else black;
+    /// light grey for a file without a camera]
+    #[arg(long, value_name = "R,G,B", value_parser = color, allow_hyphen_values = true)]
+    background: Option<Color>,
+}
+
+/// The option `--target` of verbs that take no board.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Options for scene files")]
+pub struct Aim {
+    /// Look at this point [default: the file's, or the middle of the scene]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    target: Option<DVec3>,
+}
+
+impl Aim {
+    /// The options for scene files, with this point.
+    pub fn aimed(&self, options: &SceneOptions) -> SceneOptions {
+        let mut options = options.clone();
+        options.view.target = self.target;
+        options
+    }
+}
+
+impl ViewOptions {
+    /// Which options were given, and their names.
+    pub fn given(&self) -> [(bool, &'static str); 5] {
+        [
+            (self.eye.is_some(), "--eye"),
+            (self.target.is_some(), "--target"),
+            (self.up.is_some(), "--up"),
+            (self.fov.is_some(), "--fov"),
+            (self.background.is_some(), "--background"),
+        ]
+    }
+
+    /// Changes the scene's camera and background.
+    ///
+    /// # Errors
+    /// If the camera would look nowhere, or along the direction that points up.
+    pub fn apply(&self, scene: &mut Scene) -> Result<(), Failure> {
+        scene.background = self.background.or(scene.background);
+        let [camera @ .., _] = self.given();
+        if camera.iter().all(|(given, _)| !given) {
+            return Ok(());
+        }
+        if scene.camera.is_none() {
+            scene.background = scene.background.or(Some(compile::BACKGROUND));
+            // Which way is up decides from where the whole scene is seen.
+            for up in [Up::Y, Up::Z] {
+                if self.up.is_some_and(|it| it.dot(up.vector()) == it.length()) {
+                    scene.up = up;
+                }
+            }
+        }
+        let mut camera = scene
+            .camera
+            .unwrap_or_else(|| compile::framing(scene, self.fov));
+        camera.eye = self.eye.unwrap_or(camera.eye);
+        camera.target = self.target.unwrap_or(camera.target);
+        camera.up = self.up.unwrap_or(camera.up);
+        camera.fov_degrees = self.fov.unwrap_or(camera.fov_degrees);
+        if camera.eye == camera.target {
+            return Err(Failure::usage(
+                "the camera's eye and target are the same point",
+                "give another `--eye` or `--target`; the camera looks from eye to target",
+            ));
+        }
+        if camera.is_along_up() {
+            return Err(Failure::usage(
+                "the camera looks along `--up`, so the picture could be turned any way",
+                "give an `--up` across the view, such as 0,0,1 for a view from above",
+            ));
+        }
+        scene.camera = Some(camera);
+        Ok(())
+    }
+}
+
+/// Reads numbers with commas between them.
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    let numbers: [f64; N] = numbers.ok()?.try_into().ok()?;
+    numbers.iter().all(|it| it.is_finite()).then_some(numbers)
+}
+
+/// Reads a vector, such as `0,1.5,-2`.
+pub fn vector(text: &str) -> Result<DVec3, String> {
+    let numbers = numbers(text).map(DVec3::from_array);
+    numbers.ok_or_else(|| String::from("write three numbers with commas, such as 0,1.5,-2"))
+}
+
+fn degrees(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok();
+    let value = value.filter(|&value| value > 0.0 && value < 180.0);
+    value.ok_or_else(|| String::from("write an angle above 0 and below 180 degrees, such as 45"))
+}
+
+fn color(text: &str) -> Result<Color, String> {
+    let color = numbers(text).filter(|color| color.iter().all(|&channel| channel >= 0.0));
+    color.ok_or_else(|| {
+        String::from("write three numbers at or above 0 with commas, such as 0.2,0.4,1")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vectors_colours_and_angles_are_finite_and_in_range() {
+        assert_eq!(vector("1, -2,3e2"), Ok(DVec3::new(1.0, -2.0, 300.0)));
+        for wrong in ["", "1,2", "1,2,3,4", "1,2,a", "1,2,nan", "inf,0,0", "1 2 3"] {
+            assert!(vector(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(color("0,0.5,2"), Ok([0.0, 0.5, 2.0]));
+        for wrong in ["-1,0,0", "0,0", "#ffffff", "inf,0,0"] {
+            assert!(color(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!((degrees("0.5"), degrees("179.9")), (Ok(0.5), Ok(179.9)));
+        for wrong in ["0", "180", "-1", "nan", "x"] {
+            assert!(degrees(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_given_is_the_scenes() {
+        let mut scene = Scene::default();
+        ViewOptions::default().apply(&mut scene).unwrap();
+        assert_eq!(scene, Scene::default());
+        let view = ViewOptions {
+            up: Some(DVec3::new(0.0, 0.0, 2.0)),
+            fov: Some(10.0),
+            ..ViewOptions::default()
+        };
+        view.apply(&mut scene).unwrap();
+        let camera = scene.camera.unwrap();
+        assert_eq!(scene.background, Some(compile::BACKGROUND));
+        let view = (camera.target - camera.eye).normalize();
+        assert!(view.distance(DVec3::Y) < 1e-12);
+        assert_eq!(camera.fov_degrees, 10.0);
+        // Now the scene has a camera, of which the rest stays.
+        let view = ViewOptions {
+            eye: Some(DVec3::new(7.0, 8.0, 9.0)),
+            background: Some([0.0; 3]),
+            ..ViewOptions::default()
+        };
+        view.apply(&mut scene).unwrap();
+        let moved = scene.camera.unwrap();
+        assert_eq!(
+            (moved.target, moved.up, moved.fov_degrees),
+            (camera.target, camera.up, 10.0)
+        );
+        assert_eq!(moved.eye, DVec3::new(7.0, 8.0, 9.0));
+        assert_eq!(scene.background, Some([0.0; 3]));
+    }
+
+    #[test]
+    fn cameras_that_look_nowhere_are_refused() {
+        for (eye, target, up) in [
+            ([1.0; 3], [1.0; 3], [0.0, 1.0, 0.0]),
+            ([0.0; 3], [0.0, 5.0, 0.0], [0.0, -2.0, 0.0]),
+            ([0.0; 3], [0.0, 0.0, 1.0], [0.0; 3]),
+        ] {
+            let [eye, target, up] = [eye, target, up].map(|it| Some(DVec3::from_array(it)));
+            let view = ViewOptions {
+                eye,
+                target,
+                up,
+                ..ViewOptions::default()
+            };
+            assert!(view.apply(&mut Scene::default()).is_err());
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! The camera and the background of a scene that states none.
+
+use super::primitives::extent;
+use crate::scene::{Camera, Color, Scene};
+use glam::DVec3;
+
+/// What rays see that meet nothing, where a scene states neither a camera nor a background: a light
+/// grey, against which what is white is seen by its shades, and what is black by its outline.
+pub const BACKGROUND: Color = [0.9, 0.92, 0.95];
+
+/// The part of the picture that the projected box of the scene takes, across or along.
+const SHARE: f64 = 0.8;
+
+/// The full vertical field of view.
+const FOV_DEGREES: f64 = 40.0;
+
+/// A camera that looks at a scene from its front, so that the projected box of the scene takes 80 % of
+/// the picture's width or height. The front is that of the scene's [up](Scene::up): it is seen along
+/// -z where y is up, and along +y where z is up. What is flat, and would be seen from its edge, is seen
+/// from above or from its right.
+pub fn framing(scene: &Scene, fov_degrees: Option<f64>) -> Camera {
+    let fov_degrees = fov_degrees.unwrap_or(FOV_DEGREES);
+    let (lowest, highest) = extent(scene);
+    let target = lowest.midpoint(highest);
+    let half = highest - target;
+    let up = scene.up.vector();
+    let right = DVec3::X;
+    let forward = up.cross(right);
+    let extent_along = |axis: DVec3| half.dot(axis.abs());
+    let is_flat = |axis| extent_along(axis) == 0.0 && extent_along(forward) > 0.0;
+    let (forward, up) = match (is_flat(up), is_flat(right)) {
+        (true, _) => (-up, forward),
+        (false, true) => (-right, up),
+        _ => (forward, up),
+    };
+    let right = forward.cross(up);
+    let [across, along, deep] = [right, up, forward].map(extent_along);
+    let aspect = f64::from(scene.render.width) / f64::from(scene.render.height);
+    let reach = SHARE * libm::tan(fov_degrees.to_radians() / 2.0);
+    let wide = (across / aspect).max(along) / reach;
+    let distance = deep
+        + match wide {
+            // A point.
+            0.0 => target.abs().max_element().max(1.0),
+            wide => wide,
+        };
+    Camera {
+        eye: target - distance * forward,
+        target,
+        up,
+        fov_degrees,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Material, Object, Place, Shape, Up};
+
+    fn scene(min: [f64; 3], max: [f64; 3], up: Up) -> Scene {
+        let [min, max] = [min, max].map(DVec3::from_array);
+        let object = Object {
+            name: String::from("box"),
+            material: 0,
+            shape: Shape::Box { min, max },
+            place: Place::default(),
+        };
+        Scene {
+            materials: vec![Material::default()],
+            objects: vec![object],
+            up,
+            ..Scene::default()
+        }
+    }
+
+    /// The picture's part that the projected corners of the scene's box take, across and along, and
+    /// how far their middle is from the picture's.
+    fn share(scene: &Scene, camera: &Camera) -> ([f64; 2], [f64; 2]) {
+        let (lowest, highest) = extent(scene);
+        let forward = (camera.target - camera.eye).normalize();
+        let right = forward.cross(camera.up).normalize();
+        let up = right.cross(forward);
+        let tangent = (camera.fov_degrees.to_radians() / 2.0).tan();
+        let aspect = f64::from(scene.render.width) / f64::from(scene.render.height);
+        let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+        for corner in 0..8 {
+            let sides = [corner & 1, corner >> 1 & 1, corner >> 2];
+            let corner: [f64; 3] = std::array::from_fn(|axis| [lowest, highest][sides[axis]][axis]);
+            let seen = DVec3::from_array(corner) - camera.eye;
+            let depth = seen.dot(forward);
+            assert!(depth > 0.0);
+            let place = [
+                seen.dot(right) / (depth * tangent * aspect),
+                seen.dot(up) / (depth * tangent),
+            ];
+            for (bounds, place) in bounds.iter_mut().zip(place) {
+                *bounds = [bounds[0].min(place), bounds[1].max(place)];
+            }
+        }
+        (
+            bounds.map(|[low, high]| (high - low) / 2.0),
+            bounds.map(|[low, high]| (high + low) / 2.0),
+        )
+    }
+
+    fn looks(camera: &Camera, forward: DVec3) -> bool {
+        let view = (camera.target - camera.eye).normalize();
+        view.distance(forward) < 1e-12
+    }
+
+    #[test]
+    fn the_box_takes_80_percent_of_the_picture_and_is_in_its_middle() {
+        let boxes = [
+            ([-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]),
+            ([3.0, 0.0, 0.0], [4.0, 9.0, 1.0]),
+            ([-50.0, 7.0, 0.0], [50.0, 8.0, 1e3]),
+            ([1e6, 1e6, 1e6], [1e6 + 1.0, 1e6 + 2.0, 1e6]),
+            ([0.0, 0.0, -5.0], [1e-3, 1e-3, 5.0]),
+        ];
+        for (min, max) in boxes {
+            for up in [Up::Y, Up::Z] {
+                for (size, fov) in [
+                    ([320, 240], None),
+                    ([64, 640], Some(1.0)),
+                    ([640, 10], Some(150.0)),
+                ] {
+                    let mut scene = scene(min, max, up);
+                    [scene.render.width, scene.render.height] = size;
+                    let camera = framing(&scene, fov);
+                    assert_eq!(camera.fov_degrees, fov.unwrap_or(40.0));
+                    let (sides, middle) = share(&scene, &camera);
+                    let largest = sides[0].max(sides[1]);
+                    assert!(
+                        (largest - 0.8).abs() < 1e-6,
+                        "{min:?} {up:?} {size:?}: {sides:?}"
+                    );
+                    assert!(middle.iter().all(|it| it.abs() < 1e-6), "{middle:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn y_up_is_seen_along_minus_z_and_z_up_along_y() {
+        for (up, forward) in [(Up::Y, DVec3::NEG_Z), (Up::Z, DVec3::Y)] {
+            let camera = framing(&scene([0.0; 3], [1.0, 2.0, 3.0], up), None);
+            assert!(looks(&camera, forward));
+            assert_eq!(camera.up, up.vector());
+            assert_eq!(camera.target, DVec3::new(0.5, 1.0, 1.5));
+        }
+    }
+
+    #[test]
+    fn what_is_flat_is_not_seen_from_its_edge() {
+        let floor = scene([0.0, 1.0, 0.0], [4.0, 1.0, 4.0], Up::Y);
+        let camera = framing(&floor, None);
+        assert!(looks(&camera, DVec3::NEG_Y));
+        assert_eq!(camera.up, DVec3::NEG_Z);
+        assert!((share(&floor, &camera).0[1] - 0.8).abs() < 1e-9);
+        let floor = scene([0.0, 0.0, 1.0], [4.0, 4.0, 1.0], Up::Z);
+        let camera = framing(&floor, None);
+        assert!(looks(&camera, DVec3::NEG_Z));
+        assert_eq!(camera.up, DVec3::Y);
+        for (up, size) in [(Up::Y, [0.0, 1.0, 4.0]), (Up::Z, [0.0, 4.0, 1.0])] {
+            let wall = scene([0.0; 3], size, up);
+            let camera = framing(&wall, None);
+            assert!(looks(&camera, DVec3::NEG_X));
+            assert_eq!(camera.up, up.vector());
+            assert!((share(&wall, &camera).0[0] - 0.8).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn lines_points_and_nothing_are_seen_from_somewhere() {
+        for (min, max) in [
+            ([0.0; 3], [0.0; 3]),
+            ([5.0; 3], [5.0; 3]),
+            ([0.0; 3], [0.0, 0.0, 9.0]),
+            ([0.0; 3], [0.0, 9.0, 0.0]),
+            ([0.0; 3], [9.0, 0.0, 0.0]),
+        ] {
+            for up in [Up::Y, Up::Z] {
+                let camera = framing(&scene(min, max, up), None);
+                let view = camera.target - camera.eye;
+                assert!(view.length() > 0.0 && view.cross(camera.up).length() > 0.0);
+                assert!(camera.eye.is_finite());
+            }
+        }
+        let camera = framing(&Scene::default(), None);
+        assert!(camera.eye.is_finite() && camera.eye != camera.target);
+    }
+}

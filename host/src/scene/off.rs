@@ -1,0 +1,468 @@
+//! Reads OFF, the Object File Format of Geomview: the vertices and polygons of a mesh, as text.
+//!
+//! The keyword may be missing, and may have the prefixes `ST`, `C` and `N` of vertices with texture
+//! coordinates, colours and normals, which then stand on one line each. These are ignored, with a
+//! warning each, and so are the colours of faces. Vertices of other than three coordinates (`4OFF`,
+//! `nOFF`) and binary files are rejected. Comments begin with `#`.
+
+use super::importer::{Importer, Input, stem};
+use super::polygon::{self, MAX_CONCAVE};
+use super::size::Size;
+use super::text::{Source, Warnings};
+use super::words::Words;
+use super::{Imported, Material, Object, Place, Scene, SceneError, Shape, Up};
+use glam::DVec3;
+
+pub(super) const IMPORTER: Importer = Importer {
+    name: "OFF",
+    about: "Geomview's meshes of polygons",
+    extensions: &["off"],
+    // The format says nothing; Geomview's own camera has y up and looks along -z.
+    up: Up::Y,
+    binary: false,
+    example: "OFF\n# an arrowhead\n4 1 4\n1 0 0\n0 2 0\n-1 0 0\n0 .5 0\n4 0 1 2 3\n",
+    recognizes: |bytes| {
+        let lines = bytes.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
+        let mut lines = lines.filter(|line| !line.is_empty() && !line.starts_with(b"#"));
+        let words = |line: Option<&[u8]>| -> Vec<String> {
+            let line = line.unwrap_or_default();
+            let text = String::from_utf8_lossy(&line[..line.len().min(256)]).into_owned();
+            text.split_whitespace().map(String::from).collect()
+        };
+        let (first, second) = (words(lines.next()), words(lines.next()));
+        let are_numbers = |words: &[String]| words.iter().all(|it| it.parse::<f64>().is_ok());
+        let counts = first.len() == 3 && first.iter().all(|it| it.parse::<u32>().is_ok());
+        first
+            .first()
+            .is_some_and(|word| Keyword::of(word).is_some())
+            || counts && second.len() >= 3 && are_numbers(&second[..3])
+    },
+    read,
+};
+
+/// What the first word of a file says of its vertices.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Keyword<'a> {
+    textured: bool,
+    coloured: bool,
+    normals: bool,
+    /// `4` or `n`, for vertices that have not three coordinates.
+    dimension: &'a str,
+    /// What stands behind it without a space between, as in the files of ModelNet.
+    rest: &'a str,
+}
+
+impl<'a> Keyword<'a> {
+    fn of(word: &'a str) -> Option<Self> {
+        let (prefix, rest) = word.split_once("OFF")?;
+        let strip = |text: &'a str, letter: &str| match text.strip_prefix(letter) {
+            Some(rest) => (true, rest),
+            None => (false, text),
+        };
+        let (textured, prefix) = strip(prefix, "ST");
+        let (coloured, prefix) = strip(prefix, "C");
+        let (normals, dimension) = strip(prefix, "N");
+        let is_whole = ["", "4", "n", "4n"].contains(&dimension)
+            && rest.bytes().all(|byte| byte.is_ascii_digit());
+        is_whole.then_some(Self {
+            textured,
+            coloured,
+            normals,
+            dimension,
+            rest,
+        })
+    }
+
+    /// The fewest numbers that a vertex has; a colour may lack its opacity.
+    fn fewest_numbers(self) -> usize {
+        3 + 3 * usize::from(self.normals)
+            + 3 * usize::from(self.coloured)
+            + 2 * usize::from(self.textured)
+    }
+}
+
+/// Reads an OFF file. It has no camera and no lights; the compiler adds them.
+///
+/// # Errors
+/// If the file is binary, has no faces, or its content is broken; the error names the line.
+fn read(input: Input<'_>) -> Result<Imported, SceneError> {
+    let name = stem(input.path);
+    let source = &input.into_source()?;
+    let mut warnings = Warnings::default();
+    let mut words = Words::new(source);
+    let (keyword, [vertices, faces]) = header(source, &mut words)?;
+    let vertices = read_vertices(source, &mut words, keyword, vertices, &mut warnings)?;
+    let triangles = read_faces(source, &mut words, &vertices, faces, &mut warnings)?;
+    if words.next().is_some() {
+        let sentence = "lines behind the last face are ignored";
+        warnings.add(source, words.line, sentence);
+    }
+    let scene = Scene {
+        materials: vec![Material::default()],
+        objects: vec![Object {
+            name,
+            material: 0,
+            shape: Shape::Mesh {
+                vertices,
+                triangles,
+            },
+            place: Place::of(&source.path),
+        }],
+        ..Scene::default()
+    };
+    Ok(Imported {
+        scene,
+        warnings: warnings.into_sentences(),
+        molecules: false,
+    })
+}
+
+/// Reads the keyword, and the numbers of vertices and faces.
+fn header<'a>(
+    source: &'a Source,
+    words: &mut Words<'a>,
+) -> Result<(Keyword<'a>, [usize; 2]), SceneError> {
+    let first = words.expect("the keyword `OFF`")?;
+    let keyword = Keyword::of(first);
+    if let Some(keyword) = keyword {
+        if !keyword.dimension.is_empty() {
+            return Err(source.error_at(
+                first,
+                format!("the vertices of {first} have not three coordinates"),
+                "export the file again, as OFF with three coordinates for each vertex",
+            ));
+        }
+        let after = words.rest_of_line();
+        if after.starts_with("BINARY") {
+            return Err(source.error_at(
+                after,
+                "the file is binary OFF, which is not read",
+                "export it again as text, or as binary PLY or STL",
+            ));
+        }
+    }
+    // The first word is a count where the keyword is missing or ends with one.
+    let glued = keyword.map_or(first, |it| it.rest);
+    if !glued.is_empty() {
+        words.put_back(glued);
+    }
+    let vertices = words.count("the number of vertices")?;
+    let line = words.line;
+    let faces = words.count("the number of faces")?;
+    // Nobody uses the number of edges, and some files leave it out.
+    let left_out =
+        words.rest_of_line().is_empty() && line == words.line && words.count_of_next_line() != 1;
+    if !left_out {
+        words.count("the number of edges")?;
+    }
+    if faces == 0 {
+        return Err(source.error(
+            "the file has no faces",
+            "export a mesh; points alone cannot be rendered",
+        ));
+    }
+    Ok((keyword.unwrap_or_default(), [vertices, faces]))
+}
+
+fn read_vertices(
+    source: &Source,
+    words: &mut Words<'_>,
+    keyword: Keyword<'_>,
+    count: usize,
+    warnings: &mut Warnings,
+) -> Result<Vec<DVec3>, SceneError> {
+    let fewest = keyword.fewest_numbers();
+    let mut vertices = Vec::new();
+    let mut first_line = 0;
+    for number in 0..count {
+        let mut position = [0.0; 3];
+        for (value, axis) in position.iter_mut().zip(["x", "y", "z"]) {
+            *value = words.number(format_args!(
+                "the {axis} coordinate of vertex {number} (from 0)"
+            ))?;
+        }
+        vertices.push(DVec3::from_array(position));
+        if number == 0 {
+            first_line = words.line;
+        }
+        if fewest > 3 {
+            let found = 3 + words.skip_line();
+            if found < fewest {
+                return Err(source
+                    .error(
+                        format!("vertex {number} (from 0) has {found} numbers, and {fewest} are announced"),
+                        "write every vertex on a line of its own, with all that the keyword announces",
+                    )
+                    .at_line(words.line));
+            }
+        }
+    }
+    for (has, sentence) in [
+        (
+            keyword.coloured,
+            "the colour of a vertex is ignored; the surface has one colour",
+        ),
+        (
+            keyword.normals,
+            "the normal of a vertex is ignored; the surface is shaded flat",
+        ),
+        (
+            keyword.textured,
+            "the texture coordinates of a vertex are ignored; textures are not drawn",
+        ),
+    ] {
+        if has && count > 0 {
+            warnings.add_times(source.place(first_line), count, sentence);
+        }
+    }
+    Ok(vertices)
+}
+
+fn read_faces(
+    source: &Source,
+    words: &mut Words<'_>,
+    vertices: &[DVec3],
+    count: usize,
+    warnings: &mut Warnings,
+) -> Result<Vec<[u32; 3]>, SceneError> {
+    let wrong = |line, cause: String, remedy: &str| source.error(cause, remedy).at_line(line);
+    let mut size = Size {
+        objects: 1,
+        ..Size::default()
+    };
+    let mut triangles = Vec::new();
+    let (mut corners, mut points) = (Vec::new(), Vec::new());
+    for face in 0..count {
+        let corner_count = words.count(format_args!(
+            "the number of vertices of face {face} (from 0)"
+        ))?;
+        let line = words.line;
+        corners.clear();
+        points.clear();
+        for _ in 0..corner_count {
+            let corner = words.count(format_args!("a vertex of face {face} (from 0)"))?;
+            let known = vertices.len();
+            points.push(*vertices.get(corner).ok_or_else(|| {
+                let cause = format!(
+                    "face {face} (from 0) uses vertex {corner}, and there are {known} vertices"
+                );
+                wrong(
+                    words.line,
+                    cause,
+                    "export the file again; vertices count from 0",
+                )
+            })?);
+            corners.push(corner as u32);
+        }
+        if words.skip_line() > 0 {
+            let sentence = "the colour of a face is ignored; the surface has one colour";
+            warnings.add(source, words.line, sentence);
+        }
+        if corner_count < 3 {
+            let sentence = "a face has fewer than three vertices and is left out";
+            warnings.add(source, line, sentence);
+            continue;
+        }
+        let cut = polygon::triangulate(&points).ok_or_else(|| {
+            let cause = format!("face {face} (from 0) is concave and has {corner_count} vertices");
+            let remedy = format!("split it into faces of at most {MAX_CONCAVE} vertices");
+            wrong(line, cause, &remedy)
+        })?;
+        if !cut.exact {
+            let sentence = "a face crosses itself; its triangles cover more than it encloses";
+            warnings.add(source, line, sentence);
+        }
+        let named = |triangle: [u32; 3]| triangle.map(|corner| corners[corner as usize]);
+        triangles.extend(cut.triangles.into_iter().map(named));
+        size.triangles = triangles.len() as u64;
+        if let Some(excess) = size.excess() {
+            let cause = format!("up to this face the file takes {excess}");
+            return Err(wrong(
+                line,
+                cause,
+                "export a part of the mesh, or one with fewer faces",
+            ));
+        }
+    }
+    if triangles.is_empty() {
+        return Err(source.error(
+            "no face of the file has three vertices",
+            "export a mesh; points and lines cannot be rendered",
+        ));
+    }
+    Ok(triangles)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::test_scenes::{self, load, mesh};
+
+    const SQUARE: &str = "4 1 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+
+    fn read(text: &str) -> Result<Imported, SceneError> {
+        test_scenes::read("thing.off", text)
+    }
+
+    #[track_caller]
+    fn holds_the_square(text: &str, warnings: &[&str]) {
+        let imported = read(text).unwrap_or_else(|error| panic!("{text:?}: {error}"));
+        let (vertices, triangles) = mesh(&imported.scene.objects[0]);
+        assert_eq!(vertices[2], DVec3::new(1.0, 1.0, 0.0), "{text:?}");
+        assert_eq!(
+            (vertices.len(), triangles),
+            (4, &[[0, 1, 2], [0, 2, 3]][..]),
+            "{text:?}"
+        );
+        assert_eq!(imported.warnings, warnings, "{text:?}");
+        assert_eq!(imported.scene.objects[0].name, "thing");
+    }
+
+    #[track_caller]
+    fn fault(text: &str) -> (String, Option<usize>) {
+        let error = read(text).unwrap_err();
+        assert!(!error.remedy.is_empty());
+        (error.cause, error.line)
+    }
+
+    #[test]
+    fn keyword_counts_and_comments_in_every_layout() {
+        for text in [
+            format!("OFF\n{SQUARE}"),
+            format!("OFF {SQUARE}"),
+            format!("OFF{SQUARE}"),
+            SQUARE.to_owned(),
+            format!("# made by hand\n\nOFF # the keyword\n\n{SQUARE}# end\n"),
+            format!("OFF\r\n{}", SQUARE.replace('\n', "\r\n")),
+            // Counts on lines of their own, and without the edges.
+            SQUARE.replace("4 1 4\n", "OFF\n4\n1\n4\n"),
+            SQUARE.replace("4 1 4\n", "OFF\n4 1\n4\n"),
+            SQUARE.replace("4 1 4\n", "OFF\n4 1\n"),
+            SQUARE.replace("4 1 4\n", "OFF\n4 1 # no edges\n# none\n"),
+            // Vertices and corners wherever lines end.
+            String::from("OFF 4 1 0 0 0 0 1 0\n0 1 1 0 0 1 0 4\n0 1\n2 3\n"),
+            SQUARE.trim_end().to_owned(),
+        ] {
+            holds_the_square(&text, &[]);
+        }
+    }
+
+    #[test]
+    #[rustfmt::skip]
+    fn attributes_of_vertices_are_ignored_with_a_warning_each() {
+        let with = |keyword: &str, attributes: &str| {
+            let vertices = ["0 0 0", "1 0 0", "1 1 0", "0 1 0"];
+            let lines = vertices.map(|vertex| format!("{vertex} {attributes}\n"));
+            format!("{keyword}\n4 1 4\n{}4 0 1 2 3\n", lines.concat())
+        };
+        let color = "thing.off:3: the colour of a vertex is ignored; the surface has one colour (and 3 times more)";
+        let normal = "thing.off:3: the normal of a vertex is ignored; the surface is shaded flat (and 3 times more)";
+        let texture = "thing.off:3: the texture coordinates of a vertex are ignored; textures are not drawn (and 3 times more)";
+        holds_the_square(&with("COFF", "1 0 0 1"), &[color]);
+        holds_the_square(&with("COFF", "255 0 0"), &[color]);
+        holds_the_square(&with("NOFF", "0 0 1"), &[normal]);
+        holds_the_square(&with("CNOFF", "0 0 1 255 0 0 255"), &[color, normal]);
+        holds_the_square(&with("STCNOFF", "0 0 1 1 0 0 1 0 0"), &[color, normal, texture]);
+        assert_eq!(
+            fault(&with("NOFF", "")),
+            (
+                String::from("vertex 0 (from 0) has 3 numbers, and 6 are announced"),
+                Some(3)
+            )
+        );
+    }
+
+    #[test]
+    fn colours_of_faces_are_ignored_with_a_warning() {
+        let warning = "thing.off:7: the colour of a face is ignored; the surface has one colour";
+        for color in [
+            "7",
+            "255 0 0",
+            "255 0 0 128",
+            "1.0 0.5 0",
+            "1 .5 0 .25 # red",
+        ] {
+            holds_the_square(&format!("OFF\n{} {color}\n", SQUARE.trim_end()), &[warning]);
+        }
+    }
+
+    #[test]
+    fn concave_faces_are_covered_and_faces_that_cross_themselves_are_warned_of() {
+        let arrow = read(IMPORTER.example).unwrap();
+        let (vertices, triangles) = mesh(&arrow.scene.objects[0]);
+        let area = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|corner| vertices[corner as usize]);
+            (b - a).cross(c - a).z / 2.0
+        };
+        assert_eq!(triangles.iter().map(area).sum::<f64>(), 1.5);
+        assert!(triangles.iter().all(|it| area(it) > 0.0));
+        let bow = read("OFF\n4 2 0\n0 0 0\n1 1 0\n1 0 0\n0 2 0\n4 0 1 2 3\n2 0 1\n").unwrap();
+        assert_eq!(
+            bow.warnings,
+            [
+                "thing.off:7: a face crosses itself; its triangles cover more than it encloses",
+                "thing.off:8: a face has fewer than three vertices and is left out",
+            ]
+        );
+    }
+
+    #[test]
+    #[rustfmt::skip]
+    fn faults_name_line_cause_and_remedy() {
+        let square = |from: &str, to: &str| format!("OFF\n{}", SQUARE.replacen(from, to, 1));
+        for (text, cause, line) in [
+            (String::new(), "the file ends where the keyword `OFF` is expected", None),
+            (String::from("OFF"), "the file ends where the number of vertices is expected", None),
+            (String::from("OFF BINARY\n\0\0\0\x04"), "the file is binary OFF, which is not read", Some(1)),
+            (String::from("4OFF\n1 1 1\n"), "the vertices of 4OFF have not three coordinates", Some(1)),
+            (String::from("nOFF 3\n1 1 1\n"), "the vertices of nOFF have not three coordinates", Some(1)),
+            (String::from("PLY\n"), "the number of vertices is \"PLY\", which is not a whole number", Some(1)),
+            (square("4 1 4", "4 -1 4"), "the number of faces is \"-1\", which is not a whole number", Some(2)),
+            (square("4 1 4", "4 0 0"), "the file has no faces", None),
+            (square("1 1 0", "1 nan 0"), "the y coordinate of vertex 2 (from 0) is \"nan\", which is not a finite number", Some(5)),
+            (square("1 1 0", "1 a 0"), "the y coordinate of vertex 2 (from 0) is \"a\", which is not a number", Some(5)),
+            (square("4 0 1 2 3", "4 0 1 2 4"), "face 0 (from 0) uses vertex 4, and there are 4 vertices", Some(7)),
+            (square("4 0 1 2 3", "4 0 1 2 -1"), "a vertex of face 0 (from 0) is \"-1\", which is not a whole number", Some(7)),
+            (square("4 0 1 2 3", "4 0 1 2"), "the file ends where a vertex of face 0 (from 0) is expected", None),
+            (square("4 1 4", "4 2 4"), "the file ends where the number of vertices of face 1 (from 0) is expected", None),
+            (square("4 0 1 2 3", "2 0 1"), "no face of the file has three vertices", None),
+            (square("4 1 4", "4294967295 99999999999 0"), "the file ends where the z coordinate of vertex 5 (from 0) is expected", None),
+        ] {
+            let (found, at) = fault(&text);
+            assert!(found.contains(cause), "{text:?}: {found}");
+            assert_eq!(at, line, "{text:?}: {found}");
+        }
+        let extra = read(&format!("OFF\n{SQUARE}3 0 1 2\n3 0 1 2\n")).unwrap();
+        assert_eq!(
+            extra.warnings,
+            ["thing.off:8: lines behind the last face are ignored"]
+        );
+    }
+
+    #[test]
+    fn real_meshes_have_the_vertices_and_triangles_that_trimesh_finds() {
+        for (name, vertices, triangles, area) in [
+            ("ballA", 1900, 3796, 605.909413),
+            ("decimated-knight", 502, 1000, 0.90702354),
+            ("planexy", 25, 32, 4.0),
+        ] {
+            let Some(path) = test_scenes::find(&format!("meshes/{name}.off")) else {
+                continue;
+            };
+            let imported = load(&path).unwrap();
+            assert_eq!(imported.warnings, [] as [&str; 0]);
+            let (points, corners) = mesh(&imported.scene.objects[0]);
+            assert_eq!(
+                (points.len(), corners.len()),
+                (vertices, triangles),
+                "{name}"
+            );
+            let doubled = corners.iter().map(|t| {
+                let [a, b, c] = t.map(|corner| points[corner as usize]);
+                (b - a).cross(c - a).length()
+            });
+            let found = doubled.sum::<f64>() / 2.0;
+            assert!((found - area).abs() < 1e-8 * area, "{name}: {found}");
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! `gridel completions` and `gridel man`.
+
+use crate::program::Folder;
+
+#[test]
+fn completions_name_verbs_and_options() {
+    let folder = Folder::new();
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let text = folder.done(&["completions", shell]);
+        for word in ["render", "accuracy", "lattice-bits", "stm32vldiscovery"] {
+            assert!(text.contains(word), "{shell}: no {word}");
+        }
+    }
+    folder.fails(2, &["completions", "tcsh"], &["[possible values: bash"]);
+}
+
+#[test]
+fn every_verb_has_a_page_of_the_manual() {
+    let folder = Folder::new();
+    folder.done(&["man", "man/man1"]);
+    let help = folder.done(&["--help"]);
+    let verbs = help.lines().skip_while(|line| *line != "Commands:").skip(1);
+    let verbs = verbs.map_while(|line| line.split_whitespace().next());
+    let verbs: Vec<_> = verbs.filter(|verb| *verb != "help").collect();
+    assert!(verbs.len() >= 13, "{verbs:?}");
+    for verb in verbs {
+        let page = folder.read(&format!("man/man1/gridel-{verb}.1"));
+        let page = String::from_utf8(page).unwrap();
+        assert!(
+            page.contains(".SH SYNOPSIS") && page.contains("Exit codes"),
+            "{verb}"
+        );
+    }
+    assert!(folder.path("man/man1/gridel.1").is_file());
+    folder.write("file", b"");
+    folder.fails(1, &["man", "file"], &["file cannot be written"]);
+}
