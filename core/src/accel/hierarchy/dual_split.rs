@@ -343,8 +343,6 @@ impl<'a> Records<'a> for Views<'a> {
     const SECTIONS: &'static [SectionKind] = &[SECTION];
     const USES_LEAVES: bool = true;
 
-    // Out of line: the scene is read once, and small boards have little flash.
-    #[inline(never)]
     fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
         Ok(Self(sections.records(SECTION)?))
     }
