@@ -86,6 +86,9 @@ impl<'a> Sections<'a> {
         })
     }
 
+    /// The place of a section; an empty one where the blob has none.
+    // Out of line: inlined for each section, it takes 3 KB on a Cortex-M3.
+    #[inline(never)]
     pub(crate) fn get(&self, kind: SectionKind) -> Section<'a> {
         let entry = self.table.iter().find(|entry| entry.kind == kind as u16);
         let section = entry.and_then(|entry| {
