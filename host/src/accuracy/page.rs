@@ -42,7 +42,7 @@ pub fn page(
     let best = frontier(&results.points);
     let mut body = format!(
         "<title>Accuracy and time of {name}</title>\n<h1>What accuracy costs in time: {name}</h1>\n\
-         <p>{} x {} pixels, one thread. The reference: f64, 24 lattice bits, ray depth 16, {} a \
+         <p>{} x {} pixels, one thread. The reference: f64, 24 lattice bits, ray depth 16, {} per \
          pixel.</p>\n<ul>\n",
         size[0],
         size[1],
