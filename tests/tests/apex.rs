@@ -8,7 +8,7 @@ use gridel_core::{
 };
 use gridel_host::compare::PictureRays;
 use gridel_host::compile::{Options, compile};
-use gridel_host::scene::{Light, Scene as SceneFile};
+use gridel_host::scene::{Camera, Light, Scene as SceneFile};
 use gridel_tests::every_format;
 use gridel_tests::query::{HitBits, any, closest};
 use gridel_tests::scenes;
@@ -133,7 +133,16 @@ fn a_moved_camera_falls_back() {
 
 #[test]
 fn classes_serve_the_scenes_own_rays_within_their_budget() {
-    let scene = lit_soup();
+    // A view in which rays run in many directions.
+    let scene = SceneFile {
+        camera: Some(Camera {
+            eye: DVec3::new(2.4, 1.9, 5.3),
+            target: DVec3::ZERO,
+            up: DVec3::Y,
+            fov_degrees: 40.0,
+        }),
+        ..lit_soup()
+    };
     let mut last = usize::MAX;
     for budget in [20_000, 200_000, 2_000_000] {
         let compiled = compile(&scene, &options(Structure::RayClasses, Some(budget)));
