@@ -42,10 +42,11 @@ pub fn load(blob: &'static [u8]) -> Result<Scene<'static>, BlobError> {
 /// The scene of [`BLOB`], proved while the program was compiled.
 #[cfg(feature = "vouched")]
 pub fn load(_: &'static [u8]) -> Result<Scene<'static>, BlobError> {
-    static PREVALIDATED: gridel_core::Prevalidated<'static> = match gridel_core::Prevalidated::of(BLOB) {
-        Ok(vouched) => vouched,
-        Err(_) => panic!("the blob was damaged"),
-    };
+    static PREVALIDATED: gridel_core::Prevalidated<'static> =
+        match gridel_core::Prevalidated::of(BLOB) {
+            Ok(vouched) => vouched,
+            Err(_) => panic!("the blob was damaged"),
+        };
     Scene::prevalidated(core::hint::black_box(PREVALIDATED))
 }
 

@@ -3,7 +3,9 @@
 use crate::workload::{Answer, Query, Rays, Workload};
 use glam::DVec3;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
-use gridel_core::{Format, NoCount, Ray, Scene, Stack, Structure, Wide, any_hit, closest_primitive};
+use gridel_core::{
+    Format, NoCount, Ray, Scene, Stack, Structure, Wide, any_hit, closest_primitive,
+};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, Quality, compile};
 use gridel_host::trace::{SceneHit, SceneRay};

@@ -5,7 +5,9 @@
 
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
-use gridel_core::{Effects, Fixed, NoCount, Number, Renderer, Rgb888, Scene, Settings, Structure, Workspace};
+use gridel_core::{
+    Effects, Fixed, NoCount, Number, Renderer, Rgb888, Scene, Settings, Structure, Workspace,
+};
 use gridel_firmware::board::File;
 use gridel_firmware::program;
 use gridel_firmware::report::{fail, line, words};
