@@ -3,7 +3,7 @@
 use crate::scene::{Accel, Number as N, SceneRenderer};
 use core::hint::black_box;
 use gridel_core::format::record::Light;
-use gridel_core::number::{Convert, ErrorBounds, Products, Scalar};
+use gridel_core::number::{Convert, ErrorBounds, Products};
 use gridel_core::{Hit, NoCount, Ray, Scene, StackView, any_hit, closest_primitive};
 
 /// What was traced.

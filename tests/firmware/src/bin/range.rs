@@ -3,7 +3,8 @@
 #![no_std]
 #![no_main]
 
-use gridel_core::{NoCount, Number as _, Ray, Stack, closest_hit};
+use gridel_core::number::{Convert, Products};
+use gridel_core::{NoCount, Ray, Stack, closest_hit};
 use gridel_firmware::program;
 use gridel_firmware::report::{fail, line};
 use gridel_firmware::scene::{Accel, BLOB, Number, STACK_DEPTH, load};
