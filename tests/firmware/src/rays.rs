@@ -3,7 +3,7 @@
 use crate::scene::{Accel, Number as N, SceneRenderer};
 use core::hint::black_box;
 use gridel_core::format::record::Light;
-use gridel_core::number::{Convert, ErrorBounds, Products};
+use gridel_core::number::{Convert, ErrorBounds, Products, Scalar};
 use gridel_core::{Hit, NoCount, Ray, Scene, StackView, any_hit, closest_primitive};
 
 /// What was traced.
@@ -93,7 +93,7 @@ fn to(light: &Light, hit: Hit<N>, scene: &Scene<'static>) -> Option<Ray<N>> {
             let length = if part < N::far(0) { -part } else { part };
             if length > longest { length } else { longest }
         });
-        let part = |axis: usize| N::narrow(start[axis]).abs();
+        let part = |axis: usize| Scalar::abs(N::narrow(start[axis]));
         let larger = |a: N, b: N| if a < b { b } else { a };
         let magnitude = larger(
             larger(part(0), part(1)),
