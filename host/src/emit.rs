@@ -1,7 +1,7 @@
 //! Writes a scene as Rust: a module with the aligned blob, its limits as constants, and the types
 //! that have exactly the memory that it needs.
 
-use crate::board::Board;
+use crate::measure::board::Board;
 use gridel_core::{Format, Prevalidated, Scene, Structure};
 use std::fs::File;
 use std::io::{self, Read};

@@ -7,7 +7,8 @@
 //! | compile a scene into a blob | [`compile`] |
 //! | hold a blob and check it | [`blob`] |
 //! | hold scenes to recorded pictures and to budgets | [`check`] |
-//! | know the boards that blobs are for | [`board`] |
+//! | measure errors, rays, time and bytes | [`measure`] |
+//! | know the boards that blobs are for | [`measure::board`] |
 //! | write a blob as a Rust module | [`emit`] |
 //! | render a blob on all cores | [`render`], then [`picture`] to encode what comes out |
 //! | compare structures on a scene | [`compare`] |
@@ -16,28 +17,31 @@
 //! | tell the story of a ray or a pixel | [`explain`] |
 //! | measure what accuracy costs in time | [`accuracy`] |
 //! | hold a scene to what is promised | [`verify`] |
-//! | tell where bytes and work go | [`report`] |
+//! | draw charts and heat maps | [`report`] |
+//! | print tables | [`table`] |
 //! | find objects that a number format cannot resolve | [`resolution`] |
 //! | write a file whole or not at all | [`output`] |
 //!
 //! The program `gridel` is a thin layer over this library: what it does can be done from here.
 pub mod accuracy;
 pub mod blob;
-pub mod board;
 pub mod check;
 pub mod compare;
 pub mod compile;
 pub mod emit;
 pub mod explain;
+pub mod measure;
 pub mod merge;
 pub mod npy;
 pub mod output;
 pub mod picture;
+pub mod picture_rays;
 pub mod render;
 pub mod report;
 pub mod resolution;
 pub mod sample;
 pub mod scene;
 pub mod simd;
+pub mod table;
 pub mod trace;
 pub mod verify;

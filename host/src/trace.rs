@@ -3,9 +3,11 @@
 mod carry;
 mod rejection;
 mod stride;
+mod unit_ray;
 
 pub use rejection::{Rejection, Rejections};
 pub use stride::Stride;
+pub use unit_ray::UnitRay;
 
 use glam::DVec3;
 use gridel_core::accel::DynAccel;
@@ -275,7 +277,7 @@ impl Frame {
     }
 
     /// A ray in scene units, from one in units.
-    pub fn scene_ray(&self, ray: &crate::verify::UnitRay) -> SceneRay {
+    pub fn scene_ray(&self, ray: &UnitRay) -> SceneRay {
         let direction = DVec3::from_array(ray.direction);
         let (stride, _) = Stride::of(direction, self.unit, self.per_unit);
         let along = |t: f64| if t == 0.0 { 0.0 } else { stride.nearest(t) };

@@ -1,10 +1,10 @@
 //! What `accuracy` measures is what is there.
 
 use gridel_core::{Format, Structure};
-use gridel_host::accuracy::boards::BOARDS;
 use gridel_host::accuracy::{
     Bench, Lever, Point, Results, cheapest, frontier, page, reference_setting, sentences, sweep,
 };
+use gridel_host::measure::board::PICTURE_COSTS;
 use gridel_tests::scenes;
 
 /// A sweep of a small picture, timed by what it counts so that the test does not depend on clocks.
@@ -104,8 +104,8 @@ fn the_same_picture_has_no_error() {
 fn boards_are_the_recorded_ones() {
     let text = std::fs::read_to_string(scenes::fixture_folder().join("recorded/board.json"));
     let recorded: serde_json::Value = serde_json::from_str(&text.expect("a file")).expect("JSON");
-    for board in BOARDS {
-        for (name, a_ray) in ["quick", "glass-chess"].into_iter().zip(board.a_ray) {
+    for board in PICTURE_COSTS {
+        for (name, per_ray) in ["quick", "glass-chess"].into_iter().zip(board.per_ray) {
             let build = format!(
                 "{name} {} {} dual-split",
                 board.machine,
@@ -125,8 +125,8 @@ fn boards_are_the_recorded_ones() {
             let found = instructions / point.cost.rays as f64;
             eprintln!("{build}: {found:.0} instructions a ray");
             assert!(
-                (found / a_ray - 1.0).abs() < 0.15,
-                "{build}: {found} {a_ray}"
+                (found / per_ray - 1.0).abs() < 0.15,
+                "{build}: {found} {per_ray}"
             );
         }
     }

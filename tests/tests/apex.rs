@@ -6,8 +6,8 @@ use gridel_core::{
     Accel, Apex, Counters, List, NoCount, Number, Ray, RayClasses, Scene, Settings, Stack,
     Structure, any_hit,
 };
-use gridel_host::compare::PictureRays;
 use gridel_host::compile::{Options, compile};
+use gridel_host::picture_rays::PictureRays;
 use gridel_host::scene::{Camera, Light, Scene as SceneFile};
 use gridel_tests::every_format;
 use gridel_tests::query::{HitBits, any, closest};

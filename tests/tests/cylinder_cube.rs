@@ -9,13 +9,13 @@ use glam::DVec3;
 use gridel_core::format::record::{Gridels, UnitBox};
 use gridel_core::{Fixed, Number, Ray, Structure};
 use gridel_host::compile::{CompileError, CubeCensus, Options, compile, cube_census};
-use gridel_host::report::{Align, Table, grouped};
 use gridel_host::sample::{DIAMOND_2_800, DIAMOND_27_000, diamond};
 use gridel_host::scene::{Scene, Shape};
+use gridel_host::table::{Align, Table, grouped};
+use gridel_host::trace::UnitRay;
 use gridel_tests::every_format;
 use gridel_tests::query::{HitBits, through};
 use gridel_tests::random::Random;
-use gridel_tests::rays::UnitRay;
 use gridel_tests::{rays, scenes};
 use std::collections::{BTreeMap, HashSet};
 

@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// A crate whose imports are checked: its sources, and its top modules from the lowest layer up.
+/// A crate whose imports are checked: its sources, and its top modules from the lowest layer up, in rows of
+/// what belongs together.
 struct Layers {
     sources: &'static str,
     order: &'static [&'static str],
@@ -13,8 +14,20 @@ struct Layers {
 const CORE: Layers = Layers {
     sources: "../core/src",
     order: &[
-        "axis", "target", "simd", "format", "observe", "number", "ray", "geometry", "accel",
-        "scene", "query", "shade", "render", "selftest",
+        "axis target simd format observe",
+        "number ray geometry accel scene query shade render selftest",
+    ],
+};
+
+const HOST: Layers = Layers {
+    sources: "../host/src",
+    order: &[
+        "output simd table blob picture_rays",
+        "scene sample compile",
+        "render trace npy picture merge resolution report",
+        "measure emit",
+        "accuracy compare verify explain check",
+        "cli main",
     ],
 };
 
@@ -37,27 +50,70 @@ impl Source {
     }
 }
 
+impl Source {
+    /// The modules of other files that are declared for tests.
+    fn test_modules(&self) -> Vec<Module> {
+        let declared = self.text.split("#[cfg(test)]").skip(1);
+        let names = declared.filter_map(|rest| {
+            let (name, _) = rest.trim_start().strip_prefix("mod ")?.split_once(';')?;
+            name.chars()
+                .all(|char| char.is_alphanumeric() || char == '_')
+                .then_some(name)
+        });
+        let module = module(&self.file);
+        names
+            .map(|name| [&module[..], &[name.into()]].concat())
+            .collect()
+    }
+}
+
 /// The text with comments and what is in quotes as spaces; lines stay where they are.
 fn blank(text: &str) -> String {
     let mut blanked = String::with_capacity(text.len());
-    let mut rest = text.chars().peekable();
-    let (mut in_comment, mut in_string) = (false, false);
-    while let Some(char) = rest.next() {
-        let next = rest.peek().copied();
-        in_comment &= char != '\n';
-        if !in_comment && !in_string && char == '/' && next == Some('/') {
-            in_comment = true;
+    let mut rest = text;
+    while let Some(char) = rest.chars().next() {
+        let hidden = hidden(rest);
+        let length = hidden.unwrap_or(char.len_utf8());
+        let (token, behind) = rest.split_at(length);
+        if hidden.is_some() {
+            blanked.extend(
+                token
+                    .chars()
+                    .map(|char| if char == '\n' { '\n' } else { ' ' }),
+            );
+        } else {
+            blanked.push_str(token);
         }
-        let kept = !in_comment && !in_string;
-        if in_string && char == '\\' {
-            rest.next();
-        } else if !in_comment && char == '"' {
-            in_string = !in_string;
-        }
-        let space = if char == '\n' { '\n' } else { ' ' };
-        blanked.push(if kept { char } else { space });
+        rest = behind;
     }
     blanked
+}
+
+/// The length of the comment, the string or the quotation mark that a text begins with.
+fn hidden(text: &str) -> Option<usize> {
+    if text.starts_with("//") {
+        return Some(text.find('\n').unwrap_or(text.len()));
+    }
+    if text.starts_with("'\"'") {
+        return Some(3);
+    }
+    if let Some(raw) = text.strip_prefix('r') {
+        let hashes = raw.len() - raw.trim_start_matches('#').len();
+        if raw[hashes..].starts_with('"') {
+            let end = format!("\"{}", &raw[..hashes]);
+            let start = hashes + 2;
+            let length = text[start..].find(&end).map(|at| start + at + end.len());
+            return Some(length.unwrap_or(text.len()));
+        }
+    }
+    let quoted = text.strip_prefix('"')?;
+    let mut escaped = false;
+    let end = quoted.find(|char| {
+        let ends = char == '"' && !escaped;
+        escaped = char == '\\' && !escaped;
+        ends
+    });
+    Some(end.map_or(text.len(), |end| end + 2))
 }
 
 /// A path as code names it, the module that names it, and the line.
@@ -92,7 +148,8 @@ fn paths(text: &str) -> Vec<Named> {
         let (token, at) = tokens[index];
         let before = index.checked_sub(1).map(|before| tokens[before].0);
         let follows_path = before == Some(":");
-        if token == "use" {
+        let captures = tokens.get(index + 1).is_some_and(|&(next, _)| next == "<");
+        if token == "use" && !captures {
             let is_public = matches!(before, Some("pub" | ")"));
             index = import(&tokens, index + 1, &[], &mut |path, alias| {
                 found.push(Named {
@@ -104,7 +161,8 @@ fn paths(text: &str) -> Vec<Named> {
             });
             continue;
         }
-        if matches!(token, "crate" | "super") && !follows_path && before != Some("$") {
+        let is_name = token.starts_with(|first: char| first.is_alphabetic());
+        if is_name && !follows_path && before != Some("$") {
             let mut path = vec![token.to_string()];
             while let [(":", _), (":", _), (name, _), ..] = tokens[index + 1..] {
                 if !name.starts_with(|first: char| first.is_alphanumeric() || first == '_') {
@@ -269,14 +327,18 @@ fn faults(sources: &[Source], order: &[&str]) -> Vec<String> {
                 .or_insert(line);
         }
     }
-    // Without those that import nothing of the rest, again and again, cycles are left.
+    // Without those that import nothing of the rest, or that nothing of it imports, again and
+    // again, cycles are left, and what lies between two of them.
     let mut rest = modules.clone();
     loop {
-        let leads_on = |module: &Module| {
-            let targets = edges.get(module).into_iter().flatten();
-            targets.into_iter().any(|(target, _)| rest.contains(target))
-        };
-        let kept: BTreeSet<Module> = rest.iter().filter(|it| leads_on(it)).cloned().collect();
+        let inner: Vec<(&Module, &Module)> = edges
+            .iter()
+            .flat_map(|(from, to)| to.keys().map(move |to| (from, to)))
+            .filter(|(from, to)| rest.contains(*from) && rest.contains(*to))
+            .collect();
+        let from: BTreeSet<&Module> = inner.iter().map(|&(from, _)| from).collect();
+        let to: BTreeSet<&Module> = inner.iter().map(|&(_, to)| to).collect();
+        let kept: BTreeSet<Module> = from.intersection(&to).map(|&it| it.clone()).collect();
         if kept.len() == rest.len() {
             break;
         }
@@ -286,7 +348,7 @@ fn faults(sources: &[Source], order: &[&str]) -> Vec<String> {
         for (target, line) in &edges[module] {
             if rest.contains(target) {
                 faults.push(format!(
-                    "{}:{line}: `{}` is part of a cycle, or leads to one",
+                    "{}:{line}: `{}` is part of a cycle",
                     files[module].file,
                     target.join("::")
                 ));
@@ -296,15 +358,27 @@ fn faults(sources: &[Source], order: &[&str]) -> Vec<String> {
     faults
 }
 
-/// All sources below a folder, without files of tests.
-fn sources(folder: &Path, below: &str, found: &mut Vec<Source>) {
+/// All sources below a folder, without those that only tests compile.
+fn sources(folder: &Path) -> Vec<Source> {
+    let mut found = Vec::new();
+    read(folder, "", &mut found);
+    let tests: Vec<Module> = found.iter().flat_map(Source::test_modules).collect();
+    found.retain(|source| {
+        let module = module(&source.file);
+        !tests.iter().any(|tests| module.starts_with(tests))
+    });
+    found
+}
+
+/// All sources below a folder.
+fn read(folder: &Path, below: &str, found: &mut Vec<Source>) {
     for entry in fs::read_dir(folder).expect("a folder") {
         let entry = entry.expect("an entry");
         let name = entry.file_name().into_string().expect("a name");
         let file = format!("{below}{name}");
         if entry.path().is_dir() {
-            sources(&entry.path(), &format!("{file}/"), found);
-        } else if name.ends_with(".rs") && name != "tests.rs" {
+            read(&entry.path(), &format!("{file}/"), found);
+        } else if name.ends_with(".rs") {
             let text = fs::read_to_string(entry.path()).expect("a source");
             found.push(Source::new(&file, &text));
         }
@@ -314,15 +388,20 @@ fn sources(folder: &Path, below: &str, found: &mut Vec<Source>) {
 #[track_caller]
 fn check(layers: &Layers) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(layers.sources);
-    let mut found = Vec::new();
-    sources(&folder, "", &mut found);
-    let faults = faults(&found, layers.order);
+    let rows = layers.order.iter();
+    let order: Vec<&str> = rows.flat_map(|row| row.split_whitespace()).collect();
+    let faults = faults(&sources(&folder), &order);
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
 #[test]
 fn core_imports_run_one_way() {
     check(&CORE);
+}
+
+#[test]
+fn host_imports_run_one_way() {
+    check(&HOST);
 }
 
 fn made_up(files: &[(&str, &str)]) -> Vec<String> {
@@ -364,10 +443,59 @@ fn a_cycle_within_a_layer_is_found() {
     assert_eq!(
         found,
         [
-            "low/a.rs:2: `low::b` is part of a cycle, or leads to one",
-            "low/b.rs:2: `low::a` is part of a cycle, or leads to one",
+            "low/a.rs:2: `low::b` is part of a cycle",
+            "low/b.rs:2: `low::a` is part of a cycle",
         ]
     );
+}
+
+#[test]
+fn child_that_an_expression_names_is_an_import() {
+    let files = [
+        ("low/mod.rs", "mod a;\nfn f() { a::g() }\n"),
+        (
+            "low/a.rs",
+            "use super::f;\nuse std::fmt;\npub fn g() { fmt::g() }\n",
+        ),
+    ];
+    assert_eq!(
+        made_up(&files),
+        [
+            "low/mod.rs:2: `low::a` is part of a cycle",
+            "low/a.rs:1: `low` is part of a cycle",
+        ]
+    );
+}
+
+#[test]
+fn only_cycles_are_reported_and_not_what_leads_to_them() {
+    let files = [
+        ("low/a.rs", "use super::b::B;\n"),
+        ("low/b.rs", "use super::c::C;\n"),
+        ("low/c.rs", "use super::b::B;\nuse super::d::D;\n"),
+        ("low/d.rs", ""),
+    ];
+    assert_eq!(
+        made_up(&files),
+        [
+            "low/b.rs:1: `low::c` is part of a cycle",
+            "low/c.rs:1: `low::b` is part of a cycle",
+        ]
+    );
+}
+
+#[test]
+fn quoted_text_is_blank_and_code_behind_it_is_not() {
+    let text = r##"'"' a r#"b "c" d"# e "\"f" g r"\" h // " i"##;
+    let words: Vec<_> = blank(text).split_whitespace().map(String::from).collect();
+    assert_eq!(words, ["a", "e", "g", "h"]);
+}
+
+#[test]
+fn modules_that_only_tests_compile_are_found() {
+    let text = "#[cfg(test)]\nmod damaged;\nmod kept;\n#[cfg(test)]\nmod tests { fn f() {} }\n";
+    let source = Source::new("low/mod.rs", text);
+    assert_eq!(source.test_modules(), [["low", "damaged"]]);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::format::checksum;
 use crate::format::record::Header;
-use crate::selftest::Checks;
+use crate::selftest::checks::Checks;
 use crate::selftest::scene::TinyBlob;
 use crate::{BlobError, Effects, Kind, Scene, Structure};
 use core::fmt::{self, Write};

@@ -2,8 +2,8 @@
 
 use crate::accel::Number;
 use crate::observe::count::NoCount;
+use crate::selftest::checks::{Checks, name};
 use crate::selftest::scene::TinyBlob;
-use crate::selftest::{Checks, name};
 use crate::{Hit, List, Ray, Scene, Stack, any_hit, closest_hit};
 
 /// What one ray must find.

@@ -9,6 +9,7 @@
 //! ```
 
 mod blob;
+mod checks;
 mod hits;
 mod numbers;
 mod picture;
@@ -16,20 +17,11 @@ mod scene;
 #[cfg(feature = "std")]
 mod std_host;
 
+pub use checks::Host;
 #[cfg(feature = "std")]
 pub use std_host::StdHost;
 
-use crate::accel::Number;
-use core::ffi::CStr;
-use core::fmt;
-
-/// What the tests want of the machine that runs them.
-pub trait Host {
-    /// Prints a line.
-    fn print(&mut self, line: fmt::Arguments<'_>);
-    /// Keeps bytes under a name, where a person can look at them. May do nothing.
-    fn save(&mut self, name: &CStr, bytes: &[u8]);
-}
+use checks::Checks;
 
 /// A named test.
 type Case = (&'static str, fn(&mut Checks<'_>));
@@ -60,11 +52,7 @@ const CASES: [Case; 16] = [
 pub fn run(host: &mut dyn Host) -> usize {
     let mut failed = 0;
     for (name, case) in CASES {
-        let mut checks = Checks {
-            host: &mut *host,
-            name,
-            failures: 0,
-        };
+        let mut checks = Checks::new(&mut *host, name);
         case(&mut checks);
         let failures = checks.failures;
         if failures == 0 {
@@ -76,91 +64,4 @@ pub fn run(host: &mut dyn Host) -> usize {
     }
     host.print(format_args!("{} tests, {failed} failed", CASES.len()));
     failed
-}
-
-/// Failures of one test that are printed in full.
-const SHOWN: u32 = 5;
-
-/// Checks of one test: a failure is printed, and the test goes on.
-struct Checks<'h> {
-    host: &'h mut dyn Host,
-    name: &'static str,
-    failures: u32,
-}
-
-impl Checks<'_> {
-    /// Checks that `found` is `expected`.
-    fn equal<T: PartialEq + fmt::Debug>(
-        &mut self,
-        what: fmt::Arguments<'_>,
-        found: T,
-        expected: T,
-    ) {
-        self.that(
-            what,
-            found == expected,
-            format_args!("is {found:?} and should be {expected:?}"),
-        );
-    }
-
-    /// Checks that `found` lies within `tolerance` of `expected`.
-    fn near(&mut self, what: fmt::Arguments<'_>, found: f64, expected: f64, tolerance: f64) {
-        // A NaN is not near anything.
-        let near = (found - expected).abs() <= tolerance;
-        self.that(
-            what,
-            near,
-            format_args!("is {found} and should be {expected} within {tolerance}"),
-        );
-    }
-
-    /// Checks a condition; `why` is what else is the case.
-    fn that(&mut self, what: fmt::Arguments<'_>, holds: bool, why: fmt::Arguments<'_>) {
-        if holds {
-            return;
-        }
-        self.failures += 1;
-        if self.failures <= SHOWN {
-            let name = self.name;
-            self.host.print(format_args!("  {name}: {what} {why}"));
-        }
-    }
-}
-
-/// Numbers that look random and are the same on every machine (Marsaglia, "Xorshift RNGs", 2003).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    /// An integer of at most `bits` bits and a sign; every magnitude is about as likely.
-    fn integer(&mut self, bits: u32) -> i64 {
-        let width = self.next() % u64::from(bits) + 1;
-        let magnitude = (self.next() >> (64 - width)) as i64;
-        if self.next() & 1 == 0 {
-            magnitude
-        } else {
-            -magnitude
-        }
-    }
-}
-
-/// Where the hash of no bytes stands.
-const FNV_START: u32 = 0x811c_9dc5;
-
-/// FNV-1a over more bytes.
-fn hash(start: u32, bytes: impl IntoIterator<Item = u8>) -> u32 {
-    bytes.into_iter().fold(start, |state, byte| {
-        (state ^ u32::from(byte)).wrapping_mul(0x0100_0193)
-    })
-}
-
-/// The name of a number format.
-fn name<N: Number>() -> &'static str {
-    N::FORMAT.name()
 }

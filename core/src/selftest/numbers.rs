@@ -5,7 +5,7 @@ use crate::geometry::Project;
 use crate::number::Fixed;
 use crate::number::Products;
 use crate::number::Scalar;
-use crate::selftest::{Checks, FNV_START, Random, hash, name};
+use crate::selftest::checks::{Checks, FNV_START, Random, hash, name};
 
 type Product = <Fixed as crate::number::Scalar>::Wide;
 

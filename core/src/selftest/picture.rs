@@ -4,8 +4,8 @@ use crate::accel::Number;
 use crate::format::limits::work_depth;
 use crate::observe::count::NoCount;
 use crate::render::Pixel;
+use crate::selftest::checks::{Checks, FNV_START, hash, name};
 use crate::selftest::scene::TinyBlob;
-use crate::selftest::{Checks, FNV_START, hash, name};
 use crate::{Effects, Format, List, Renderer, Rgb565, Rgb888, Scene, Settings, Workspace};
 
 pub(super) fn encoding(checks: &mut Checks<'_>) {

@@ -1,23 +1,17 @@
 //! What accuracy costs in time: settings are swept, their pictures measured against a reference, and
 //! what comes out is told as a table, as sentences, as plots.
 //!
-//! `setting.rs` says what is swept, `measure.rs` renders and compares (`flip.rs` as an eye would),
-//! `boards.rs` knows what a picture costs on boards, `page.rs` draws.
+//! `setting.rs` says what is swept, `bench.rs` renders and compares, `page.rs` draws.
 
-pub mod boards;
-mod flip;
-mod measure;
+mod bench;
 mod page;
 mod setting;
-mod ssim;
 
-pub use measure::{
-    Bench, Cost, Errors, MeasureError, Point, Reference, difference_picture, reference_setting,
-};
+pub use bench::{Bench, Cost, MeasureError, Point, Reference, reference_setting};
 pub use page::{Exhibit, page};
 pub use setting::{Lever, Setting, least_reference_samples, sweep};
 
-use crate::report::significant;
+use crate::table::significant;
 use serde::{Deserialize, Serialize};
 
 /// What was measured so far; what a sweep writes down after every step.
@@ -83,7 +77,7 @@ impl Point {
 pub fn cheapest<'p>(points: &'p [Point], most: f64, board: Option<&str>) -> Option<&'p Point> {
     let price = |point: &Point| match board {
         None => Some(point.cost.time()),
-        Some(board) => boards::instructions(board, point).map(|[_, most]| most),
+        Some(board) => point.instructions(board).map(|[_, most]| most),
     };
     points
         .iter()
@@ -277,6 +271,7 @@ fn part(share: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::Errors;
     use gridel_core::Format;
 
     const BASE: Setting = Setting {

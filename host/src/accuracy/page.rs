@@ -1,9 +1,9 @@
 //! A page that holds everything: plots, sentences, table, pictures. It loads nothing from anywhere.
 
-use super::boards;
 use super::{Point, Results, frontier, frontier_by, sentences};
+use crate::measure::board::core_names;
 use crate::picture::write_png;
-use crate::report::{counted, grouped, significant};
+use crate::table::{counted, grouped, significant};
 use base64::Engine;
 use plotters::prelude::*;
 use std::fmt::Write;
@@ -223,7 +223,7 @@ fn table(results: &Results, best: &[bool]) -> String {
          <th>pixels off</th><th>SSIM</th><th>FLIP</th><th>other objects</th><th>t, median</th>\
          <th>t, largest</th><th>rays per pixel</th><th>tests per ray</th><th>blob</th><th>RAM</th>",
     );
-    for board in boards::names() {
+    for board in core_names() {
         let _ = write!(table, "<th>{board}</th>");
     }
     table.push_str("</tr>\n");
@@ -252,8 +252,9 @@ fn table(results: &Results, best: &[bool]) -> String {
             grouped(cost.blob_bytes),
             grouped(cost.working_bytes),
         );
-        for board in boards::names() {
-            let text = boards::instructions(board, point)
+        for board in core_names() {
+            let text = point
+                .instructions(board)
                 .map(|range| range.map(|n| grouped(n.round())).join(" to "));
             let _ = write!(table, "<td>{}</td>", text.unwrap_or_default());
         }

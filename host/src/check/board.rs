@@ -1,7 +1,7 @@
 //! Programs on emulated boards.
 
+use super::explained::explained;
 use super::manifest::{Board, Manifest, Named, Program};
-use super::measure::explained;
 use crate::blob::Blob;
 use std::collections::BTreeMap;
 use std::fs::{self, File};

@@ -1,7 +1,18 @@
 //! Findings as JUnit XML.
 
-use super::report::{Finding, Outcome};
-use std::fmt::Write;
+use super::report::{Finding, Outcome, Report};
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+impl Report {
+    /// Writes the findings as JUnit XML: a suite for each check, a case for each finding.
+    ///
+    /// # Errors
+    /// If `out` has one.
+    pub fn write_junit(&self, out: &mut dyn Write) -> io::Result<()> {
+        out.write_all(document(&self.findings).as_bytes())
+    }
+}
 
 /// Returns the document: a suite for each check, a case for each finding.
 pub(super) fn document(findings: &[Finding]) -> String {

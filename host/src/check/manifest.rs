@@ -1,6 +1,6 @@
 //! The manifest, read: every key is known, every value in its range.
 
-use crate::board::{self, BOARDS};
+use crate::measure::board::{self, BOARDS};
 use crate::output::place;
 use crate::scene::SceneError;
 use crate::scene::toml::source::{Source, Span, nearest};

@@ -2,10 +2,10 @@
 //! memory and to budgets.
 
 use super::manifest::Budget;
-use super::measure::Run;
 use super::report::{Figure, Key, Outcome};
-use crate::board::Board;
-use crate::report::{Account, Ledger, NotMeasured, Target, grouped};
+use super::run::Run;
+use crate::measure::board::{Account, Board, MemoryReport, NotMeasured, Target};
+use crate::table::grouped;
 use gridel_core::{Format, Scene, Structure};
 
 impl Run<'_> {
@@ -26,23 +26,23 @@ impl Run<'_> {
             flash: board.flash,
             ram: board.ram,
         };
-        let ledger = match Ledger::of(scene, blob, &target, format) {
-            Ok(ledger) => ledger,
+        let report = match MemoryReport::of(scene, blob, &target, format) {
+            Ok(report) => report,
             Err(NotMeasured(structure)) => {
                 let why = format!(
                     "nothing is known of the code and call stack of `{}` on boards; use one of {}",
                     structure.name(),
-                    Ledger::STRUCTURES.map(Structure::name).join(", ")
+                    MemoryReport::STRUCTURES.map(Structure::name).join(", ")
                 );
                 self.push(on(), "target", None, None, Outcome::Broken(why));
                 return;
             }
         };
-        let unknown = ledger.undecided().unwrap_or_default();
-        for (what, account) in [("target flash", &ledger.flash), ("target ram", &ledger.ram)] {
+        let unknown = report.undecided().unwrap_or_default();
+        for (what, account) in [("target flash", &report.flash), ("target ram", &report.ram)] {
             let outcome = match account.used {
                 _ if account.missing() > 0 => {
-                    let help = help(&ledger, what, scene);
+                    let help = help(&report, what, scene);
                     Outcome::Broken(format!(
                         "the scene takes {} bytes more than the {} of {}; what helps: {}",
                         grouped(account.missing()),
@@ -64,11 +64,11 @@ impl Run<'_> {
             call_stack,
             ..
         } = self.check.budget;
-        let stack = ledger.fast.call_stack.zip(ledger.small.call_stack);
+        let stack = report.fast.call_stack.zip(report.small.call_stack);
         let used = |account: &Account| account.used;
         let budgets = [
-            ("flash", flash, used(&ledger.flash)),
-            ("ram", ram, used(&ledger.ram)),
+            ("flash", flash, used(&report.flash)),
+            ("ram", ram, used(&report.ram)),
             (
                 "call_stack",
                 call_stack,
@@ -86,7 +86,7 @@ impl Run<'_> {
                 continue;
             };
             let keys = ["budget", what].map(|name| Key::Name(name.into()));
-            let help = help(&ledger, what, scene);
+            let help = help(&report, what, scene);
             self.held_to(
                 on(),
                 what,
@@ -100,11 +100,11 @@ impl Run<'_> {
 }
 
 /// What would make a figure smaller.
-fn help(ledger: &Ledger, what: &str, scene: &Scene<'_>) -> String {
+fn help(report: &MemoryReport, what: &str, scene: &Scene<'_>) -> String {
     let mut steps = match what {
-        "call_stack" => ledger.call_stack_advice(scene),
-        "ram" | "target ram" => ledger.ram_advice(scene),
-        _ => ledger.flash_advice(scene),
+        "call_stack" => report.call_stack_advice(scene),
+        "ram" | "target ram" => report.ram_advice(scene),
+        _ => report.flash_advice(scene),
     };
     if what.ends_with("flash") {
         let blob = "a smaller blob: `gridel build --max-bytes` says what makes it smaller";

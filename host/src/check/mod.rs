@@ -3,12 +3,13 @@
 mod bless;
 mod board;
 mod diff;
+mod explained;
 mod image;
 mod junit;
 mod manifest;
-mod measure;
 mod memory;
 mod report;
+mod run;
 
 #[cfg(test)]
 mod tests;
@@ -16,5 +17,5 @@ mod tests;
 pub use bless::{Blessed, bless};
 pub use image::Image;
 pub use manifest::{Board, Budget, Check, Manifest, Named, Program, Reference};
-pub use measure::run;
 pub use report::{Evidence, Figure, Finding, Outcome, Report};
+pub use run::run;

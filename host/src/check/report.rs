@@ -1,10 +1,9 @@
 //! What a run found, for people and for programs.
 
 use super::image::Image;
-use crate::report::{Align, Table, grouped};
+use crate::table::{Align, Table, grouped};
 use serde::{Serialize, Serializer};
 use std::fmt;
-use std::io::{self, Write};
 
 /// All findings, in the order of the manifest.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -152,14 +151,6 @@ impl Report {
             ]);
         }
         table
-    }
-
-    /// Writes the findings as JUnit XML: a suite for each check, a case for each finding.
-    ///
-    /// # Errors
-    /// If `out` has one.
-    pub fn write_junit(&self, out: &mut dyn Write) -> io::Result<()> {
-        out.write_all(super::junit::document(&self.findings).as_bytes())
     }
 }
 

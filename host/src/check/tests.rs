@@ -522,8 +522,8 @@ fn target_holds_a_scene_that_fits_by_the_memory_report() {
         let finding = report.findings.iter().find(|it| it.what == what).unwrap();
         let why = why(finding);
         for part in [
-            crate::report::grouped(found),
-            crate::report::grouped(found - 1),
+            crate::table::grouped(found),
+            crate::table::grouped(found - 1),
             String::from("what helps: "),
         ] {
             assert!(why.contains(&part), "{part}: {why}");

@@ -1,5 +1,6 @@
 //! `gridel accuracy`: what accuracy costs in time.
 
+use super::arguments::ViewOptions;
 use super::arguments::{
     self, GeometryOptions, ImportOptions, SceneOptions, check_quality, quoted, scene_help,
     scene_long_help,
@@ -8,18 +9,18 @@ use super::failure::Failure;
 use super::output::{print, print_json_warned, prove, write_file, write_texts};
 use super::progress::Progress;
 use super::source::import;
-use super::view::ViewOptions;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use gridel_core::render::Pixel;
 use gridel_core::{Rgb888, Structure};
 use gridel_host::accuracy::{
-    Bench, Exhibit, MeasureError, Point, Results, Setting, boards, cheapest, difference_picture,
-    frontier, least_reference_samples, page, sentences, sweep,
+    Bench, Exhibit, MeasureError, Point, Results, Setting, cheapest, frontier,
+    least_reference_samples, page, sentences, sweep,
 };
 use gridel_host::compile::Quality;
+use gridel_host::measure::{board as boards, difference_picture};
 use gridel_host::picture::write_png;
-use gridel_host::report::{Align, Table, counted, grouped, significant};
+use gridel_host::table::{Align, Table, counted, grouped, significant};
 use serde::Serialize;
 use std::fmt::Write;
 use std::io;
@@ -63,7 +64,7 @@ const MOST_PIXELS: usize = 1 << 22;
 /// results.csv; and results.json, which grows with every step. After an interruption, the same command
 /// continues where it stopped.
 #[derive(Args)]
-#[command(after_help = super::EXIT_CODES, verbatim_doc_comment)]
+#[command(after_help = super::failure::EXIT_CODES, verbatim_doc_comment)]
 pub struct Arguments {
     #[arg(help = scene_help(), long_help = scene_long_help())]
     scene: PathBuf,
@@ -128,7 +129,7 @@ fn share(text: &str) -> Result<f64, String> {
 }
 
 fn board() -> impl TypedValueParser<Value = String> {
-    PossibleValuesParser::new(boards::all_names())
+    PossibleValuesParser::new(boards::names())
 }
 
 /// What is printed as JSON.
@@ -248,7 +249,7 @@ fn nothing_within(arguments: &Arguments, most: f64, points: &[Point]) -> Failure
     let on = arguments.board.as_deref();
     let measured = points
         .iter()
-        .filter(|point| on.is_none_or(|board| boards::instructions(board, point).is_some()));
+        .filter(|point| on.is_none_or(|board| point.instructions(board).is_some()));
     let least = measured
         .map(|point| point.errors.rmse)
         .fold(f64::INFINITY, f64::min);
@@ -312,7 +313,7 @@ fn measure(
     for setting in settings {
         if results.point(setting).is_none() {
             let (point, pixels) = bench.measure(setting, &results.reference).map_err(failed)?;
-            let difference = difference_picture(&results.reference, &pixels);
+            let difference = difference_picture(&results.reference.pixels, &pixels);
             let name = setting.name();
             write_picture(folder, bench.size, &name, &encoded(&pixels))?;
             write_picture(
@@ -554,7 +555,7 @@ fn csv(points: &[Point]) -> String {
          other_objects,t_ulps_median,t_ulps_largest,seconds,spread,rays,tests,pixels,blob_bytes,\
          working_bytes",
     );
-    for board in boards::names() {
+    for board in boards::core_names() {
         let _ = write!(csv, ",{board}_least,{board}_most");
     }
     csv.push('\n');
@@ -590,8 +591,8 @@ fn csv(points: &[Point]) -> String {
             cost.blob_bytes,
             cost.working_bytes
         );
-        for board in boards::names() {
-            match boards::instructions(board, point) {
+        for board in boards::core_names() {
+            match point.instructions(board) {
                 Some([least, most]) => {
                     let _ = write!(csv, ",{least:.0},{most:.0}");
                 }

@@ -12,11 +12,12 @@ use super::source::Source;
 use clap::Args;
 use gridel_core::{Format, Scene, Structure};
 use gridel_host::blob::is_blob;
-use gridel_host::board::Board;
-use gridel_host::compile::{self, Builder, Figures, LeftOut, Report, Tabled};
+use gridel_host::compile::{self, Builder, Figures, LeftOut, Report, TableStats};
 use gridel_host::emit::{self, Emitted};
-use gridel_host::report::{Account, Align, Ledger, Table, counted, grouped, power_of_two};
+use gridel_host::measure::board::Board;
+use gridel_host::measure::board::{Account, MemoryReport};
 use gridel_host::resolution::Unresolved;
+use gridel_host::table::{Align, Table, counted, grouped, power_of_two};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -27,7 +28,7 @@ use std::{fs, io};
 /// that it requires. The blob is checked as a device would check it. It is written completely or
 /// not at all.
 #[derive(Args)]
-#[command(after_help = super::EXIT_CODES)]
+#[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {
     #[arg(help = scene_help(), long_help = scene_long_help())]
     scene: PathBuf,
@@ -110,14 +111,14 @@ struct Built<'r> {
     sah_cost: Option<f64>,
     effects: Vec<CalledFor>,
     supplied: &'r [String],
-    tables: &'r [Tabled],
+    tables: &'r [TableStats],
     warnings: &'r [String],
     /// Objects that some formats do not resolve.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     unresolved: &'r [Unresolved],
     /// Where a board is given.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    ledger: Option<&'r Ledger>,
+    #[serde(rename = "ledger", skip_serializing_if = "Option::is_none")]
+    memory: Option<&'r MemoryReport>,
 }
 
 /// Left-out primitives that are named in the text; JSON names more.
@@ -175,16 +176,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             format!("use {}", formats.collect::<Vec<_>>().join(" or ")),
         ));
     }
-    let ledger = arguments
+    let memory = arguments
         .target
-        .ledger(&scene, source.blob.bytes(), format)?;
-    if let Some(ledger) = &ledger {
-        source.check_fits(&scene, ledger)?;
+        .memory_report(&scene, source.blob.bytes(), format)?;
+    if let Some(report) = &memory {
+        source.check_fits(&scene, report)?;
     }
     let blob = source.blob.bytes();
     let write_blob: Content<'_> = &|out| out.write_all(blob);
     if let Some(folder) = &arguments.emit_rust {
-        let remains = ledger.as_ref().and_then(|ledger| ledger.flash.remains());
+        let remains = memory.as_ref().and_then(|report| report.flash.remains());
         let room = remains
             .zip(target)
             .map(|(remains, target)| (remains + blob.len() as u64, target.board));
@@ -219,7 +220,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = arguments.output.display().to_string();
     let unresolved = source.warn_of_unresolved(&scene, None);
     let built = Built {
-        ledger: ledger.as_ref(),
+        memory: memory.as_ref(),
         unresolved: &unresolved,
         ..Built::new(&name, &scene, report, &source.warnings)
     };
@@ -283,7 +284,7 @@ impl<'r> Built<'r> {
             tables: &report.tables,
             warnings,
             unresolved: &[],
-            ledger: None,
+            memory: None,
         }
     }
 
@@ -367,19 +368,19 @@ impl<'r> Built<'r> {
         for effect in &self.effects {
             line("effect", effect.to_string());
         }
-        if let Some(ledger) = self.ledger {
+        if let Some(report) = self.memory {
             let remains = |account: &Account| {
                 let rest = account.remains();
                 let rest = rest.map_or(String::from("an unknown part"), grouped);
                 format!("{rest} of {}", grouped(account.available))
             };
             line(
-                ledger.board,
+                report.board,
                 format!(
                     "{} bytes of flash remain, and {} of RAM; `gridel inspect` shows what takes the \
                      others, and for which builds of the program that holds",
-                    remains(&ledger.flash),
-                    remains(&ledger.ram)
+                    remains(&report.flash),
+                    remains(&report.ram)
                 ),
             );
         }

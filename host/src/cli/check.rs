@@ -6,7 +6,7 @@ use super::progress::Progress;
 use clap::Args;
 use gridel_host::check::{self, Blessed, Manifest, Outcome, Report};
 use gridel_host::output::Files;
-use gridel_host::report::counted;
+use gridel_host::table::counted;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 ///
 /// A board is skipped if its emulator or its Rust target is not installed.
 #[derive(Args)]
-#[command(after_help = super::EXIT_CODES)]
+#[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {
     /// The manifest
     #[arg(value_name = "MANIFEST.toml")]

@@ -1,5 +1,6 @@
 //! `gridel compare`: structures side by side on a scene's own rays.
 
+use super::arguments::Aim;
 use super::arguments::{
     self, SceneOptions, StructureOptions, check_hierarchy, distinct, scene_help, scene_long_help,
 };
@@ -7,14 +8,13 @@ use super::failure::Failure;
 use super::output::{print, print_json_warned, write_texts};
 use super::progress::Progress;
 use super::source::import;
-use super::view::Aim;
 use clap::Args;
 use gridel_core::{Format, Structure};
 use gridel_host::compare::{
     Comparison, Growth, Options, Work, Works, charts, compare, findings, growth, growth_steps,
 };
 use gridel_host::compile::{self, Builder};
-use gridel_host::report::{Align, Table, counted, grouped};
+use gridel_host::table::{Align, Table, counted, grouped};
 use peak_alloc::PeakAlloc;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -28,7 +28,7 @@ use std::path::PathBuf;
 ///
 /// Times are medians on one thread; the structures take turns. Compare times within one run only.
 #[derive(Args)]
-#[command(after_help = super::EXIT_CODES)]
+#[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {
     #[arg(help = scene_help(), long_help = scene_long_help())]
     scene: PathBuf,

@@ -1,10 +1,10 @@
 //! `gridel explain`: the story of a pixel or of a ray.
 
+use super::arguments::Aim;
 use super::arguments::{PictureOptions, SceneOptions, TraceOptions};
 use super::failure::Failure;
 use super::output::{print, print_json_warned};
 use super::source::Source;
-use super::view::Aim;
 use clap::{ArgGroup, Args};
 use glam::DVec3;
 use gridel_core::{Settings, Structure};
@@ -22,7 +22,7 @@ use std::path::PathBuf;
 /// The code that renders reports all of this. Points and distances are in scene units, distances
 /// along the ray. Colors are linear; 1 is display white.
 #[derive(Args)]
-#[command(after_help = super::EXIT_CODES, group = ArgGroup::new("subject").required(true))]
+#[command(after_help = super::failure::EXIT_CODES, group = ArgGroup::new("subject").required(true))]
 pub struct Arguments {
     /// Blob or scene file, or `-` for standard input
     #[arg(value_name = "BLOB|SCENE")]

@@ -7,6 +7,15 @@ use std::path::Path;
 use std::process::ExitCode;
 use textwrap::{WordSeparator, WordSplitter};
 
+/// The exit codes for scripts; the help of every command shows them.
+pub const EXIT_CODES: &str = "\
+Exit codes:
+  0    success
+  1    an input is invalid, a file cannot be read or written, or a check fails
+  2    the command line is wrong, by itself or for this input
+  3    the scene does not fit the given memory
+  130  interrupted; no output is incomplete";
+
 /// Keeps whole what one may want to copy: lines of an error break at spaces, not within a path or a flag.
 pub fn break_lines_at_spaces() {
     // Fails only where a handler has been set before, and then lines break as that one has it.

@@ -5,8 +5,8 @@
 
 use super::failure::Failure;
 use gridel_host::blob::{self, Blob};
-use gridel_host::report::grouped;
 use gridel_host::scene::{self, ImportOptions, Imported, MOST_INPUT, SceneError};
+use gridel_host::table::grouped;
 use std::io::{self, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 

@@ -9,9 +9,9 @@ use clap::Args;
 use glam::DVec3;
 use gridel_core::{Format, Kind, Scene, Structure};
 use gridel_host::compile;
-use gridel_host::report::{
-    Account, Align, Ledger, MemoryMap, Table, WorkingMemory, grouped, power_of_two, working_memory,
-};
+use gridel_host::measure::board::{Account, MemoryReport};
+use gridel_host::measure::{MemoryMap, WorkingMemory, working_memory};
+use gridel_host::table::{Align, Table, grouped, power_of_two};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -23,7 +23,7 @@ use std::path::PathBuf;
 /// boards that align an f64 to 8 bytes. A scene that does not fit the board of --target is shown,
 /// and the exit code is 3.
 #[derive(Args)]
-#[command(after_help = super::EXIT_CODES)]
+#[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {
     /// Blob or scene file, or `-` for standard input
     #[arg(value_name = "BLOB|SCENE")]
@@ -48,8 +48,8 @@ struct Inspection {
     working_memory: Vec<WorkingMemory>,
     effects: Vec<CalledFor>,
     /// Where a board is given.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    ledger: Option<Ledger>,
+    #[serde(rename = "ledger", skip_serializing_if = "Option::is_none")]
+    memory: Option<MemoryReport>,
 }
 
 #[derive(Serialize)]
@@ -96,17 +96,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             Some(report) => CalledFor::in_report(report),
             None => CalledFor::in_blob(&scene),
         },
-        ledger: arguments
+        memory: arguments
             .target
-            .ledger(&scene, source.blob.bytes(), format)?,
+            .memory_report(&scene, source.blob.bytes(), format)?,
     };
     if arguments.json {
         print_json_warned(&inspection, &source.warnings)?;
     } else {
         print(inspection.text())?;
     }
-    let ledger = inspection.ledger.as_ref();
-    ledger.map_or(Ok(()), |ledger| source.check_fits(&scene, ledger))
+    let memory = inspection.memory.as_ref();
+    memory.map_or(Ok(()), |report| source.check_fits(&scene, report))
 }
 
 fn limits(scene: &Scene<'_>) -> Limits {
@@ -188,7 +188,7 @@ impl Inspection {
             "{map}\n{}\n{}",
             self.facts(),
             working_memory_table(&self.working_memory)
-        ) + &self.ledger.as_ref().map(ledger_table).unwrap_or_default()
+        ) + &self.memory.as_ref().map(memory_table).unwrap_or_default()
     }
 
     fn facts(&self) -> Table {
@@ -247,10 +247,10 @@ impl Inspection {
 }
 
 /// The memory report: flash and RAM on a board, and what remains of each.
-fn ledger_table(ledger: &Ledger) -> String {
+fn memory_table(report: &MemoryReport) -> String {
     let title = format!(
         "{}, {}, {}, {}",
-        ledger.board, ledger.core, ledger.format, ledger.structure
+        report.board, report.core, report.format, report.structure
     );
     let mut table = Table::new([(&title, Align::Left), ("bytes", Align::Right)]);
     let mut account = |name: &str, account: &Account| {
@@ -266,9 +266,9 @@ fn ledger_table(ledger: &Ledger) -> String {
             [format!("{name}  remains"), bytes(account.remains())]
         });
     };
-    account("flash", &ledger.flash);
-    account("RAM", &ledger.ram);
-    format!("\n{table}{}\n", ledger.holds_for())
+    account("flash", &report.flash);
+    account("RAM", &report.ram);
+    format!("\n{table}{}\n", report.holds_for())
 }
 
 fn working_memory_table(needs: &[WorkingMemory]) -> Table {

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// any order, and can overlap if they agree. Parts of different pictures are rejected. The result
 /// has the bytes that one machine writes.
 #[derive(Args)]
-#[command(after_help = super::EXIT_CODES)]
+#[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {
     /// Parts, .png or .ppm
     #[arg(required = true, value_name = "PART")]

@@ -3,12 +3,11 @@
 //! | file | what is in it |
 //! |---|---|
 //! | `failure.rs` | why a verb ends, and the exit code that says so |
-//! | `arguments.rs` | options that several verbs have |
+//! | `arguments/` | options that several verbs have |
 //! | `input.rs` | a file or standard input |
 //! | `source.rs` | the blob or scene file that a verb works on |
 //! | `effects.rs` | what calls for the effects of a scene |
 //! | `output.rs` | files and standard output |
-//! | `view.rs` | from where a scene file is seen |
 //! | `shell.rs` | what shells and the manual are told of the program |
 //! | `progress.rs` | the sign of life of long work |
 
@@ -19,7 +18,6 @@ mod input;
 mod output;
 mod progress;
 mod source;
-mod view;
 
 mod accuracy;
 mod build;
@@ -45,7 +43,7 @@ use std::process::ExitCode;
 #[command(
     name = "gridel",
     version,
-    after_help = format!("{}\n\n{EXIT_CODES}", help::TOPIC_LIST),
+    after_help = format!("{}\n\n{}", help::TOPIC_LIST, failure::EXIT_CODES),
     arg_required_else_help = true,
     disable_help_subcommand = true
 )]
@@ -73,15 +71,6 @@ enum Verb {
     #[cfg(feature = "shell")]
     Man(shell::ManArguments),
 }
-
-/// The exit codes for scripts; the help of every command shows them.
-const EXIT_CODES: &str = "\
-Exit codes:
-  0    success
-  1    an input is invalid, a file cannot be read or written, or a check fails
-  2    the command line is wrong, by itself or for this input
-  3    the scene does not fit the given memory
-  130  interrupted; no output is incomplete";
 
 /// Runs the program.
 ///

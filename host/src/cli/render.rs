@@ -1,5 +1,6 @@
 //! `gridel render`: a picture of a scene.
 
+use super::arguments::Aim;
 use super::arguments::{self, PictureOptions, SceneOptions, TraceOptions};
 use super::failure::Failure;
 use super::input::is_standard;
@@ -8,14 +9,14 @@ use super::output::{
 };
 use super::progress::Progress;
 use super::source::Source;
-use super::view::Aim;
 use clap::Args;
 use gridel_core::{Counters, Scene, Settings, Structure};
 use gridel_host::output::place;
 use gridel_host::picture::{Making, PictureFormat};
 use gridel_host::render::{Job, Picture, render};
-use gridel_host::report::{Align, HeatMap, Table, counted, grouped};
+use gridel_host::report::HeatMap;
 use gridel_host::resolution::Unresolved;
+use gridel_host::table::{Align, Table, counted, grouped};
 use serde::Serialize;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -26,7 +27,7 @@ use std::time::{Duration, Instant};
 /// Options that are not given come from the scene file. The picture is the same, bit for bit, with
 /// any number of threads, on every machine, and in every acceleration structure.
 #[derive(Args)]
-#[command(after_help = super::EXIT_CODES)]
+#[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {
     /// Blob or scene file, or `-` for standard input
     #[arg(value_name = "BLOB|SCENE")]

@@ -4,14 +4,14 @@ use super::failure::Failure;
 use super::output::{print, print_json, write_file};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use gridel_host::report::{Align, Table};
 use gridel_host::sample;
+use gridel_host::table::{Align, Table};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 /// List the sample scenes, or write one
 #[derive(Args)]
-#[command(after_help = super::EXIT_CODES)]
+#[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {
     /// Sample to write [default: list the samples]
     #[arg(value_parser = name())]

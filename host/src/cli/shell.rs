@@ -11,7 +11,7 @@ use std::path::PathBuf;
 ///
 /// For bash, for example: `gridel completions bash >~/.local/share/bash-completion/completions/gridel`
 #[derive(Args)]
-#[command(after_help = super::EXIT_CODES)]
+#[command(after_help = super::failure::EXIT_CODES)]
 pub struct CompletionArguments {
     /// The shell
     #[arg(value_enum)]
@@ -22,7 +22,7 @@ pub struct CompletionArguments {
 ///
 /// `man -l DIR/gridel-build.1` shows one of them.
 #[derive(Args)]
-#[command(after_help = super::EXIT_CODES)]
+#[command(after_help = super::failure::EXIT_CODES)]
 pub struct ManArguments {
     /// The folder; it is made if need be
     #[arg(value_name = "DIR")]

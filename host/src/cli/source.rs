@@ -10,9 +10,10 @@ use gridel_core::{BlobError, Format, Scene, Structure};
 use gridel_host::blob::{self, Blob};
 use gridel_host::compile::{self, CompileError, Compiled};
 use gridel_host::explain::Names;
-use gridel_host::report::{Fit, Ledger, counted, grouped, significant};
+use gridel_host::measure::board::{Fit, MemoryReport};
 use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
 use gridel_host::scene::{self, Imported};
+use gridel_host::table::{counted, grouped, significant};
 use std::path::Path;
 
 /// A blob, from wherever it came.
@@ -135,11 +136,11 @@ impl Source {
     }
 
     /// Refuses a scene that does not fit a board's memory, with what would help.
-    pub fn check_fits(&self, scene: &Scene<'_>, ledger: &Ledger) -> Result<(), Failure> {
-        match ledger.fit() {
+    pub fn check_fits(&self, scene: &Scene<'_>, report: &MemoryReport) -> Result<(), Failure> {
+        match report.fit() {
             Fit::Fits => Ok(()),
             Fit::Short(why) => {
-                let advice = ledger.advice(scene, || self.smaller());
+                let advice = report.advice(scene, || self.smaller());
                 Err(Failure::refused(why, advice))
             }
             Fit::Undecided(why) => Err(Failure::refused(

@@ -9,7 +9,7 @@ use super::source::Source;
 use clap::Args;
 use gridel_core::{Counters, Structure};
 use gridel_host::npy::{read_rays, write_hits};
-use gridel_host::report::grouped;
+use gridel_host::table::grouped;
 use gridel_host::trace::{Query, Rejections, SceneHit, SceneRay, trace, trace_counted};
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -32,7 +32,7 @@ use std::time::Instant;
 /// away, or if t exceeds double precision. Its t is nan in the file. Rejected rays are counted
 /// separately from misses. The first one is printed with its row and the reason.
 #[derive(Args)]
-#[command(after_help = super::EXIT_CODES)]
+#[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {
     /// Blob or scene file, or `-` for standard input
     #[arg(value_name = "BLOB|SCENE")]

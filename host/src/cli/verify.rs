@@ -8,7 +8,7 @@ use super::source::Source;
 use clap::Args;
 use gridel_core::Structure;
 use gridel_host::compile::{self, Quality};
-use gridel_host::report::{Align, Table, counted, grouped, significant};
+use gridel_host::table::{Align, Table, counted, grouped, significant};
 use gridel_host::verify::{RAYS, Report, judge, steps, verify};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -31,7 +31,7 @@ use std::path::PathBuf;
 /// A step is a rounding of the largest coordinate (2^-24 of it in f32, 2^-53 in f64), or 2^-13 unit
 /// in fixed.
 #[derive(Args)]
-#[command(after_help = super::EXIT_CODES)]
+#[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {
     /// Blob or scene file, or `-` for standard input
     #[arg(value_name = "BLOB|SCENE")]

@@ -1,7 +1,7 @@
 //! Where each structure is beaten, in plain words.
 
 use super::{Comparison, Row};
-use crate::report::grouped;
+use crate::table::grouped;
 use gridel_core::Structure;
 
 /// What is compared between rows.

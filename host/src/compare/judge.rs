@@ -4,7 +4,7 @@
 //! many rays as fit a budget, spread evenly over the picture, and about every ray on which two
 //! contenders differ. What all of them have in common on the other rays is not doubted.
 
-use super::measure::{Answer, Question, Questions, ask, stride};
+use crate::measure::rays::{Answer, Question, Questions, ask, stride};
 use gridel_core::{Number, Ray, Scene, Structure};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -102,10 +102,10 @@ fn all_answers<N: Number>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::PictureRays;
     use super::*;
     use crate::blob::Blob;
     use crate::compile::{Options, compile};
+    use crate::picture_rays::PictureRays;
     use crate::scene;
     use glam::DVec3;
     use gridel_core::Settings;

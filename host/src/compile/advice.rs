@@ -1,10 +1,11 @@
 //! What to change where a blob is larger than it may be.
 
-use super::layout::{self, Layout};
-use super::{Options, compile, writer};
+use super::layout::Layout;
+use super::options::Options;
+use super::section::taken;
+use super::structures::leads_to;
 use crate::blob::Blob;
-use crate::report::grouped;
-use crate::scene::Scene;
+use crate::table::grouped;
 use gridel_core::{Prevalidated, Structure};
 
 /// What a structure takes of a blob.
@@ -20,21 +21,20 @@ impl Size {
         let sections = layout.sections.iter();
         Self {
             structure: layout.structure,
-            bytes: sections
-                .map(|section| writer::taken(section.bytes.len()))
-                .sum(),
+            bytes: sections.map(|section| taken(section.bytes.len())).sum(),
             uses_leaves: layout.uses_leaves,
         }
     }
 }
 
 /// What makes a blob smaller, by its own figures and the bytes of the leaves that hierarchies share.
+/// `bytes_with` compiles the scene with other options, and tells how large the blob is.
 pub fn advice(
-    scene: &Scene,
     options: &Options,
     blob: &Blob,
     leaves: usize,
     sizes: &[Size],
+    bytes_with: &dyn Fn(&Options) -> Option<usize>,
 ) -> String {
     let mut asked = options.structures.clone();
     asked.sort();
@@ -46,8 +46,7 @@ pub fn advice(
             max_bytes: None,
             ..other
         };
-        let bytes = compile(scene, &other).ok()?.report.bytes;
-        let saved = blob.bytes().len().checked_sub(bytes);
+        let saved = blob.bytes().len().checked_sub(bytes_with(&other)?);
         let saved = saved.filter(|&saved| saved > 0)?;
         Some(format!("{what} saves {} bytes", grouped(saved)))
     };
@@ -86,7 +85,7 @@ pub fn advice(
     for &structure in asked.iter().filter(|_| asked.len() > 1) {
         let others = asked.iter().copied().filter(|&it| it != structure);
         let kept: Vec<_> = others
-            .flat_map(|it| [Some(it), layout::leads_to(it)])
+            .flat_map(|it| [Some(it), leads_to(it)])
             .flatten()
             .collect();
         let (stay, go): (Vec<&Size>, Vec<&Size>) = sizes

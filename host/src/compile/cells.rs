@@ -3,7 +3,7 @@
 use super::CompileError;
 use super::estimate::{Rays, ordinary_tests};
 use super::pairs::Flat;
-use super::writer::{Section, indices, section};
+use super::section::{Section, indices, section};
 use gridel_core::Structure;
 use gridel_core::accel::cells::grid::MARGIN;
 use gridel_core::accel::cells::lists::{Divisions, cells_of, divide};

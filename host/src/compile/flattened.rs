@@ -1,6 +1,5 @@
 //! Finds closed meshes that the lattice leaves no inside.
 
-use super::primitives::is_degenerate;
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -69,4 +68,14 @@ fn has_thickness(vertices: &[DVec3], triangles: &[[u32; 3]], normal: DVec3) -> b
         (low.min(it), high.max(it))
     });
     high - low > ROUNDED
+}
+
+/// Whether the corners lie on a line, exactly.
+pub fn is_degenerate([a, b, c]: [[i32; 3]; 3]) -> bool {
+    let edge = |to: [i32; 3]| [0, 1, 2].map(|k| i64::from(to[k]) - i64::from(a[k]));
+    let (p, q) = (edge(b), edge(c));
+    (0..3).all(|k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        p[i] * q[j] == p[j] * q[i]
+    })
 }

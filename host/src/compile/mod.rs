@@ -4,10 +4,12 @@ mod advice;
 mod builder;
 mod candidates;
 mod cells;
+mod context;
 mod cuts;
 mod direction;
 mod displacement;
 mod dual_split;
+mod error;
 mod estimate;
 mod flattened;
 mod framing;
@@ -15,9 +17,12 @@ mod hierarchy;
 mod lattice;
 mod layout;
 mod octree;
+mod options;
 mod pairs;
 mod primitives;
+mod section;
 mod solids;
+mod structures;
 mod surroundings;
 mod volumes;
 mod wide;
@@ -26,74 +31,28 @@ mod writer;
 pub use builder::Builder;
 pub use candidates::census::{Census, CubeCensus};
 pub use candidates::lists::Figures;
+pub use error::CompileError;
 pub use framing::{BACKGROUND, framing};
 pub use lattice::BITS as LATTICE_BITS;
-pub use layout::{takes_hierarchy, usual_budget};
+pub use options::{LARGEST_LEAF, Options, Tell};
 pub use primitives::LeftOut;
+pub use structures::{takes_hierarchy, usual_budget};
 pub use wide::Quality;
 
 use crate::scene::{Object, Scene};
 use advice::{Size, advice};
 use candidates::target::Targets;
+use context::BuildContext;
 use glam::DVec3;
 use gridel_core::Structure;
 use gridel_core::format::Leaf;
 use gridel_core::format::record::{Gridels, UnitBox};
 use hierarchy::{Node, Primitive, Splits};
 use lattice::Lattice;
-use layout::{Ground, Layout};
 use pairs::Flat;
 use primitives::Primitives;
 use std::time::{Duration, Instant};
 use wide::Wide;
-
-/// Most primitives of a leaf.
-pub const LARGEST_LEAF: usize = Leaf::MAX_COUNT as usize;
-
-/// What to put into a blob.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// Acceleration structures; the list is always there.
-    pub structures: Vec<Structure>,
-    /// Bits that coordinates are snapped to: see [`LATTICE_BITS`].
-    pub lattice_bits: u8,
-    /// Primitives that make a leaf of a hierarchy whatever rays pay for it, at most
-    /// [`LARGEST_LEAF`]: fewer nodes and more tests. With 0 the costs alone decide.
-    pub leaf_size: usize,
-    /// Time that the builder of the eight-wide hierarchy takes.
-    pub quality: Quality,
-    /// How the hierarchy is built that all structures but the list, `wide`, the grid and the octree share.
-    pub builder: Builder,
-    /// Directions of slabs: 3, 7 or 13.
-    pub slab_directions: usize,
-    /// Divisions of the grid along each axis, 1 to 1024; four cells a primitive without.
-    pub grid: Option<[u32; 3]>,
-    /// Refuse a blob that would be larger.
-    pub max_bytes: Option<u64>,
-    /// Gridels along a side of a cylinder cube's faces, 1 to 64; otherwise as many as the budget
-    /// holds.
-    pub gridels: Option<u32>,
-    /// Most bytes of each table of candidate lists, and in the apexes' of each point or direction;
-    /// otherwise what [`usual_budget`] says.
-    pub budget: Option<u64>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            structures: vec![Structure::DualSplit],
-            lattice_bits: 24,
-            leaf_size: 0,
-            quality: Quality::default(),
-            builder: Builder::default(),
-            slab_directions: 7,
-            grid: None,
-            max_bytes: None,
-            gridels: None,
-            budget: None,
-        }
-    }
-}
 
 /// A blob, and what is worth knowing about how it came to be.
 #[derive(Clone, Debug)]
@@ -135,92 +94,15 @@ pub struct Report {
     #[serde(skip)]
     pub setup: Duration,
     /// Structures with tables of candidate lists.
-    pub tables: Vec<Tabled>,
+    pub tables: Vec<TableStats>,
 }
 
 /// A structure with tables of candidate lists, and what they came to.
 #[derive(Clone, Copy, Debug, serde::Serialize)]
-pub struct Tabled {
+pub struct TableStats {
     pub structure: &'static str,
     #[serde(flatten)]
     pub figures: Figures,
-}
-
-/// Why a scene cannot be compiled.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum CompileError {
-    #[error("{object} has a coordinate or a length that is infinite or not a number")]
-    NotFinite { object: String },
-    #[error("the scene's size is {size:e}, which no lattice can hold")]
-    #[diagnostic(help("scale the scene to a size between 1e-250 and 1e250"))]
-    Extent { size: f64 },
-    #[error(
-        "the scene lies at ({:e}, {:e}, {:e}) and is only {size:e} large, so its coordinates hold no \
-         detail",
-        .middle.x, .middle.y, .middle.z
-    )]
-    #[diagnostic(help("move the scene nearer to the origin"))]
-    TooFar { middle: DVec3, size: f64 },
-    #[error(
-        "{object}: the closed mesh lies in one plane on the lattice, whose step is {step:e}, so it has \
-         no inside left"
-    )]
-    #[diagnostic(help(
-        "use more `--lattice-bits`, scale the mesh up across that plane, or put it into a scene of its \
-         own"
-    ))]
-    Flattened { object: String, step: f64 },
-    #[error(
-        "{collapsed} triangles collapse on the lattice; cutting their neighbours, so that meshes stay \
-         closed, makes {pieces} primitives of {most}"
-    )]
-    #[diagnostic(help("use more `--lattice-bits`, or scale the mesh less unevenly"))]
-    Slivers {
-        collapsed: usize,
-        pieces: usize,
-        most: usize,
-    },
-    #[error("{bits} lattice bits are not possible")]
-    #[diagnostic(help("use 10 to 24"))]
-    LatticeBits { bits: u8 },
-    #[error("the scene has {count} {what}, more than the {most} that a blob can hold")]
-    #[diagnostic(help("split the scene into several blobs"))]
-    TooMany {
-        what: &'static str,
-        count: usize,
-        most: usize,
-    },
-    #[error(
-        "the {what} lies {distance:.3e} scene units from a scene of {size:.3e}: too far to be told"
-    )]
-    #[diagnostic(help("move it nearer; a directional light is as good as one this far away"))]
-    FarAway {
-        what: String,
-        distance: f64,
-        size: f64,
-    },
-    #[error(
-        "the table of {structure}{size} takes {at_least}{needed} bytes, more than its budget of \
-         {budget}"
-    )]
-    #[diagnostic(help("{remedy}"))]
-    OverBudget {
-        structure: &'static str,
-        /// Such as ` with 4 gridels a side` or ` with 8 by 8 by 2 cells`.
-        size: String,
-        needed: u64,
-        /// `at least ` where the whole was not worth counting.
-        at_least: &'static str,
-        budget: u64,
-        remedy: &'static str,
-    },
-    #[error("the blob would have {bytes} bytes, {over} more than --max-bytes allows")]
-    #[diagnostic(help("{advice}"))]
-    TooLarge {
-        bytes: u64,
-        over: u64,
-        advice: String,
-    },
 }
 
 /// Compiles a scene.
@@ -233,10 +115,6 @@ pub enum CompileError {
 pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileError> {
     compile_telling(scene, options, &|_, _, _| ())
 }
-
-/// Told now and then, from any thread, how many cells of a structure's table are done, and how many
-/// there are; a table is tried in several sizes where none is asked for.
-pub type Tell<'t> = &'t (dyn Fn(Structure, u64, u64) + Sync);
 
 /// Compiles a scene and tells about what takes long.
 ///
@@ -265,7 +143,7 @@ pub fn compile_telling(
         bounds = octree::bounds(&bounds, &boxes);
     }
     let sah_cost = root.as_ref().map(hierarchy::sah_cost);
-    let ground = Ground {
+    let context = BuildContext {
         scene,
         lattice: &lattice,
         root: root.as_ref(),
@@ -280,13 +158,13 @@ pub fn compile_telling(
     };
     let layouts = structures
         .iter()
-        .map(|&structure| Layout::of(structure, &ground))
+        .map(|&structure| structures::lay_out(structure, &context))
         .collect::<Result<Vec<_>, _>>()?;
     let setup = started.elapsed();
     let tables = layouts
         .iter()
         .filter_map(|layout| {
-            Some(Tabled {
+            Some(TableStats {
                 structure: layout.structure.name(),
                 figures: layout.table?,
             })
@@ -295,14 +173,15 @@ pub fn compile_telling(
     let longest_lists = layouts.iter().map(|layout| layout.longest_list);
     let longest_list = longest_lists.max().unwrap_or(0);
     let sizes: Vec<Size> = layouts.iter().map(Size::of).collect();
-    let parts = writer::parts(&ground, layouts);
+    let parts = writer::parts(&context, layouts);
     // A table may fill what memory there is; all that it was built from makes room for the blob.
     drop((root, order, wide));
     let blob = writer::write(parts)?;
     let bytes = blob.bytes().len();
     if let Some(most) = options.max_bytes.filter(|&most| bytes as u64 > most) {
-        let leaves = writer::taken(flat.leaves.len() * size_of::<Leaf>());
-        let advice = advice(scene, options, &blob, leaves, &sizes);
+        let leaves = section::taken(flat.leaves.len() * size_of::<Leaf>());
+        let bytes_with = |other: &Options| Some(compile(scene, other).ok()?.report.bytes);
+        let advice = advice(options, &blob, leaves, &sizes, &bytes_with);
         return Err(CompileError::TooLarge {
             bytes: bytes as u64,
             over: bytes as u64 - most,
@@ -368,7 +247,7 @@ fn check(scene: &Scene, options: &Options) -> Result<(), CompileError> {
 /// Structures that are asked for, and those that they need.
 fn held(asked: &[Structure]) -> Vec<Structure> {
     let mut structures = asked.to_vec();
-    structures.extend(asked.iter().filter_map(|&it| layout::leads_to(it)));
+    structures.extend(asked.iter().filter_map(|&it| structures::leads_to(it)));
     structures.sort();
     structures.dedup();
     structures
@@ -392,7 +271,7 @@ impl Hierarchies {
         options: &Options,
     ) -> Result<Self, CompileError> {
         let mut order: Vec<Primitive> = snapped.boxes();
-        let mut root = if structures.iter().copied().any(layout::takes_hierarchy) {
+        let mut root = if structures.iter().copied().any(structures::takes_hierarchy) {
             builder::build(
                 options.builder,
                 &mut order,

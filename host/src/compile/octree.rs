@@ -3,7 +3,7 @@
 use super::CompileError;
 use super::cells::{Cells, MOST_BYTES, Range, longest, volume};
 use super::estimate::{Rays, ordinary_tests};
-use super::writer::{Section, indices, section};
+use super::section::{Section, indices, section};
 use gridel_core::Structure;
 use gridel_core::accel::cells::lists::{cells_of, divide};
 use gridel_core::accel::cells::octree::MOST_LEVELS;

@@ -3,12 +3,13 @@
 use super::CompileError;
 use super::cuts::{self, Sliver};
 use super::displacement;
-use super::flattened;
+use super::flattened::{self, is_degenerate};
 use super::hierarchy::Primitive;
 use super::lattice::Lattice;
 use super::solids::{self, Snapped, SnappedSphere, disc_reach};
-use crate::report::grouped;
+
 use crate::scene::{Object, Scene, Shape};
+use crate::table::grouped;
 use glam::{DVec3, IVec3};
 use gridel_core::Kind;
 use gridel_core::format::record::{Cone, Cuboid, Disc, UnitBox};
@@ -390,14 +391,4 @@ fn rounded_up(x: f64) -> f32 {
     } else {
         nearest
     }
-}
-
-/// Whether the corners lie on a line, exactly.
-pub fn is_degenerate([a, b, c]: [[i32; 3]; 3]) -> bool {
-    let edge = |to: [i32; 3]| [0, 1, 2].map(|k| i64::from(to[k]) - i64::from(a[k]));
-    let (p, q) = (edge(b), edge(c));
-    (0..3).all(|k| {
-        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        p[i] * q[j] == p[j] * q[i]
-    })
 }

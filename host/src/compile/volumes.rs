@@ -3,7 +3,7 @@
 use super::hierarchy::{Node, Primitive};
 use super::pairs::Flat;
 use super::primitives::Primitives;
-use super::writer::{Section, section};
+use super::section::{Section, section};
 use glam::DVec3;
 use gridel_core::Kind;
 use gridel_core::accel::hierarchy::direction::DIRECTIONS;

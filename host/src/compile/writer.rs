@@ -1,10 +1,12 @@
 //! Writes the sections of a blob, each in the narrowest form that its values allow.
 
 use super::CompileError;
+use super::context::BuildContext;
 use super::lattice::Lattice;
-use super::layout::{Ground, Layout};
+use super::layout::Layout;
 use super::pairs::Flat;
 use super::primitives::Primitives;
+use super::section::{Section, indices, section, three_bytes};
 use crate::blob::Blob;
 use gridel_core::accel::Entry;
 use gridel_core::format::record::{
@@ -13,48 +15,6 @@ use gridel_core::format::record::{
 };
 use gridel_core::format::{SectionKind, checksum};
 use gridel_core::{Kind, Structure};
-
-/// A section before it has a place.
-#[derive(Clone, Debug)]
-pub struct Section {
-    pub kind: SectionKind,
-    pub stride: usize,
-    pub bytes: Vec<u8>,
-}
-
-/// A section of records.
-pub fn section<T: bytemuck::NoUninit>(kind: SectionKind, records: &[T]) -> Section {
-    Section {
-        kind,
-        stride: size_of::<T>(),
-        bytes: bytemuck::cast_slice(records).to_vec(),
-    }
-}
-
-/// A section of integers, in as few bytes each as the largest needs, but at least `narrowest`.
-pub fn indices(kind: SectionKind, values: &[u32], narrowest: usize) -> Section {
-    let largest = values.iter().copied().max().unwrap_or(0);
-    if narrowest == 1 && largest <= u8::MAX.into() {
-        section(
-            kind,
-            &values.iter().map(|&value| value as u8).collect::<Vec<_>>(),
-        )
-    } else if largest <= u16::MAX.into() {
-        let narrow: Vec<_> = values.iter().map(|&value| value as u16).collect();
-        section(kind, &narrow)
-    } else if largest < 1 << 24 {
-        let narrow: Vec<_> = values.iter().map(|&value| three_bytes(value)).collect();
-        section(kind, &narrow)
-    } else {
-        section(kind, values)
-    }
-}
-
-/// The low three bytes.
-fn three_bytes(value: u32) -> [u8; 3] {
-    let [low, middle, high, _] = value.to_le_bytes();
-    [low, middle, high]
-}
 
 fn counts_up(values: &[u32]) -> bool {
     values
@@ -70,16 +30,16 @@ pub struct Parts {
 }
 
 /// Makes what goes into a blob.
-pub fn parts(ground: &Ground<'_>, layouts: Vec<Layout>) -> Parts {
+pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
     let uses_leaves = layouts.iter().any(|layout| layout.uses_leaves);
-    let Ground {
+    let BuildContext {
         scene,
         lattice,
         primitives,
         flat,
         surroundings,
         ..
-    } = *ground;
+    } = *context;
     let objects = scene.objects.len() as u32;
     let total = primitives.total;
 
@@ -147,7 +107,7 @@ pub fn parts(ground: &Ground<'_>, layouts: Vec<Layout>) -> Parts {
         storage_bits: if lattice.bits <= 16 { 16 } else { 24 },
         unit_exponent: lattice.unit_exponent,
         origin: lattice.origin.to_array(),
-        bounds: ground.bounds,
+        bounds: context.bounds,
         stack_bytes: u32::from(stack_depth) * size_of::<Entry>() as u32,
         spare: [0; 2],
     };
@@ -234,15 +194,6 @@ fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Sect
             &in_order(&primitives.cones, slots(Kind::Cone)),
         ),
     ]
-}
-
-/// Bytes of a blob that a section takes: its place in the table, and its records up to the next place
-/// where a section can begin.
-pub fn taken(bytes: usize) -> usize {
-    match bytes {
-        0 => 0,
-        _ => size_of::<SectionEntry>() + bytes.next_multiple_of(ALIGNMENT),
-    }
 }
 
 /// Puts header, table and sections together. Large sections are in memory twice meanwhile.

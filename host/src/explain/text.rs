@@ -2,7 +2,7 @@
 
 use super::story::{Fall, Hit, Lighting, Ray, Sample, Story};
 use super::walk::{Culled, Plane, Side, Step, Tested, Verdict, Walk};
-use crate::report::{counted, significant};
+use crate::table::{counted, significant};
 use std::fmt::{self, Display, Formatter};
 
 /// What the scene file calls its objects and what they are made of; empty for a blob, which keeps no

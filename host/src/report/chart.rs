@@ -1,6 +1,6 @@
 //! Charts as SVG: bars beside each other, and curves on logarithmic axes.
 
-use super::significant;
+use crate::table::significant;
 use plotters::coord::Shift;
 use plotters::drawing::DrawingAreaErrorKind;
 use plotters::element::DashedPathElement;

@@ -2,7 +2,7 @@
 
 use super::SceneError;
 use super::size::MOST_INPUT;
-use crate::report::grouped;
+use crate::table::grouped;
 use flate2::bufread::MultiGzDecoder;
 use std::io::Read;
 use std::path::Path;

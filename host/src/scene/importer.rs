@@ -3,7 +3,7 @@
 use super::access::Access;
 use super::gzip;
 use super::text::{Source, check_encoding, read_file};
-use super::{IMPORTERS, Imported, MoleculeOptions, SceneError, Up};
+use super::{Imported, MoleculeOptions, SceneError, Up};
 use std::fmt;
 use std::path::Path;
 
@@ -47,40 +47,91 @@ impl Importer {
         imported.scene.up = self.up;
         Ok(imported)
     }
+}
 
+/// A table of importers, in which a file's is found.
+#[derive(Clone, Copy)]
+pub(super) struct Importers(pub(super) &'static [Importer]);
+
+impl Importers {
     /// The importer of a file with this name: `None` for a name without an extension.
     ///
     /// # Errors
     /// If the name has an extension of another sort.
-    fn of_name(path: &Path) -> Result<Option<&'static Self>, SceneError> {
+    fn of_name(self, path: &Path) -> Result<Option<&'static Importer>, SceneError> {
         let Some(extension) = extension(path) else {
             return Ok(None);
         };
-        let takes = |it: &&Self| it.extensions.contains(&extension.as_str());
-        let importer = IMPORTERS.iter().find(takes);
+        let takes = |it: &&Importer| it.extensions.contains(&extension.as_str());
+        let importer = self.0.iter().find(takes);
         importer.map(Some).ok_or_else(|| {
             SceneError::new(
                 path,
                 format!("the extension {extension:?} names no scene format"),
-                format!("use {}", extensions()),
+                format!("use {}", self.extensions()),
             )
         })
     }
 
     /// The importer that recognises the content of a file.
-    fn of_content(path: &Path, bytes: &[u8]) -> Result<&'static Self, SceneError> {
+    fn of_content(self, path: &Path, bytes: &[u8]) -> Result<&'static Importer, SceneError> {
         check_encoding(path, bytes)?;
-        let mut all = IMPORTERS.iter();
+        let mut all = self.0.iter();
         all.find(|it| (it.recognizes)(bytes)).ok_or_else(|| {
             SceneError::new(
                 path,
                 "the content is of no scene format, and the name has no extension",
                 format!(
                     "give a file whose name ends with its format: {}",
-                    extensions()
+                    self.extensions()
                 ),
             )
         })
+    }
+
+    /// The extensions of all formats in words.
+    pub(super) fn extensions(self) -> String {
+        let all: Vec<_> = self.0.iter().flat_map(|it| dotted(it.extensions)).collect();
+        match all.split_last() {
+            Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
+            None => String::new(),
+        }
+    }
+
+    /// Reads a file, and finds its importer by its name, or by its content if the name says nothing.
+    pub(super) fn open<'a>(
+        self,
+        path: &'a Path,
+        molecule: &'a MoleculeOptions,
+        access: &'a Access,
+    ) -> Result<(&'static Importer, Input<'a>), SceneError> {
+        // A file that nothing can read is not worth reading.
+        self.of_name(path)?;
+        self.input(path, read_file(path)?, molecule, access)
+    }
+
+    /// Content that was read already.
+    pub(super) fn input<'a>(
+        self,
+        path: &'a Path,
+        bytes: Vec<u8>,
+        molecule: &'a MoleculeOptions,
+        access: &'a Access,
+    ) -> Result<(&'static Importer, Input<'a>), SceneError> {
+        let named = self.of_name(path)?;
+        let bytes = gzip::inflate(path, bytes)?;
+        let importer = match named {
+            Some(importer) => importer,
+            None => self.of_content(path, &bytes)?,
+        };
+        let input = Input {
+            importers: self,
+            path,
+            bytes,
+            molecule,
+            access,
+        };
+        Ok((importer, input))
     }
 }
 
@@ -105,20 +156,10 @@ fn dotted(extensions: &[&str]) -> Vec<String> {
     extensions.iter().map(|it| format!(".{it}")).collect()
 }
 
-/// The extensions of all scene formats in words.
-pub fn extensions() -> String {
-    let all: Vec<_> = IMPORTERS
-        .iter()
-        .flat_map(|it| dotted(it.extensions))
-        .collect();
-    match all.split_last() {
-        Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
-        None => String::new(),
-    }
-}
-
 /// A file on its way to an importer.
 pub(super) struct Input<'a> {
+    /// What a file that this one names is read by.
+    pub(super) importers: Importers,
     /// Names the file in messages, and its folder is where files are that it names.
     pub(super) path: &'a Path,
     /// The content, inflated if the file was gzipped.
@@ -127,40 +168,7 @@ pub(super) struct Input<'a> {
     pub(super) access: &'a Access,
 }
 
-impl<'a> Input<'a> {
-    /// Reads a file, and finds its importer by its name, or by its content if the name says nothing.
-    pub(super) fn open(
-        path: &'a Path,
-        molecule: &'a MoleculeOptions,
-        access: &'a Access,
-    ) -> Result<(&'static Importer, Self), SceneError> {
-        // A file that nothing can read is not worth reading.
-        Importer::of_name(path)?;
-        Self::new(path, read_file(path)?, molecule, access)
-    }
-
-    /// Content that was read already.
-    pub(super) fn new(
-        path: &'a Path,
-        bytes: Vec<u8>,
-        molecule: &'a MoleculeOptions,
-        access: &'a Access,
-    ) -> Result<(&'static Importer, Self), SceneError> {
-        let named = Importer::of_name(path)?;
-        let bytes = gzip::inflate(path, bytes)?;
-        let importer = match named {
-            Some(importer) => importer,
-            None => Importer::of_content(path, &bytes)?,
-        };
-        let input = Self {
-            path,
-            bytes,
-            molecule,
-            access,
-        };
-        Ok((importer, input))
-    }
-
+impl Input<'_> {
     /// The content as text.
     ///
     /// # Errors

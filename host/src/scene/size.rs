@@ -2,7 +2,7 @@
 //! objects than any machine holds.
 
 use super::Shape;
-use crate::report::grouped;
+use crate::table::grouped;
 
 /// The most bytes that a scene may take until its blob is made: room for as many triangles as a
 /// blob holds, and less than 4 GB.

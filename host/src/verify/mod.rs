@@ -14,9 +14,10 @@ pub mod rays;
 mod shadow;
 pub mod solid;
 
+pub use crate::trace::UnitRay;
 pub use check::{Fault, Heard, Outcome, Promise, ask, ask_all, check, depart, leave, sealed};
 pub use closed::ClosedMesh;
-pub use rays::{Targets, UnitRay};
+pub use rays::Targets;
 
 use crate::trace::{Frame, SceneRay};
 use gridel_core::accel::DynAccel;

@@ -1,40 +1,9 @@
 //! Rays of every sort that a structure can go wrong on, aimed at one scene.
 
 use super::random::Random;
+use crate::trace::UnitRay;
 use gridel_core::format::record::UnitBox;
-use gridel_core::{Kind, Number, Ray, Scene};
-
-/// A ray in the core's units, not yet in a number format.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UnitRay {
-    pub origin: [f64; 3],
-    pub direction: [f64; 3],
-    pub tmin: f64,
-    pub tmax: f64,
-}
-
-impl UnitRay {
-    /// A ray with tmin 0 and without an end.
-    pub fn new(origin: [f64; 3], direction: [f64; 3]) -> Self {
-        Self {
-            origin,
-            direction,
-            tmin: 0.0,
-            tmax: f64::INFINITY,
-        }
-    }
-
-    /// The ray as the core takes it; `None` if it is none.
-    pub fn ready<N: Number>(&self, scene: &Scene<'_>) -> Option<Ray<N>> {
-        let Self {
-            origin,
-            direction,
-            tmin,
-            tmax,
-        } = *self;
-        Ray::from_f64(scene.bounds(), origin, direction, tmin, tmax).ok()
-    }
-}
+use gridel_core::{Kind, Scene};
 
 /// Places of a scene that rays are aimed at: some of its boxes, and some of its triangles.
 pub struct Targets {

@@ -3,7 +3,7 @@
 use super::check::{Fault, Promise, ask, depart};
 use super::judge::{RoundedRay, step};
 use super::random::Random;
-use super::rays::UnitRay;
+use crate::trace::UnitRay;
 use glam::DVec3;
 use gridel_core::format::record::Light;
 use gridel_core::geometry::Geometry;

@@ -3,7 +3,7 @@
 use crate::program::{Folder, fixture};
 use gridel_core::Structure;
 use gridel_host::blob::Blob;
-use gridel_host::report::grouped;
+use gridel_host::table::grouped;
 use serde_json::json;
 
 #[test]

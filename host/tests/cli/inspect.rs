@@ -2,9 +2,9 @@
 
 use crate::program::{Folder, fixture};
 use gridel_core::{Fixed, Format, Stack, Structure, Workspace};
-use gridel_host::board::{BOARDS, Board};
-use gridel_host::report::grouped;
-use gridel_host::report::programs::{Footprint, Programs, parts};
+use gridel_host::measure::board::programs::{Footprint, Programs, parts};
+use gridel_host::measure::board::{BOARDS, Board};
+use gridel_host::table::grouped;
 use serde_json::{Value, json};
 
 #[test]

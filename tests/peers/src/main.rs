@@ -32,7 +32,7 @@ use glam::Vec3;
 use gridel_core::{Format, SimdLevel, Structure};
 use gridel_host::compile::Quality;
 use gridel_host::output::{Files, write_whole};
-use gridel_host::report::{Align, Table, grouped};
+use gridel_host::table::{Align, Table, grouped};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;

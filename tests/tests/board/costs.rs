@@ -8,7 +8,7 @@ use crate::programs::{Linked, footprint};
 use crate::scenes;
 use crate::{boards, measured_in_full, parts};
 use gridel_core::{Effects, Format, Prevalidated, Structure};
-use gridel_host::board::Board;
+use gridel_host::measure::board::Board;
 use std::collections::BTreeMap;
 
 pub fn plan(plan: &mut Plan) {
@@ -18,7 +18,9 @@ pub fn plan(plan: &mut Plan) {
             .run(move || core_pays_for_parts_one_by_one(board, format));
     }
     let others = boards().filter(|&(board, _)| board != &WASM);
-    for (board, format) in others.filter(|&(board, format)| board.kin(format) != (board, format)) {
+    for (board, format) in
+        others.filter(|&(board, format)| board.similar(format) != (board, format))
+    {
         plan.test_on("every_board_pays_for_few_parts", board, format)
             .in_full()
             .run(move || board_pays_for_few_parts(board, format));
@@ -113,7 +115,7 @@ fn shapes_and_effects_are_paid_for_one_by_one() {
 fn everything_on_a_board(board: &'static Board, format: Format) {
     let scene = scenes::quick();
     let mut linked = Linked::new();
-    let in_full = board.kin(format) == (board, format);
+    let in_full = board.similar(format) == (board, format);
     let measured = |&it: &Structure| in_full || it == Structure::DualSplit;
     for structure in Prevalidated::STRUCTURES.into_iter().filter(measured) {
         let fast = || Build::new(board, format, structure, &scene);

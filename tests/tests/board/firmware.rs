@@ -3,8 +3,8 @@
 use crate::elf::Elf;
 use crate::scenes::{Compiled, repository};
 use gridel_core::{Format, Structure};
-use gridel_host::board::Board;
-use gridel_host::report::programs::{Place, Profile};
+use gridel_host::measure::board::Board;
+use gridel_host::measure::board::programs::{Place, Profile};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};

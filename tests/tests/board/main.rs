@@ -25,7 +25,7 @@ mod structures;
 use figures::Figures;
 use firmware::{AARCH64, Build, Program, S390X, WASM, board};
 use gridel_core::{Format, Structure};
-use gridel_host::board::{BOARDS, Board};
+use gridel_host::measure::board::{BOARDS, Board};
 use libtest_mimic::Arguments;
 use plan::Plan;
 use scenes::Compiled;
@@ -58,7 +58,7 @@ fn main() {
 /// Boards on whose cores many programs are measured, by which other boards' are told.
 fn measured_in_full() -> impl Iterator<Item = (&'static Board, Format)> {
     let boards = boards().filter(|&(board, _)| board != &WASM);
-    boards.filter(|&(board, format)| board.kin(format) == (board, format))
+    boards.filter(|&(board, format)| board.similar(format) == (board, format))
 }
 
 fn pictures(plan: &mut Plan) {

@@ -4,7 +4,7 @@
 use crate::firmware::missing_for;
 use crate::scenes;
 use gridel_core::Format;
-use gridel_host::board::Board;
+use gridel_host::measure::board::Board;
 use libtest_mimic::{Failed, Trial};
 use std::collections::BTreeSet;
 use std::env;

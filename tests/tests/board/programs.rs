@@ -1,6 +1,6 @@
 //! Code and call stacks of linked programs, which the memory report is made of, and whether it is right.
 //!
-//! They are recorded in the package of the host, `host/src/report/programs.json`.
+//! They are recorded in the package of the host, `host/src/measure/board/programs.json`.
 
 use crate::elf::Elf;
 use crate::firmware::Build;
@@ -9,9 +9,11 @@ use crate::parts;
 use crate::plan::Plan;
 use crate::scenes::{self, Compiled, repository};
 use gridel_core::{Format, Structure};
-use gridel_host::board::Board;
-use gridel_host::report::programs::{Footprint, Place, Profile, Programs, parts as all_parts};
-use gridel_host::report::{Ledger, Target};
+use gridel_host::measure::board::Board;
+use gridel_host::measure::board::programs::{
+    Footprint, Place, Profile, Programs, parts as all_parts,
+};
+use gridel_host::measure::board::{MemoryReport, Target};
 use std::path::PathBuf;
 use std::sync::Mutex;
 use std::{env, fs};
@@ -130,7 +132,7 @@ fn is_recording() -> bool {
 }
 
 fn path() -> PathBuf {
-    repository().join("host/src/report/programs.json")
+    repository().join("host/src/measure/board/programs.json")
 }
 
 /// Flash for code, and the deepest call stack.
@@ -212,7 +214,7 @@ fn memory_report_is_within_5_percent(board: &'static Board, format: Format) {
 }
 
 /// Programs that were not recorded are bounded. How far beyond the true figures the bounds lie stands in
-/// the host's documentation (`gridel_host::report::programs`).
+/// the host's documentation (`gridel_host::measure::board::programs`).
 fn memory_report_bounds_programs_beyond(board: &'static Board, format: Format) {
     let mut wrong = Vec::new();
     for (shapes, effects) in [
@@ -255,11 +257,12 @@ fn told_and_linked(
         flash: board.flash,
         ram: board.ram,
     };
-    let ledger = Ledger::of(&view, scene.blob.bytes(), &target, format).expect("dual-split nodes");
-    let sizes = [ledger.fast, ledger.small].map(|sizes| sizes.call_stack.expect("known"));
+    let report =
+        MemoryReport::of(&view, scene.blob.bytes(), &target, format).expect("dual-split nodes");
+    let sizes = [report.fast, report.small].map(|sizes| sizes.call_stack.expect("known"));
     let told = [
-        ledger.flash.used.expect("known"),
-        ledger.ram.used.expect("known"),
+        report.flash.used.expect("known"),
+        report.ram.used.expect("known"),
         sizes[0].max(sizes[1]),
     ];
     let [fast, small] = [Profile::Fast, Profile::Small].map(|profile| {

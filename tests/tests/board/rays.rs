@@ -6,7 +6,7 @@ use crate::firmware::{Build, board};
 use crate::plan::Plan;
 use crate::scenes::{self, Compiled};
 use gridel_core::{Fixed, Format, List, Stack, Structure};
-use gridel_host::board::Board;
+use gridel_host::measure::board::Board;
 
 /// Stack and workspace of the suzanne workload at most: loading, and tracing primary rays.
 const PRIMARY_RAM: u64 = 2 * 1024 + 256;

@@ -2,9 +2,9 @@
 
 use super::{MEMORY, README, holds_table, text};
 use gridel_core::{Format, Structure};
-use gridel_host::board::Board;
-use gridel_host::report::grouped;
-use gridel_host::report::programs::{Footprint, Programs};
+use gridel_host::measure::board::Board;
+use gridel_host::measure::board::programs::{Footprint, Programs};
+use gridel_host::table::grouped;
 
 /// What the board tests recorded.
 pub fn boards() -> serde_json::Value {

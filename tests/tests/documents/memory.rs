@@ -2,9 +2,10 @@
 
 use super::{MEMORY, holds_table};
 use gridel_host::compile::{Options, compile};
-use gridel_host::report::{grouped, working_memory};
+use gridel_host::measure::working_memory;
 use gridel_host::sample::{DIAMOND_2_800, DIAMOND_27_000, diamond, icosphere, nanotube, obj, pdb};
 use gridel_host::scene::Scene;
+use gridel_host::table::grouped;
 use gridel_tests::scenes;
 
 fn fixture(name: &str) -> Scene {

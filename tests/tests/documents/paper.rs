@@ -2,8 +2,8 @@
 
 use super::boards::boards;
 use super::{PAPER, holds_table, text};
-use gridel_host::board::Board;
-use gridel_host::report::grouped;
+use gridel_host::measure::board::Board;
+use gridel_host::table::grouped;
 
 /// The counts are those that the test `tables` recorded.
 #[test]

@@ -2,7 +2,7 @@
 
 use super::boards::boards;
 use super::{BENCHMARKS, README, holds_table, text};
-use gridel_host::report::grouped;
+use gridel_host::table::grouped;
 use serde_json::Value;
 
 /// The contender whose rates are 1.

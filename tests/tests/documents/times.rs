@@ -1,7 +1,7 @@
 //! What `gridel compare` measured on a host: the paper's scenes, and how structures fare as one grows.
 
 use super::{PAPER, STRUCTURES, holds_table, text};
-use gridel_host::report::grouped;
+use gridel_host::table::grouped;
 use serde_json::Value;
 
 /// What `gridel compare --json` printed.

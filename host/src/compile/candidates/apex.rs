@@ -1,6 +1,6 @@
 //! Builds the lists for the rays of the camera's eye and of each light.
 
-use super::Budget;
+use super::budget::Budget;
 use super::bundle::{Bundle, Ranges, Rays};
 use super::lists::{List, Lists, Plan};
 use super::target::{Target, Targets};

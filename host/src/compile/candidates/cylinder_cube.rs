@@ -1,10 +1,10 @@
 //! Builds the cylinder cubes: for every pair of gridels of different faces, what can be met between
 //! them (the paper, section 3.1).
 
+use super::budget::{Budget, OverBudget, Tell};
 use super::lists::{Counted, List, Lists, Plan};
 use super::shaft::Shaft;
 use super::target::Targets;
-use super::{Budget, OverBudget, Tell};
 use glam::DVec3;
 use gridel_core::Structure;
 use gridel_core::format::record::Gridels;

@@ -5,7 +5,7 @@
 //! exact size, and the lists that differ are computed again, straight into their places. Beside the
 //! table itself a build takes at most 72 bytes a cell, and nothing that grows with the lists' length.
 
-use super::Tell;
+use super::budget::Tell;
 use rayon::prelude::*;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `shaft.rs` | a bundle of rays as a volume, and what it meets |
 //! | `target.rs` | primitives as shafts see them, and the search through the hierarchy |
+//! | `budget.rs` | what a table may take |
 //! | `lists.rs` | tables of lists: counted first, equal ones once, in parallel |
 //! | `cylinder_cube.rs` | lists for pairs of gridels |
 //! | `census.rs` | what the paper's table takes, without building it |
@@ -14,6 +15,7 @@
 //! | `own_rays.rs` | the rays of the scene's own picture, where classes are fine |
 
 pub mod apex;
+pub mod budget;
 mod bundle;
 pub mod census;
 pub mod cylinder_cube;
@@ -24,73 +26,14 @@ pub mod ray_classes;
 mod shaft;
 pub mod target;
 
-use super::CompileError;
 use super::layout::Layout;
-use super::writer::{Section, section};
-use crate::report::counted;
+use super::section::{Section, section};
 use apex::Apexes;
 use cylinder_cube::Cube;
 use gridel_core::Structure;
 use gridel_core::format::SectionKind;
 use lists::{Array, Lists};
 use ray_classes::Classes;
-
-/// What a table may take, and who is told how far it is.
-#[derive(Clone, Copy)]
-pub struct Budget<'t> {
-    /// Gridels a side, if that is asked for.
-    pub gridels: Option<u32>,
-    /// Most bytes of a table.
-    pub bytes: u64,
-    pub tell: Tell<'t>,
-}
-
-/// Told now and then, from any thread, how many cells are done, and how many there are.
-pub type Tell<'t> = &'t (dyn Fn(u64, u64) + Sync);
-
-/// A table that does not fit its budget.
-#[derive(Clone, Copy, Debug)]
-pub struct OverBudget {
-    structure: Structure,
-    /// Gridels a side, for tables of pairs of them.
-    gridels: Option<u32>,
-    needed: u64,
-    at_least: bool,
-    bytes: u64,
-}
-
-impl Budget<'_> {
-    fn exceeded(
-        &self,
-        structure: Structure,
-        gridels: Option<u32>,
-        needed: u64,
-        at_least: bool,
-    ) -> OverBudget {
-        OverBudget {
-            structure,
-            gridels,
-            needed,
-            at_least,
-            bytes: self.bytes,
-        }
-    }
-}
-
-impl From<OverBudget> for CompileError {
-    fn from(over: OverBudget) -> Self {
-        CompileError::OverBudget {
-            structure: over.structure.name(),
-            size: over.gridels.map_or_else(String::new, |count| {
-                format!(" with {} a side", counted(count as usize, "gridel"))
-            }),
-            needed: over.needed,
-            at_least: if over.at_least { "at least " } else { "" },
-            budget: over.bytes,
-            remedy: "raise `--budget`, or ask for fewer gridels with `--gridels`, or leave both out",
-        }
-    }
-}
 
 /// The sections of a table of lists.
 struct ListSections {

@@ -1,6 +1,6 @@
 //! The rays that a scene's own picture casts, as points in the space of rays.
 
-use crate::compare::PictureRays;
+use crate::picture_rays::PictureRays;
 use gridel_core::accel::candidates::ray_classes::ClassPoint;
 use gridel_core::{Scene, Settings};
 

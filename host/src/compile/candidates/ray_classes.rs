@@ -1,9 +1,9 @@
 //! Builds the tree over rays: refined where the scene's own rays fall, within a budget.
 
+use super::budget::{Budget, OverBudget, Tell};
 use super::lists::{List, Lists, Plan};
 use super::shaft::Shaft;
 use super::target::Targets;
-use super::{Budget, OverBudget, Tell};
 use gridel_core::Structure;
 use gridel_core::accel::candidates::ray_classes::{ClassPoint, ClassRange};
 use gridel_core::format::ClassNode;

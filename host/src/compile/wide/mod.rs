@@ -16,7 +16,7 @@ use super::CompileError;
 use super::hierarchy::Primitive;
 use super::pairs::Flat;
 use super::primitives::Primitives;
-use super::writer::{Section, indices, section};
+use super::section::{Section, indices, section};
 use clap::ValueEnum;
 use collapse::Forests;
 use gridel_core::Kind;
@@ -29,7 +29,7 @@ use gridel_core::format::{Child, Leaf, SectionKind};
 use hull::Hull;
 use packs::Pack;
 use strips::Strip;
-use tree::Tree;
+use tree::{Tree, inverse};
 
 /// How much time the builder takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -369,15 +369,6 @@ fn windows(packs: &[[i32; LANES]]) -> (Vec<[u8; LANES / 2]>, Vec<i32>) {
         std::array::from_fn(|pair| number(2 * pair) | number(2 * pair + 1) << 4)
     };
     (packs.iter().map(numbers).collect(), radii)
-}
-
-/// Where each value lies.
-fn inverse(values: &[u32]) -> Vec<u32> {
-    let mut places = vec![0; values.len()];
-    for (place, &value) in (0..).zip(values) {
-        places[value as usize] = place;
-    }
-    places
 }
 
 /// Up to eight values, the last repeated.

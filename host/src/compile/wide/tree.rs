@@ -6,7 +6,6 @@
 //! least, found by branch and bound.
 
 use super::hull::Hull;
-use super::inverse;
 use gridel_core::format::record::UnitBox;
 use std::cmp::Reverse;
 
@@ -339,4 +338,13 @@ fn partition(
     }
     order[left_count..].copy_from_slice(&right);
     order.split_at_mut(left_count)
+}
+
+/// Where each value lies.
+pub fn inverse(values: &[u32]) -> Vec<u32> {
+    let mut places = vec![0; values.len()];
+    for (place, &value) in (0..).zip(values) {
+        places[value as usize] = place;
+    }
+    places
 }

@@ -2,7 +2,6 @@
 //!
 //! The crate's own readers trust offsets, counts and types; here nothing is read that is not there.
 
-use super::MOST;
 use crate::scene::SceneError;
 use crate::scene::access::Access;
 use crate::scene::text::read_file;
@@ -15,6 +14,9 @@ use gltf::{Buffer, Document};
 use std::collections::HashMap;
 use std::path::Path;
 use std::rc::Rc;
+
+/// Most vertices and triangles of a file, each instance counted: what a blob can hold.
+pub(super) const MOST: usize = 1 << 24;
 
 /// The bytes of a file's buffers, in their order.
 pub(super) struct Buffers<'a> {

@@ -1,5 +1,6 @@
 use super::*;
 use crate::scene::test_scenes::{self, gzipped};
+use crate::scene::{IMPORTERS, extensions};
 use crate::scene::{ImportOptions, SceneError};
 use std::collections::BTreeSet;
 
@@ -90,12 +91,12 @@ fn real_files_are_recognized_by_their_content() {
             // Some files are megabytes, which take long to inflate and tell no more.
             let small =
                 std::fs::metadata(&path).is_ok_and(|it| it.is_file() && it.len() < 2_000_000);
-            let Ok(Some(importer)) = Importer::of_name(&path) else {
+            let Ok(Some(importer)) = Importers(IMPORTERS).of_name(&path) else {
                 continue;
             };
             if small {
                 let bytes = gzip::inflate(&path, std::fs::read(&path).unwrap()).unwrap();
-                let found = Importer::of_content(&path, &bytes).unwrap();
+                let found = Importers(IMPORTERS).of_content(&path, &bytes).unwrap();
                 assert_eq!(found.name, importer.name, "{}", path.display());
                 seen += 1;
             }

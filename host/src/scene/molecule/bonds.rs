@@ -1,6 +1,6 @@
 //! Finds bonds by distance.
 
-use super::Site;
+use super::parsed::Site;
 use glam::DVec3;
 use std::collections::HashMap;
 

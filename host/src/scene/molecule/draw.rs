@@ -1,6 +1,7 @@
 //! Atoms and bonds as spheres and cylinders.
 
-use super::{Element, Site};
+use super::element::Element;
+use super::parsed::Site;
 use crate::scene::{Diffuse, Material, MoleculeStyle, Object, Place, Shape};
 use std::collections::HashMap;
 

@@ -12,91 +12,20 @@
 mod bonds;
 mod draw;
 mod element;
+mod parsed;
 mod select;
 
 pub(crate) use bonds::perceive;
 pub(crate) use draw::{BoundingSphere, draw};
 pub(crate) use element::Element;
+pub(crate) use parsed::Site;
+pub(super) use parsed::{Atom, End, Model, Parsed};
 
 use super::importer::Input;
 use super::size::Size;
 use super::text::{Source, Warnings};
 use super::{Imported, MoleculeStyle, Scene, SceneError};
-use glam::DVec3;
 use std::collections::{HashMap, HashSet};
-
-/// An element at a position in angstroms.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Site {
-    pub(crate) element: Element,
-    pub(crate) position: DVec3,
-}
-
-/// An atom as the file has it; what it does not say is empty.
-pub(super) struct Atom<'a> {
-    pub(super) site: Site,
-    pub(super) line: usize,
-    /// Index of its model in the file, counted from 0.
-    pub(super) model: usize,
-    pub(super) serial: &'a str,
-    pub(super) name: &'a str,
-    pub(super) altloc: &'a str,
-    pub(super) chain: &'a str,
-    pub(super) residue: &'a str,
-    /// Number of the residue in its chain, and the code of residues inserted after it.
-    pub(super) number: &'a str,
-    pub(super) insertion: &'a str,
-}
-
-impl<'a> Atom<'a> {
-    /// What tells its residue from others of its model.
-    fn residue_key(&self) -> [&'a str; 3] {
-        [self.chain, self.number, self.insertion]
-    }
-
-    fn full_name(&self) -> String {
-        let Self {
-            chain,
-            residue,
-            number,
-            insertion,
-            name,
-            ..
-        } = self;
-        let residue = format!("{residue} {number}{insertion}");
-        [chain, residue.trim(), name]
-            .into_iter()
-            .filter(|part| !part.is_empty())
-            .collect::<Vec<_>>()
-            .join("/")
-    }
-}
-
-/// One end of a bond that the file states.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum End<'a> {
-    /// An atom's serial number, in PDB.
-    Serial(&'a str),
-    /// Chain, residue number, insertion code and atom name, in mmCIF.
-    Name([&'a str; 4]),
-}
-
-/// One of the models of a file.
-pub(super) struct Model<'a> {
-    /// The number that the file gives it; empty where files do not number them.
-    pub(super) number: &'a str,
-    pub(super) line: usize,
-}
-
-/// What a file says, before one model and one set of alternate locations is chosen.
-#[derive(Default)]
-pub(super) struct Parsed<'a> {
-    pub(super) atoms: Vec<Atom<'a>>,
-    /// In file order.
-    pub(super) models: Vec<Model<'a>>,
-    /// The ends of each, and its line.
-    pub(super) bonds: Vec<(usize, [End<'a>; 2])>,
-}
 
 /// Makes a scene of what `parse` reads from a file.
 ///

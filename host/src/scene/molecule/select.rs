@@ -1,6 +1,6 @@
 //! Chooses one model and one alternate location of each residue.
 
-use super::{Atom, Model, Parsed};
+use super::parsed::{Atom, Model, Parsed};
 use crate::scene::text::Source;
 use crate::scene::{MoleculeOptions, SceneError};
 use std::collections::{BTreeSet, HashMap};

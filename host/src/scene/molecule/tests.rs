@@ -2,6 +2,7 @@ mod real;
 
 use super::*;
 use crate::scene::{ImportOptions, MoleculeOptions, Shape};
+use glam::DVec3;
 use std::path::Path;
 
 fn read(file: &str, text: &str, options: &MoleculeOptions) -> Result<Imported, SceneError> {

@@ -2,7 +2,7 @@
 //! memory in a few lines.
 
 use super::material::Palette;
-use super::object::{Content, Group, Item};
+use super::item::{Content, Group, Item};
 use super::source::{Name, Source, Span, nearest};
 use crate::scene::size::Size;
 use crate::scene::{Object, SceneError, Shape};

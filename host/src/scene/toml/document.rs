@@ -3,10 +3,10 @@
 use super::census::Census;
 use super::import::Imports;
 use super::material::Palette;
-use super::object::{Content, Item, Reader};
+use super::item::{Content, Item};
+use super::object::Reader;
 use super::place::Placer;
 use super::source::Source;
-use super::transform::parallel;
 use super::value::Fields;
 use super::view;
 use crate::scene::importer::Input;
@@ -60,14 +60,13 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
 
     let mut scene = Scene {
         camera,
-        up: super::IMPORTER.up,
         background,
-        display_values: false,
         ambient: ambient.unwrap_or(BLACK),
         lights,
         materials: palette.into_materials(),
         objects,
         render: render.unwrap_or_default(),
+        ..Scene::default()
     };
     let lit = !scene.lights.is_empty();
     for item in &items {
@@ -100,7 +99,7 @@ fn moved_camera(source: &Source, item: &Item, camera: &Camera) -> Result<Camera,
         up: by.transform_vector3(camera.up),
         ..*camera
     };
-    if parallel(moved.target - moved.eye, moved.up) {
+    if moved.is_along_up() {
         return Err(lost(source, item, "camera"));
     }
     Ok(moved)

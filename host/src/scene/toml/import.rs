@@ -1,9 +1,8 @@
 //! Reading other scene files into this one: each once, and none into itself.
 
-use super::document;
 use super::source::{Name, Source};
 use crate::scene::access::Access;
-use crate::scene::importer::Input;
+use crate::scene::importer::{Importers, Input};
 use crate::scene::{MoleculeOptions, Scene, SceneError};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -12,8 +11,14 @@ use std::rc::Rc;
 /// How many files may be open inside each other; each takes stack.
 const MAX_OPEN: usize = 16;
 
+/// Reads a file of this format.
+type Read = fn(Input<'_>, &mut Imports) -> Result<Scene, SceneError>;
+
 /// The files that were imported, and those that are being read right now.
 pub(super) struct Imports {
+    /// What reads files of this format, and the format's name.
+    own: (&'static str, Read),
+    importers: Importers,
     /// Which files may be imported.
     access: Access,
     /// Canonical paths, the outermost file first.
@@ -28,9 +33,11 @@ pub(super) struct Imports {
 }
 
 impl Imports {
-    pub(super) fn new(access: &Access) -> Self {
+    pub(super) fn new(own: (&'static str, Read), input: &Input<'_>) -> Self {
         Self {
-            access: access.clone(),
+            own,
+            importers: input.importers,
+            access: input.access.clone(),
             open: Vec::new(),
             nesting: 0,
             done: HashMap::new(),
@@ -48,7 +55,7 @@ impl Imports {
 
     fn nested(&mut self, input: Input<'_>, canonical: PathBuf) -> Result<Scene, SceneError> {
         self.open.push(canonical);
-        let scene = document::read(input, self)?;
+        let scene = (self.own.1)(input, self)?;
         self.open.pop();
         Ok(scene)
     }
@@ -90,8 +97,9 @@ impl Imports {
             return Ok(Rc::clone(scene));
         }
         let access = self.access.clone();
-        let scene = Input::open(&path, options, &access).and_then(|(importer, input)| {
-            if importer.name == super::IMPORTER.name {
+        let opened = self.importers.open(&path, options, &access);
+        let scene = opened.and_then(|(importer, input)| {
+            if importer.name == self.own.0 {
                 return self.nested(input, canonical.clone());
             }
             let imported = importer.import(input)?;

@@ -3,6 +3,7 @@
 mod census;
 mod document;
 mod import;
+mod item;
 mod material;
 mod object;
 mod place;
@@ -18,7 +19,6 @@ mod tests;
 use super::importer::{Importer, Input};
 use super::{Imported, SceneError, Up};
 use import::Imports;
-pub(super) use transform::parallel;
 
 pub(super) const IMPORTER: Importer = Importer {
     name: "TOML",
@@ -53,7 +53,7 @@ pub(super) const IMPORTER: Importer = Importer {
 /// If a file that is imported cannot be read or a file's content is broken; the error shows file, line
 /// and remedy.
 fn read(input: Input<'_>) -> Result<Imported, SceneError> {
-    let mut imports = Imports::new(input.access);
+    let mut imports = Imports::new((IMPORTER.name, document::read), &input);
     let scene = imports.root(input)?;
     Ok(Imported {
         scene,

@@ -2,13 +2,13 @@
 
 use super::census::{MAX_NESTING, too_deep};
 use super::import::Imports;
+use super::item::{Content, Group, Item};
 use super::material::Palette;
-use super::source::{Name, Source, Span};
+use super::source::Source;
 use super::value::{Fields, Value};
 use super::{shape, transform};
 use crate::scene::importer::stem;
-use crate::scene::{MoleculeOptions, MoleculeStyle, Scene, SceneError, Shape};
-use glam::DAffine3;
+use crate::scene::{MoleculeOptions, MoleculeStyle, Scene, SceneError};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::rc::Rc;
@@ -20,35 +20,6 @@ const KINDS: &[&str] = &[
     "sphere", "box", "disc", "cylinder", "cone", "frustum", "triangle", "mesh", "group",
     "instance", "import",
 ];
-
-/// An object as the file states it.
-pub(super) struct Item {
-    /// The name the file gives it, or one made of its kind and its number in its list.
-    pub(super) name: String,
-    pub(super) material: Option<Name>,
-    pub(super) transform: DAffine3,
-    pub(super) span: Span,
-    pub(super) content: Content,
-}
-
-pub(super) enum Content {
-    Shape(Shape),
-    /// Objects that stand here and nowhere else.
-    Group(Vec<Item>),
-    /// The group of this name.
-    Instance(Name),
-    /// Another scene file, and which of our materials each of its materials is.
-    Import {
-        scene: Rc<Scene>,
-        materials: Vec<usize>,
-    },
-}
-
-/// A `[group.NAME]`.
-pub(super) struct Group {
-    pub(super) span: Span,
-    pub(super) items: Vec<Item>,
-}
 
 /// Reads objects, and the files that they import.
 pub(super) struct Reader<'r> {

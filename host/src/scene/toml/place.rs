@@ -2,7 +2,7 @@
 
 use super::census::{self, MAX_PRIMITIVES};
 use super::material::Palette;
-use super::object::{Content, Group, Item};
+use super::item::{Content, Group, Item};
 use super::source::Source;
 use super::transform;
 use crate::scene::size::Size;

@@ -1,15 +1,12 @@
 //! Transforms of objects: how a file states them, and what they make of shapes.
 
 use super::value::{Fields, Value};
+use crate::scene::direction::{TOLERANCE, unit};
 use crate::scene::{SceneError, Shape};
 use glam::{DAffine3, DMat3, DVec3};
 
 /// The keys that state a transform.
 pub(super) const KEYS: &[&str] = &["translate", "rotate", "scale"];
-
-/// How far apart two lengths or angles may be, relatively, and still count as equal: far above
-/// what rounding does to a product of matrices, and far below what 24 bits of the lattice show.
-const TOLERANCE: f64 = 1.0 / (1_u64 << 30) as f64;
 
 /// Why a shape cannot be transformed: the cause, without its subject, and the remedy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,17 +70,6 @@ fn rotation(value: Value<'_>) -> Result<DMat3, SceneError> {
     }
     let angles = value.vector()?;
     Ok(about(DVec3::Z, angles.z) * about(DVec3::Y, angles.y) * about(DVec3::X, angles.x))
-}
-
-/// The vector at length 1, also where its square is out of range.
-pub(super) fn unit(vector: DVec3) -> DVec3 {
-    (vector / vector.abs().max_element()).normalize()
-}
-
-/// Whether two vectors are parallel, or one of them has no length.
-pub(in crate::scene) fn parallel(a: DVec3, b: DVec3) -> bool {
-    let sine = unit(a).cross(unit(b)).length();
-    sine.is_nan() || sine <= TOLERANCE
 }
 
 /// Rodrigues' rotation; exact for multiples of 90 degrees about x, y and z.

@@ -1,7 +1,7 @@
 //! Options that say from where a scene file is seen.
 
-use super::arguments::SceneOptions;
-use super::failure::Failure;
+use super::values::{numbers, vector};
+use crate::cli::failure::Failure;
 use clap::Args;
 use glam::DVec3;
 use gridel_host::compile;
@@ -15,7 +15,7 @@ pub struct ViewOptions {
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     eye: Option<DVec3>,
 
-    /// What [`Aim`] holds, or `--target` of a verb that takes boards, too.
+    /// What the option `Aim` holds, or `--target` of a verb that takes boards, too.
     #[arg(skip)]
     pub target: Option<DVec3>,
 
@@ -31,24 +31,6 @@ pub struct ViewOptions {
     /// light grey for a file without a camera]
     #[arg(long, value_name = "R,G,B", value_parser = color, allow_hyphen_values = true)]
     background: Option<Color>,
-}
-
-/// The option `--target` of verbs that take no board.
-#[derive(Args, Clone, Debug, Default)]
-#[command(next_help_heading = "Options for scene files")]
-pub struct Aim {
-    /// Look at this point [default: the file's, or the middle of the scene]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
-    target: Option<DVec3>,
-}
-
-impl Aim {
-    /// The options for scene files, with this point.
-    pub fn aimed(&self, options: &SceneOptions) -> SceneOptions {
-        let mut options = options.clone();
-        options.view.target = self.target;
-        options
-    }
 }
 
 impl ViewOptions {
@@ -104,19 +86,6 @@ impl ViewOptions {
         scene.camera = Some(camera);
         Ok(())
     }
-}
-
-/// Reads numbers with commas between them.
-fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    let numbers: [f64; N] = numbers.ok()?.try_into().ok()?;
-    numbers.iter().all(|it| it.is_finite()).then_some(numbers)
-}
-
-/// Reads a vector, such as `0,1.5,-2`.
-pub fn vector(text: &str) -> Result<DVec3, String> {
-    let numbers = numbers(text).map(DVec3::from_array);
-    numbers.ok_or_else(|| String::from("write three numbers with commas, such as 0,1.5,-2"))
 }
 
 fn degrees(text: &str) -> Result<f64, String> {

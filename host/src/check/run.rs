@@ -1,17 +1,16 @@
 //! Measures what a manifest asks for.
 
 use super::board::{self, Ran};
+use super::explained::explained;
 use super::image::Image;
 use super::manifest::{Board, Check, Manifest, Reference};
 use super::report::{Evidence, Figure, Finding, Key, Outcome, Record, Report};
 use crate::blob::{Blob, best_structures, is_blob};
 use crate::compile::{self, Options};
+use crate::measure::{Rendered, board_memory};
 use crate::picture::hash;
-use crate::render::{Job, Picture, render};
-use crate::report::working_memory;
 use crate::scene::{self, ImportOptions};
 use gridel_core::{Format, Scene, Settings, Structure};
-use miette::Diagnostic;
 use std::io;
 
 /// Measures everything. `progress` is told of each of the [steps](Manifest::steps).
@@ -133,10 +132,7 @@ impl Run<'_> {
         let check = self.check;
         let on = Some(format.name().to_owned());
         if let Some(most) = check.budget.working_bytes {
-            let memory = working_memory(scene)
-                .into_iter()
-                .find(|memory| memory.word_bits == 32 && memory.format == format.name());
-            let bytes = memory.map_or(0, |memory| memory.workspace as u64);
+            let bytes = board_memory(scene, format, scene.view().depth).workspace as u64;
             let (found, most) = (Figure::Count(bytes), Some(Figure::Count(most)));
             self.budget(on.clone(), "working_bytes", found, most);
         }
@@ -145,13 +141,14 @@ impl Run<'_> {
             return Ok(());
         }
         let settings = self.settings(scene);
-        let picture = self.render(scene, structure, format, settings, tests.is_some())?;
-        if let (Some(most), Some(counters)) = (tests, picture.counters) {
-            let tests = counters.boxes + counters.objects;
-            let mean = Figure::Mean(tests as f64 / counters.rays().max(1) as f64);
+        let with = (structure, format);
+        let rendered = self.render(scene, with, settings, tests.is_some())?;
+        if let Some(most) = tests {
+            let mean = Figure::Mean(rendered.tests_per_ray());
             self.budget(on.clone(), "tests_per_ray", mean, Some(Figure::Mean(most)));
         }
-        let image = Image::of(&picture);
+        let picture = &rendered.picture;
+        let image = Image::of(picture);
         let reference = check
             .reference
             .as_ref()
@@ -183,16 +180,11 @@ impl Run<'_> {
     fn render(
         &self,
         scene: &Scene<'_>,
-        structure: Structure,
-        format: Format,
+        with: (Structure, Format),
         settings: Settings,
         count: bool,
-    ) -> Result<Picture, String> {
-        let job = Job {
-            count,
-            ..Job::whole(format, structure, settings)
-        };
-        render(scene, &job, &|| ())
+    ) -> Result<Rendered, String> {
+        Rendered::new(scene, with, settings, count)
             .map_err(|error| format!("{}: {error}", self.check.scene.path.display()))
     }
 
@@ -335,8 +327,9 @@ impl Run<'_> {
             return Ok(());
         };
         // As the blob says, because that is all that the board knows.
-        let picture = self.render(scene, structure, board.format, Settings::of(scene), false)?;
-        let expected = Image::of(&picture);
+        let with = (structure, board.format);
+        let rendered = self.render(scene, with, Settings::of(scene), false)?;
+        let expected = Image::of(&rendered.picture);
         if bytes.as_ref().is_ok_and(|bytes| *bytes == expected.pixels) {
             self.push(on(), "picture", None, None, Outcome::Held);
             return Ok(());
@@ -442,13 +435,5 @@ fn evidence(name: &str, rendered: &Image, expected: Option<Image>) -> Evidence {
         name: name.to_owned(),
         rendered: rendered.clone(),
         expected,
-    }
-}
-
-/// An error and its remedy in one sentence.
-pub(super) fn explained(error: &(impl Diagnostic + std::fmt::Display)) -> String {
-    match error.help() {
-        Some(help) => format!("{error}; {help}"),
-        None => error.to_string(),
     }
 }

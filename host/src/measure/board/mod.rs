@@ -1,4 +1,26 @@
-//! Boards that scenes are built for: what a program has there, and how it computes best.
+//! Boards that scenes are built for, as data: what a program has there, how it computes best, and what it
+//! costs.
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | `mod.rs` | the boards: flash, RAM, number formats |
+//! | `programs.json` | code and call stack of programs that were built, written by the board tests |
+//! | `programs.rs` | these figures, and what bounds the others |
+//! | `estimate.rs` | code and call stack of a scene's program |
+//! | `memory.rs` | the memory report: what a scene takes of a board, and what remains |
+//! | `advice.rs` | what makes it smaller |
+//! | `instructions.rs` | instructions per ray of recorded pictures |
+
+mod account;
+mod advice;
+mod estimate;
+mod instructions;
+mod memory;
+pub mod programs;
+
+pub use account::{Account, Item};
+pub use instructions::{PICTURE_COSTS, PictureCost, core_names, instructions, names};
+pub use memory::{Fit, MemoryReport, NotMeasured, Sizes, Target};
 
 use gridel_core::Format;
 
@@ -87,9 +109,9 @@ impl Board {
         BOARDS.iter().find(|board| board.name == name)
     }
 
-    /// The board and number format that parts and structures were measured on, each alone: these, or
-    /// those that come nearest.
-    pub fn kin(&self, format: Format) -> (&'static Self, Format) {
+    /// The board and number format on which parts and structures were measured, each alone: these, or
+    /// those of a similar core.
+    pub fn similar(&self, format: Format) -> (&'static Self, Format) {
         let [m3, m0, risc_v, _, m4f, _, _] = &BOARDS;
         match (self.target, format) {
             (_, Format::F32 | Format::F64) => (m4f, Format::F32),

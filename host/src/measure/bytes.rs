@@ -96,37 +96,39 @@ pub struct WorkingMemory {
 ///
 /// For 32 bits an `f64` is taken to be aligned to 8 bytes, as on Arm and RISC-V.
 pub fn working_memory(scene: &Scene<'_>) -> Vec<WorkingMemory> {
-    working_memory_at(scene, scene.view().depth)
-}
-
-/// The same for pictures of another ray depth than the scene's own.
-pub fn working_memory_at(scene: &Scene<'_>, depth: u8) -> Vec<WorkingMemory> {
     let bits = [4, size_of::<usize>()];
     let words = if bits[0] == bits[1] {
         &bits[..1]
     } else {
         &bits[..]
     };
-    let places = scene.effects().work_depth(depth);
-    let depth = scene.stack_depth();
-    words
-        .iter()
-        .flat_map(|&word| {
-            Format::ALL.map(|format| {
-                let (stack, workspace) = match format {
-                    Format::Fixed => bytes::<Fixed>(word, depth, places),
-                    Format::F32 => bytes::<f32>(word, depth, places),
-                    Format::F64 => bytes::<f64>(word, depth, places),
-                };
-                WorkingMemory {
-                    format: format.name(),
-                    word_bits: 8 * word,
-                    stack,
-                    workspace,
-                }
-            })
-        })
-        .collect()
+    let depth = scene.view().depth;
+    let of = |&word| Format::ALL.map(|format| WorkingMemory::new(scene, format, depth, word));
+    words.iter().flat_map(of).collect()
+}
+
+/// The working memory of one format on a board of 32 bits, for pictures of some ray depth.
+pub fn board_memory(scene: &Scene<'_>, format: Format, depth: u8) -> WorkingMemory {
+    WorkingMemory::new(scene, format, depth, 4)
+}
+
+impl WorkingMemory {
+    /// Where a machine word has `word` bytes.
+    fn new(scene: &Scene<'_>, format: Format, depth: u8, word: usize) -> Self {
+        let places = scene.effects().work_depth(depth);
+        let entries = scene.stack_depth();
+        let (stack, workspace) = match format {
+            Format::Fixed => bytes::<Fixed>(word, entries, places),
+            Format::F32 => bytes::<f32>(word, entries, places),
+            Format::F64 => bytes::<f64>(word, entries, places),
+        };
+        Self {
+            format: format.name(),
+            word_bits: 8 * word,
+            stack,
+            workspace,
+        }
+    }
 }
 
 /// Sizes of a stack and of a workspace where a machine word has `word` bytes: both are arrays with

@@ -11,19 +11,15 @@
 //!
 //! What is not known is no 0: it makes the sum unknown, and whether the scene fits undecided.
 
-use super::programs::{Footprint, Known, Profile, Programs, parts};
-use super::{MemoryMap, grouped, working_memory};
+use super::Board;
+use super::account::Account;
+use super::estimate::{PROFILES, ProgramEstimate};
+use super::programs::{Known, Profile, Programs};
 use crate::blob::best_structures;
-use crate::board::Board;
-use gridel_core::accel::Entry;
-use gridel_core::{Effects, Format, Kind, Prevalidated, Rgb565, Scene, Structure};
+use crate::measure::bytes::{MemoryMap, board_memory};
+use crate::table::grouped;
+use gridel_core::{Format, Prevalidated, Rgb565, Scene, Structure};
 use serde::Serialize;
-
-/// A program that was built for every board, beside that of all parts.
-const FEW: [&str; 3] = ["triangle", "sphere", "shadow"];
-
-/// How items of code begin.
-const CODE: &str = "code: ";
 
 /// Memory of a board that a scene is to fit into.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +33,7 @@ pub struct Target {
 
 /// Flash and RAM of a scene on a board.
 #[derive(Clone, Debug, Serialize)]
-pub struct Ledger {
+pub struct MemoryReport {
     pub board: &'static str,
     pub core: &'static str,
     pub format: &'static str,
@@ -76,65 +72,11 @@ pub enum Fit {
 #[derive(Clone, Copy, Debug)]
 pub struct NotMeasured(pub Structure);
 
-/// One kind of memory: what there is, and what takes it.
-#[derive(Clone, Debug, Serialize)]
-pub struct Account {
-    pub available: u64,
-    /// Bytes of all items; `None` where one of them is not known.
-    pub used: Option<u64>,
-    pub items: Vec<Item>,
-}
-
-/// Something that takes memory.
-#[derive(Clone, Debug, Serialize)]
-pub struct Item {
-    pub what: String,
-    /// `None` where they are not known.
-    pub bytes: Option<u64>,
-}
-
-impl Account {
-    fn new(available: u64) -> Self {
-        Self {
-            available,
-            used: Some(0),
-            items: Vec::new(),
-        }
-    }
-
-    /// Bytes of the items that are known.
-    fn at_least(&self) -> u64 {
-        self.items.iter().filter_map(|item| item.bytes).sum()
-    }
-
-    /// Bytes that are missing at the least, 0 where what is known fits.
-    pub fn missing(&self) -> u64 {
-        self.at_least().saturating_sub(self.available)
-    }
-
-    /// Bytes that remain, 0 where it does not fit; `None` where that is not known.
-    pub fn remains(&self) -> Option<u64> {
-        self.used.map(|used| self.available.saturating_sub(used))
-    }
-
-    /// The items that are not known.
-    pub fn unknown(&self) -> impl Iterator<Item = &str> {
-        let unknown = self.items.iter().filter(|item| item.bytes.is_none());
-        unknown.map(|item| item.what.as_str())
-    }
-
-    fn add(&mut self, what: impl Into<String>, bytes: Option<u64>) {
-        let what = what.into();
-        self.used = self.used.zip(bytes).map(|(sum, bytes)| sum + bytes);
-        self.items.push(Item { what, bytes });
-    }
-}
-
-impl Ledger {
+impl MemoryReport {
     /// The structures that were measured: those that firmware can vouch for.
     pub const STRUCTURES: [Structure; 4] = Prevalidated::STRUCTURES;
 
-    /// The ledger of a scene that `blob` holds, in one of the board's number formats, through the
+    /// The report of a scene that `blob` holds, in one of the board's number formats, through the
     /// best structure that the blob holds.
     ///
     /// # Errors
@@ -162,10 +104,10 @@ impl Ledger {
             return Err(NotMeasured(structure));
         }
         let called_for: Vec<&str> = scene.features().collect();
-        let program = ScenesProgram {
+        let program = ProgramEstimate {
             programs,
             here: (board, format),
-            kin: board.kin(format),
+            similar: board.similar(format),
             structure,
             parts: &called_for,
         };
@@ -177,18 +119,12 @@ impl Ledger {
         }
         program.list_code(&mut flash);
 
-        let words = working_memory(scene);
-        let need = words
-            .iter()
-            .find(|need| need.word_bits == 32 && need.format == format.name());
+        let need = board_memory(scene, format, scene.view().depth);
         ram.add(
             format!("traversal stack, {} entries", scene.stack_depth()),
-            need.map(|need| need.stack as u64),
+            Some(need.stack as u64),
         );
-        ram.add(
-            "work list",
-            need.map(|need| (need.workspace - need.stack) as u64),
-        );
+        ram.add("work list", Some((need.workspace - need.stack) as u64));
         let width = scene.view().width;
         let row = u64::from(width) * size_of::<Rgb565>() as u64;
         ram.add(format!("row of {width} pixels, RGB565"), Some(row));
@@ -204,7 +140,7 @@ impl Ledger {
             how,
             deepest.map(|(fast, small)| fast.bytes.max(small.bytes)),
         );
-        let (kin, kins_format) = program.kin;
+        let (similar, its_format) = program.similar;
         let [fast, small] = PROFILES.map(|profile| Sizes {
             code: program.code(profile).map(|known| known.bytes),
             call_stack: program.call_stack(profile).map(|known| known.bytes),
@@ -214,7 +150,7 @@ impl Ledger {
             core: board.core,
             format: format.name(),
             structure: structure.name(),
-            measured_on: format!("{} in {}", kin.core, kins_format.name()),
+            measured_on: format!("{} in {}", similar.core, its_format.name()),
             measured: all_measured && measured(program.code(Profile::Fast)),
             flash,
             ram,
@@ -297,234 +233,20 @@ impl Ledger {
             )
         })
     }
-
-    /// What would save memory of the kind that is short, by the scene's own figures; `smaller` tells
-    /// what makes the blob smaller, which takes time.
-    pub fn advice(&self, scene: &Scene<'_>, smaller: impl FnOnce() -> Option<String>) -> String {
-        let mut steps = Vec::new();
-        if self.ram.missing() > 0 {
-            steps.extend(self.ram_advice(scene));
-        }
-        if self.flash.missing() > 0 {
-            steps.extend(self.flash_advice(scene));
-            steps.push(match smaller() {
-                // Code is another matter: flagged sides take more of it.
-                Some(smaller) => format!("of the blob itself, {smaller}"),
-                None => {
-                    String::from("the scene file in place of the blob tells what makes it smaller")
-                }
-            });
-        }
-        steps.join("; ")
-    }
-
-    /// What makes RAM smaller.
-    pub fn ram_advice(&self, scene: &Scene<'_>) -> Vec<String> {
-        let view = scene.view();
-        let place = if self.format == Format::F64.name() {
-            80
-        } else {
-            40
-        };
-        let mut steps = Vec::new();
-        let places = scene.effects().work_depth(view.depth) as u64;
-        if places > 0 {
-            steps.push(format!(
-                "a ray depth of {} in place of {} saves {place} bytes, and a scene without mirrors and \
-                 glass {}",
-                view.depth - 1,
-                view.depth,
-                place * places
-            ));
-        }
-        steps.extend(self.small_advice());
-        // Where flash is short, too, it is named there.
-        if scene.stack_depth() > 0 && self.flash.missing() == 0 {
-            steps.push(format!(
-                "`--accel list` saves {} bytes of traversal stack and costs time",
-                scene.stack_depth() * size_of::<Entry>()
-            ));
-        }
-        steps.push(String::from("a narrower picture"));
-        steps
-    }
-
-    /// What makes the call stack smaller.
-    pub fn call_stack_advice(&self, scene: &Scene<'_>) -> Vec<String> {
-        let effects = scene.effects();
-        let effects = (effects != Effects::NONE)
-            .then(|| format!("a scene that does without some of its effects ({effects})"));
-        self.small_advice().into_iter().chain(effects).collect()
-    }
-
-    /// What the call stack takes less without the feature `small`.
-    fn small_advice(&self) -> Option<String> {
-        let stacks = self.fast.call_stack.zip(self.small.call_stack);
-        let (fast, small) = stacks.filter(|(fast, small)| fast < small)?;
-        Some(format!(
-            "without the feature `small` the call stack takes {} bytes less",
-            grouped(small - fast)
-        ))
-    }
-
-    /// What makes flash smaller, the blob apart.
-    pub fn flash_advice(&self, scene: &Scene<'_>) -> Vec<String> {
-        let mut steps = Vec::new();
-        let code = self.fast.code.zip(self.small.code);
-        if let Some((fast, small)) = code.filter(|(fast, small)| small < fast) {
-            steps.push(format!(
-                "with the feature `small` and opt-level = \"z\" code takes {} bytes in place of {}, \
-                 and rays take longer",
-                grouped(small),
-                grouped(fast)
-            ));
-        }
-        if scene.vertices() > 1 << 16 {
-            let saved = 6 * scene.count(Kind::Triangle);
-            steps.push(format!(
-                "at most 65,536 vertices would make indices narrower and save {} bytes",
-                grouped(saved)
-            ));
-        }
-        if scene.effects() != Effects::NONE {
-            steps.push(format!(
-                "a scene that does without some of its effects ({})",
-                scene.effects()
-            ));
-        }
-        steps
-    }
-}
-
-/// The scene's own sizes (depth of the stack, width, waiting rays) are constants of its program, which add
-/// up to 0.8 % to code that was measured with others: this part is allowed for.
-const OWN_SIZES: u64 = 100;
-
-const PROFILES: [Profile; 2] = [Profile::Fast, Profile::Small];
-
-/// The program of a scene on a board, by what is known of programs.
-struct ScenesProgram<'p> {
-    programs: &'p Programs,
-    here: (&'static Board, Format),
-    /// Where most programs were built.
-    kin: (&'static Board, Format),
-    structure: Structure,
-    parts: &'p [&'p str],
-}
-
-impl ScenesProgram<'_> {
-    fn code(&self, profile: Profile) -> Option<Known> {
-        // What a structure adds to one program it adds to others.
-        let code = self.figure(
-            profile,
-            |it| it.code,
-            |bytes, [other, dual_split]| (bytes + other).saturating_sub(dual_split),
-        );
-        code.map(|code| Known {
-            bytes: code.bytes + code.bytes.div_ceil(OWN_SIZES),
-            ..code
-        })
-    }
-
-    fn call_stack(&self, profile: Profile) -> Option<Known> {
-        self.figure(
-            profile,
-            |it| it.call_stack,
-            |bytes, [other, dual_split]| (bytes * other).div_ceil(dual_split.max(1)),
-        )
-    }
-
-    /// A figure of the program; `through` makes it one for another structure, by the figures of all
-    /// parts through that and through dual-split nodes.
-    fn figure(
-        &self,
-        profile: Profile,
-        figure: fn(&Footprint) -> u64,
-        through: fn(u64, [u64; 2]) -> u64,
-    ) -> Option<Known> {
-        let Self {
-            programs,
-            here,
-            kin,
-            structure,
-            parts: called_for,
-        } = *self;
-        let of = |(board, format): (&Board, Format), structure, parts: &[&str]| {
-            programs.figure((board, format, structure), parts, profile, figure)
-        };
-        let built = |place, structure, parts: &[&str]| {
-            let known = of(place, structure, parts).filter(|known| known.measured);
-            known.map(|known| known.bytes)
-        };
-        if let Some(bytes) = built(here, structure, called_for) {
-            return Some(Known {
-                bytes,
-                measured: true,
-            });
-        }
-        let known = of(kin, Structure::DualSplit, called_for)?;
-        let everything: Vec<&str> = parts().collect();
-        let mut bytes = known.bytes;
-        if structure != Structure::DualSplit {
-            let both = [structure, Structure::DualSplit].map(|it| built(kin, it, &everything));
-            let [Some(other), Some(dual_split)] = both else {
-                return None;
-            };
-            bytes = through(bytes, [other, dual_split]);
-        }
-        if here != kin {
-            let ratios = [&everything[..], &FEW].into_iter().filter_map(|parts| {
-                let [here, there] = [here, kin].map(|it| built(it, Structure::DualSplit, parts));
-                Some(here? as f64 / there?.max(1) as f64)
-            });
-            let ratio = ratios.reduce(f64::max)?;
-            bytes = (bytes as f64 * ratio).ceil() as u64;
-        }
-        Some(Known {
-            bytes,
-            measured: known.measured && here == kin && structure == Structure::DualSplit,
-        })
-    }
-
-    /// Lists the code of the fast program, by part as far as it can be told apart.
-    fn list_code(&self, flash: &mut Account) {
-        const COMMON: &str = "loading, diffuse light";
-        let (board, format) = self.kin;
-        let place = (board, format, Structure::DualSplit);
-        let Some(code) = self.code(Profile::Fast) else {
-            flash.add(format!("{CODE}{COMMON}, {}", self.parts.join(", ")), None);
-            return;
-        };
-        let how = match code.measured {
-            true => "",
-            false => ", at most",
-        };
-        let mut rest = code.bytes;
-        let mut shares = Vec::new();
-        for &part in self.parts {
-            let share = self.programs.share(place, part, Profile::Fast);
-            if let Some(share) = share.filter(|&share| 0 < share && share < rest) {
-                rest -= share;
-                shares.push((part, share));
-            }
-        }
-        flash.add(format!("{CODE}{COMMON}{how}"), Some(rest));
-        for (part, share) in shares {
-            flash.add(format!("{CODE}{part}"), Some(share));
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::board::BOARDS;
     use crate::compile::{Options, compile};
+    use crate::measure::board::BOARDS;
+    use crate::measure::board::estimate::{CODE, FEW};
+    use crate::measure::board::programs::Footprint;
 
     const STRUCTURE: Structure = Structure::DualSplit;
 
     /// A ball under a light, on the smallest board, with programs of one's own.
-    fn ledger(programs: &Programs, flash: u64) -> Ledger {
+    fn report(programs: &Programs, flash: u64) -> MemoryReport {
         let text = "light = [{ kind = \"directional\", direction = [0, 0, -1] }]\n\
                     object = [{ kind = \"sphere\", center = [0, 0, 0], radius = 1 }]\n";
         let folder = tempfile::tempdir().unwrap();
@@ -541,7 +263,7 @@ mod tests {
             flash,
             ram: board.ram,
         };
-        Ledger::by(
+        MemoryReport::by(
             programs,
             &scene,
             compiled.blob.bytes(),
@@ -584,11 +306,11 @@ mod tests {
 
     #[test]
     fn measured_program_is_told_exactly() {
-        let ledger = ledger(&programs(&BOARDS[0], &PARTS, &PROFILES), 128 << 10);
-        assert!(ledger.measured);
-        assert_eq!(bytes(&ledger.flash, CODE), Some(30_300));
-        assert_eq!(bytes(&ledger.ram, "call stack"), Some(1500));
-        assert_eq!(ledger.fit(), Fit::Fits);
+        let report = report(&programs(&BOARDS[0], &PARTS, &PROFILES), 128 << 10);
+        assert!(report.measured);
+        assert_eq!(bytes(&report.flash, CODE), Some(30_300));
+        assert_eq!(bytes(&report.ram, "call stack"), Some(1500));
+        assert_eq!(report.fit(), Fit::Fits);
     }
 
     #[test]
@@ -602,17 +324,17 @@ mod tests {
             (fewer, None),
             (fast, Some(30_300)),
         ] {
-            let ledger = ledger(&programs, 128 << 10);
-            assert!(!ledger.measured);
-            assert_eq!(bytes(&ledger.flash, CODE), code);
-            assert_eq!(bytes(&ledger.ram, "call stack"), None);
-            assert_eq!((ledger.ram.used, ledger.ram.remains()), (None, None));
-            assert_eq!(ledger.flash.used.is_some(), code.is_some());
-            match ledger.fit() {
+            let report = report(&programs, 128 << 10);
+            assert!(!report.measured);
+            assert_eq!(bytes(&report.flash, CODE), code);
+            assert_eq!(bytes(&report.ram, "call stack"), None);
+            assert_eq!((report.ram.used, report.ram.remains()), (None, None));
+            assert_eq!(report.flash.used.is_some(), code.is_some());
+            match report.fit() {
                 Fit::Undecided(why) => assert!(why.contains("call stack"), "{why}"),
                 other => panic!("{other:?}"),
             }
-            let json = serde_json::to_value(&ledger).unwrap();
+            let json = serde_json::to_value(&report).unwrap();
             assert!(json["ram"]["used"].is_null() && json["small"]["call_stack"].is_null());
         }
     }
@@ -620,8 +342,8 @@ mod tests {
     /// What is known may be too much by itself.
     #[test]
     fn unknown_figures_do_not_hide_what_is_short() {
-        let ledger = ledger(&Programs::default(), 100);
-        match ledger.fit() {
+        let report = report(&Programs::default(), 100);
+        match report.fit() {
             Fit::Short(why) => assert!(why.contains("at least"), "{why}"),
             other => panic!("{other:?}"),
         }
@@ -632,10 +354,10 @@ mod tests {
     fn other_boards_are_scaled_or_unknown() {
         let mut recorded = programs(&BOARDS[0], &PARTS, &PROFILES);
         let program = |recorded: &Programs| {
-            let scenes = ScenesProgram {
+            let scenes = ProgramEstimate {
                 programs: recorded,
                 here: (&BOARDS[3], Format::Fixed),
-                kin: BOARDS[3].kin(Format::Fixed),
+                similar: BOARDS[3].similar(Format::Fixed),
                 structure: STRUCTURE,
                 parts: &PARTS,
             };

@@ -5,7 +5,7 @@
 //! the compiler makes of the rest, by some percent of the program. A program that was built is therefore
 //! told exactly; one that was not is bounded by the smallest that holds all of it and more.
 
-use crate::board::Board;
+use super::Board;
 use gridel_core::{Effects, Format, Kind, Structure};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -183,7 +183,7 @@ fn place_key((board, format, structure): Place<'_>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::board::BOARDS;
+    use crate::measure::board::BOARDS;
 
     const PLACE: Place<'static> = (&BOARDS[0], Format::Fixed, Structure::DualSplit);
 

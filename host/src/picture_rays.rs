@@ -1,7 +1,7 @@
 //! The rays of a scene's own picture, as the ray loop casts them.
 
-use super::CompareError;
 use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::render::RenderError;
 use gridel_core::{
     Effects, Flagged, Number, Observer, Ray, RayKind, Renderer, Scene, Settings, Workspace,
 };
@@ -10,6 +10,17 @@ use std::any::Any;
 
 /// Most rays of one picture.
 pub const MOST_RAYS: usize = 1 << 22;
+
+/// Why a picture's rays cannot be cast.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum PictureRaysError {
+    #[error("the picture of {pixels} pixels casts more than {most} rays")]
+    #[diagnostic(help("ask for a smaller one with `--size`"))]
+    TooMany { pixels: usize, most: usize },
+    #[error("{0}")]
+    #[diagnostic(help("ask for another `--size`"))]
+    Settings(#[from] RenderError),
+}
 
 /// The rays of a picture, in the order of its pixels.
 #[derive(Clone, Debug, Default)]
@@ -43,7 +54,7 @@ impl<N: Number> PictureRays<N> {
     ///
     /// # Errors
     /// If there are more than [`MOST_RAYS`], or the settings are out of their range.
-    pub fn of(scene: &Scene<'_>, settings: Settings) -> Result<Self, CompareError> {
+    pub fn of(scene: &Scene<'_>, settings: Settings) -> Result<Self, PictureRaysError> {
         let renderer = Renderer::<N, Flagged, { Effects::ALL.0 }>::new(scene, settings)?;
         let pixels = usize::from(settings.width) * usize::from(settings.height);
         let mut rays = Self::default();
@@ -62,7 +73,7 @@ impl<N: Number> PictureRays<N> {
                 rays.bounced.extend(row.bounced);
             }
             if rays.count() > MOST_RAYS {
-                return Err(CompareError::TooManyRays {
+                return Err(PictureRaysError::TooMany {
                     pixels,
                     most: MOST_RAYS,
                 });

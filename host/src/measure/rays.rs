@@ -1,6 +1,7 @@
 //! Tracing with counters, and tracing against the clock.
 
-use super::{Options, PictureRays, Works};
+use super::time::median;
+use crate::picture_rays::PictureRays;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
@@ -137,19 +138,45 @@ impl Work {
     }
 }
 
+/// What tracing took, by what the rays were cast for.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Works {
+    pub primary: Work,
+    /// To lights; `None` where there are none.
+    pub shadow: Option<Work>,
+    /// Mirrored and refracted; `None` where there are none.
+    pub bounced: Option<Work>,
+    pub all: Work,
+}
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Amount {
+    /// How often everything is timed; 0 for counts alone.
+    pub repeats: usize,
+    /// Primitives of the scene.
+    pub primitives: usize,
+    /// Most primitives that the list tests: see [`stride`].
+    pub tests: u64,
+}
+
 /// Counts and times contenders, which take turns.
 pub fn measure<N: Number>(
     questions: &Questions<'_, N>,
     contenders: &[(&Scene<'_>, &Structure)],
-    options: &Options<'_>,
-    primitives: usize,
+    amount: &Amount,
     progress: &dyn Fn(&str),
 ) -> Vec<Works> {
     let groups = questions.groups();
     let strides: Vec<usize> = contenders
         .iter()
         .map(|&(_, &structure)| {
-            stride(structure, questions.rays.count(), primitives, options.tests)
+            stride(
+                structure,
+                questions.rays.count(),
+                amount.primitives,
+                amount.tests,
+            )
         })
         .collect();
     let mut counts = Vec::new();
@@ -175,7 +202,7 @@ pub fn measure<N: Number>(
         }));
     }
     let mut seconds = vec![[const { Vec::new() }; 3]; contenders.len()];
-    for repeat in 0..options.repeats {
+    for repeat in 0..amount.repeats {
         for ((&(scene, &structure), &stride), seconds) in
             contenders.iter().zip(&strides).zip(&mut seconds)
         {
@@ -183,7 +210,7 @@ pub fn measure<N: Number>(
                 "timing {}, {} of {}",
                 structure.name(),
                 repeat + 1,
-                options.repeats
+                amount.repeats
             ));
             for (&(question, all), seconds) in groups.iter().zip(seconds) {
                 let started = Instant::now();
@@ -196,7 +223,7 @@ pub fn measure<N: Number>(
         }
     }
     let works = counts.into_iter().zip(seconds).map(|(counts, seconds)| {
-        let seconds = seconds.map(median);
+        let seconds = seconds.map(|repeats| median(&repeats));
         let work = |group: usize| {
             let (counters, rays) = &counts[group];
             Work::of(*rays, counters, seconds[group])
@@ -224,9 +251,4 @@ pub fn stride(structure: Structure, rays: usize, primitives: usize, tests: u64) 
     } else {
         1
     }
-}
-
-fn median(mut seconds: Vec<f64>) -> Option<f64> {
-    seconds.sort_by(f64::total_cmp);
-    seconds.get(seconds.len() / 2).copied()
 }

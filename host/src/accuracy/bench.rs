@@ -1,0 +1,253 @@
+//! Builds and renders settings, and measures what is wrong with the pictures and what they cost.
+
+use super::setting::Setting;
+use crate::blob::Blob;
+use crate::compile::{self, CompileError, Quality};
+use crate::measure::board::instructions;
+use crate::measure::{Errors, FirstHit, Rendered, board_memory, first_hits, time};
+use crate::scene::Scene;
+use gridel_core::format::checksum;
+use gridel_core::format::limits::MAX_RAY_DEPTH;
+use gridel_core::render::RenderError;
+use gridel_core::{Effects, Format, Settings, Structure};
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+
+/// What a setting is worth.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Point {
+    pub name: String,
+    pub setting: Setting,
+    pub errors: Errors,
+    pub cost: Cost,
+}
+
+/// What a picture costs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cost {
+    /// Of each repeat, rendering alone.
+    pub seconds: Vec<f64>,
+    pub pixels: usize,
+    pub rays: u64,
+    /// Boxes and primitives that were tested.
+    pub tests: u64,
+    pub blob_bytes: usize,
+    /// Workspace on a 32-bit board.
+    pub working_bytes: usize,
+}
+
+impl Cost {
+    /// The median of the repeats.
+    pub fn time(&self) -> f64 {
+        time::median(&self.seconds).unwrap_or(0.0)
+    }
+
+    /// The least and the largest of the repeats: see [`time::interval`].
+    pub fn interval(&self) -> Option<[f64; 2]> {
+        time::interval(&self.seconds)
+    }
+
+    /// Whether every repeat took less than every repeat of another.
+    pub fn is_below(&self, other: &Self) -> bool {
+        time::is_below(&self.seconds, &other.seconds)
+    }
+
+    /// The largest less the least, as a part of the median.
+    pub fn spread(&self) -> Option<f64> {
+        time::spread(&self.seconds)
+    }
+
+    /// The spread as tables show it.
+    pub fn spread_text(&self) -> String {
+        let spread = self.spread();
+        spread.map_or(String::from("-"), |spread| {
+            format!("{:.0} %", 100.0 * spread)
+        })
+    }
+}
+
+impl Point {
+    /// Instructions per pixel on a board: see [`instructions`].
+    pub fn instructions(&self, board: &str) -> Option<[f64; 2]> {
+        let rays = self.cost.rays as f64 / self.cost.pixels.max(1) as f64;
+        instructions(board, self.setting.format, rays)
+    }
+}
+
+/// The picture that others are measured against.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Reference {
+    /// Samples a pixel.
+    pub samples: u16,
+    /// Linear, 65535 being white.
+    pub pixels: Vec<[u16; 3]>,
+    /// Of each pixel.
+    hits: Vec<FirstHit>,
+}
+
+/// Why something cannot be measured.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum MeasureError {
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Compile(#[from] CompileError),
+    #[error("the scene cannot be rendered: {0}")]
+    #[diagnostic(help("change `[render]` in the scene file"))]
+    Render(#[from] RenderError),
+    #[error("a compiled scene is refused: {0}")]
+    #[diagnostic(help("this is a fault of gridel: report it with the scene file"))]
+    Blob(#[from] gridel_core::BlobError),
+}
+
+/// A scene that is measured, with the blobs that were built of it.
+pub struct Bench<'s> {
+    scene: &'s Scene,
+    structure: Structure,
+    /// Of the structure wide.
+    pub quality: Quality,
+    pub size: [u16; 2],
+    blobs: HashMap<(u8, u64), Blob>,
+    hits: HashMap<(u8, u64, &'static str), Vec<FirstHit>>,
+}
+
+/// How the reference is made: double precision, the finest lattice, all reflections that a picture
+/// could show.
+pub fn reference_setting(samples: u16) -> Setting {
+    Setting {
+        format: Format::F64,
+        lattice_bits: 24,
+        samples,
+        depth: MAX_RAY_DEPTH as u8,
+        cutoff: f64::powi(2.0, -14),
+    }
+}
+
+impl<'s> Bench<'s> {
+    pub fn new(scene: &'s Scene, structure: Structure, size: [u16; 2]) -> Self {
+        Self {
+            scene,
+            structure,
+            quality: Quality::default(),
+            size,
+            blobs: HashMap::new(),
+            hits: HashMap::new(),
+        }
+    }
+
+    /// What the scene file states.
+    pub fn base(&self) -> Setting {
+        let stated = self.scene.render;
+        Setting {
+            format: Format::F32,
+            lattice_bits: 24,
+            samples: stated.samples,
+            depth: stated.depth,
+            cutoff: stated.cutoff,
+        }
+    }
+
+    /// Tells scenes apart.
+    pub fn checksum(&mut self) -> Result<u32, MeasureError> {
+        let base = self.base();
+        Ok(checksum(self.blob(&base)?.bytes()))
+    }
+
+    /// Whether anything in the scene reflects or refracts.
+    pub fn is_secondary(&mut self) -> Result<bool, MeasureError> {
+        let base = self.base();
+        let effects = self.blob(&base)?.scene()?.effects();
+        Ok(effects.0 & Effects::MIRROR.with(Effects::GLASS).0 != 0)
+    }
+
+    fn blob(&mut self, setting: &Setting) -> Result<&Blob, MeasureError> {
+        let key = (setting.lattice_bits, setting.cutoff.to_bits());
+        if !self.blobs.contains_key(&key) {
+            let mut scene = self.scene.clone();
+            scene.render.cutoff = setting.cutoff;
+            let options = compile::Options {
+                structures: vec![self.structure],
+                lattice_bits: setting.lattice_bits,
+                quality: self.quality,
+                ..compile::Options::default()
+            };
+            let blob = compile::compile(&scene, &options)?.blob;
+            self.blobs.insert(key, blob);
+        }
+        Ok(&self.blobs[&key])
+    }
+
+    fn rendered(&mut self, setting: &Setting, count: bool) -> Result<Rendered, MeasureError> {
+        let settings = settings(self.size, setting);
+        let with = (self.structure, setting.format);
+        let scene = self.blob(setting)?.scene()?;
+        Ok(Rendered::new(&scene, with, settings, count)?)
+    }
+
+    /// Renders the reference, on all threads of the pool that this is called in.
+    pub fn reference(&mut self, samples: u16) -> Result<Reference, MeasureError> {
+        let setting = reference_setting(samples);
+        Ok(Reference {
+            samples,
+            pixels: self.rendered(&setting, false)?.picture.pixels,
+            hits: self.first_hits(&setting)?,
+        })
+    }
+
+    /// Seconds of one more repeat.
+    pub fn time(&mut self, setting: &Setting) -> Result<f64, MeasureError> {
+        Ok(self.rendered(setting, false)?.seconds)
+    }
+
+    /// Measures a setting but for its time; its pixels, too.
+    pub fn measure(
+        &mut self,
+        setting: &Setting,
+        reference: &Reference,
+    ) -> Result<(Point, Vec<[u16; 3]>), MeasureError> {
+        let rendered = self.rendered(setting, true)?;
+        let hits = self.first_hits(setting)?;
+        let blob = self.blob(setting)?;
+        let blob_bytes = blob.bytes().len();
+        let working = board_memory(&blob.scene()?, setting.format, setting.depth);
+        let pixels = &rendered.picture.pixels;
+        let found = (&pixels[..], &hits[..]);
+        let point = Point {
+            name: setting.name(),
+            setting: *setting,
+            errors: Errors::of(self.size[0], (&reference.pixels, &reference.hits), found),
+            cost: Cost {
+                seconds: Vec::new(),
+                pixels: pixels.len(),
+                rays: rendered.rays(),
+                tests: rendered.tests(),
+                blob_bytes,
+                working_bytes: working.workspace,
+            },
+        };
+        Ok((point, rendered.picture.pixels))
+    }
+
+    /// What the rays through the middles of pixels meet.
+    fn first_hits(&mut self, setting: &Setting) -> Result<Vec<FirstHit>, MeasureError> {
+        let name = setting.format.name();
+        let key = (setting.lattice_bits, setting.cutoff.to_bits(), name);
+        if let Some(hits) = self.hits.get(&key) {
+            return Ok(hits.clone());
+        }
+        let with = (self.structure, setting.format);
+        let settings = settings(self.size, setting);
+        let hits = first_hits(&self.blob(setting)?.scene()?, with, settings)?;
+        self.hits.insert(key, hits.clone());
+        Ok(hits)
+    }
+}
+
+fn settings([width, height]: [u16; 2], setting: &Setting) -> Settings {
+    Settings {
+        width,
+        height,
+        samples: setting.samples,
+        depth: setting.depth,
+        dither: false,
+    }
+}

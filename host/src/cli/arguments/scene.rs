@@ -1,0 +1,191 @@
+//! How a scene file is read and compiled.
+
+use super::values::{cutoff, first_given, quoted, vector};
+use super::view::ViewOptions;
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use glam::DVec3;
+use gridel_host::scene::{self, MoleculeStyle};
+use std::num::NonZeroUsize;
+
+/// Help for the argument that names a scene file.
+pub fn scene_help() -> String {
+    format!(
+        "Scene file: {}; or `-` for standard input",
+        scene::extensions()
+    )
+}
+
+/// Help for the argument that names a scene file, with a line for each format.
+pub fn scene_long_help() -> String {
+    let lines = scene::IMPORTERS.iter().map(|it| it.to_string());
+    format!(
+        "Scene file, which may be gzipped; or `-` for standard input:\n{}",
+        lines.collect::<Vec<_>>().join("\n")
+    )
+}
+
+/// How a scene file is read and compiled, for verbs that make pictures of it.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Options for scene files")]
+pub struct SceneOptions {
+    /// Do not trace secondary rays that change every channel by less than this; 1 is display white
+    /// [default: that of the scene file]
+    #[arg(long, value_name = "X", value_parser = cutoff, allow_hyphen_values = true)]
+    pub cutoff: Option<f64>,
+
+    #[command(flatten)]
+    pub view: ViewOptions,
+
+    #[command(flatten)]
+    pub geometry: GeometryOptions,
+}
+
+/// How the geometry of a scene file is read and compiled.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Options for scene files")]
+pub struct GeometryOptions {
+    /// Bits of the lattice for coordinates, 10 to 24; 16 or fewer make the blob smaller [default:
+    /// 24]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(10..=24))]
+    pub lattice_bits: Option<u8>,
+
+    #[command(flatten)]
+    pub import: ImportOptions,
+}
+
+/// How a scene file is read.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Options for scene files")]
+pub struct ImportOptions {
+    /// Allow the scene file to name files outside of its folder
+    #[arg(long)]
+    pub allow_outside: bool,
+
+    #[command(flatten)]
+    pub molecule: MoleculeOptions,
+}
+
+/// How molecules are read.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Options for scene files")]
+pub struct MoleculeOptions {
+    /// Style of molecules [default: space-filling]
+    #[arg(long, value_parser = style())]
+    style: Option<MoleculeStyle>,
+
+    /// Model of a molecule file, counted from 1 [default: 1]
+    #[arg(long, value_name = "N")]
+    model: Option<NonZeroUsize>,
+
+    /// Alternate location of atoms [default: the first of each residue]
+    #[arg(long, value_name = "C")]
+    altloc: Option<char>,
+}
+
+impl SceneOptions {
+    /// The name of an option that was given, if one was.
+    pub fn given(&self) -> Option<&'static str> {
+        let Self {
+            cutoff,
+            view,
+            geometry,
+        } = self;
+        first_given([
+            (geometry.lattice_bits.is_some(), "--lattice-bits"),
+            (cutoff.is_some(), "--cutoff"),
+            (geometry.import.allow_outside, "--allow-outside"),
+        ])
+        .or(first_given(view.given()))
+        .or(geometry.import.molecule.given())
+    }
+}
+
+impl From<GeometryOptions> for SceneOptions {
+    fn from(geometry: GeometryOptions) -> Self {
+        Self {
+            cutoff: None,
+            view: ViewOptions::default(),
+            geometry,
+        }
+    }
+}
+
+impl ImportOptions {
+    /// What was given, as it is written behind a file's name.
+    pub fn written(&self) -> String {
+        let outside = if self.allow_outside {
+            " --allow-outside"
+        } else {
+            ""
+        };
+        format!("{outside}{}", self.molecule.written())
+    }
+
+    /// The options for importers.
+    pub fn for_import(&self) -> scene::ImportOptions {
+        scene::ImportOptions {
+            molecule: self.molecule.for_import(),
+            allow_outside: self.allow_outside,
+        }
+    }
+}
+
+impl MoleculeOptions {
+    /// The name of an option that was given, if one was.
+    pub fn given(&self) -> Option<&'static str> {
+        first_given([
+            (self.style.is_some(), "--style"),
+            (self.model.is_some(), "--model"),
+            (self.altloc.is_some(), "--altloc"),
+        ])
+    }
+
+    fn written(&self) -> String {
+        let style = self.style.map(|style| match style {
+            MoleculeStyle::SpaceFilling => format!(" --style {SPACE_FILLING}"),
+            MoleculeStyle::BallAndStick => format!(" --style {BALL_AND_STICK}"),
+        });
+        let model = self.model.map(|model| format!(" --model {model}"));
+        let altloc = self.altloc.map(String::from);
+        let altloc = altloc.map(|place| format!(" --altloc {}", quoted(&place)));
+        [style, model, altloc].into_iter().flatten().collect()
+    }
+
+    fn for_import(&self) -> scene::MoleculeOptions {
+        let default = scene::MoleculeOptions::default();
+        scene::MoleculeOptions {
+            style: self.style.unwrap_or(default.style),
+            model: self.model.map_or(default.model, NonZeroUsize::get),
+            altloc: self.altloc,
+        }
+    }
+}
+
+/// The option `--target` of verbs that take no board.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Options for scene files")]
+pub struct Aim {
+    /// Look at this point [default: the file's, or the middle of the scene]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    target: Option<DVec3>,
+}
+
+impl Aim {
+    /// The options for scene files, with this point.
+    pub fn aimed(&self, options: &SceneOptions) -> SceneOptions {
+        let mut options = options.clone();
+        options.view.target = self.target;
+        options
+    }
+}
+
+fn style() -> impl TypedValueParser<Value = MoleculeStyle> {
+    PossibleValuesParser::new([SPACE_FILLING, BALL_AND_STICK]).map(|name| match name.as_str() {
+        BALL_AND_STICK => MoleculeStyle::BallAndStick,
+        _ => MoleculeStyle::SpaceFilling,
+    })
+}
+
+const SPACE_FILLING: &str = "space-filling";
+const BALL_AND_STICK: &str = "ball-and-stick";

@@ -1,0 +1,188 @@
+//! Names, sizes, ranges and vectors, as they are written on a command line.
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use glam::DVec3;
+use gridel_core::{Format, Structure};
+use gridel_host::compile::Builder;
+use std::ops::Range;
+
+/// The name of the first option that was given.
+pub fn first_given<const N: usize>(options: [(bool, &'static str); N]) -> Option<&'static str> {
+    let mut given = options.into_iter().filter(|(given, _)| *given);
+    given.next().map(|(_, name)| name)
+}
+
+/// A word as shells take it for one.
+pub fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "/._-+,:=@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+/// Reads a cutoff.
+pub fn cutoff(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok();
+    let value = value.filter(|value| (0.0..=1.0).contains(value));
+    value.ok_or_else(|| String::from("write a number from 0 to 1, such as 0.002"))
+}
+
+/// Reads numbers with commas between them.
+pub fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    let numbers: [f64; N] = numbers.ok()?.try_into().ok()?;
+    numbers.iter().all(|it| it.is_finite()).then_some(numbers)
+}
+
+/// Reads a vector, such as `0,1.5,-2`.
+pub fn vector(text: &str) -> Result<DVec3, String> {
+    let numbers = numbers(text).map(DVec3::from_array);
+    numbers.ok_or_else(|| String::from("write three numbers with commas, such as 0,1.5,-2"))
+}
+
+/// Names without repetition, in the order in which they come first.
+pub fn distinct<T: Copy + PartialEq>(names: &[T]) -> Vec<T> {
+    let mut distinct = Vec::new();
+    for &name in names {
+        if !distinct.contains(&name) {
+            distinct.push(name);
+        }
+    }
+    distinct
+}
+
+/// The name of a builder of hierarchies.
+pub fn builder() -> impl TypedValueParser<Value = Builder> {
+    PossibleValuesParser::new(Builder::ALL.map(Builder::name)).try_map(|name| {
+        let mut all = Builder::ALL.into_iter();
+        all.find(|builder| builder.name() == name)
+            .ok_or("no such builder")
+    })
+}
+
+/// The name of an acceleration structure.
+pub fn structure() -> impl TypedValueParser<Value = Structure> {
+    PossibleValuesParser::new(Structure::ALL.map(Structure::name)).try_map(|name| {
+        let mut all = Structure::ALL.into_iter();
+        all.find(|structure| structure.name() == name)
+            .ok_or("no such structure")
+    })
+}
+
+/// The name of a number format.
+pub fn format() -> impl TypedValueParser<Value = Format> {
+    PossibleValuesParser::new(Format::ALL.map(Format::name)).try_map(|name| {
+        let mut all = Format::ALL.into_iter();
+        all.find(|format| format.name() == name)
+            .ok_or("no such number format")
+    })
+}
+
+/// A number of threads: beyond some hundreds none helps, and far beyond they cannot be started.
+pub fn threads() -> impl TypedValueParser<Value = usize> {
+    clap::value_parser!(u16).range(1..=1024).map(usize::from)
+}
+
+/// Reads a number of bytes, such as `65536`, `64K` or `1M`.
+pub fn bytes(text: &str) -> Result<u64, String> {
+    let (digits, unit) = match text.char_indices().last() {
+        Some((end, 'k' | 'K')) => (&text[..end], 1 << 10),
+        Some((end, 'm' | 'M')) => (&text[..end], 1 << 20),
+        Some((end, 'g' | 'G')) => (&text[..end], 1 << 30),
+        _ => (text, 1),
+    };
+    digits
+        .parse::<u64>()
+        .ok()
+        .filter(|_| digits.bytes().all(|byte| byte.is_ascii_digit()))
+        .and_then(|number| number.checked_mul(unit))
+        .ok_or_else(|| String::from("write a number of bytes, such as 65536, 64K or 1M"))
+}
+
+/// Reads the size of a picture, such as `640x480`.
+pub fn size(text: &str) -> Result<[u16; 2], String> {
+    let sides = text
+        .split_once(['x', 'X'])
+        .map(|(width, height)| [width, height].map(|side| side.parse::<u32>()));
+    let Some([Ok(width), Ok(height)]) = sides else {
+        return Err(String::from("write width and height, such as 640x480"));
+    };
+    if width == 0 || height == 0 {
+        return Err(String::from("a picture has at least one pixel each way"));
+    }
+    let (Ok(width), Ok(height)) = (u16::try_from(width), u16::try_from(height)) else {
+        return Err(String::from(
+            "neither width nor height can be more than 65535",
+        ));
+    };
+    if u32::from(width) > 64 * u32::from(height) {
+        return Err(String::from("the width can be at most 64 times the height"));
+    }
+    Ok([width, height])
+}
+
+/// Reads a range of rows, such as `100..200`, whose end is not part of it.
+pub fn rows(text: &str) -> Result<Range<u16>, String> {
+    let ends = text
+        .split_once("..")
+        .map(|(first, end)| [first, end].map(|row| row.parse::<u16>()));
+    match ends {
+        Some([Ok(first), Ok(end)]) if first < end => Ok(first..end),
+        Some([Ok(first), Ok(end)]) => Err(format!(
+            "the range from {first} to {end} (not included) is empty"
+        )),
+        _ => Err(String::from(
+            "write the first row and the one behind the last, such as 100..200; rows count from 0",
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_have_units_of_1024() {
+        assert_eq!(bytes("0"), Ok(0));
+        assert_eq!(bytes("1000"), Ok(1000));
+        assert_eq!(bytes("64K"), Ok(65536));
+        assert_eq!(bytes("2m"), Ok(2 << 20));
+        assert_eq!(bytes("3G"), Ok(3 << 30));
+        for wrong in ["", "K", "-1", "+1", "1.5M", "64KB", "20000000000G", "1é"] {
+            assert!(bytes(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn sizes_have_two_sides() {
+        assert_eq!(size("640x480"), Ok([640, 480]));
+        assert_eq!(size("64X1"), Ok([64, 1]));
+        let wrongs = [
+            "",
+            "x",
+            "640",
+            "0x0",
+            "1x0",
+            "0x1",
+            "65x1",
+            "65536x1",
+            "70000x70000",
+            "-1x5",
+            "99999999999x1",
+        ];
+        for wrong in wrongs {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn rows_are_a_range() {
+        assert_eq!(rows("0..1"), Ok(0..1));
+        assert_eq!(rows("5..480"), Ok(5..480));
+        for wrong in ["", "5..3", "5..5", "5", "..", "5..", "-1..2", "0..70000"] {
+            assert!(rows(wrong).is_err(), "{wrong}");
+        }
+    }
+}

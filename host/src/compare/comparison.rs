@@ -1,0 +1,66 @@
+//! How contenders compare.
+
+use super::judge::Wrong;
+use crate::measure::rays::Works;
+use serde::Serialize;
+
+/// How the contenders compare on one scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    pub format: &'static str,
+    /// Width and height of the picture.
+    pub size: [u16; 2],
+    /// How often everything was timed.
+    pub repeats: usize,
+    pub primitives: usize,
+    pub rays: RayCounts,
+    /// Rays about which the plain list was asked; on the others the contenders were compared with
+    /// each other, and the list was asked where they differed.
+    pub listed: usize,
+    pub rows: Vec<Row>,
+    /// Structures whose tables do not fit their budget.
+    pub refused: Vec<Refused>,
+}
+
+/// A structure that was not built.
+#[derive(Clone, Debug, Serialize)]
+pub struct Refused {
+    pub structure: &'static str,
+    /// With the bytes that it would take.
+    pub why: String,
+}
+
+/// The rays of the picture.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct RayCounts {
+    pub primary: usize,
+    pub shadow: usize,
+    pub bounced: usize,
+}
+
+/// One contender.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The structure, and the builder where there are several.
+    pub name: String,
+    pub structure: &'static str,
+    /// `None` where there is no hierarchy.
+    pub builder: Option<&'static str>,
+    /// Of the hierarchy's boxes, by the surface area heuristic.
+    pub sah_cost: Option<f64>,
+    /// Of building the structure, from primitives on the lattice to records.
+    pub setup_seconds: f64,
+    /// The most memory at any time while the scene was compiled, beyond the scene itself.
+    pub peak_bytes: Option<usize>,
+    /// By how much the blob is larger than one of the list alone.
+    pub own_bytes: usize,
+    pub blob_bytes: usize,
+    /// Primitives of the longest list that a ray can be led to.
+    pub longest_list: usize,
+    /// The traversal stack on a 32-bit board.
+    pub stack_bytes: usize,
+    /// What the answers are worth: `None` where all are the list's.
+    pub wrong: Option<Wrong>,
+    /// `None` where the answers are wrong.
+    pub work: Option<Works>,
+}

@@ -1,0 +1,62 @@
+//! What a table of lists may take.
+
+use crate::compile::error::CompileError;
+use crate::table::counted;
+use gridel_core::Structure;
+
+/// What a table may take, and who is told how far it is.
+#[derive(Clone, Copy)]
+pub struct Budget<'t> {
+    /// Gridels a side, if that is asked for.
+    pub gridels: Option<u32>,
+    /// Most bytes of a table.
+    pub bytes: u64,
+    pub tell: Tell<'t>,
+}
+
+/// Told now and then, from any thread, how many cells are done, and how many there are.
+pub type Tell<'t> = &'t (dyn Fn(u64, u64) + Sync);
+
+/// A table that does not fit its budget.
+#[derive(Clone, Copy, Debug)]
+pub struct OverBudget {
+    structure: Structure,
+    /// Gridels a side, for tables of pairs of them.
+    gridels: Option<u32>,
+    needed: u64,
+    at_least: bool,
+    bytes: u64,
+}
+
+impl Budget<'_> {
+    pub fn exceeded(
+        &self,
+        structure: Structure,
+        gridels: Option<u32>,
+        needed: u64,
+        at_least: bool,
+    ) -> OverBudget {
+        OverBudget {
+            structure,
+            gridels,
+            needed,
+            at_least,
+            bytes: self.bytes,
+        }
+    }
+}
+
+impl From<OverBudget> for CompileError {
+    fn from(over: OverBudget) -> Self {
+        CompileError::OverBudget {
+            structure: over.structure.name(),
+            size: over.gridels.map_or_else(String::new, |count| {
+                format!(" with {} a side", counted(count as usize, "gridel"))
+            }),
+            needed: over.needed,
+            at_least: if over.at_least { "at least " } else { "" },
+            budget: over.bytes,
+            remedy: "raise `--budget`, or ask for fewer gridels with `--gridels`, or leave both out",
+        }
+    }
+}

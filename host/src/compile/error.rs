@@ -1,0 +1,80 @@
+//! Why a scene cannot be compiled.
+
+use glam::DVec3;
+
+/// Why a scene cannot be compiled.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum CompileError {
+    #[error("{object} has a coordinate or a length that is infinite or not a number")]
+    NotFinite { object: String },
+    #[error("the scene's size is {size:e}, which no lattice can hold")]
+    #[diagnostic(help("scale the scene to a size between 1e-250 and 1e250"))]
+    Extent { size: f64 },
+    #[error(
+        "the scene lies at ({:e}, {:e}, {:e}) and is only {size:e} large, so its coordinates hold no \
+         detail",
+        .middle.x, .middle.y, .middle.z
+    )]
+    #[diagnostic(help("move the scene nearer to the origin"))]
+    TooFar { middle: DVec3, size: f64 },
+    #[error(
+        "{object}: the closed mesh lies in one plane on the lattice, whose step is {step:e}, so it has \
+         no inside left"
+    )]
+    #[diagnostic(help(
+        "use more `--lattice-bits`, scale the mesh up across that plane, or put it into a scene of its \
+         own"
+    ))]
+    Flattened { object: String, step: f64 },
+    #[error(
+        "{collapsed} triangles collapse on the lattice; cutting their neighbours, so that meshes stay \
+         closed, makes {pieces} primitives of {most}"
+    )]
+    #[diagnostic(help("use more `--lattice-bits`, or scale the mesh less unevenly"))]
+    Slivers {
+        collapsed: usize,
+        pieces: usize,
+        most: usize,
+    },
+    #[error("{bits} lattice bits are not possible")]
+    #[diagnostic(help("use 10 to 24"))]
+    LatticeBits { bits: u8 },
+    #[error("the scene has {count} {what}, more than the {most} that a blob can hold")]
+    #[diagnostic(help("split the scene into several blobs"))]
+    TooMany {
+        what: &'static str,
+        count: usize,
+        most: usize,
+    },
+    #[error(
+        "the {what} lies {distance:.3e} scene units from a scene of {size:.3e}: too far to be told"
+    )]
+    #[diagnostic(help("move it nearer; a directional light is as good as one this far away"))]
+    FarAway {
+        what: String,
+        distance: f64,
+        size: f64,
+    },
+    #[error(
+        "the table of {structure}{size} takes {at_least}{needed} bytes, more than its budget of \
+         {budget}"
+    )]
+    #[diagnostic(help("{remedy}"))]
+    OverBudget {
+        structure: &'static str,
+        /// Such as ` with 4 gridels a side` or ` with 8 by 8 by 2 cells`.
+        size: String,
+        needed: u64,
+        /// `at least ` where the whole was not worth counting.
+        at_least: &'static str,
+        budget: u64,
+        remedy: &'static str,
+    },
+    #[error("the blob would have {bytes} bytes, {over} more than --max-bytes allows")]
+    #[diagnostic(help("{advice}"))]
+    TooLarge {
+        bytes: u64,
+        over: u64,
+        advice: String,
+    },
+}

@@ -1,0 +1,58 @@
+//! What is asked of the compiler.
+
+use super::builder::Builder;
+use super::wide::Quality;
+use gridel_core::Structure;
+use gridel_core::format::Leaf;
+
+/// Most primitives of a leaf.
+pub const LARGEST_LEAF: usize = Leaf::MAX_COUNT as usize;
+
+/// What to put into a blob.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Acceleration structures; the list is always there.
+    pub structures: Vec<Structure>,
+    /// Bits that coordinates are snapped to: see [`LATTICE_BITS`].
+    pub lattice_bits: u8,
+    /// Primitives that make a leaf of a hierarchy whatever rays pay for it, at most
+    /// [`LARGEST_LEAF`]: fewer nodes and more tests. With 0 the costs alone decide.
+    pub leaf_size: usize,
+    /// Time that the builder of the eight-wide hierarchy takes.
+    pub quality: Quality,
+    /// How the hierarchy is built that all structures but the list, `wide`, the grid and the octree share.
+    pub builder: Builder,
+    /// Directions of slabs: 3, 7 or 13.
+    pub slab_directions: usize,
+    /// Divisions of the grid along each axis, 1 to 1024; four cells a primitive without.
+    pub grid: Option<[u32; 3]>,
+    /// Refuse a blob that would be larger.
+    pub max_bytes: Option<u64>,
+    /// Gridels along a side of a cylinder cube's faces, 1 to 64; otherwise as many as the budget
+    /// holds.
+    pub gridels: Option<u32>,
+    /// Most bytes of each table of candidate lists, and in the apexes' of each point or direction;
+    /// otherwise what [`usual_budget`] says.
+    pub budget: Option<u64>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            structures: vec![Structure::DualSplit],
+            lattice_bits: 24,
+            leaf_size: 0,
+            quality: Quality::default(),
+            builder: Builder::default(),
+            slab_directions: 7,
+            grid: None,
+            max_bytes: None,
+            gridels: None,
+            budget: None,
+        }
+    }
+}
+
+/// Told now and then, from any thread, how many cells of a structure's table are done, and how many
+/// there are; a table is tried in several sizes where none is asked for.
+pub type Tell<'t> = &'t (dyn Fn(Structure, u64, u64) + Sync);

@@ -1,0 +1,157 @@
+//! What each structure adds to a blob: the one place on the host that names them all.
+
+use super::candidates::budget::{self, Budget};
+use super::candidates::cylinder_cube::{self, Cylinders, Hulls};
+use super::candidates::entry::EntryNodes;
+use super::candidates::own_rays::own_rays;
+use super::candidates::{apex, ray_classes};
+use super::cells::{self, Cells, slot_boxes};
+use super::context::BuildContext;
+use super::error::CompileError;
+use super::layout::Layout;
+use super::octree;
+use super::options::Options;
+use super::section::section;
+use super::surroundings::Surroundings;
+use super::writer;
+use gridel_core::Structure;
+use gridel_core::accel::candidates::ray_classes::ClassPoint;
+use gridel_core::format::SectionKind;
+
+/// Lays a structure out.
+///
+/// # Errors
+/// If it would exceed its budget.
+pub fn lay_out(structure: Structure, context: &BuildContext<'_>) -> Result<Layout, CompileError> {
+    let flat = context.flat;
+    let tell = |done, of| (context.tell)(structure, done, of);
+    let budget = budget(context.options, structure, &tell);
+    Ok(match structure {
+        Structure::List => Layout::apart(
+            structure,
+            Cells {
+                longest_list: context.order.len(),
+                ..Cells::default()
+            },
+        ),
+        Structure::Bvh => Layout::over_leaves(
+            structure,
+            vec![section(SectionKind::Pairs, &flat.pairs)],
+            flat,
+        ),
+        Structure::Flagged => Layout::over_leaves(
+            structure,
+            vec![section(SectionKind::FlaggedPairs, &flat.flagged)],
+            flat,
+        ),
+        Structure::DualSplit => Layout::over_leaves(
+            structure,
+            vec![section(SectionKind::DualNodes, &flat.dual)],
+            flat,
+        ),
+        Structure::Slabs | Structure::FlaggedSlabs => {
+            let directions = context.options.slab_directions;
+            let flagged = structure == Structure::FlaggedSlabs;
+            let tree = context.tree();
+            let slabs = tree.map(|tree| tree.slabs(directions, flagged));
+            Layout::over_leaves(structure, slabs.unwrap_or_default(), flat)
+        }
+        Structure::Spheres => {
+            let balls = context.tree().map(|tree| vec![tree.balls()]);
+            Layout::over_leaves(structure, balls.unwrap_or_default(), flat)
+        }
+        Structure::Grid => {
+            let boxes = slot_boxes(flat, context.order);
+            let grid = cells::grid(&context.bounds, &boxes, context.options.grid)?;
+            Layout::apart(structure, grid)
+        }
+        Structure::Octree => {
+            let boxes = slot_boxes(flat, context.order);
+            Layout::apart(structure, octree::build(&context.bounds, &boxes)?)
+        }
+        Structure::CylinderCube => {
+            let targets = context.targets();
+            let form = Cylinders::new(&targets);
+            Layout::of_cube(structure, cylinder_cube::build(&form, &targets, budget)?)
+        }
+        Structure::CylinderCubeTight => {
+            let targets = context.targets();
+            let cube = cylinder_cube::build(&Hulls(&targets), &targets, budget)?;
+            Layout::of_cube(structure, cube)
+        }
+        Structure::CylinderCubeEntry => {
+            let targets = context.targets();
+            let cube = cylinder_cube::build(&EntryNodes(&targets), &targets, budget)?;
+            Layout::of_cube(structure, cube)
+        }
+        Structure::RayClasses => {
+            let rays = picture_rays(context)?;
+            Layout::of_classes(ray_classes::build(&context.targets(), &rays, budget)?)
+        }
+        Structure::Apex => {
+            let Surroundings { view, lights, .. } = context.surroundings;
+            Layout::of_apexes(apex::build(&context.targets(), view, lights, budget))
+        }
+        Structure::Wide => {
+            let wide = context.wide;
+            Layout {
+                structure,
+                sections: wide.sections(context.primitives, context.lattice.bits),
+                uses_leaves: false,
+                stack_depth: wide.stack_depth,
+                longest_list: wide.longest_list(),
+                table: None,
+            }
+        }
+    })
+}
+
+/// The rays of the scene's own picture, through a blob with nothing but the hierarchy.
+fn picture_rays(context: &BuildContext<'_>) -> Result<Vec<ClassPoint>, CompileError> {
+    let hierarchy = lay_out(Structure::Flagged, context)?;
+    let blob = writer::write(writer::parts(context, vec![hierarchy]))?;
+    // What the writer writes, the core reads: the tests hold them to it.
+    Ok(blob
+        .scene()
+        .map_or_else(|_| Vec::new(), |scene| own_rays(&scene)))
+}
+
+/// The budget of a structure's table.
+fn budget<'t>(options: &Options, structure: Structure, tell: budget::Tell<'t>) -> Budget<'t> {
+    Budget {
+        gridels: options.gridels,
+        bytes: options.budget.unwrap_or(usual_budget(structure)),
+        tell,
+    }
+}
+
+/// Whether a structure is laid out over the hierarchy; the others leave primitives as they are.
+pub fn takes_hierarchy(structure: Structure) -> bool {
+    !matches!(
+        structure,
+        Structure::List | Structure::Wide | Structure::Grid | Structure::Octree
+    )
+}
+
+/// The structure that another one leads on to.
+pub const fn leads_to(structure: Structure) -> Option<Structure> {
+    match structure {
+        Structure::CylinderCubeEntry | Structure::Apex | Structure::RayClasses => {
+            Some(Structure::Bvh)
+        }
+        _ => None,
+    }
+}
+
+/// Most bytes of a structure's table, where no budget is given.
+pub const fn usual_budget(structure: Structure) -> u64 {
+    const MEGABYTE: u64 = 1 << 20;
+    match structure {
+        // What the paper's machine had.
+        Structure::CylinderCube => 48 * MEGABYTE,
+        Structure::CylinderCubeEntry => 2 * MEGABYTE,
+        // For each point and each direction.
+        Structure::Apex => MEGABYTE,
+        _ => 4 * MEGABYTE,
+    }
+}

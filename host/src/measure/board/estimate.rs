@@ -1,0 +1,132 @@
+//! Code and call stack of a scene's program: measured, bounded, or scaled from a similar core.
+
+use super::Board;
+use super::account::Account;
+use super::programs::{Footprint, Known, Profile, Programs, parts};
+use gridel_core::{Format, Structure};
+
+/// A program that was built for every board, beside that of all parts.
+pub const FEW: [&str; 3] = ["triangle", "sphere", "shadow"];
+
+/// How items of code begin.
+pub const CODE: &str = "code: ";
+
+pub const PROFILES: [Profile; 2] = [Profile::Fast, Profile::Small];
+
+/// The scene's own sizes (depth of the stack, width, waiting rays) are constants of its program, which add
+/// up to 0.8 % to code that was measured with others: this part is allowed for.
+const OWN_SIZES: u64 = 100;
+
+/// The program of a scene on a board, by what is known of programs.
+pub struct ProgramEstimate<'p> {
+    pub programs: &'p Programs,
+    pub here: (&'static Board, Format),
+    /// A similar core, on which most programs were built.
+    pub similar: (&'static Board, Format),
+    pub structure: Structure,
+    pub parts: &'p [&'p str],
+}
+
+impl ProgramEstimate<'_> {
+    pub fn code(&self, profile: Profile) -> Option<Known> {
+        // What a structure adds to one program it adds to others.
+        let code = self.figure(
+            profile,
+            |it| it.code,
+            |bytes, [other, dual_split]| (bytes + other).saturating_sub(dual_split),
+        );
+        code.map(|code| Known {
+            bytes: code.bytes + code.bytes.div_ceil(OWN_SIZES),
+            ..code
+        })
+    }
+
+    pub fn call_stack(&self, profile: Profile) -> Option<Known> {
+        self.figure(
+            profile,
+            |it| it.call_stack,
+            |bytes, [other, dual_split]| (bytes * other).div_ceil(dual_split.max(1)),
+        )
+    }
+
+    /// A figure of the program; `through` makes it one for another structure, by the figures of all
+    /// parts through that and through dual-split nodes.
+    fn figure(
+        &self,
+        profile: Profile,
+        figure: fn(&Footprint) -> u64,
+        through: fn(u64, [u64; 2]) -> u64,
+    ) -> Option<Known> {
+        let Self {
+            programs,
+            here,
+            similar,
+            structure,
+            parts: called_for,
+        } = *self;
+        let of = |(board, format): (&Board, Format), structure, parts: &[&str]| {
+            programs.figure((board, format, structure), parts, profile, figure)
+        };
+        let built = |place, structure, parts: &[&str]| {
+            let known = of(place, structure, parts).filter(|known| known.measured);
+            known.map(|known| known.bytes)
+        };
+        if let Some(bytes) = built(here, structure, called_for) {
+            return Some(Known {
+                bytes,
+                measured: true,
+            });
+        }
+        let known = of(similar, Structure::DualSplit, called_for)?;
+        let everything: Vec<&str> = parts().collect();
+        let mut bytes = known.bytes;
+        if structure != Structure::DualSplit {
+            let both = [structure, Structure::DualSplit].map(|it| built(similar, it, &everything));
+            let [Some(other), Some(dual_split)] = both else {
+                return None;
+            };
+            bytes = through(bytes, [other, dual_split]);
+        }
+        if here != similar {
+            let ratios = [&everything[..], &FEW].into_iter().filter_map(|parts| {
+                let [here, there] =
+                    [here, similar].map(|it| built(it, Structure::DualSplit, parts));
+                Some(here? as f64 / there?.max(1) as f64)
+            });
+            let ratio = ratios.reduce(f64::max)?;
+            bytes = (bytes as f64 * ratio).ceil() as u64;
+        }
+        Some(Known {
+            bytes,
+            measured: known.measured && here == similar && structure == Structure::DualSplit,
+        })
+    }
+
+    /// Lists the code of the fast program, by part as far as it can be told apart.
+    pub fn list_code(&self, flash: &mut Account) {
+        const COMMON: &str = "loading, diffuse light";
+        let (board, format) = self.similar;
+        let place = (board, format, Structure::DualSplit);
+        let Some(code) = self.code(Profile::Fast) else {
+            flash.add(format!("{CODE}{COMMON}, {}", self.parts.join(", ")), None);
+            return;
+        };
+        let how = match code.measured {
+            true => "",
+            false => ", at most",
+        };
+        let mut rest = code.bytes;
+        let mut shares = Vec::new();
+        for &part in self.parts {
+            let share = self.programs.share(place, part, Profile::Fast);
+            if let Some(share) = share.filter(|&share| 0 < share && share < rest) {
+                rest -= share;
+                shares.push((part, share));
+            }
+        }
+        flash.add(format!("{CODE}{COMMON}{how}"), Some(rest));
+        for (part, share) in shares {
+            flash.add(format!("{CODE}{part}"), Some(share));
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Pictures and first hits against a reference.
+
+use super::first_hits::FirstHit;
+use super::flip::{self, flip};
+use super::ssim::ssim;
+use gridel_core::Rgb888;
+use gridel_core::render::Pixel;
+use serde::{Deserialize, Serialize};
+
+/// What is wrong with a picture, against the reference. Display values are sRGB, 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Errors {
+    /// Root of the mean square difference of display values, over all pixels and channels.
+    pub rmse: f64,
+    /// Largest difference of a display value.
+    pub largest: f64,
+    /// Pixels of which a display value is off by more than 1/255.
+    pub pixels_off: usize,
+    /// Mean structural similarity of the grey pictures, in windows of 8 by 8 (Wang and others 2004);
+    /// 1 is the same.
+    pub ssim: f64,
+    /// Mean of FLIP: 0 is the same, 1 as different as can be.
+    pub flip: f64,
+    /// Rays through the middles of pixels that meet another object than in the reference.
+    pub other_objects: usize,
+    /// Of the rays that meet the same object: the median and the largest error of the distance, in
+    /// units of its last place in single precision.
+    pub t_ulps: [f64; 2],
+}
+
+/// A linear value as a display shows it, 0 to 1.
+fn display(linear: u16) -> f64 {
+    let linear = f64::from(linear) / 65535.0;
+    if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+impl Errors {
+    /// Compares the pixels and the first hits of a picture of some width with those of a reference.
+    pub fn of(
+        width: u16,
+        reference: (&[[u16; 3]], &[FirstHit]),
+        (pixels, hits): (&[[u16; 3]], &[FirstHit]),
+    ) -> Self {
+        let [expected, found] = [reference.0, pixels]
+            .map(|p| -> Vec<[f64; 3]> { p.iter().map(|pixel| pixel.map(display)).collect() });
+        let (mut squares, mut largest, mut pixels_off) = (0.0, 0.0_f64, 0);
+        for (a, b) in expected.iter().zip(&found) {
+            let apart = [0, 1, 2].map(|k| (a[k] - b[k]).abs());
+            let most = apart.into_iter().fold(0.0, f64::max);
+            squares += apart.iter().map(|x| x * x).sum::<f64>();
+            largest = largest.max(most);
+            pixels_off += usize::from(most > 1.0 / 255.0);
+        }
+        let picture = |pixels| flip::Picture {
+            width: width.into(),
+            pixels,
+        };
+        let differences = flip(picture(&expected), picture(&found));
+        let grey = |pixels: &[[u16; 3]]| -> Vec<u8> {
+            let luma = |linear: &[u16; 3]| {
+                let [r, g, b] = Rgb888::encode(*linear, None).0.map(f64::from);
+                (0.2126 * r + 0.7152 * g + 0.0722 * b).round() as u8
+            };
+            pixels.iter().map(luma).collect()
+        };
+
+        let mut other_objects = 0;
+        let mut ulps = Vec::new();
+        for (expected, found) in reference.1.iter().zip(hits) {
+            match (expected, found) {
+                (Some((a, at)), Some((b, found))) if a == b => {
+                    let ulp = f64::powi(2.0, at.abs().log2().floor() as i32 - 23);
+                    ulps.push((at - found).abs() / ulp);
+                }
+                (None, None) => {}
+                _ => other_objects += 1,
+            }
+        }
+        ulps.sort_by(f64::total_cmp);
+        let last = ulps.last().copied().unwrap_or(0.0);
+        Self {
+            rmse: (squares / (3 * pixels.len()).max(1) as f64).sqrt(),
+            largest,
+            pixels_off,
+            ssim: ssim(width.into(), &grey(reference.0), &grey(pixels)),
+            flip: differences.iter().sum::<f64>() / differences.len().max(1) as f64,
+            other_objects,
+            t_ulps: [ulps.get(ulps.len() / 2).copied().unwrap_or(0.0), last],
+        }
+    }
+}
+
+/// How display values differ, eight times enlarged, as sRGB pixels: black is the same.
+pub fn difference_picture(reference: &[[u16; 3]], pixels: &[[u16; 3]]) -> Vec<u8> {
+    let pairs = reference.iter().flatten().zip(pixels.iter().flatten());
+    pairs
+        .map(|(&a, &b)| (8.0 * 255.0 * (display(a) - display(b)).abs()).round() as u8)
+        .collect()
+}

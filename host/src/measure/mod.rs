@@ -1,0 +1,27 @@
+//! The measuring harness: errors, rays, time and bytes, alike for [`accuracy`](crate::accuracy),
+//! [`compare`](crate::compare) and [`check`](crate::check), and what a scene costs on boards.
+//!
+//! | file | what it measures |
+//! |---|---|
+//! | `picture.rs` | a picture with its time, its rays and its tests |
+//! | `rays.rs` | structures on the same rays: counts and times |
+//! | `time.rs` | the median and the spread of repeats |
+//! | `bytes.rs` | the parts of a blob, and working memory |
+//! | `errors.rs` | pictures and first hits against a reference; `flip.rs` and `ssim.rs` compare as eyes do |
+//! | `first_hits.rs` | what the rays through the middles of pixels hit |
+//! | `board/` | boards, as data: memory, code, call stack, instructions per ray |
+
+pub mod board;
+mod bytes;
+mod errors;
+mod first_hits;
+mod flip;
+mod picture;
+pub mod rays;
+mod ssim;
+pub mod time;
+
+pub use bytes::{MemoryMap, Part, WorkingMemory, board_memory, working_memory};
+pub use errors::{Errors, difference_picture};
+pub use first_hits::{FirstHit, first_hits};
+pub use picture::Rendered;

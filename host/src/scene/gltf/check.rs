@@ -1,0 +1,97 @@
+//! What holds of a whole glTF file, whether it is drawn or not.
+
+use super::buffers::MOST;
+use super::{Importer, place};
+use crate::scene::SceneError;
+use gltf::{Accessor, Document, Node, Semantic};
+use std::collections::HashMap;
+
+/// Most elements of all accessors together: some for each vertex and triangle.
+const MOST_ELEMENTS: usize = 16 * MOST;
+
+impl Importer<'_> {
+    /// Proves what holds of the whole file, whether it is drawn or not: nodes make trees, and meshes
+    /// use vertices that they have.
+    pub(super) fn check(&mut self, document: &Document) -> Result<(), SceneError> {
+        let count = document.nodes().len();
+        let mut parent = vec![None; count];
+        for node in document.nodes() {
+            for child in node.children() {
+                if parent[child.index()].replace(node.index()).is_some() {
+                    return Err(self.error(
+                        format!("node {} is inside of two nodes", child.index()),
+                        "give every node one parent at most",
+                    ));
+                }
+            }
+        }
+        // From those that are inside of none, every node is reached that is not inside of itself.
+        let mut open: Vec<Node<'_>> = document
+            .nodes()
+            .filter(|node| parent[node.index()].is_none())
+            .collect();
+        let mut reached = vec![false; count];
+        while let Some(node) = open.pop() {
+            reached[node.index()] = true;
+            open.extend(node.children());
+        }
+        if let Some(node) = reached.iter().position(|reached| !reached) {
+            return Err(self.error(
+                format!("node {node} is inside of itself"),
+                "give every node one parent at most, and no circle",
+            ));
+        }
+        // Accessors may share their bytes, so that a short file can ask for any amount of work.
+        let stored = |it: &Accessor<'_>| it.view().is_some() || it.sparse().is_some();
+        let elements = document
+            .accessors()
+            .filter(stored)
+            .map(|it| it.count().min(MOST));
+        if elements.fold(0, usize::saturating_add) > MOST_ELEMENTS {
+            return Err(self.error(
+                format!("the accessors of the file have more than {MOST_ELEMENTS} elements"),
+                "export a part of the scene",
+            ));
+        }
+        let mut highest: HashMap<usize, Option<u32>> = HashMap::new();
+        for mesh in document.meshes() {
+            for part in mesh.primitives() {
+                let (Some(positions), Some(indices)) =
+                    (part.get(&Semantic::Positions), part.indices())
+                else {
+                    continue;
+                };
+                let highest = match highest.get(&indices.index()) {
+                    Some(&known) => known,
+                    None => {
+                        let found = self.buffers.indices(&indices)?.into_iter().max();
+                        highest.insert(indices.index(), found);
+                        found
+                    }
+                };
+                if let Some(highest) = highest {
+                    self.check_corner(&place(&mesh, &part), highest, positions.count())?;
+                }
+            }
+        }
+        for accessor in document.accessors().filter(stored) {
+            if let Some(element) = self.buffers.first_not_finite(&accessor)? {
+                self.warn(format!(
+                    "element {element} of accessor {} is not a finite number",
+                    accessor.index()
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn check_corner(&self, place: &str, corner: u32, vertices: usize) -> Result<(), SceneError> {
+        if (corner as usize) < vertices {
+            return Ok(());
+        }
+        Err(self.error(
+            format!("{place} uses vertex {corner}, and it has {vertices} vertices"),
+            "export the file again; vertices count from 0",
+        ))
+    }
+}

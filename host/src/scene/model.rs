@@ -1,0 +1,219 @@
+//! The scene as data.
+
+use super::direction::parallel;
+use super::place::Place;
+use glam::DVec3;
+
+/// A linear RGB colour; components at or above 0, 1.0 being display white.
+pub type Color = [f64; 3];
+
+/// Everything a scene file says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Where the picture is taken from; without one [the compiler frames](fn@crate::compile::framing) the
+    /// scene's bounds.
+    pub camera: Option<Camera>,
+    /// Which way is up, for that frame.
+    pub up: Up,
+    /// What a ray that meets nothing sees; without one it is black, or light if there is no camera
+    /// either.
+    pub background: Option<Color>,
+    /// Whether colours and lights are display values, which are added up and shown as they are: what
+    /// ray tracers did before pictures were encoded. Linear without.
+    pub display_values: bool,
+    /// Light that reaches every surface from everywhere, multiplied with its diffuse colour.
+    pub ambient: Color,
+    /// Point and directional lights.
+    pub lights: Vec<Light>,
+    /// Surfaces; objects refer to them by index.
+    pub materials: Vec<Material>,
+    /// Objects in scene-file order; that order is the one in which `trace` counts them.
+    pub objects: Vec<Object>,
+    /// Defaults for rendering that the scene file states.
+    pub render: RenderSettings,
+}
+
+/// Which axis points up, where a scene has no camera that says so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Up {
+    Y,
+    Z,
+}
+
+impl Up {
+    /// The axis.
+    pub fn vector(self) -> DVec3 {
+        match self {
+            Self::Y => DVec3::Y,
+            Self::Z => DVec3::Z,
+        }
+    }
+}
+
+/// A pinhole camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    pub eye: DVec3,
+    /// A point in the middle of the picture; not equal to `eye`.
+    pub target: DVec3,
+    /// Which way is up; not parallel to the view direction.
+    pub up: DVec3,
+    /// Full vertical field of view in degrees, in (0, 180).
+    pub fov_degrees: f64,
+}
+
+impl Camera {
+    /// Whether the camera looks along `up`, or one of both has no length.
+    pub fn is_along_up(&self) -> bool {
+        parallel(self.target - self.eye, self.up)
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Light {
+    /// Shines from `position` in all directions, without falloff.
+    Point { position: DVec3, color: Color },
+    /// Shines from infinitely far away; `direction` is the way the light travels.
+    Directional { direction: DVec3, color: Color },
+}
+
+/// What a surface does with light. The parts add up: local light (diffuse and highlight), what
+/// a mirror ray brings, what glass lets through.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    pub name: String,
+    /// Diffuse reflectance.
+    pub diffuse: Diffuse,
+    /// Reflectance of the specular highlight of lights (Blinn-Phong); black for none.
+    pub highlight: Color,
+    /// Exponent of the highlight, 1 to 1024.
+    pub shininess: u16,
+    /// Weight of the mirrored ray; black for none.
+    pub mirror: Color,
+    /// Weight of what glass brings (Fresnel-split reflection and refraction); black for opaque.
+    pub transmit: Color,
+    /// Index of refraction relative to the surroundings, 1 to 4; used when `transmit` is not black.
+    pub ior: f64,
+    /// Absorption inside glass: the coefficient of Beer's law per scene unit of path length.
+    pub absorption: Color,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Diffuse {
+    Plain(Color),
+    /// Cubes of edge `size` (scene units, above 0) in two alternating colours, aligned with the axes;
+    /// a corner of the pattern lies at `origin`.
+    Checker {
+        even: Color,
+        odd: Color,
+        size: f64,
+        origin: DVec3,
+    },
+}
+
+/// One object: a shape and its material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// The name that the scene file gives it, or one made of its kind and number.
+    pub name: String,
+    /// Index into [`Scene::materials`].
+    pub material: usize,
+    pub shape: Shape,
+    /// Where the scene file says so, for messages.
+    pub place: Place,
+}
+
+/// A shape in world space. Solids are closed; a mesh is whatever its triangles are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    Sphere {
+        center: DVec3,
+        radius: f64,
+    },
+    /// An indexed mesh; every triangle is a primitive. Counter-clockwise is the front.
+    Mesh {
+        vertices: Vec<DVec3>,
+        triangles: Vec<[u32; 3]>,
+    },
+    /// An axis-aligned box (a box that was turned becomes a mesh).
+    Box {
+        min: DVec3,
+        max: DVec3,
+    },
+    /// A flat disc; `normal` has any length above 0.
+    Disc {
+        center: DVec3,
+        normal: DVec3,
+        radius: f64,
+    },
+    /// A solid between two flat caps: a cylinder where the radii are equal, a cone where one is
+    /// 0, a frustum otherwise. NFF's open cones are closed by caps, because the solid is what
+    /// refraction needs.
+    Cone {
+        base: DVec3,
+        base_radius: f64,
+        apex: DVec3,
+        apex_radius: f64,
+    },
+}
+
+/// Rendering defaults; the command line overrides them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RenderSettings {
+    /// Picture size in pixels.
+    pub width: u32,
+    pub height: u32,
+    /// Samples a pixel: 1 to 256.
+    pub samples: u16,
+    /// How many times a ray may be reflected or refracted: 0 to 16.
+    pub depth: u8,
+    /// A secondary ray that can change no channel by more than this (1.0 being display white) is
+    /// not traced.
+    pub cutoff: f64,
+    /// Whether objects stand in each other's light.
+    pub shadows: bool,
+}
+
+impl Default for RenderSettings {
+    fn default() -> Self {
+        Self {
+            width: 320,
+            height: 240,
+            samples: 1,
+            depth: 5,
+            cutoff: 1.0 / 512.0,
+            shadows: true,
+        }
+    }
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            name: String::from("default"),
+            diffuse: Diffuse::Plain([0.8, 0.8, 0.8]),
+            highlight: [0.0; 3],
+            shininess: 32,
+            mirror: [0.0; 3],
+            transmit: [0.0; 3],
+            ior: 1.5,
+            absorption: [0.0; 3],
+        }
+    }
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Self {
+            camera: None,
+            up: Up::Y,
+            background: None,
+            display_values: false,
+            ambient: [0.0; 3],
+            lights: Vec::new(),
+            materials: Vec::new(),
+            objects: Vec::new(),
+            render: RenderSettings::default(),
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! What a molecule file says.
+
+use super::element::Element;
+use glam::DVec3;
+
+/// An element at a position in angstroms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Site {
+    pub(crate) element: Element,
+    pub(crate) position: DVec3,
+}
+
+/// An atom as the file has it; what it does not say is empty.
+pub(in crate::scene) struct Atom<'a> {
+    pub(in crate::scene) site: Site,
+    pub(in crate::scene) line: usize,
+    /// Index of its model in the file, counted from 0.
+    pub(in crate::scene) model: usize,
+    pub(in crate::scene) serial: &'a str,
+    pub(in crate::scene) name: &'a str,
+    pub(in crate::scene) altloc: &'a str,
+    pub(in crate::scene) chain: &'a str,
+    pub(in crate::scene) residue: &'a str,
+    /// Number of the residue in its chain, and the code of residues inserted after it.
+    pub(in crate::scene) number: &'a str,
+    pub(in crate::scene) insertion: &'a str,
+}
+
+impl<'a> Atom<'a> {
+    /// What tells its residue from others of its model.
+    pub(in crate::scene) fn residue_key(&self) -> [&'a str; 3] {
+        [self.chain, self.number, self.insertion]
+    }
+
+    pub(in crate::scene) fn full_name(&self) -> String {
+        let Self {
+            chain,
+            residue,
+            number,
+            insertion,
+            name,
+            ..
+        } = self;
+        let residue = format!("{residue} {number}{insertion}");
+        [chain, residue.trim(), name]
+            .into_iter()
+            .filter(|part| !part.is_empty())
+            .collect::<Vec<_>>()
+            .join("/")
+    }
+}
+
+/// One end of a bond that the file states.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(in crate::scene) enum End<'a> {
+    /// An atom's serial number, in PDB.
+    Serial(&'a str),
+    /// Chain, residue number, insertion code and atom name, in mmCIF.
+    Name([&'a str; 4]),
+}
+
+/// One of the models of a file.
+pub(in crate::scene) struct Model<'a> {
+    /// The number that the file gives it; empty where files do not number them.
+    pub(in crate::scene) number: &'a str,
+    pub(in crate::scene) line: usize,
+}
+
+/// What a file says, before one model and one set of alternate locations is chosen.
+#[derive(Default)]
+pub(in crate::scene) struct Parsed<'a> {
+    pub(in crate::scene) atoms: Vec<Atom<'a>>,
+    /// In file order.
+    pub(in crate::scene) models: Vec<Model<'a>>,
+    /// The ends of each, and its line.
+    pub(in crate::scene) bonds: Vec<(usize, [End<'a>; 2])>,
+}

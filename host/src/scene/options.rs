@@ -1,0 +1,51 @@
+//! How a scene file is read, and what comes of it.
+
+use super::model::Scene;
+
+/// What a molecule file does not say and a person may choose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MoleculeOptions {
+    pub style: MoleculeStyle,
+    /// Which model of the file, counted from 1.
+    pub model: usize,
+    /// Which alternate location; without one the first that each residue has.
+    pub altloc: Option<char>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MoleculeStyle {
+    /// Atoms as spheres of their van der Waals radius.
+    SpaceFilling,
+    /// Small spheres, and bonds as cylinders in the colours of the atoms at their ends.
+    BallAndStick,
+}
+
+impl Default for MoleculeOptions {
+    fn default() -> Self {
+        Self {
+            style: MoleculeStyle::SpaceFilling,
+            model: 1,
+            altloc: None,
+        }
+    }
+}
+
+/// A scene, and what its importer had to pass over to read it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Imported {
+    pub scene: Scene,
+    /// Sentences for the user, each with file and line.
+    pub warnings: Vec<String>,
+    /// Whether a molecule was read, which [`MoleculeOptions`] are for.
+    pub molecules: bool,
+}
+
+/// How a scene file is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ImportOptions {
+    /// What a molecule file leaves open.
+    pub molecule: MoleculeOptions,
+    /// Whether the file may name files outside of its folder: imports, materials, buffers. A scene
+    /// from elsewhere could read any file of the user's so.
+    pub allow_outside: bool,
+}

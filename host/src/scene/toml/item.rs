@@ -1,0 +1,35 @@
+//! Objects and groups as the file states them.
+
+use super::source::{Name, Span};
+use crate::scene::{Scene, Shape};
+use glam::DAffine3;
+use std::rc::Rc;
+
+/// An object as the file states it.
+pub(super) struct Item {
+    /// The name the file gives it, or one made of its kind and its number in its list.
+    pub(super) name: String,
+    pub(super) material: Option<Name>,
+    pub(super) transform: DAffine3,
+    pub(super) span: Span,
+    pub(super) content: Content,
+}
+
+pub(super) enum Content {
+    Shape(Shape),
+    /// Objects that stand here and nowhere else.
+    Group(Vec<Item>),
+    /// The group of this name.
+    Instance(Name),
+    /// Another scene file, and which of our materials each of its materials is.
+    Import {
+        scene: Rc<Scene>,
+        materials: Vec<usize>,
+    },
+}
+
+/// A `[group.NAME]`.
+pub(super) struct Group {
+    pub(super) span: Span,
+    pub(super) items: Vec<Item>,
+}
