@@ -11,7 +11,8 @@ use crate::report::grouped;
 use crate::scene::{Object, Scene, Shape};
 use glam::{DVec3, IVec3};
 use gridel_core::Kind;
-use gridel_core::format::record::{Cone, Cuboid, Disc, UnitBox};
+use gridel_core::format::record::UnitBox;
+use gridel_core::geometry::{cone::Cone, cuboid::Cuboid, disc::Disc};
 use serde::{Serialize, Serializer};
 use std::collections::HashMap;
 
