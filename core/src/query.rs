@@ -6,15 +6,16 @@ use crate::accel::stack::StackView;
 use crate::accel::{Accel, Number};
 #[cfg(feature = "wide")]
 use crate::format::cluster::{LANES, Pack, Strip};
+use crate::format::kind::shapes;
 use crate::format::limits::{WIDE_INDICES, WIDE_LATTICE};
 use crate::format::record::{Corners, Sphere, UnitBox, Vertex};
 use crate::format::{Kind, Leaf};
+use crate::geometry::primitive::Primitive;
+use crate::geometry::sphere::{self, Spheres};
 #[cfg(feature = "wide")]
 use crate::geometry::strip::StripRay;
-use crate::geometry::triangle::Projection;
-use crate::geometry::{
-    Crossing, Part, PrimitiveId, Spheres, Triangles, Vertices, accept, sphere, triangle,
-};
+use crate::geometry::triangle::{self, Triangles, Vertices};
+use crate::geometry::{Crossing, Part, PrimitiveId, accept};
 #[cfg(feature = "wide")]
 use crate::geometry::{Packs, Strips, pack};
 #[cfg(feature = "wide")]
@@ -307,62 +308,71 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     fn slots<C: Observer>(&mut self, leaf: Leaf, count: &mut C) {
         let slots = leaf.slots();
         let shapes = &self.scene.space.shapes;
-        match leaf.kind {
-            // Code that was left out, and that no blob here leads to.
-            kind if !kind.is_available() => (),
-            Kind::Triangle => match (&shapes.vertices, &shapes.triangles) {
-                (Vertices::V16(v), Triangles::U16(t)) => {
-                    self.triangles(v, t.get(slots), leaf, count)
+        macro_rules! by_kind {
+            (
+                forms { $($form:tt)* }
+                records { $(
+                    $(#[doc = $doc:literal])* $kind:ident = $number:literal, $name:literal,
+                    [$field:ident: $module:ident::$record:ident], $section:tt;
+                )* }
+            ) => {
+                match leaf.kind {
+                    // Code that was left out, and that no blob here leads to.
+                    kind if !kind.is_available() => (),
+                    Kind::Triangle => self.indexed_triangles(leaf, count),
+                    Kind::Sphere => match shapes.spheres {
+                        Spheres::S16(spheres) => self.spheres(spheres.get(slots), leaf, count),
+                        Spheres::S24(_) if !WIDE_LATTICE => (),
+                        Spheres::S24(spheres) => self.spheres(spheres.get(slots), leaf, count),
+                    },
+                    $(Kind::$kind => self.records(shapes.$field.get(slots), leaf, count),)*
                 }
-                (_, Triangles::U32(_)) if !WIDE_INDICES => (),
-                (Vertices::V24(_), _) if !WIDE_LATTICE => (),
-                (Vertices::V16(v), Triangles::U32(t)) => {
-                    self.triangles(v, t.get(slots), leaf, count)
-                }
-                (Vertices::V24(v), Triangles::U16(t)) => {
-                    self.triangles(v, t.get(slots), leaf, count)
-                }
-                (Vertices::V24(v), Triangles::U32(t)) => {
-                    self.triangles(v, t.get(slots), leaf, count)
-                }
-            },
-            Kind::Sphere => match shapes.spheres {
-                Spheres::S16(spheres) => self.spheres(spheres.get(slots), leaf, count),
-                Spheres::S24(_) if !WIDE_LATTICE => (),
-                Spheres::S24(spheres) => self.spheres(spheres.get(slots), leaf, count),
-            },
-            Kind::Box => self.solids(
-                shapes.boxes.get(slots),
-                leaf,
-                count,
-                |search, cuboid| cuboid.cross(search.ray),
-                |search, crossing, _, place| search.consider(crossing, place),
-            ),
-            Kind::Disc => self.solids(
-                shapes.discs.get(slots),
-                leaf,
-                count,
-                |search, disc| disc.cross(search.ray),
-                |search, crossing, disc, place| {
-                    search.consider_out_of_line(crossing, disc.bounds, place)
-                },
-            ),
-            Kind::Cone => self.solids(
-                shapes.cones.get(slots),
-                leaf,
-                count,
-                |search, cone| {
-                    // The dearest test of all.
-                    if K::misses(search.ray, search.tmax, &cone.bounds) {
-                        return None;
-                    }
-                    cone.cross(search.ray, search.recip_norm2)
-                },
-                |search, crossing, cone, place| {
-                    search.consider_out_of_line(crossing, cone.bounds, place)
-                },
-            ),
+            };
         }
+        shapes!(by_kind);
+    }
+
+    /// Tests the triangles of a range of slots.
+    #[inline(always)]
+    fn indexed_triangles<C: Observer>(&mut self, leaf: Leaf, count: &mut C) {
+        let slots = leaf.slots();
+        let shapes = &self.scene.space.shapes;
+        match (&shapes.vertices, &shapes.triangles) {
+            (Vertices::V16(v), Triangles::U16(t)) => self.triangles(v, t.get(slots), leaf, count),
+            (_, Triangles::U32(_)) if !WIDE_INDICES => (),
+            (Vertices::V24(_), _) if !WIDE_LATTICE => (),
+            (Vertices::V16(v), Triangles::U32(t)) => self.triangles(v, t.get(slots), leaf, count),
+            (Vertices::V24(v), Triangles::U16(t)) => self.triangles(v, t.get(slots), leaf, count),
+            (Vertices::V24(v), Triangles::U32(t)) => self.triangles(v, t.get(slots), leaf, count),
+        }
+    }
+
+    /// Tests the records of a shape.
+    #[inline(always)]
+    fn records<T: Primitive, C: Observer>(
+        &mut self,
+        records: Option<&[T]>,
+        leaf: Leaf,
+        count: &mut C,
+    ) {
+        self.solids(
+            records,
+            leaf,
+            count,
+            |search, record| {
+                if T::TESTS_BOX && K::misses(search.ray, search.tmax, &record.bounds()) {
+                    return None;
+                }
+                record.cross(search.ray, search.recip_norm2)
+            },
+            |search, crossing, record, place| {
+                if T::CLAMPS {
+                    search.consider_out_of_line(crossing, record.bounds(), place);
+                } else {
+                    search.consider(crossing, place);
+                }
+            },
+        );
     }
 
     /// Tests records one after the other, and takes those that are met.
@@ -434,7 +444,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         end: u32,
         count: &mut C,
     ) {
-        let projection = Projection::of::<MAJOR, V>(self.ray);
+        let projection = triangle::Projection::of::<MAJOR, V>(self.ray);
         while let [record, rest @ ..] = triangles {
             let index = end.wrapping_sub(triangles.len() as u32);
             triangles = rest;

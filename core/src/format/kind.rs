@@ -1,25 +1,57 @@
 //! The kinds of primitives there are: the one place that names them all.
 //!
-//! The code of each is a Cargo feature of the same name, and so is that of the wider forms in which
-//! they are stored.
+//! A shape is a file in [`geometry`](crate::geometry) and a line in the table below. Its code is a Cargo
+//! feature of the same name, and so is that of the wider forms in which primitives are stored.
+
+/// Hands the table of shapes to a macro. Triangles and spheres have several forms of records, for few bits and
+/// many, alone and in clusters. Every other shape has one record: its line says kind, number in the blob,
+/// name in tables and Cargo feature, slice of records, module of `geometry` and record, section.
+macro_rules! shapes {
+    ($macro:ident) => {
+        $macro! {
+            forms {
+                /// A triangle of an indexed mesh.
+                Triangle = 0, "triangle";
+                /// A sphere.
+                Sphere = 1, "sphere";
+            }
+            records {
+                /// An axis-aligned box.
+                Box = 2, "box", [boxes: cuboid::Cuboid], [Boxes = 10, "boxes"];
+                /// A flat disc.
+                Disc = 3, "disc", [discs: disc::Disc], [Discs = 11, "discs"];
+                /// A capped cylinder, cone or frustum.
+                Cone = 4, "cone", [cones: cone::Cone], [Cones = 12, "cones"];
+            }
+        }
+    };
+}
+
+pub(crate) use shapes;
 
 macro_rules! kinds {
-    ($($(#[doc = $doc:literal])* $variant:ident = $number:literal, $name:literal;)*) => {
+    (
+        forms { $($(#[doc = $form_doc:literal])* $form:ident = $form_number:literal, $form_name:literal;)* }
+        records { $($(#[doc = $doc:literal])* $kind:ident = $number:literal, $name:literal, $record:tt, $section:tt;)* }
+    ) => {
         /// The kinds of primitives, in the order of their slots.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[repr(u32)]
         pub enum Kind {
-            $($(#[doc = $doc])* $variant = $number,)*
+            $($(#[doc = $form_doc])* $form = $form_number,)*
+            $($(#[doc = $doc])* $kind = $number,)*
         }
 
         impl Kind {
             /// All kinds, in order.
-            pub const ALL: [Kind; [$($number),*].len()] = [$(Kind::$variant),*];
+            pub const ALL: [Kind; [$($form_number,)* $($number),*].len()] =
+                [$(Kind::$form,)* $(Kind::$kind),*];
 
             #[inline(always)]
             pub(crate) const fn from_number(number: u32) -> Option<Self> {
                 match number {
-                    $($number => Some(Kind::$variant),)*
+                    $($form_number => Some(Kind::$form),)*
+                    $($number => Some(Kind::$kind),)*
                     _ => None,
                 }
             }
@@ -27,7 +59,8 @@ macro_rules! kinds {
             /// The name that tables use, and the Cargo feature.
             pub const fn name(self) -> &'static str {
                 match self {
-                    $(Kind::$variant => $name,)*
+                    $(Kind::$form => $form_name,)*
+                    $(Kind::$kind => $name,)*
                 }
             }
 
@@ -36,22 +69,20 @@ macro_rules! kinds {
             #[inline(always)]
             pub const fn is_available(self) -> bool {
                 match self {
-                    $(Kind::$variant => cfg!(feature = $name),)*
+                    $(Kind::$form => cfg!(feature = $form_name),)*
+                    $(Kind::$kind => cfg!(feature = $name),)*
+                }
+            }
+
+            /// Whether leaves of [`Wide`](crate::accel) hold primitives of the kind in clusters.
+            pub const fn is_clustered(self) -> bool {
+                match self {
+                    $(Kind::$form => true,)*
+                    $(Kind::$kind => false,)*
                 }
             }
         }
     };
 }
 
-kinds! {
-    /// A triangle of an indexed mesh.
-    Triangle = 0, "triangle";
-    /// A sphere.
-    Sphere = 1, "sphere";
-    /// An axis-aligned box.
-    Box = 2, "box";
-    /// A flat disc.
-    Disc = 3, "disc";
-    /// A capped cylinder, cone or frustum.
-    Cone = 4, "cone";
-}
+shapes!(kinds);

@@ -1,4 +1,5 @@
-//! The records of a blob, as the host writes them and the core reads them in place.
+//! The records of a blob, as the host writes them and the core reads them in place; but for those of
+//! [shapes](crate::geometry).
 //!
 //! Little-endian, naturally aligned, without padding. `FORMAT.md` specifies every field; the
 //! assertions at the end of this file hold the layout to it.
@@ -215,46 +216,6 @@ pub struct Sphere24 {
     pub center: [[u8; 3]; 3],
     /// Radius in 1/256 unit, above 0: an unsigned integer of three bytes.
     pub radius: [u8; 3],
-}
-
-/// An axis-aligned box.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Cuboid {
-    /// Smallest coordinates in 1/256 unit.
-    pub lowest: [i32; 3],
-    /// Largest coordinates in 1/256 unit, none below `lowest`.
-    pub highest: [i32; 3],
-}
-
-/// A flat disc.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Disc {
-    /// Centre in 1/256 unit.
-    pub center: [i32; 3],
-    /// Normal; not zero, magnitudes below 2^24, of any length.
-    pub normal: [i32; 3],
-    /// Radius in 1/256 unit, above 0.
-    pub radius: i32,
-    /// Its box.
-    pub bounds: UnitBox,
-}
-
-/// A solid of revolution between two flat caps: cylinder, cone or frustum.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Cone {
-    /// Centre of the base in 1/256 unit, like all of the record perhaps finer than the lattice.
-    pub base: [i32; 3],
-    /// Centre of the other cap in 1/256 unit, not equal to `base`.
-    pub apex: [i32; 3],
-    /// Radius of the base in 1/256 unit.
-    pub base_radius: i32,
-    /// Radius of the other cap in 1/256 unit; not both radii are 0.
-    pub apex_radius: i32,
-    /// Its box.
-    pub bounds: UnitBox,
 }
 
 /// A pair of children with all their planes, for the ordinary traversal.
@@ -538,9 +499,6 @@ const _: () = {
     assert!(offset_of!(Material, absorption) == 80 && offset_of!(Material, shininess) == 92);
     assert!(size_of::<Vertex16>() == 6 && size_of::<Vertex24>() == 12);
     assert!(size_of::<Sphere16>() == 8 && size_of::<Sphere24>() == 12);
-    assert!(size_of::<Cuboid>() == 24 && size_of::<Disc>() == 40 && size_of::<Cone>() == 44);
-    assert!(offset_of!(Disc, radius) == 24 && offset_of!(Disc, bounds) == 28);
-    assert!(offset_of!(Cone, base_radius) == 24 && offset_of!(Cone, bounds) == 32);
     assert!(size_of::<Gridels>() == 40 && offset_of!(Gridels, scale) == 28);
     assert!(size_of::<ApexPoint>() == 24 && offset_of!(ApexPoint, windows) == 12);
     assert!(size_of::<ApexDirection>() == 20 && offset_of!(ApexDirection, window) == 18);

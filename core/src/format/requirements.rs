@@ -1,5 +1,6 @@
 //! What a program must provide for its own blob, read while it is compiled.
 
+use crate::format::kind::shapes;
 use crate::format::record::{Header, SectionEntry, View};
 use crate::format::word::{half, proved, word};
 use crate::format::{BlobError, Effects, SectionKind, Structure};
@@ -105,16 +106,21 @@ impl Requirements {
                 ),)*]
             };
         }
-        use SectionKind::{Boxes, Cones, Discs, Packs, Spheres, Strips, Triangles};
+        use SectionKind::{Packs, Spheres, Strips, Triangles};
         let effects = self.effects;
         let clusters_alone =
             self.has(Strips) && !self.has(Triangles) || self.has(Packs) && !self.has(Spheres);
-        let parts = parts! {
+        macro_rules! all {
+            (
+                forms { $($form:tt)* }
+                records { $(
+                    $(#[doc = $doc:literal])* $kind:ident = $number:literal, $name:literal,
+                    $record:tt, [$section:ident = $id:literal, $section_name:literal];
+                )* }
+            ) => { parts! {
             self.has(Triangles) => "triangle",
             self.has(Spheres) => "sphere",
-            self.has(Boxes) => "box",
-            self.has(Discs) => "disc",
-            self.has(Cones) => "cone",
+            $(self.has(SectionKind::$section) => $name,)*
             self.wide_lattice => "wide-lattice",
             self.wide_indices => "wide-indices",
             self.display_values => "display-values",
@@ -125,7 +131,9 @@ impl Requirements {
             effects.contains(Effects::GLASS) => "glass",
             effects.contains(Effects::ABSORPTION) => "absorption",
             effects.contains(Effects::CHECKER) => "checker",
-        };
+            } };
+        }
+        let parts = shapes!(all);
         let mut index = 0;
         while index < parts.len() {
             if parts[index].0 {

@@ -4,7 +4,7 @@ use crate::format::cluster::{
     LANES, Pack, Pack16, Pack24, RADII, Strip, Strip16, Strip24, StripMembers, Windowed24,
 };
 use crate::format::record::UnitBox;
-use crate::format::{Indices, Kind};
+use crate::format::{BlobError, Indices, Kind, SectionKind, Sections};
 
 /// All strips.
 #[derive(Clone, Copy, Debug)]
@@ -121,7 +121,27 @@ pub(crate) struct Clusters<'a> {
     pub(crate) homes: &'a [u32],
 }
 
-impl Clusters<'_> {
+impl<'a> Clusters<'a> {
+    pub(crate) fn read(sections: &Sections<'a>, short: bool) -> Result<Self, BlobError> {
+        Ok(Self {
+            strips: if short {
+                Strips::S16(sections.records(SectionKind::Strips)?)
+            } else {
+                Strips::S24(sections.records(SectionKind::Strips)?)
+            },
+            packs: if short {
+                Packs::P16(sections.records(SectionKind::Packs)?)
+            } else {
+                Packs::P24(Packs24 {
+                    packs: sections.records(SectionKind::Packs)?,
+                    radii: sections.records(SectionKind::Radii)?,
+                })
+            },
+            members: Indices::read(sections, SectionKind::Members)?,
+            homes: sections.records(SectionKind::Homes)?,
+        })
+    }
+
     /// Number of triangles.
     pub(crate) fn triangles(&self) -> usize {
         self.strips.triangles()

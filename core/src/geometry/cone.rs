@@ -20,11 +20,36 @@
 //! axis, so no point is farther than two reaches from the middle; and `cos |Q| + g` is at most that
 //! and a radius: three reaches, below 2^31. Squares are below 2^62.
 
-use crate::format::record::Cone;
-use crate::geometry::{Crossing, Part, Surface};
+use crate::format::BlobError;
+use crate::format::record::UnitBox;
+use crate::geometry::primitive::{InScene, MAX_RADIUS, Primitive};
+use crate::geometry::{Crossing, LEAVING, Part, Surface};
 use crate::number::Arithmetic;
 use crate::number::extent;
 use crate::ray::Ray;
+use bytemuck::{Pod, Zeroable};
+use core::mem::offset_of;
+
+/// A solid of revolution between two flat caps: cylinder, cone or frustum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Cone {
+    /// Centre of the base in 1/256 unit, like all of the record perhaps finer than the lattice.
+    pub base: [i32; 3],
+    /// Centre of the other cap in 1/256 unit, not equal to `base`.
+    pub apex: [i32; 3],
+    /// Radius of the base in 1/256 unit.
+    pub base_radius: i32,
+    /// Radius of the other cap in 1/256 unit; not both radii are 0.
+    pub apex_radius: i32,
+    /// Its box.
+    pub bounds: UnitBox,
+}
+
+const _: () = {
+    assert!(size_of::<Cone>() == 44);
+    assert!(offset_of!(Cone, base_radius) == 24 && offset_of!(Cone, bounds) == 32);
+};
 
 /// Part numbers.
 const MANTLE: Part = 0;
@@ -158,12 +183,23 @@ impl Cone {
         let axis = |k: usize| N::from_lattice(self.base[k].wrapping_add(self.apex[k])).half();
         [axis(0), axis(1), axis(2)]
     }
+}
+
+impl Primitive for Cone {
+    const NEEDS_NORM: bool = true;
+    // The most expensive test of all.
+    const TESTS_BOX: bool = true;
+
+    #[inline(always)]
+    fn bounds(&self) -> UnitBox {
+        self.bounds
+    }
 
     /// The crossing with the solid. `recip_norm2` is [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2) of the ray's slopes.
     ///
     /// Cost: some 20 multiplications and additions to reject by the sphere around the solid; some
     /// 100, five divisions and six square roots to accept.
-    pub(crate) fn cross<N: Arithmetic>(&self, ray: &Ray<N>, recip_norm2: N) -> Option<Crossing<N>> {
+    fn cross<N: Arithmetic>(&self, ray: &Ray<N>, recip_norm2: N) -> Option<Crossing<N>> {
         let frame = self.frame::<N>();
         let middle = self.middle::<N>();
         let axis = |k: usize| middle[k] - ray.origin[k];
@@ -262,7 +298,7 @@ impl Cone {
 
     /// A point of the solid near a point of its surface, at least `depth` away from mantle and caps,
     /// or where the solid is thinner, on the axis.
-    pub(crate) fn inside<N: Arithmetic>(&self, point: [N; 3], depth: N) -> [N; 3] {
+    fn inside<N: Arithmetic>(&self, [point, _]: [[N; 3]; 2], depth: N) -> [N; 3] {
         let Frame {
             axis,
             half_height,
@@ -297,16 +333,16 @@ impl Cone {
 
     /// Outward. Where the point says too little about the mantle's normal, at the tip above all, it is
     /// at least turned to `toward`: where the ray comes from that enters, or goes that leaves.
-    pub(crate) fn surface<N: Arithmetic>(
-        &self,
-        part: Part,
-        point: [N; 3],
-        toward: [N; 3],
-    ) -> Surface<N> {
+    fn surface<N: Arithmetic>(&self, ray: &Ray<N>, part: Part, point: [N; 3]) -> Surface<N> {
+        let toward = if part & LEAVING != 0 {
+            ray.slope
+        } else {
+            ray.slope.map(|x| -x)
+        };
         let frame = self.frame::<N>();
         let middle = self.middle::<N>();
         let size = extent(middle) + frame.half_height + frame.radius + frame.radius;
-        let normal = match part {
+        let normal = match part & !LEAVING {
             BASE => frame.axis.map(|x| -x),
             APEX => frame.axis,
             _ => {
@@ -333,12 +369,24 @@ impl Cone {
                 normal(outward)
             }
         };
+        // The point is the ray's, which is off by what all coordinates round.
+        let magnitude = extent(ray.origin).max(extent(point));
         Surface {
             normal,
             point,
-            error: N::error_bound(size),
+            error: N::error_bound(size).max(N::error_bound(magnitude)),
             is_exact: false,
         }
+    }
+
+    fn validate(&self, scene: InScene<'_>) -> Result<(), BlobError> {
+        scene.point("centre of the base", self.base)?;
+        scene.point("centre of the apex", self.apex)?;
+        scene.none("number of axes of length 0", self.base == self.apex)?;
+        let radii = [self.base_radius, self.apex_radius];
+        scene.at.all_within("radius", &radii, 0, MAX_RADIUS)?;
+        scene.none("number of cones without a radius", radii == [0; 2])?;
+        scene.inner(&self.bounds)
     }
 }
 

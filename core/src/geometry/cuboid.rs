@@ -9,15 +9,31 @@
 //! by more (see [`cull`](crate::accel)).
 
 use crate::axis::pick;
-use crate::format::record::{Cuboid, UnitBox};
-use crate::geometry::{Crossing, Part, Surface, plane};
+use crate::format::BlobError;
+use crate::format::record::UnitBox;
+use crate::geometry::primitive::{InScene, Primitive};
+use crate::geometry::{Crossing, LEAVING, Part, Surface, flat};
 use crate::number::Arithmetic;
 use crate::ray::Ray;
+use bytemuck::{Pod, Zeroable};
 
-impl Cuboid {
-    /// The box on the box lattice.
+/// An axis-aligned box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Cuboid {
+    /// Smallest coordinates in 1/256 unit.
+    pub lowest: [i32; 3],
+    /// Largest coordinates in 1/256 unit, none below `lowest`.
+    pub highest: [i32; 3],
+}
+
+const _: () = assert!(size_of::<Cuboid>() == 24);
+
+impl Primitive for Cuboid {
+    const CLAMPS: bool = false;
+
     #[inline(always)]
-    pub(crate) fn bounds(&self) -> UnitBox {
+    fn bounds(&self) -> UnitBox {
         UnitBox::around(self.lowest, self.highest)
     }
 
@@ -25,7 +41,7 @@ impl Cuboid {
     ///
     /// Cost: six divisions; in integers two, where the box is met, and none where it is not.
     #[inline(always)]
-    pub(crate) fn cross<N: Arithmetic>(&self, ray: &Ray<N>) -> Option<Crossing<N>> {
+    fn cross<N: Arithmetic>(&self, ray: &Ray<N>, _: N) -> Option<Crossing<N>> {
         let mut enter = ((-N::FAR).quotient(N::ONE), 0);
         let mut leave = (N::FAR.quotient(N::ONE), 0);
         for axis in 0..3 {
@@ -62,16 +78,31 @@ impl Cuboid {
 
     /// Outward. At an edge the point stays on the face: as far from the other faces as rays start beside
     /// them.
-    pub(crate) fn surface<N: Arithmetic>(&self, part: Part, point: [N; 3]) -> Surface<N> {
+    fn surface<N: Arithmetic>(&self, _: &Ray<N>, part: Part, point: [N; 3]) -> Surface<N> {
+        let part = part & !LEAVING;
         let (axis, is_upper) = (usize::from(part / 2), part & 1 != 0);
         let side = if is_upper { self.highest } else { self.lowest };
         let coordinate = N::from_lattice(pick(side, axis));
-        plane::face(axis, is_upper, coordinate, self.inside(point))
+        flat::face(axis, is_upper, coordinate, self.beneath_faces(point))
     }
 
+    fn inside<N: Arithmetic>(&self, [point, _]: [[N; 3]; 2], _: N) -> [N; 3] {
+        self.beneath_faces(point)
+    }
+
+    fn validate(&self, scene: InScene<'_>) -> Result<(), BlobError> {
+        scene.point("lowest coordinate", self.lowest)?;
+        scene.point("highest coordinate", self.highest)?;
+        let sides = self.lowest.iter().zip(&self.highest);
+        let inverted = sides.filter(|(low, high)| low > high).count() as i64;
+        scene.at.within("number of inverted sides", inverted, 0, 0)
+    }
+}
+
+impl Cuboid {
     /// The point beneath all faces that is nearest to a point: a step beside them, or where the box is no
     /// thicker than that, halfway between them.
-    pub(crate) fn inside<N: Arithmetic>(&self, point: [N; 3]) -> [N; 3] {
+    fn beneath_faces<N: Arithmetic>(&self, point: [N; 3]) -> [N; 3] {
         let axis = |k: usize| {
             let low = N::from_lattice(self.lowest[k]);
             let high = N::from_lattice(self.highest[k]);

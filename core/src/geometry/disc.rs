@@ -1,18 +1,50 @@
 //! Flat discs: the crossing of their plane, if it lies no farther than the radius from the centre.
 
-use crate::format::record::Disc;
-use crate::geometry::{Crossing, Surface, cross_plane, plane};
+use crate::format::BlobError;
+use crate::format::record::UnitBox;
+use crate::geometry::primitive::{InScene, MAX_RADIUS, Primitive};
+use crate::geometry::{Crossing, Part, Surface, cross_plane, flat};
 use crate::number::Arithmetic;
 use crate::ray::Ray;
+use bytemuck::{Pod, Zeroable};
+use core::mem::offset_of;
+
+/// A flat disc.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Disc {
+    /// Centre in 1/256 unit.
+    pub center: [i32; 3],
+    /// Normal; not zero, magnitudes below 2^24, of any length.
+    pub normal: [i32; 3],
+    /// Radius in 1/256 unit, above 0.
+    pub radius: i32,
+    /// Its box.
+    pub bounds: UnitBox,
+}
+
+const _: () = {
+    assert!(size_of::<Disc>() == 40);
+    assert!(offset_of!(Disc, radius) == 24 && offset_of!(Disc, bounds) == 28);
+};
 
 impl Disc {
     fn normal<N: Arithmetic>(&self) -> [N; 3] {
         N::direction(self.normal.map(i64::from))
     }
+}
+
+impl Primitive for Disc {
+    const FLAT: bool = true;
+
+    #[inline(always)]
+    fn bounds(&self) -> UnitBox {
+        self.bounds
+    }
 
     /// The crossing, both sides alike; `None` for a ray along the plane.
     #[inline(always)]
-    pub(crate) fn cross<N: Arithmetic>(&self, ray: &Ray<N>) -> Option<Crossing<N>> {
+    fn cross<N: Arithmetic>(&self, ray: &Ray<N>, _: N) -> Option<Crossing<N>> {
         let axis = |k: usize| N::from_lattice(self.center[k]) - ray.origin[k];
         let relative = [axis(0), axis(1), axis(2)];
         let normal = self.normal();
@@ -33,7 +65,16 @@ impl Disc {
     }
 
     /// The front is where the normal points.
-    pub(crate) fn surface<N: Arithmetic>(&self, point: [N; 3]) -> Surface<N> {
-        plane::surface(self.normal(), self.center, point)
+    fn surface<N: Arithmetic>(&self, _: &Ray<N>, _: Part, point: [N; 3]) -> Surface<N> {
+        flat::surface(self.normal(), self.center, point)
+    }
+
+    fn validate(&self, scene: InScene<'_>) -> Result<(), BlobError> {
+        let at = scene.at;
+        scene.point("centre", self.center)?;
+        at.all_within("normal", &self.normal, -(1 << 24), 1 << 24)?;
+        scene.none("number of normals of length 0", self.normal == [0; 3])?;
+        at.within("radius", self.radius.into(), 1, MAX_RADIUS)?;
+        scene.inner(&self.bounds)
     }
 }

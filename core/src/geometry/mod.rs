@@ -1,18 +1,16 @@
 //! Primitives: where a ray crosses them, and how their surface lies there.
 //!
-//! One file a primitive. Each kernel gives the *crossing*: where the line of the ray enters and
+//! One file for each shape. Each kernel gives the *crossing*: where the line of the ray enters and
 //! leaves the primitive, behind the origin too. What of that is a hit is decided once for
 //! all of them, in `accept`.
 
 #[cfg(feature = "wide")]
 pub(crate) mod cluster;
-pub(crate) mod cone;
 mod crossing;
-pub(crate) mod cuboid;
-pub(crate) mod disc;
+mod flat;
 #[cfg(feature = "wide")]
 pub(crate) mod pack;
-pub(crate) mod plane;
+pub(crate) mod primitive;
 mod primitive_id;
 pub(crate) mod project;
 mod shapes;
@@ -28,5 +26,22 @@ pub(crate) use crossing::{Crossing, LEAVING, Part, accept, cross_plane};
 pub(crate) use primitive_id::PrimitiveId;
 pub use project::Project;
 pub use shapes::Geometry;
-pub(crate) use shapes::{Shapes, Spheres, Triangles, Vertices};
+pub(crate) use shapes::Shapes;
 pub(crate) use surface::Surface;
+
+use crate::format::kind::shapes;
+
+/// Declares the modules of shapes that have one record.
+macro_rules! modules {
+    (
+        forms { $($form:tt)* }
+        records { $(
+            $(#[doc = $doc:literal])* $kind:ident = $number:literal, $name:literal,
+            [$field:ident: $module:ident::$record:ident], $section:tt;
+        )* }
+    ) => {
+        $(pub mod $module;)*
+    };
+}
+
+shapes!(modules);

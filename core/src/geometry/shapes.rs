@@ -1,104 +1,207 @@
 //! All primitives of a blob, each kind in an array of its own.
 
+use crate::format::kind::shapes;
 use crate::format::limits::{WIDE_INDICES, WIDE_LATTICE};
-use crate::format::record::{
-    Cone, Corners, Cuboid, Disc, Sphere, Sphere16, Sphere24, UnitBox, Vertex, Vertex16, Vertex24,
-};
-use crate::format::{Kind, Leaf};
+use crate::format::range::{At, at_most};
+use crate::format::record::{Header, UnitBox};
+use crate::format::{BlobError, Kind, Leaf, SectionKind, Sections};
 #[cfg(feature = "wide")]
 use crate::geometry::Clusters;
-use crate::geometry::{LEAVING, Part, PrimitiveId, Surface, sphere, triangle};
+use crate::geometry::primitive::{InScene, Primitive, beneath};
+use crate::geometry::sphere::{self, Spheres};
+use crate::geometry::triangle::{self, Triangles, Vertices};
+use crate::geometry::{LEAVING, Part, PrimitiveId, Surface};
 use crate::number::Arithmetic;
-use crate::number::extent;
 use crate::ray::Ray;
 
-/// The vertices of all meshes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Vertices<'a> {
-    V16(&'a [Vertex16]),
-    V24(&'a [Vertex24]),
-}
-
-impl Vertices<'_> {
-    pub(crate) fn len(&self) -> usize {
-        match self {
-            Vertices::V16(vertices) => vertices.len(),
-            Vertices::V24(vertices) => vertices.len(),
+macro_rules! registry {
+    (
+        forms { $($form:tt)* }
+        records { $(
+            $(#[doc = $doc:literal])* $kind:ident = $number:literal, $name:literal,
+            [$field:ident: $module:ident::$record:ident], [$section:ident = $id:literal, $section_name:literal];
+        )* }
+    ) => {
+        /// All primitives of a blob, each kind in an array of its own.
+        #[derive(Clone, Copy, Debug)]
+        pub(crate) struct Shapes<'a> {
+            pub(crate) vertices: Vertices<'a>,
+            pub(crate) triangles: Triangles<'a>,
+            pub(crate) spheres: Spheres<'a>,
+            $(pub(crate) $field: &'a [super::$module::$record],)*
+            /// Where there are both, the same triangles and spheres lie in clusters as in the arrays above.
+            #[cfg(feature = "wide")]
+            pub(crate) clusters: Clusters<'a>,
         }
-    }
 
-    /// A vertex in 1/256 unit.
-    pub(crate) fn position(&self, index: usize) -> Option<[i32; 3]> {
-        match self {
-            Vertices::V16(vertices) => vertices.get(index).map(Vertex::position),
-            Vertices::V24(_) if !WIDE_LATTICE => None,
-            Vertices::V24(vertices) => vertices.get(index).map(Vertex::position),
+        /// A primitive of any kind, in 1/256 unit.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Geometry {
+            /// Its corners, counter-clockwise as seen from the front.
+            Triangle([[i32; 3]; 3]),
+            /// A sphere.
+            Sphere {
+                /// Its centre.
+                center: [i32; 3],
+                /// Its radius.
+                radius: i32,
+            },
+            $($(#[doc = $doc])* $kind(super::$module::$record),)*
         }
-    }
-}
 
-/// The triangles of all meshes, as vertex indices.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Triangles<'a> {
-    U16(&'a [[u16; 3]]),
-    U32(&'a [[u32; 3]]),
-}
-
-impl Triangles<'_> {
-    pub(crate) fn len(&self) -> usize {
-        match self {
-            Triangles::U16(triangles) => triangles.len(),
-            Triangles::U32(triangles) => triangles.len(),
+        /// Whether a shape has no inside: its front is the side to which its normal points.
+        #[inline(always)]
+        const fn is_flat(kind: Kind) -> bool {
+            match kind {
+                Kind::Triangle => true,
+                Kind::Sphere => false,
+                $(Kind::$kind => super::$module::$record::FLAT,)*
+            }
         }
-    }
 
-    pub(crate) fn corners(&self, index: usize) -> Option<[usize; 3]> {
-        match self {
-            Triangles::U16(triangles) => triangles.get(index).map(Corners::corners),
-            Triangles::U32(_) if !WIDE_INDICES => None,
-            Triangles::U32(triangles) => triangles.get(index).map(Corners::corners),
+        impl<'a> Shapes<'a> {
+            /// Finds the records of a blob, or says which code for them this build lacks.
+            pub(crate) fn read(sections: &Sections<'a>, header: &Header) -> Result<Self, BlobError> {
+                let short = header.storage_bits == 16;
+                let holds = |section| sections.len(section) > 0;
+                let (triangles, spheres) = (holds(SectionKind::Triangles), holds(SectionKind::Spheres));
+                let sole = holds(SectionKind::Strips) && !triangles
+                    || holds(SectionKind::Packs) && !spheres;
+                let wide_indices = triangles && !triangle::is_narrow(sections);
+                let parts = [
+                    (sole && cfg!(not(feature = "wide")), "wide"),
+                    (triangles && !Kind::Triangle.is_available(), Kind::Triangle.name()),
+                    (spheres && !Kind::Sphere.is_available(), Kind::Sphere.name()),
+                    $((holds(SectionKind::$section) && !Kind::$kind.is_available(), $name),)*
+                    (!short && !WIDE_LATTICE, "wide-lattice"),
+                    (wide_indices && !WIDE_INDICES, "wide-indices"),
+                ];
+                for (is_missing, missing) in parts {
+                    if is_missing {
+                        return Err(BlobError::MissingPart { missing });
+                    }
+                }
+                Ok(Self {
+                    vertices: Vertices::read(sections, short)?,
+                    triangles: Triangles::read(sections)?,
+                    spheres: Spheres::read(sections, short)?,
+                    $($field: sections.records(SectionKind::$section)?,)*
+                    #[cfg(feature = "wide")]
+                    clusters: Clusters::read(sections, short)?,
+                })
+            }
+
+            /// Proves that all records lie in the scene's box and that their fields are in range.
+            pub(crate) fn validate(&self, header: &Header) -> Result<(), BlobError> {
+                let slots = self.total() as u64;
+                at_most("number of slots", slots, header.primitives.into())?;
+                let bounds = &header.bounds;
+                let vertices = self.vertices.validate(bounds)?;
+                self.triangles.validate(self.records(Kind::Triangle), vertices)?;
+                self.spheres.validate(self.records(Kind::Sphere), bounds)?;
+                $(if Kind::$kind.is_available() {
+                    validate(self.$field, SectionKind::$section, bounds)?;
+                })*
+                Ok(())
+            }
+
+            /// Number of primitives of a kind that have records of their own.
+            pub(crate) fn records(&self, kind: Kind) -> usize {
+                match kind {
+                    _ if !kind.is_available() => 0,
+                    Kind::Triangle => self.triangles.len(),
+                    Kind::Sphere => self.spheres.len(),
+                    $(Kind::$kind => self.$field.len(),)*
+                }
+            }
+
+            /// Whether any primitive's test needs the norm of the ray's direction.
+            pub(crate) fn needs_norm(&self) -> bool {
+                self.count(Kind::Sphere) > 0
+                    $(|| super::$module::$record::NEEDS_NORM && self.count(Kind::$kind) > 0)*
+            }
+
+            /// The box of a primitive.
+            pub(crate) fn bounds(&self, kind: Kind, index: usize) -> Option<UnitBox> {
+                Some(match kind {
+                    _ if !kind.is_available() => return None,
+                    Kind::Triangle => triangle::bounds(self.triangle(index)?),
+                    Kind::Sphere => self.sphere_bounds(index)?,
+                    $(Kind::$kind => Primitive::bounds(self.$field.get(index)?),)*
+                })
+            }
+
+            /// A primitive as it lies on the lattice.
+            pub(crate) fn geometry(&self, kind: Kind, index: usize) -> Option<Geometry> {
+                Some(match kind {
+                    Kind::Triangle => Geometry::Triangle(self.triangle(index)?),
+                    Kind::Sphere => {
+                        let (center, radius) = self.spheres.get(index)?;
+                        Geometry::Sphere { center, radius }
+                    }
+                    $(Kind::$kind => Geometry::$kind(*self.$field.get(index)?),)*
+                })
+            }
+
+            /// The surface of a primitive that has a record of its own, where a ray meets it.
+            #[cfg_attr(feature = "wide", inline(never))]
+            #[cfg_attr(not(feature = "wide"), inline(always))]
+            fn surface_in_slot<N: Arithmetic>(
+                &self,
+                kind: Kind,
+                index: usize,
+                ray: &Ray<N>,
+                part: Part,
+                point: [N; 3],
+            ) -> Option<Surface<N>> {
+                Some(match kind {
+                    _ if !kind.is_available() => return None,
+                    Kind::Triangle => triangle::surface(self.indexed_triangle(index)?, point),
+                    Kind::Sphere => {
+                        let (center, radius) = self.spheres.get(index)?;
+                        sphere::surface(center, radius, point)
+                    }
+                    $(Kind::$kind => self.$field.get(index)?.surface(ray, part, point),)*
+                })
+            }
+
+            /// A point beneath a point of a primitive's surface: `depth` away from it along the normal, and
+            /// in solids beneath all other faces by what is their bound, as far as they are thick enough.
+            ///
+            /// At an edge or a rim the way along the normal alone could lead out again.
+            #[inline(never)]
+            pub(crate) fn inside<N: Arithmetic>(
+                &self,
+                kind: Kind,
+                index: usize,
+                surface: [[N; 3]; 2],
+                depth: N,
+            ) -> [N; 3] {
+                match kind {
+                    $(Kind::$kind if kind.is_available() && !is_flat(kind) => match self.$field.get(index) {
+                        Some(record) => record.inside(surface, depth),
+                        None => surface[0],
+                    },)*
+                    _ => beneath(surface[0], surface[1], depth),
+                }
+            }
         }
-    }
+    };
 }
 
-/// All spheres.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Spheres<'a> {
-    S16(&'a [Sphere16]),
-    S24(&'a [Sphere24]),
+shapes!(registry);
+
+/// Proves the records of a section.
+fn validate<T: Primitive>(
+    records: &[T],
+    section: SectionKind,
+    bounds: &UnitBox,
+) -> Result<(), BlobError> {
+    records.iter().enumerate().try_for_each(|(index, record)| {
+        let at = At { section, index };
+        record.validate(InScene { at, bounds })
+    })
 }
-
-impl Spheres<'_> {
-    pub(crate) fn len(&self) -> usize {
-        match self {
-            Spheres::S16(spheres) => spheres.len(),
-            Spheres::S24(spheres) => spheres.len(),
-        }
-    }
-
-    pub(crate) fn get(&self, index: usize) -> Option<([i32; 3], i32)> {
-        match self {
-            Spheres::S16(spheres) => spheres.get(index).map(Sphere::lattice),
-            Spheres::S24(_) if !WIDE_LATTICE => None,
-            Spheres::S24(spheres) => spheres.get(index).map(Sphere::lattice),
-        }
-    }
-}
-
-/// All primitives of a blob, each kind in an array of its own.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Shapes<'a> {
-    pub(crate) vertices: Vertices<'a>,
-    pub(crate) triangles: Triangles<'a>,
-    pub(crate) spheres: Spheres<'a>,
-    pub(crate) boxes: &'a [Cuboid],
-    pub(crate) discs: &'a [Disc],
-    pub(crate) cones: &'a [Cone],
-    /// Where there are both, the same triangles and spheres lie in clusters as in the arrays above.
-    #[cfg(feature = "wide")]
-    pub(crate) clusters: Clusters<'a>,
-}
-
 impl Shapes<'_> {
     /// Number of primitives of a kind.
     pub(crate) fn count(&self, kind: Kind) -> usize {
@@ -112,18 +215,6 @@ impl Shapes<'_> {
             };
         }
         records
-    }
-
-    /// Number of primitives of a kind that have records of their own.
-    pub(crate) fn records(&self, kind: Kind) -> usize {
-        match kind {
-            _ if !kind.is_available() => 0,
-            Kind::Triangle => self.triangles.len(),
-            Kind::Sphere => self.spheres.len(),
-            Kind::Box => self.boxes.len(),
-            Kind::Disc => self.discs.len(),
-            Kind::Cone => self.cones.len(),
-        }
     }
 
     /// Number of primitives that have records of their own.
@@ -208,25 +299,14 @@ impl Shapes<'_> {
         Some([position(a)?, position(b)?, position(c)?])
     }
 
-    /// The box of a primitive.
-    pub(crate) fn bounds(&self, kind: Kind, index: usize) -> Option<UnitBox> {
-        Some(match kind {
-            _ if !kind.is_available() => return None,
-            Kind::Triangle => triangle::bounds(self.triangle(index)?),
-            Kind::Sphere => {
-                let (center, radius) = match self.place(kind, index as u32) {
-                    #[cfg(feature = "wide")]
-                    PrimitiveId::Pack(pack, lane) => {
-                        self.clusters.packs.sphere(pack, lane.into())?
-                    }
-                    _ => self.spheres.get(index)?,
-                };
-                sphere::bounds(center, radius)
-            }
-            Kind::Box => self.boxes.get(index)?.bounds(),
-            Kind::Disc => self.discs.get(index)?.bounds,
-            Kind::Cone => self.cones.get(index)?.bounds,
-        })
+    /// The box of a sphere.
+    fn sphere_bounds(&self, index: usize) -> Option<UnitBox> {
+        let (center, radius) = match self.place(Kind::Sphere, index as u32) {
+            #[cfg(feature = "wide")]
+            PrimitiveId::Pack(pack, lane) => self.clusters.packs.sphere(pack, lane.into())?,
+            _ => self.spheres.get(index)?,
+        };
+        Some(sphere::bounds(center, radius))
     }
 
     /// Whether all primitives of a leaf exist and lie in a box.
@@ -247,8 +327,6 @@ impl Shapes<'_> {
         ray: &Ray<N>,
         point: [N; 3],
     ) -> Option<(Surface<N>, bool)> {
-        let leaves = part & LEAVING != 0;
-        let part = part & !LEAVING;
         let mut surface = match place {
             #[cfg(feature = "wide")]
             PrimitiveId::Strip(strip, place) => {
@@ -260,99 +338,18 @@ impl Shapes<'_> {
                 sphere::surface(center, radius, point)
             }
             PrimitiveId::Slot(kind, slot) => {
-                let toward = if leaves {
-                    ray.slope
-                } else {
-                    ray.slope.map(|x| -x)
-                };
-                self.surface_in_slot(kind, slot as usize, part, [point, toward])?
+                self.surface_in_slot(kind, slot as usize, ray, part, point)?
             }
         };
-        if place.kind() == Kind::Cone {
-            // Its point is the ray's, which is off by what all coordinates round.
-            let magnitude = extent(ray.origin).max(extent(point));
-            surface.error = surface.error.max(N::error_bound(magnitude));
-        }
         let against = N::dot(surface.normal, ray.slope) < N::Wide::default();
-        let front = match place.kind() {
-            Kind::Triangle | Kind::Disc => against,
-            Kind::Sphere | Kind::Box | Kind::Cone => !leaves,
+        let front = if is_flat(place.kind()) {
+            against
+        } else {
+            part & LEAVING == 0
         };
         if front != against {
             surface.normal = surface.level_with(ray);
         }
         Some((surface, front))
     }
-
-    /// The surface of a primitive that has a record of its own, at a point, and the way towards where
-    /// it is seen from.
-    #[cfg_attr(feature = "wide", inline(never))]
-    #[cfg_attr(not(feature = "wide"), inline(always))]
-    fn surface_in_slot<N: Arithmetic>(
-        &self,
-        kind: Kind,
-        index: usize,
-        part: Part,
-        [point, toward]: [[N; 3]; 2],
-    ) -> Option<Surface<N>> {
-        Some(match kind {
-            _ if !kind.is_available() => return None,
-            Kind::Triangle => triangle::surface(self.indexed_triangle(index)?, point),
-            Kind::Sphere => {
-                let (center, radius) = self.spheres.get(index)?;
-                sphere::surface(center, radius, point)
-            }
-            Kind::Box => self.boxes.get(index)?.surface(part, point),
-            Kind::Disc => self.discs.get(index)?.surface(point),
-            Kind::Cone => self.cones.get(index)?.surface(part, point, toward),
-        })
-    }
-
-    /// A point beneath a point of a primitive's surface: `depth` away from it along the normal, and
-    /// in solids beneath all other faces by what is their bound, as far as they are thick enough.
-    ///
-    /// At an edge or a rim the way along the normal alone could lead out again.
-    #[inline(never)]
-    pub(crate) fn inside<N: Arithmetic>(
-        &self,
-        kind: Kind,
-        index: usize,
-        [point, normal]: [[N; 3]; 2],
-        depth: N,
-    ) -> [N; 3] {
-        match kind {
-            Kind::Box if kind.is_available() => match self.boxes.get(index) {
-                Some(cuboid) => cuboid.inside(point),
-                None => point,
-            },
-            Kind::Cone if kind.is_available() => match self.cones.get(index) {
-                Some(cone) => cone.inside(point, depth),
-                None => point,
-            },
-            _ => {
-                let axis = |k: usize| point[k] - depth * normal[k];
-                [axis(0), axis(1), axis(2)]
-            }
-        }
-    }
-}
-
-/// A primitive of any kind, in 1/256 unit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Geometry {
-    /// Its corners, counter-clockwise as seen from the front.
-    Triangle([[i32; 3]; 3]),
-    /// A sphere.
-    Sphere {
-        /// Its centre.
-        center: [i32; 3],
-        /// Its radius.
-        radius: i32,
-    },
-    /// A box.
-    Box(Cuboid),
-    /// A disc.
-    Disc(Disc),
-    /// A cylinder, cone or frustum.
-    Cone(Cone),
 }

@@ -14,10 +14,61 @@
 //! .05; in `fixed` all is below 2^-7. Culling widens boxes by 1/4 unit, 2^-5 of which `f32` takes for
 //! itself (see [`cull`](crate::accel)).
 
-use crate::format::record::UnitBox;
+use crate::format::limits::WIDE_LATTICE;
+use crate::format::range::At;
+use crate::format::record::{Sphere, Sphere16, Sphere24, UnitBox};
+use crate::format::{BlobError, SectionKind, Sections};
+use crate::geometry::primitive::{InScene, MAX_RADIUS};
 use crate::geometry::{Crossing, Surface};
 use crate::number::Arithmetic;
 use crate::ray::Ray;
+
+/// All spheres.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Spheres<'a> {
+    S16(&'a [Sphere16]),
+    S24(&'a [Sphere24]),
+}
+
+impl<'a> Spheres<'a> {
+    pub(crate) fn read(sections: &Sections<'a>, short: bool) -> Result<Self, BlobError> {
+        let section = SectionKind::Spheres;
+        Ok(if short {
+            Spheres::S16(sections.records(section)?)
+        } else {
+            Spheres::S24(sections.records(section)?)
+        })
+    }
+
+    /// Proves that the first spheres have a radius and lie in the scene's box.
+    pub(crate) fn validate(&self, count: usize, bounds: &UnitBox) -> Result<(), BlobError> {
+        let section = SectionKind::Spheres;
+        (0..count).try_for_each(|index| {
+            let at = At { section, index };
+            let scene = InScene { at, bounds };
+            let (center, radius) = self.get(index).unwrap_or_default();
+            at.within("radius", radius.into(), 1, MAX_RADIUS)?;
+            let moved = |length: i32| center.map(|x| x.wrapping_add(length));
+            scene.point("lowest coordinate", moved(radius.wrapping_neg()))?;
+            scene.point("highest coordinate", moved(radius))
+        })
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Spheres::S16(spheres) => spheres.len(),
+            Spheres::S24(spheres) => spheres.len(),
+        }
+    }
+
+    pub(crate) fn get(&self, index: usize) -> Option<([i32; 3], i32)> {
+        match self {
+            Spheres::S16(spheres) => spheres.get(index).map(Sphere::lattice),
+            Spheres::S24(_) if !WIDE_LATTICE => None,
+            Spheres::S24(spheres) => spheres.get(index).map(Sphere::lattice),
+        }
+    }
+}
 
 /// The crossing with a sphere. `recip_norm2` is [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2) of the ray's slopes.
 ///

@@ -9,13 +9,114 @@
 //! computed in integers without any rounding and is the same in every number format.
 
 use crate::axis::pick;
-use crate::format::record::{UnitBox, Vertex};
+use crate::format::limits::{WIDE_INDICES, WIDE_LATTICE};
+use crate::format::range::At;
+use crate::format::record::{Corners, UnitBox, Vertex, Vertex16, Vertex24};
+use crate::format::{BlobError, Kind, SectionKind, Sections};
 use crate::geometry::Project;
+use crate::geometry::primitive::InScene;
 use crate::geometry::project::AxisProjection;
-use crate::geometry::{Surface, cross_plane, plane};
+use crate::geometry::{Surface, cross_plane, flat};
 use crate::number::Arithmetic;
 use crate::number::fixed::halves::product;
 use crate::ray::Ray;
+
+/// The vertices of all meshes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Vertices<'a> {
+    V16(&'a [Vertex16]),
+    V24(&'a [Vertex24]),
+}
+
+impl<'a> Vertices<'a> {
+    pub(crate) fn read(sections: &Sections<'a>, short: bool) -> Result<Self, BlobError> {
+        let section = SectionKind::Vertices;
+        Ok(if short {
+            Vertices::V16(sections.records(section)?)
+        } else {
+            Vertices::V24(sections.records(section)?)
+        })
+    }
+
+    /// Proves that all vertices lie in the scene's box. Returns how many there are.
+    pub(crate) fn validate(&self, bounds: &UnitBox) -> Result<usize, BlobError> {
+        let section = SectionKind::Vertices;
+        let count = if Kind::Triangle.is_available() {
+            self.len()
+        } else {
+            0
+        };
+        for index in 0..count {
+            let at = At { section, index };
+            InScene { at, bounds }.point("coordinate", self.position(index).unwrap_or_default())?;
+        }
+        Ok(count)
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Vertices::V16(vertices) => vertices.len(),
+            Vertices::V24(vertices) => vertices.len(),
+        }
+    }
+
+    /// A vertex in 1/256 unit.
+    pub(crate) fn position(&self, index: usize) -> Option<[i32; 3]> {
+        match self {
+            Vertices::V16(vertices) => vertices.get(index).map(Vertex::position),
+            Vertices::V24(_) if !WIDE_LATTICE => None,
+            Vertices::V24(vertices) => vertices.get(index).map(Vertex::position),
+        }
+    }
+}
+
+/// The triangles of all meshes, as vertex indices.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Triangles<'a> {
+    U16(&'a [[u16; 3]]),
+    U32(&'a [[u32; 3]]),
+}
+
+impl<'a> Triangles<'a> {
+    pub(crate) fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
+        let section = SectionKind::Triangles;
+        Ok(if is_narrow(sections) || sections.len(section) == 0 {
+            Triangles::U16(sections.records(section)?)
+        } else {
+            Triangles::U32(sections.records(section)?)
+        })
+    }
+
+    /// Proves that the first triangles have vertices.
+    pub(crate) fn validate(&self, count: usize, vertices: usize) -> Result<(), BlobError> {
+        let section = SectionKind::Triangles;
+        (0..count).try_for_each(|index| {
+            let corners = self.corners(index).unwrap_or_default();
+            let corners = corners.map(|corner| corner as i64);
+            At { section, index }.all_within("vertex", &corners, 0, vertices as i64 - 1)
+        })
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Triangles::U16(triangles) => triangles.len(),
+            Triangles::U32(triangles) => triangles.len(),
+        }
+    }
+
+    pub(crate) fn corners(&self, index: usize) -> Option<[usize; 3]> {
+        match self {
+            Triangles::U16(triangles) => triangles.get(index).map(Corners::corners),
+            Triangles::U32(_) if !WIDE_INDICES => None,
+            Triangles::U32(triangles) => triangles.get(index).map(Corners::corners),
+        }
+    }
+}
+
+/// Whether the vertex indices of a blob have 16 bits.
+pub(crate) fn is_narrow(sections: &Sections<'_>) -> bool {
+    sections.get(SectionKind::Triangles).stride == size_of::<[u16; 3]>()
+}
 
 /// The projection along a ray: how its origin sees coordinates on the axes in the order of their roles
 /// (the two minor ones, then the major one), and how far the ray strays for each step of depth.
@@ -140,5 +241,5 @@ pub(crate) fn bounds([a, b, c]: [[i32; 3]; 3]) -> UnitBox {
 /// The front is where the corners run counter-clockwise.
 #[cfg_attr(feature = "wide", inline(always))]
 pub(crate) fn surface<N: Arithmetic>(corners: [[i32; 3]; 3], point: [N; 3]) -> Surface<N> {
-    plane::surface(normal(corners), corners[0], point)
+    flat::surface(normal(corners), corners[0], point)
 }

@@ -116,17 +116,7 @@ impl<'a> Scene<'a> {
 
     /// A primitive as it lies on the lattice, given by its kind and its slot among those of that kind.
     pub fn geometry(&self, kind: Kind, slot: usize) -> Option<Geometry> {
-        let shapes = &self.space.shapes;
-        Some(match kind {
-            Kind::Triangle => Geometry::Triangle(shapes.triangle(slot)?),
-            Kind::Sphere => {
-                let (center, radius) = shapes.spheres.get(slot)?;
-                Geometry::Sphere { center, radius }
-            }
-            Kind::Box => Geometry::Box(*shapes.boxes.get(slot)?),
-            Kind::Disc => Geometry::Disc(*shapes.discs.get(slot)?),
-            Kind::Cone => Geometry::Cone(*shapes.cones.get(slot)?),
-        })
+        self.space.shapes.geometry(kind, slot)
     }
 
     /// The number, in scene-file order, of a primitive given by kind and slot. Below the number of

@@ -1,10 +1,9 @@
 //! The proofs that [`Scene::from_bytes`] makes, in the order in which each relies on those before.
 
 use crate::accel::StructureViews;
-use crate::format::range::{At, at_most, exactly};
-use crate::format::record::{Header, UnitBox};
+use crate::format::range::{At, exactly};
+use crate::format::record::Header;
 use crate::format::{BlobError, Effects, Kind, Leaf, SectionKind, Sections, checksum};
-use crate::geometry::Shapes;
 use crate::number::Fixed;
 use crate::number::Scalar;
 use crate::scene::Scene;
@@ -26,7 +25,7 @@ pub(crate) fn check_sum(blob: &[u8], header: &Header) -> Result<(), BlobError> {
 pub(crate) fn check<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<(), BlobError> {
     check_lights(scene)?;
     check_materials(scene)?;
-    check_shapes(&scene.space.shapes, scene.space.header)?;
+    scene.space.shapes.validate(scene.space.header)?;
     check_objects(scene)?;
     check_structures(scene, sections)
 }
@@ -104,131 +103,6 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
         Effects(header.effects).without(called).0.into(),
         0,
     )
-}
-
-fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
-    at_most(
-        "number of slots",
-        shapes.total() as u64,
-        header.primitives.into(),
-    )?;
-    let bounds = &header.bounds;
-    // A point of the scene, in 1/256 unit.
-    let point = |at: At, what, point: [i32; 3]| {
-        bounds
-            .0
-            .iter()
-            .zip(point)
-            .try_for_each(|(sides, coordinate)| {
-                let [low, high] = sides.map(|unit| i64::from(unit) << 8);
-                at.within(what, coordinate.into(), low, high)
-            })
-    };
-    let inside =
-        |at: At, what, inner: &UnitBox| at.within(what, (!bounds.contains(inner)).into(), 0, 0);
-    let radius = i64::from(i16::MAX) << 9;
-
-    let vertices = if Kind::Triangle.is_available() {
-        shapes.vertices.len()
-    } else {
-        0
-    };
-    for index in 0..vertices {
-        let at = At {
-            section: SectionKind::Vertices,
-            index,
-        };
-        point(
-            at,
-            "coordinate",
-            shapes.vertices.position(index).unwrap_or_default(),
-        )?;
-    }
-    for index in 0..shapes.records(Kind::Triangle) {
-        let at = At {
-            section: SectionKind::Triangles,
-            index,
-        };
-        let corners = shapes.triangles.corners(index).unwrap_or_default();
-        at.all_within(
-            "vertex",
-            &corners.map(|corner| corner as i64),
-            0,
-            vertices as i64 - 1,
-        )?;
-    }
-    for index in 0..shapes.records(Kind::Sphere) {
-        let at = At {
-            section: SectionKind::Spheres,
-            index,
-        };
-        let (center, length) = shapes.spheres.get(index).unwrap_or_default();
-        at.within("radius", length.into(), 1, radius)?;
-        point(
-            at,
-            "lowest coordinate",
-            center.map(|x| x.wrapping_sub(length)),
-        )?;
-        point(
-            at,
-            "highest coordinate",
-            center.map(|x| x.wrapping_add(length)),
-        )?;
-    }
-    for (index, cuboid) in (0..shapes.records(Kind::Box)).zip(shapes.boxes) {
-        let at = At {
-            section: SectionKind::Boxes,
-            index,
-        };
-        point(at, "lowest coordinate", cuboid.lowest)?;
-        point(at, "highest coordinate", cuboid.highest)?;
-        let inverted = cuboid
-            .lowest
-            .iter()
-            .zip(&cuboid.highest)
-            .filter(|(low, high)| low > high);
-        at.within("number of inverted sides", inverted.count() as i64, 0, 0)?;
-    }
-    for (index, disc) in (0..shapes.records(Kind::Disc)).zip(shapes.discs) {
-        let at = At {
-            section: SectionKind::Discs,
-            index,
-        };
-        point(at, "centre", disc.center)?;
-        at.all_within("normal", &disc.normal, -(1 << 24), 1 << 24)?;
-        at.within(
-            "number of normals of length 0",
-            (disc.normal == [0; 3]).into(),
-            0,
-            0,
-        )?;
-        at.within("radius", disc.radius.into(), 1, radius)?;
-        inside(at, "number of boxes outside the scene's", &disc.bounds)?;
-    }
-    for (index, cone) in (0..shapes.records(Kind::Cone)).zip(shapes.cones) {
-        let at = At {
-            section: SectionKind::Cones,
-            index,
-        };
-        point(at, "centre of the base", cone.base)?;
-        point(at, "centre of the apex", cone.apex)?;
-        at.within(
-            "number of axes of length 0",
-            (cone.base == cone.apex).into(),
-            0,
-            0,
-        )?;
-        let radii = [cone.base_radius, cone.apex_radius];
-        at.all_within("radius", &radii, 0, radius)?;
-        at.within(
-            "number of cones without a radius",
-            (radii == [0; 2]).into(),
-            0,
-            0,
-        )?;
-        inside(at, "number of boxes outside the scene's", &cone.bounds)?;
-    }
-    Ok(())
 }
 
 fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {

@@ -1,7 +1,7 @@
 //! Which Cargo features of this crate a scene requires.
 
 use crate::format::Kind;
-use crate::geometry::Triangles;
+use crate::geometry::triangle::Triangles;
 use crate::scene::Scene;
 
 impl Scene<'_> {

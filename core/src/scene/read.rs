@@ -4,17 +4,12 @@ use crate::accel::StructureViews;
 use crate::accel::space::Space;
 use crate::accel::stack::Entry;
 use crate::format::limits::{
-    DISPLAY_VALUES, FARTHEST, MAX_RAY_DEPTH, MAX_SAMPLES, MAX_STACK_DEPTH, WIDE_INDICES,
-    WIDE_LATTICE,
+    DISPLAY_VALUES, FARTHEST, MAX_RAY_DEPTH, MAX_SAMPLES, MAX_STACK_DEPTH,
 };
 use crate::format::range::{At, at_most, exactly};
-use crate::format::record::{
-    ALIGNMENT, Cone, Cuboid, Disc, ENDIANNESS, Header, MAGIC, VERSION, View,
-};
-use crate::format::{BlobError, Effects, Indices, Kind, SectionKind, Sections, Structure};
-#[cfg(feature = "wide")]
-use crate::geometry::{Clusters, Packs, Packs24, Strips};
-use crate::geometry::{Shapes, Spheres, Triangles, Vertices};
+use crate::format::record::{ALIGNMENT, ENDIANNESS, Header, MAGIC, VERSION, View};
+use crate::format::{BlobError, Effects, Indices, SectionKind, Sections, Structure};
+use crate::geometry::Shapes;
 use crate::scene::Scene;
 #[cfg(feature = "wide")]
 use crate::simd::SimdLevel;
@@ -67,7 +62,7 @@ pub(crate) fn scene<'a>(
 ) -> Result<Scene<'a>, BlobError> {
     check_limits(header)?;
     let view = check_view(sections)?;
-    let shapes = read_shapes(sections, header)?;
+    let shapes = Shapes::read(sections, header)?;
     Ok(Scene {
         space: Space {
             header,
@@ -85,7 +80,7 @@ pub(crate) fn scene<'a>(
         object_first: Indices::read(sections, SectionKind::ObjectFirst)?,
         object_material: Indices::read(sections, SectionKind::ObjectMaterial)?,
         order: Indices::read(sections, SectionKind::Order)?,
-        needs_norm: shapes.count(Kind::Sphere) > 0 || shapes.count(Kind::Cone) > 0,
+        needs_norm: shapes.needs_norm(),
     })
 }
 
@@ -189,72 +184,4 @@ fn check_view<'a>(sections: &Sections<'a>) -> Result<&'a View, BlobError> {
         return Err(BlobError::MissingPart { missing });
     }
     Ok(view)
-}
-
-fn read_shapes<'a>(sections: &Sections<'a>, header: &Header) -> Result<Shapes<'a>, BlobError> {
-    let narrow = sections.get(SectionKind::Triangles).stride == size_of::<[u16; 3]>();
-    let short = header.storage_bits == 16;
-    let triangles = sections.len(SectionKind::Triangles);
-    let kinds = [
-        (Kind::Triangle, triangles),
-        (Kind::Sphere, sections.len(SectionKind::Spheres)),
-        (Kind::Box, sections.len(SectionKind::Boxes)),
-        (Kind::Disc, sections.len(SectionKind::Discs)),
-        (Kind::Cone, sections.len(SectionKind::Cones)),
-    ];
-    let kinds = kinds.map(|(kind, count)| (count > 0 && !kind.is_available(), kind.name()));
-    let stored = [
-        (!short && !WIDE_LATTICE, "wide-lattice"),
-        (triangles > 0 && !narrow && !WIDE_INDICES, "wide-indices"),
-    ];
-    // Triangles and spheres that lie in clusters alone.
-    let holds = |kind| sections.len(kind) > 0;
-    let sole = holds(SectionKind::Strips) && triangles == 0
-        || holds(SectionKind::Packs) && !holds(SectionKind::Spheres);
-    if sole && cfg!(not(feature = "wide")) {
-        return Err(BlobError::MissingPart { missing: "wide" });
-    }
-    for (is_missing, missing) in kinds.into_iter().chain(stored) {
-        if is_missing {
-            return Err(BlobError::MissingPart { missing });
-        }
-    }
-    Ok(Shapes {
-        vertices: if short {
-            Vertices::V16(sections.records(SectionKind::Vertices)?)
-        } else {
-            Vertices::V24(sections.records(SectionKind::Vertices)?)
-        },
-        triangles: if narrow || triangles == 0 {
-            Triangles::U16(sections.records(SectionKind::Triangles)?)
-        } else {
-            Triangles::U32(sections.records(SectionKind::Triangles)?)
-        },
-        spheres: if short {
-            Spheres::S16(sections.records(SectionKind::Spheres)?)
-        } else {
-            Spheres::S24(sections.records(SectionKind::Spheres)?)
-        },
-        boxes: sections.records::<Cuboid>(SectionKind::Boxes)?,
-        discs: sections.records::<Disc>(SectionKind::Discs)?,
-        cones: sections.records::<Cone>(SectionKind::Cones)?,
-        #[cfg(feature = "wide")]
-        clusters: Clusters {
-            strips: if short {
-                Strips::S16(sections.records(SectionKind::Strips)?)
-            } else {
-                Strips::S24(sections.records(SectionKind::Strips)?)
-            },
-            packs: if short {
-                Packs::P16(sections.records(SectionKind::Packs)?)
-            } else {
-                Packs::P24(Packs24 {
-                    packs: sections.records(SectionKind::Packs)?,
-                    radii: sections.records(SectionKind::Radii)?,
-                })
-            },
-            members: Indices::read(sections, SectionKind::Members)?,
-            homes: sections.records(SectionKind::Homes)?,
-        },
-    })
 }

@@ -1,10 +1,11 @@
 //! One shape of each kind with known answers, as a blob that is put together here.
 
 use crate::format::record::{
-    ALIGNMENT, Cone, Cuboid, Disc, ENDIANNESS, Header, Light, MAGIC, Material, SectionEntry,
-    Sphere16, UnitBox, VERSION, Vertex16, View,
+    ALIGNMENT, ENDIANNESS, Header, Light, MAGIC, Material, SectionEntry, Sphere16, UnitBox,
+    VERSION, Vertex16, View,
 };
 use crate::format::{Aligned, SectionKind, checksum};
+use crate::geometry::{cone::Cone, cuboid::Cuboid, disc::Disc};
 use crate::{Effects, Structure};
 use bytemuck::{NoUninit, Zeroable, bytes_of};
 use core::mem::size_of;

@@ -12,7 +12,8 @@ use crate::scene::{Object, Scene, Shape};
 use crate::table::grouped;
 use glam::{DVec3, IVec3};
 use gridel_core::Kind;
-use gridel_core::format::record::{Cone, Cuboid, Disc, UnitBox};
+use gridel_core::format::record::UnitBox;
+use gridel_core::geometry::{cone::Cone, cuboid::Cuboid, disc::Disc};
 use serde::{Serialize, Serializer};
 use std::collections::HashMap;
 

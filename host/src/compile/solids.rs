@@ -4,7 +4,8 @@ use super::direction;
 use super::displacement::{self, FlatDisc, Frustum};
 use super::lattice::Lattice;
 use glam::DVec3;
-use gridel_core::format::record::{Cone, Cuboid, Disc, UnitBox};
+use gridel_core::format::record::UnitBox;
+use gridel_core::geometry::{cone::Cone, cuboid::Cuboid, disc::Disc};
 
 /// Steps that the surface of a cone may be moved before a better axis is searched for: what rounds
 /// its points and radii, and some lean.

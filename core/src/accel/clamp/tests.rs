@@ -1,7 +1,9 @@
 use crate::accel::Number;
 use crate::accel::clamp::accept_in_box;
 use crate::accel::cull::{Cull, Culling};
-use crate::format::record::{Cuboid, UnitBox, Vertex24};
+use crate::format::record::{UnitBox, Vertex24};
+use crate::geometry::cuboid::Cuboid;
+use crate::geometry::primitive::Primitive;
 use crate::geometry::triangle::Projection;
 use crate::geometry::{Crossing, accept, sphere, triangle};
 use crate::number::Fixed;
@@ -44,7 +46,7 @@ fn box_is_in_its_box<N: Number>(cuboid: &Cuboid, origin: [f64; 3], aim: [f64; 3]
     let Some(ray) = ray::<N>(origin, aim) else {
         return;
     };
-    if let Some(crossing) = cuboid.cross(&ray) {
+    if let Some(crossing) = cuboid.cross(&ray, N::ZERO) {
         is_in_its_box(&ray, crossing, cuboid.bounds());
     }
 }

@@ -211,7 +211,7 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
                         (leaf.first as usize, &mut next_sparse)
                     }
                     (Kind::Sphere, 0) => (leaf.first as usize, &mut next_pack),
-                    (Kind::Box | Kind::Disc | Kind::Cone, 1) => {
+                    (kind, 1) if !kind.is_clustered() => {
                         let next = &mut others[leaf.kind as usize];
                         let slots = space.shapes.count(leaf.kind);
                         let first = leaf.first as usize;
@@ -243,16 +243,14 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
             return Err(wrong(section, index, what, next_node, nodes.len()));
         }
     }
-    let all = |kind: Kind| (others[kind as usize], space.shapes.count(kind));
-    let reached = [
+    let clusters = [
         (next_strip, strips.len()),
         (next_pack, full_packs),
         (next_sparse, packs.len()),
-        all(Kind::Box),
-        all(Kind::Disc),
-        all(Kind::Cone),
     ];
-    for (found, expected) in reached {
+    let kinds = Kind::ALL.into_iter().filter(|kind| !kind.is_clustered());
+    let others = kinds.map(|kind| (others[kind as usize], space.shapes.count(kind)));
+    for (found, expected) in clusters.into_iter().chain(others) {
         if found != expected {
             return Err(BlobError::Count {
                 section,
@@ -312,7 +310,7 @@ fn check_homes(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
                         && sphere == shapes.spheres.get(slot as usize)
                         && sphere.is_some()
                 }
-                Kind::Box | Kind::Disc | Kind::Cone => {
+                _ => {
                     let leaf = Leaf {
                         kind,
                         first: slot,

@@ -3,6 +3,7 @@
 
 use crate::format::record::UnitBox;
 use crate::geometry::cone::Cone;
+use crate::geometry::primitive::Primitive;
 use crate::number::{Arithmetic, Fixed, Format};
 use crate::ray::Ray;
 

@@ -1,4 +1,4 @@
-//! Planes: where a point of one lies next to a point that was computed, and how far off that is.
+//! Flat surfaces: where a point of a plane lies next to a point that was computed, and how far off that is.
 
 use crate::axis::pick;
 use crate::geometry::Surface;

@@ -1,0 +1,103 @@
+//! What a shape is that has one form of records.
+
+use crate::format::BlobError;
+use crate::format::range::At;
+use crate::format::record::UnitBox;
+use crate::geometry::{Crossing, Part, Surface};
+use crate::number::Arithmetic;
+use crate::ray::Ray;
+use bytemuck::Pod;
+
+/// The record of a shape: all that the core knows of it.
+///
+/// The registry of shapes, `shapes!` in [`format::kind`](crate::format::Kind), names every record. What differs between
+/// shapes beside that is a constant here, so that a search is compiled for each of them.
+pub(crate) trait Primitive: Pod {
+    /// Whether [`cross`](Self::cross) needs the norm of the ray's slopes.
+    const NEEDS_NORM: bool = false;
+    /// Whether a test costs so much that the ray is first tested against the box.
+    const TESTS_BOX: bool = false;
+    /// Whether rounding can move a crossing out of the box. It is clamped to the box then.
+    const CLAMPS: bool = true;
+    /// Whether the shape has no inside: its front is the side to which its normal points.
+    const FLAT: bool = false;
+
+    /// The box on the box lattice.
+    fn bounds(&self) -> UnitBox;
+
+    /// Where the line of a ray enters and leaves the shape, behind the origin too. `recip_norm2` is
+    /// [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2) of the ray's slopes, where it is needed.
+    ///
+    /// A shape that a line can enter more than once chooses the first interval that ends at or after the ray's `tmin`.
+    fn cross<N: Arithmetic>(&self, ray: &Ray<N>, recip_norm2: N) -> Option<Crossing<N>>;
+
+    /// How the surface lies where a ray meets it: the normal points outward, or to the front. `part` is that of the
+    /// crossing, with [`LEAVING`](crate::geometry::LEAVING) where the ray leaves.
+    fn surface<N: Arithmetic>(&self, ray: &Ray<N>, part: Part, point: [N; 3]) -> Surface<N>;
+
+    /// A point of a solid near a point of its surface, `depth` beneath all faces; where the solid is thinner,
+    /// halfway between them.
+    fn inside<N: Arithmetic>(&self, [point, normal]: [[N; 3]; 2], depth: N) -> [N; 3] {
+        beneath(point, normal, depth)
+    }
+
+    /// Proves the ranges of all fields.
+    fn validate(&self, at: InScene<'_>) -> Result<(), BlobError>;
+}
+
+/// The point at a depth along a normal.
+#[inline(always)]
+pub(crate) fn beneath<N: Arithmetic>(point: [N; 3], normal: [N; 3], depth: N) -> [N; 3] {
+    let axis = |k: usize| point[k] - depth * normal[k];
+    [axis(0), axis(1), axis(2)]
+}
+
+/// The largest radius in 1/256 unit.
+pub(crate) const MAX_RADIUS: i64 = (i16::MAX as i64) << 9;
+
+/// Errors for a record that lies in the scene's box.
+#[derive(Clone, Copy)]
+pub(crate) struct InScene<'a> {
+    pub(crate) at: At,
+    /// The scene's box.
+    pub(crate) bounds: &'a UnitBox,
+}
+
+impl InScene<'_> {
+    /// An error unless a point in 1/256 unit lies in the scene's box.
+    #[inline(always)]
+    pub(crate) fn point(self, what: &'static str, point: [i32; 3]) -> Result<(), BlobError> {
+        let mut sides = self.bounds.0.iter().zip(point);
+        let inside = sides.all(|(&[low, high], coordinate)| {
+            i32::from(low) << 8 <= coordinate && coordinate <= i32::from(high) << 8
+        });
+        if inside {
+            return Ok(());
+        }
+        self.point_outside(what, point)
+    }
+
+    /// The error of a point outside of the scene's box.
+    #[cold]
+    #[inline(never)]
+    fn point_outside(self, what: &'static str, point: [i32; 3]) -> Result<(), BlobError> {
+        let mut sides = self.bounds.0.iter().zip(point);
+        sides.try_for_each(|(sides, coordinate)| {
+            let [low, high] = sides.map(|unit| i64::from(unit) << 8);
+            self.at.within(what, coordinate.into(), low, high)
+        })
+    }
+
+    /// An error unless the box of the record lies in the scene's.
+    pub(crate) fn inner(self, bounds: &UnitBox) -> Result<(), BlobError> {
+        self.none(
+            "number of boxes outside the scene's",
+            !self.bounds.contains(bounds),
+        )
+    }
+
+    /// An error if there is what should not be.
+    pub(crate) fn none(self, what: &'static str, found: bool) -> Result<(), BlobError> {
+        self.at.within(what, found.into(), 0, 0)
+    }
+}
