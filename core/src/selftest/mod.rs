@@ -13,11 +13,14 @@ mod hits;
 mod numbers;
 mod picture;
 mod scene;
-#[cfg(feature = "std")]
+#[cfg(any(test, feature = "std"))]
 mod std_host;
 
-#[cfg(feature = "std")]
+#[cfg(any(test, feature = "std"))]
 pub use std_host::StdHost;
+
+#[cfg(test)]
+pub(crate) use scene::TinyBlob;
 
 use crate::accel::Number;
 use core::ffi::CStr;
