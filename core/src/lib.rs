@@ -42,7 +42,7 @@ mod query;
 pub mod ray;
 pub mod render;
 pub mod scene;
-#[cfg(feature = "selftest")]
+#[cfg(any(test, feature = "selftest"))]
 pub mod selftest;
 pub mod shade;
 #[cfg(feature = "wide")]

@@ -1,7 +1,55 @@
-//! What light does in a scene, as a set: the scene pays for these and for nothing else.
+//! What light does in a scene, as a set: the scene pays for these and for nothing else. The one place
+//! that names all effects.
+//!
+//! An effect is a file in [`shade`](crate::shade) and a row in the table below. Its code is a Cargo
+//! feature of the same name.
 
 use crate::format::limits::work_depth;
 use core::fmt;
+
+/// Hands the table of effects to a macro: constant, bit in the blob, name and Cargo feature, type and
+/// module in `shade`, the most rays that wait after a hit because of it, and what calls for it.
+///
+/// At each place of the ray loop effects act in this order.
+macro_rules! effects {
+    ($macro:ident) => {
+        $macro! {
+            /// Shadows: light is blocked on its way to a surface. One shadow ray per light and hit.
+            SHADOW = 0, "shadow", Shadow in shadow, casts 0,
+                for "a light and an object, unless the scene file turns shadows off";
+            /// Highlights of the lights.
+            HIGHLIGHT = 1, "highlight", Highlight in highlight, casts 0,
+                for "a material whose highlight is not 0";
+            /// Mirrors: one more ray per hit.
+            MIRROR = 2, "mirror", Mirror in mirror, casts 1,
+                for "a material whose mirror is not 0";
+            /// Glass: up to two more rays per hit, and shadows through it.
+            GLASS = 3, "glass", Glass in glass, casts 2,
+                for "a material whose transmit is not 0";
+            /// Glass that absorbs light along the way.
+            ABSORPTION = 4, "absorption", Absorption in absorption, casts 0,
+                for "such a material whose absorption is not 0";
+            /// Checkerboards.
+            CHECKER = 5, "checker", Checker in checker, casts 0,
+                for "a material whose checker size is above 0";
+        }
+    };
+}
+
+pub(crate) use effects;
+
+/// What to do about a Cargo feature that a scene calls for and that this build lacks.
+macro_rules! enable {
+    ($feature:literal) => {
+        concat!(
+            "the scene calls for `",
+            $feature,
+            "`: enable that feature of gridel-core"
+        )
+    };
+}
+
+pub(crate) use enable;
 
 /// A set of effects.
 ///
@@ -10,58 +58,48 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Effects(pub u32);
 
+macro_rules! sets {
+    ($(
+        $(#[doc = $doc:literal])*
+        $effect:ident = $bit:literal, $name:literal, $type:ident in $module:ident,
+            casts $rays:literal, for $caller:literal;
+    )*) => {
+        impl Effects {
+            $($(#[doc = $doc])* pub const $effect: Effects = Effects(1 << $bit);)*
+
+            /// Every effect, with its name and Cargo feature.
+            pub const NAMED: [(Effects, &'static str); [$($bit),*].len()] =
+                [$((Effects::$effect, $name)),*];
+
+            /// What calls for each effect of [`NAMED`](Self::NAMED).
+            pub const CALLERS: [&'static str; Self::NAMED.len()] = [$($caller),*];
+
+            /// All effects that there are.
+            pub const ALL: Effects = Effects($(1 << $bit)|*);
+
+            /// The effects whose code this build holds.
+            pub const AVAILABLE: Effects = Effects($((cfg!(feature = $name) as u32) << $bit)|*);
+
+            /// The effects because of which rays wait.
+            pub(crate) const CASTING: Effects = Effects($((($rays > 0) as u32) << $bit)|*);
+
+            /// A sentence about the Cargo feature of an effect of this set that this build lacks.
+            pub(crate) const fn missing(self) -> Option<&'static str> {
+                let missing = self.without(Self::AVAILABLE);
+                $(if missing.contains(Effects::$effect) {
+                    return Some(enable!($name));
+                })*
+                None
+            }
+        }
+    };
+}
+
+effects!(sets);
+
 impl Effects {
     /// None: surfaces have their diffuse colour under unshadowed lights.
     pub const NONE: Effects = Effects(0);
-    /// Objects stand in each other's light: a shadow ray a light and hit.
-    pub const SHADOW: Effects = Effects(1 << 0);
-    /// Highlights of the lights.
-    pub const HIGHLIGHT: Effects = Effects(1 << 1);
-    /// Mirrors: one more ray a hit.
-    pub const MIRROR: Effects = Effects(1 << 2);
-    /// Glass: up to two more rays a hit, and shadows through it.
-    pub const GLASS: Effects = Effects(1 << 3);
-    /// Glass that takes up light along the way.
-    pub const ABSORPTION: Effects = Effects(1 << 4);
-    /// Checkerboards.
-    pub const CHECKER: Effects = Effects(1 << 5);
-
-    /// Every effect, with its name and Cargo feature.
-    pub const NAMED: [(Effects, &'static str); 6] = [
-        (Effects::SHADOW, "shadow"),
-        (Effects::HIGHLIGHT, "highlight"),
-        (Effects::MIRROR, "mirror"),
-        (Effects::GLASS, "glass"),
-        (Effects::ABSORPTION, "absorption"),
-        (Effects::CHECKER, "checker"),
-    ];
-
-    /// All effects that there are.
-    pub const ALL: Effects = Effects(0x3f);
-
-    /// The effects whose code this build holds.
-    pub const AVAILABLE: Effects = {
-        let mut set = 0;
-        if cfg!(feature = "shadow") {
-            set |= Effects::SHADOW.0;
-        }
-        if cfg!(feature = "highlight") {
-            set |= Effects::HIGHLIGHT.0;
-        }
-        if cfg!(feature = "mirror") {
-            set |= Effects::MIRROR.0;
-        }
-        if cfg!(feature = "glass") {
-            set |= Effects::GLASS.0;
-        }
-        if cfg!(feature = "absorption") {
-            set |= Effects::ABSORPTION.0;
-        }
-        if cfg!(feature = "checker") {
-            set |= Effects::CHECKER.0;
-        }
-        Effects(set)
-    };
 
     /// Whether all of `other` are in this set.
     pub const fn contains(self, other: Effects) -> bool {
@@ -73,19 +111,19 @@ impl Effects {
         Effects(self.0 & !other.0)
     }
 
+    /// This set under a condition, else none.
+    pub(crate) const fn only_if(self, condition: bool) -> Effects {
+        if condition { self } else { Effects::NONE }
+    }
+
     /// This set and that of `other`.
     pub const fn with(self, other: Effects) -> Effects {
         Effects(self.0 | other.0)
     }
 
-    /// Whether rays cause others that have to wait.
-    pub(crate) const fn cast_rays(self) -> bool {
-        self.0 & Effects::MIRROR.with(Effects::GLASS).0 != 0
-    }
-
     /// Places for waiting rays that pictures with these effects need at a ray depth: see [`work_depth`].
     pub const fn work_depth(self, depth: u8) -> usize {
-        if depth > 0 && self.cast_rays() {
+        if depth > 0 && self.0 & Self::CASTING.0 != 0 {
             work_depth(depth)
         } else {
             0

@@ -6,7 +6,7 @@
 pub(crate) mod checksum;
 #[cfg(feature = "wide")]
 pub mod cluster;
-mod effects;
+pub(crate) mod effects;
 mod error;
 mod index;
 pub(crate) mod kind;

@@ -1,5 +1,6 @@
 //! What a program must provide for its own blob, read while it is compiled.
 
+use crate::format::effects::enable;
 use crate::format::kind::shapes;
 use crate::format::record::{Header, SectionEntry, View};
 use crate::format::word::{half, proved, word};
@@ -102,12 +103,11 @@ impl Requirements {
             ($($called:expr => $feature:literal,)*) => {
                 [$((
                     $called && !cfg!(feature = $feature),
-                    concat!("the scene calls for `", $feature, "`: enable that feature of gridel-core"),
+                    enable!($feature),
                 ),)*]
             };
         }
         use SectionKind::{Packs, Spheres, Strips, Triangles};
-        let effects = self.effects;
         let clusters_alone =
             self.has(Strips) && !self.has(Triangles) || self.has(Packs) && !self.has(Spheres);
         macro_rules! all {
@@ -125,12 +125,6 @@ impl Requirements {
             self.wide_indices => "wide-indices",
             self.display_values => "display-values",
             clusters_alone => "wide",
-            effects.contains(Effects::SHADOW) => "shadow",
-            effects.contains(Effects::HIGHLIGHT) => "highlight",
-            effects.contains(Effects::MIRROR) => "mirror",
-            effects.contains(Effects::GLASS) => "glass",
-            effects.contains(Effects::ABSORPTION) => "absorption",
-            effects.contains(Effects::CHECKER) => "checker",
             } };
         }
         let parts = shapes!(all);
@@ -141,6 +135,6 @@ impl Requirements {
             }
             index += 1;
         }
-        None
+        self.effects.missing()
     }
 }

@@ -36,7 +36,7 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
         let tracing = self.tracing();
         let mut radiance = Color::BLACK;
         let camera = || Ok(*ray);
-        while !tracing.step::<N, A, C, EFFECTS>(camera, &mut radiance, space, count) {}
+        while !tracing.step::<N, A, C, EFFECTS>(0, camera, &mut radiance, space, count) {}
         let seen = radiance.displayable();
         if C::ENABLED {
             count.event(Event::Seen {

@@ -45,7 +45,7 @@ impl<N: Number> Samples<N> {
         };
         let radiance = &mut self.radiance;
         let tracing = renderer.tracing();
-        if !tracing.step::<N, A, C, EFFECTS>(camera, radiance, space, count) {
+        if !tracing.step::<N, A, C, EFFECTS>(self.index, camera, radiance, space, count) {
             return None;
         }
         // Clamped before they are averaged, so that the edge of a highlight is smooth.

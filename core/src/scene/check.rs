@@ -94,9 +94,10 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
         )?;
         called = called.with(material.effects());
     }
-    // A scene file may turn shadows off.
-    if !scene.lights.is_empty() && header.objects > 0 {
-        called = called.with(Effects::SHADOW);
+    // Without objects lights call for nothing.
+    if header.objects > 0 {
+        let lights = scene.lights.iter();
+        called = lights.fold(called, |called, light| called.with(light.effects()));
     }
     exactly(
         "set of effects that nothing calls for",

@@ -14,12 +14,15 @@ mod hits;
 mod numbers;
 mod picture;
 mod scene;
-#[cfg(feature = "std")]
+#[cfg(any(test, feature = "std"))]
 mod std_host;
 
 pub use checks::Host;
-#[cfg(feature = "std")]
+#[cfg(any(test, feature = "std"))]
 pub use std_host::StdHost;
+
+#[cfg(test)]
+pub(crate) use scene::TinyBlob;
 
 use checks::Checks;
 

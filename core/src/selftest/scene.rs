@@ -18,7 +18,7 @@ const ROOM: usize = 1280;
 const ONE: i32 = 1 << 30;
 
 /// A blob with its length.
-pub(super) struct TinyBlob {
+pub(crate) struct TinyBlob {
     room: Aligned<[u8; ROOM]>,
     length: usize,
     sections: usize,
@@ -37,7 +37,7 @@ impl TinyBlob {
     /// | 2 box | (-90, -90, -50) to (90, -70, 50) |
     /// | 3 disc | centre (-40, 60, 20), radius 20, facing up |
     /// | 4 cone | base (40, -60, 20) of radius 20, apex (40, -20, 20) |
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let fine = |units: i32| units << 8;
         let point = |p: [i32; 3]| p.map(fine);
         let vertices = [[-60, -20, -10], [-20, -20, -10], [-40, 30, -10]].map(Vertex16);
@@ -97,7 +97,7 @@ impl TinyBlob {
         blob
     }
 
-    pub(super) fn bytes(&self) -> &[u8] {
+    pub(crate) fn bytes(&self) -> &[u8] {
         &self.room.0[..self.length]
     }
 

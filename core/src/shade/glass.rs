@@ -1,18 +1,95 @@
-//! Glass: Snell's law, Fresnel's equations, Beer's law.
+//! Glass: Snell's law, Fresnel's equations. One or two more rays per hit, and shadows through it.
 //!
 //! The index of refraction is kept as its inverse `k`, at most 1, and the refracted direction may
 //! have any length, so that every number here lies between -2 and 2.
 
 use crate::accel::Number;
+use crate::format::Effects;
 use crate::format::record::Material;
+use crate::observe::count::Observer;
+use crate::observe::event::{Event, RayKind};
+use crate::ray::Ray;
 use crate::shade::Color;
+use crate::shade::effect::{Effect, Tracer};
+use crate::shade::surface::{Bounce, Filter, Secondary, Surface};
+
+pub(crate) struct Glass;
+
+impl Effect for Glass {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects::GLASS;
+    const NEEDS_DIRECTION: bool = true;
+    const FILTERS: bool = true;
+
+    #[inline(always)]
+    fn is_called_by_material(material: &Material) -> bool {
+        material.transmit != [0; 3]
+    }
+
+    #[inline(always)]
+    fn filter<'s, N: Number, X: Tracer<'s, N>>(
+        _: &mut X,
+        (): &mut (),
+        _: &Ray<N>,
+        filter: &mut Filter<'_, N>,
+    ) {
+        let material = filter.material;
+        if !Self::is_called_by_material(material) {
+            return;
+        }
+        filter.passes = true;
+        let cos = N::from_wide(N::dot(filter.hit.normal, filter.to_light));
+        let cos = cos.abs().min(N::ONE);
+        let passed = straight_through(N::ratio(material.inverse_ior), cos);
+        let transmit = Color::ratios(material.transmit);
+        filter.left = filter.left.times(transmit).scaled(passed);
+    }
+
+    #[inline(always)]
+    fn bounce<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        surface: &Surface<'_, N>,
+        bounce: &mut Bounce<N>,
+    ) {
+        let Surface { hit, material, .. } = *surface;
+        if !Self::is_called_by_material(material) {
+            return;
+        }
+        let Split {
+            reflected,
+            refracted,
+        } = split(
+            N::ratio(material.inverse_ior),
+            hit.front,
+            surface.direction,
+            surface.normal,
+            bounce.cos_in,
+        );
+        if X::Observer::ENABLED {
+            tracer.count().event(Event::Split {
+                reflected: reflected.ratio_to_f64(),
+            });
+        }
+        let transmit = Color::ratios(material.transmit);
+        bounce.mirror(transmit.scaled(reflected));
+        let secondary = Secondary {
+            kind: RayKind::Refracted,
+            direction: refracted,
+            outward: !hit.front,
+            weight: surface.weight.times(transmit.scaled(N::ONE - reflected)),
+        };
+        tracer.send(hit, secondary);
+    }
+}
 
 /// What a glass surface does with a ray.
-pub(crate) struct Split<N> {
+struct Split<N> {
     /// The part that is reflected; 1 is total internal reflection.
-    pub(crate) reflected: N,
+    reflected: N,
     /// The direction of the rest, of any length.
-    pub(crate) refracted: [N; 3],
+    refracted: [N; 3],
 }
 
 /// The reflected part of unpolarised light, from the cosines on both sides of a surface.
@@ -29,13 +106,7 @@ fn fresnel<N: Number>(k: N, cos_in: N, cos_out: N) -> N {
 
 /// Splits a ray of direction `d` (of length 1) at a surface. `normal` points to where the ray came
 /// from, `cos_in` is the cosine between them; `entering` says that the ray goes into the glass.
-pub(crate) fn split<N: Number>(
-    k: N,
-    entering: bool,
-    d: [N; 3],
-    normal: [N; 3],
-    cos_in: N,
-) -> Split<N> {
+fn split<N: Number>(k: N, entering: bool, d: [N; 3], normal: [N; 3], cos_in: N) -> Split<N> {
     if k == N::ONE {
         return Split {
             reflected: N::ZERO,
@@ -66,21 +137,12 @@ pub(crate) fn split<N: Number>(
 
 /// The part of light that passes a surface straight on, as shadows do: what Fresnel's equations
 /// leave at the ray's angle, taken from outside whichever way it goes.
-pub(crate) fn straight_through<N: Number>(k: N, cos_in: N) -> N {
+fn straight_through<N: Number>(k: N, cos_in: N) -> N {
     if k == N::ONE {
         return N::ONE;
     }
     let sin2_in = (N::ONE - cos_in * cos_in).max(N::ZERO);
     N::ONE - fresnel(k, cos_in, (N::ONE - k * k * sin2_in).sqrt())
-}
-
-/// What is left of light after a length of glass.
-pub(crate) fn absorb<N: Number>(material: &Material, length: N) -> Color<N> {
-    Color(
-        material
-            .absorption
-            .map(|coefficient| length.exp_neg(coefficient)),
-    )
 }
 
 #[cfg(test)]

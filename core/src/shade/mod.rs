@@ -1,8 +1,53 @@
-//! What a surface makes of light: colours, materials, lights, glass.
+//! What a surface makes of light: one file for each effect, and what they share.
+//!
+//! An effect implements the trait of `effect.rs` at one or more places of the ray loop, and is named
+//! in the table of `format/effects.rs`.
+//!
+//! | place | when | today |
+//! |---|---|---|
+//! | `camera` | a ray leaves the camera | |
+//! | `arrive` | a ray has come to a hit | absorption |
+//! | `surface` | a ray hits a surface | checker |
+//! | `reflect` | a surface reflects a light | highlight |
+//! | `light` | light arrives at a surface | shadow |
+//! | `filter` | a surface is in the way of light | glass, absorption |
+//! | `miss` | a ray hits nothing | |
+//! | `bounce` | a surface sends rays on | mirror, glass |
+//! | `pixel` | all rays of a sample were traced | |
 
 mod color;
-pub(crate) mod glass;
+pub(crate) mod effect;
 pub(crate) mod light;
 mod material;
+pub(crate) mod surface;
+
+use crate::format::effects::effects;
 
 pub(crate) use color::Color;
+
+/// Declares the module of every effect, and lists them.
+macro_rules! list {
+    ($(
+        $(#[doc = $doc:literal])*
+        $effect:ident = $bit:literal, $name:literal, $type:ident in $module:ident,
+            casts $rays:literal, for $caller:literal;
+    )*) => {
+        $(mod $module;)*
+
+        /// The effects of this crate, in the order in which they act, and others behind them.
+        pub(crate) type EffectsThen<Others> = list!(@ $($module::$type,)*; Others);
+    };
+    (@ ; $others:ident) => { $others };
+    (@ $first:path, $($rest:path,)*; $others:ident) => { ($first, list!(@ $($rest,)*; $others)) };
+}
+
+effects!(list);
+
+/// The list that the ray loop calls.
+#[cfg(not(test))]
+pub(crate) type All = EffectsThen<()>;
+
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+pub(crate) use tests::All;

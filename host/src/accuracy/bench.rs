@@ -156,7 +156,7 @@ impl<'s> Bench<'s> {
     pub fn is_secondary(&mut self) -> Result<bool, MeasureError> {
         let base = self.base();
         let effects = self.blob(&base)?.scene()?.effects();
-        Ok(effects.0 & Effects::MIRROR.with(Effects::GLASS).0 != 0)
+        Ok(effects.work_depth(1) > 0)
     }
 
     fn blob(&mut self, setting: &Setting) -> Result<&Blob, MeasureError> {

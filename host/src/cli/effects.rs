@@ -1,5 +1,6 @@
 //! The effects of a scene, and what calls for each.
 
+use gridel_core::format::record::{Light, Material};
 use gridel_core::{Effects, Scene};
 use gridel_host::compile::Report;
 use serde::Serialize;
@@ -22,14 +23,11 @@ impl CalledFor {
     /// The effects of a blob, whose lights and materials have numbers.
     pub fn in_blob(scene: &Scene<'_>) -> Vec<Self> {
         let callers = |effect: Effects| -> Vec<String> {
-            if effect == Effects::SHADOW {
-                let lights = 0..scene.lights().len();
-                return lights.map(|number| format!("light {number}")).collect();
-            }
-            let materials = scene.materials().iter().enumerate();
-            materials
-                .filter(|(_, material)| material.effects().contains(effect))
-                .map(|(number, _)| format!("material {number}"))
+            let lights = scene.lights().iter().map(Light::effects);
+            let lights = numbers_of("light", effect, lights);
+            let materials = scene.materials().iter().map(Material::effects);
+            lights
+                .chain(numbers_of("material", effect, materials))
                 .collect()
         };
         Effects::NAMED
@@ -41,6 +39,18 @@ impl CalledFor {
             })
             .collect()
     }
+}
+
+/// The names of those that call for an effect, counted from 0.
+fn numbers_of(
+    what: &str,
+    effect: Effects,
+    called: impl Iterator<Item = Effects>,
+) -> impl Iterator<Item = String> {
+    let numbers = (0_u32..).zip(called);
+    numbers
+        .filter(move |(_, called)| called.contains(effect))
+        .map(move |(number, _)| format!("{what} {number}"))
 }
 
 impl fmt::Display for CalledFor {

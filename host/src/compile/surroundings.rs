@@ -89,9 +89,22 @@ impl Surroundings {
             });
             object_material.push(number);
         }
-        if scene.render.shadows && !lights.is_empty() && !scene.objects.is_empty() {
-            let numbers = 0..lights.len();
-            called_for.extend(numbers.map(|number| (Effects::SHADOW, format!("light {number}"))));
+        let lights = lights
+            .iter()
+            .enumerate()
+            .map(|(number, light)| light_record(light, number, &far))
+            .collect::<Result<Vec<_>, _>>()?;
+        // A scene file may turn shadows off.
+        let unwanted = if scene.render.shadows {
+            Effects::NONE
+        } else {
+            Effects::SHADOW
+        };
+        if !scene.objects.is_empty() {
+            let effects = (0..).zip(lights.iter().map(record::Light::effects));
+            called_for.extend(effects.map(|(number, effects): (usize, _)| {
+                (effects.without(unwanted), format!("light {number}"))
+            }));
         }
         let effects = called_for
             .iter()
@@ -110,11 +123,6 @@ impl Surroundings {
             })
             .collect();
 
-        let lights = lights
-            .iter()
-            .enumerate()
-            .map(|(number, light)| light_record(light, number, &far))
-            .collect::<Result<_, _>>()?;
         let view = view_record(
             scene,
             [background, ambient],

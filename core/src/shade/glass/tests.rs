@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::number::{Fixed, Format};
+use crate::shade::absorption::absorb;
 use bytemuck::Zeroable;
 use proptest::prelude::*;
 

@@ -1,0 +1,204 @@
+//! Where effects attach to the ray loop, and what they may ask of it.
+//!
+//! An effect is a type without values that implements [`Effect`]: at every place it may do something,
+//! and by default does nothing. The list of effects has the same places, and calls those of the effects
+//! in use, one after the other. All of it is inlined, so what is not in use costs no instruction.
+
+use crate::accel::Number;
+use crate::format::Effects;
+use crate::format::record::{Light, Material};
+use crate::observe::count::Observer;
+use crate::query::Hit;
+use crate::ray::Ray;
+use crate::scene::Scene;
+use crate::shade::Color;
+use crate::shade::surface::{Bounce, Filter, Lighting, Secondary, Surface};
+use core::fmt::Debug;
+
+/// The ray loop, as effects see it.
+pub(crate) trait Tracer<'s, N: Number> {
+    /// Receives counts and events.
+    type Observer: Observer;
+
+    /// Whether light may pass a surface on its way to another one.
+    const FILTERS: bool;
+
+    fn scene(&self) -> &'s Scene<'s>;
+
+    fn count(&mut self) -> &mut Self::Observer;
+
+    fn any_hit(&mut self, ray: &Ray<N>) -> bool;
+
+    fn closest_hit(&mut self, ray: &Ray<N>) -> Option<Hit<N>>;
+
+    /// Lets the effects in use pass light through a surface.
+    fn filter(&mut self, ray: &Ray<N>, filter: &mut Filter<'_, N>);
+
+    /// Puts a ray that leaves a surface on the work list, unless it would bring too little.
+    fn send(&mut self, hit: &Hit<N>, secondary: Secondary<N>);
+}
+
+/// Declares the places once for an effect and for the list of effects.
+///
+/// Each takes the ray loop and what the effect has added to the state of the ray that is followed.
+macro_rules! places {
+    ($(
+        $(#[doc = $doc:literal])*
+        fn $place:ident($($argument:ident: $type:ty),*);
+    )*) => {
+        /// An effect.
+        #[allow(unused_variables, reason = "most effects do nothing at most places")]
+        pub(crate) trait Effect {
+            /// What the effect adds to a ray's state, `()` for nothing. The rays that a hit causes begin
+            /// with what the state is after [`surface`](Self::surface).
+            type State<N: Number>: Copy + Debug + Default;
+
+            /// The effect, as sets hold it.
+            const EFFECT: Effects;
+
+            /// Whether rays wait because of it.
+            const CASTS: bool = Effects::CASTING.contains(Self::EFFECT);
+
+            /// Whether it needs the direction of a ray with length 1.
+            const NEEDS_DIRECTION: bool = false;
+
+            /// Whether it may let light through surfaces.
+            const FILTERS: bool = false;
+
+            /// Whether a material calls for it.
+            fn is_called_by_material(material: &Material) -> bool {
+                false
+            }
+
+            /// Whether a light calls for it.
+            fn is_called_by_light(light: &Light) -> bool {
+                false
+            }
+
+            $(
+                $(#[doc = $doc])*
+                #[inline(always)]
+                fn $place<'s, N: Number, X: Tracer<'s, N>>(
+                    tracer: &mut X,
+                    state: &mut Self::State<N>,
+                    $($argument: $type),*
+                ) {
+                }
+            )*
+        }
+
+        /// Effects, one after the other: `(First, (Second, ()))`. Of all that it has, `USED` are in use.
+        pub(crate) trait EffectList {
+            type State<N: Number>: Copy + Debug + Default;
+
+            /// The effects because of which rays wait.
+            const CASTING: u32;
+            /// The effects that need a direction with length 1.
+            const DIRECTED: u32;
+            /// The effects that may let light through surfaces.
+            const FILTERING: u32;
+
+            /// The effects that a material calls for.
+            fn called_by_material(material: &Material) -> Effects;
+
+            /// The effects that a light calls for.
+            fn called_by_light(light: &Light) -> Effects;
+
+            $(
+                fn $place<'s, const USED: u32, N: Number, X: Tracer<'s, N>>(
+                    tracer: &mut X,
+                    state: &mut Self::State<N>,
+                    $($argument: $type),*
+                );
+            )*
+        }
+
+        impl EffectList for () {
+            type State<N: Number> = ();
+
+            const CASTING: u32 = 0;
+            const DIRECTED: u32 = 0;
+            const FILTERING: u32 = 0;
+
+            fn called_by_material(_: &Material) -> Effects {
+                Effects::NONE
+            }
+
+            fn called_by_light(_: &Light) -> Effects {
+                Effects::NONE
+            }
+
+            $(
+                #[inline(always)]
+                fn $place<'s, const USED: u32, N: Number, X: Tracer<'s, N>>(
+                    _: &mut X,
+                    _: &mut Self::State<N>,
+                    $(_: $type),*
+                ) {
+                }
+            )*
+        }
+
+        impl<First: Effect, Rest: EffectList> EffectList for (First, Rest) {
+            type State<N: Number> = (First::State<N>, Rest::State<N>);
+
+            const CASTING: u32 = First::EFFECT.only_if(First::CASTS).0 | Rest::CASTING;
+            const DIRECTED: u32 = First::EFFECT.only_if(First::NEEDS_DIRECTION).0 | Rest::DIRECTED;
+            const FILTERING: u32 = First::EFFECT.only_if(First::FILTERS).0 | Rest::FILTERING;
+
+            fn called_by_material(material: &Material) -> Effects {
+                let first = First::EFFECT.only_if(First::is_called_by_material(material));
+                first.with(Rest::called_by_material(material))
+            }
+
+            fn called_by_light(light: &Light) -> Effects {
+                let first = First::EFFECT.only_if(First::is_called_by_light(light));
+                first.with(Rest::called_by_light(light))
+            }
+
+            $(
+                #[inline(always)]
+                fn $place<'s, const USED: u32, N: Number, X: Tracer<'s, N>>(
+                    tracer: &mut X,
+                    (first, rest): &mut Self::State<N>,
+                    $($argument: $type),*
+                ) {
+                    if const { Effects(USED).contains(First::EFFECT) } {
+                        First::$place(tracer, first, $($argument),*);
+                    }
+                    Rest::$place::<USED, N, X>(tracer, rest, $($argument),*);
+                }
+            )*
+        }
+    };
+}
+
+places! {
+    /// A ray leaves the camera for a sample, counted from 0 in its pixel.
+    fn camera(sample: u16, ray: &mut Ray<N>);
+
+    /// A ray has come to a hit: the ratio of the light from there that arrives at the eye may change.
+    fn arrive(ray: &Ray<N>, hit: &Hit<N>, material: &Material, weight: &mut Color<N>);
+
+    /// A ray hits a surface: the diffuse colour may change.
+    fn surface(ray: &Ray<N>, surface: &mut Surface<'_, N>);
+
+    /// A surface reflects a light that it faces: the reflected ratio may change.
+    fn reflect(surface: &Surface<'_, N>, lighting: &Lighting<'_, N>, reflected: &mut Color<N>);
+
+    /// Light arrives from a light at a surface that reflects it: its radiance may change.
+    fn light(surface: &Surface<'_, N>, lighting: &Lighting<'_, N>, arriving: &mut Color<N>);
+
+    /// A surface is in the way of light to another one: it may let a part through.
+    fn filter(ray: &Ray<N>, filter: &mut Filter<'_, N>);
+
+    /// A ray hits nothing: what it brings, first the background, may change.
+    fn miss(ray: &Ray<N>, radiance: &mut Color<N>);
+
+    /// A surface may send rays on, if the ray depth allows more.
+    fn bounce(surface: &Surface<'_, N>, bounce: &mut Bounce<N>);
+
+    /// All rays of a sample were traced: its radiance may change before it is limited to what a
+    /// display shows. The state is a new one.
+    fn pixel(radiance: &mut Color<N>);
+}

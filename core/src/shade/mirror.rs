@@ -1,0 +1,33 @@
+//! Mirrors: one more ray per hit.
+
+use crate::accel::Number;
+use crate::format::Effects;
+use crate::format::record::Material;
+use crate::shade::Color;
+use crate::shade::effect::{Effect, Tracer};
+use crate::shade::surface::{Bounce, Surface};
+
+pub(crate) struct Mirror;
+
+impl Effect for Mirror {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects::MIRROR;
+    const NEEDS_DIRECTION: bool = true;
+
+    #[inline(always)]
+    fn is_called_by_material(material: &Material) -> bool {
+        material.mirror != [0; 3]
+    }
+
+    #[inline(always)]
+    fn bounce<'s, N: Number, X: Tracer<'s, N>>(
+        _: &mut X,
+        (): &mut (),
+        surface: &Surface<'_, N>,
+        bounce: &mut Bounce<N>,
+    ) {
+        // Of a material without a mirror this is black, and no ray is sent.
+        bounce.mirror(Color::ratios(surface.material.mirror));
+    }
+}

@@ -1,0 +1,111 @@
+//! Shadows: one ray per light and hit.
+
+use crate::accel::Number;
+use crate::format::Effects;
+use crate::format::limits::MAX_RAY_DEPTH;
+use crate::format::record::Light;
+use crate::number::extent;
+use crate::observe::count::Observer;
+use crate::observe::event::{Event, RayKind};
+use crate::ray::Ray;
+use crate::shade::Color;
+use crate::shade::effect::{Effect, Tracer};
+use crate::shade::surface::{Filter, Lighting, Surface, depart};
+
+/// How many surfaces a shadow ray passes; light that has to pass more does not arrive.
+const SURFACES: usize = 4 * MAX_RAY_DEPTH;
+
+pub(crate) struct Shadow;
+
+impl Effect for Shadow {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects::SHADOW;
+
+    fn is_called_by_light(_: &Light) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn light<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        _: &Surface<'_, N>,
+        lighting: &Lighting<'_, N>,
+        arriving: &mut Color<N>,
+    ) {
+        // No material says so, as with other effects: the scene itself may do without shadows.
+        if tracer.scene().effects().contains(Self::EFFECT) {
+            *arriving = arriving.times(through(tracer, lighting));
+        }
+    }
+}
+
+/// What part of a light arrives.
+///
+/// Opaque things let nothing through. Light goes straight on through the others, and loses at every
+/// surface what their effects say.
+fn through<'s, N: Number, X: Tracer<'s, N>>(
+    tracer: &mut X,
+    lighting: &Lighting<'_, N>,
+) -> Color<N> {
+    let scene = tracer.scene();
+    let zero = N::Wide::default();
+    let Lighting {
+        mut origin,
+        mut way,
+        mut distance,
+        to_light,
+        ..
+    } = *lighting;
+    let mut left = Color::WHITE;
+    for _ in 0..SURFACES {
+        // The light itself, and what touches it, casts no shadow.
+        let end = distance.map_or(N::FAR.widen(), |distance| {
+            let magnitude = extent(origin).max(N::narrow(distance));
+            distance - N::error_bound(magnitude).widen()
+        });
+        let Some(ray) = Ray::from_inside(scene.bounds(), origin, way, end) else {
+            return left;
+        };
+        tracer.count().ray(RayKind::Shadow, &ray);
+        if !X::FILTERS {
+            let dark = tracer.any_hit(&ray);
+            return if dark { Color::BLACK } else { left };
+        }
+        let Some(hit) = tracer.closest_hit(&ray) else {
+            return left;
+        };
+        let Some(material) = scene.material(hit.object) else {
+            return Color::BLACK;
+        };
+        let mut filter = Filter {
+            hit: &hit,
+            material,
+            to_light,
+            left,
+            passes: false,
+        };
+        tracer.filter(&ray, &mut filter);
+        if !filter.passes {
+            return Color::BLACK;
+        }
+        left = filter.left;
+        if X::Observer::ENABLED {
+            tracer.count().event(Event::Filtered {
+                left: left.ratios_to_f64(),
+            });
+        }
+        if left.peak() * N::radiance(1 << 20) <= N::radiance(scene.view.cutoff) {
+            return Color::BLACK;
+        }
+        origin = depart(scene, &hit, !hit.front, false);
+        // The way goes on along the same slopes, so its largest component stays the measure.
+        distance = distance.map(|distance| distance - hit.t);
+        if distance.is_some_and(|rest| rest <= zero) {
+            return left;
+        }
+        way = ray.slope.map(N::widen);
+    }
+    Color::BLACK
+}

@@ -1,0 +1,93 @@
+//! What a ray meets, as effects see it.
+
+use crate::accel::Number;
+use crate::format::record::{Light, Material};
+use crate::observe::event::RayKind;
+use crate::query::Hit;
+use crate::scene::Scene;
+use crate::shade::Color;
+
+/// A surface that a ray has hit.
+pub(crate) struct Surface<'h, N: Number> {
+    pub(crate) hit: &'h Hit<N>,
+    pub(crate) material: &'h Material,
+    /// The normal on the side that the ray came from.
+    pub(crate) normal: [N; 3],
+    /// The ray's direction, with length 1 if an effect in use needs that.
+    pub(crate) direction: [N; 3],
+    pub(crate) diffuse: Color<N>,
+    /// The ratio of the light from here that arrives at the eye.
+    pub(crate) weight: Color<N>,
+}
+
+/// A light, seen from a surface.
+pub(crate) struct Lighting<'l, N: Number> {
+    pub(crate) light: &'l Light,
+    /// Where the way to the light starts.
+    pub(crate) origin: [N; 3],
+    /// The way to the light, of any length.
+    pub(crate) way: [N::Wide; 3],
+    /// How far the light is along the largest component of `way`; `None` for infinitely far.
+    pub(crate) distance: Option<N::Wide>,
+    /// The direction of the light, with length 1.
+    pub(crate) to_light: [N; 3],
+}
+
+/// A surface in the way of light to another one.
+pub(crate) struct Filter<'h, N: Number> {
+    pub(crate) hit: &'h Hit<N>,
+    pub(crate) material: &'h Material,
+    /// The direction of the light, with length 1.
+    pub(crate) to_light: [N; 3],
+    /// The ratio of the light that is left.
+    pub(crate) left: Color<N>,
+    /// Whether anything passes: no surface lets light through unless an effect says so.
+    pub(crate) passes: bool,
+}
+
+/// A surface that may send rays on.
+pub(crate) struct Bounce<N: Number> {
+    /// The cosine between the normal and the way back to where the ray came from.
+    pub(crate) cos_in: N,
+    /// The ratio that is mirrored, `None` if no effect mirrors. All effects share one mirrored ray.
+    pub(crate) mirrored: Option<Color<N>>,
+}
+
+impl<N: Number> Bounce<N> {
+    /// Adds to the ratio that is mirrored.
+    #[inline(always)]
+    pub(crate) fn mirror(&mut self, ratio: Color<N>) {
+        self.mirrored = Some(match self.mirrored {
+            Some(mirrored) => mirrored.plus_up_to_one(ratio),
+            None => ratio,
+        });
+    }
+}
+
+/// A ray that a hit causes.
+pub(crate) struct Secondary<N: Number> {
+    pub(crate) kind: RayKind,
+    /// Of any length.
+    pub(crate) direction: [N; 3],
+    /// Whether it leaves on the side of the geometric normal.
+    pub(crate) outward: bool,
+    pub(crate) weight: Color<N>,
+}
+
+/// Where a ray starts that leaves a hit. On its way to a light it may start on the surface itself, because it is
+/// known to lead away from it; what is mirrored may be rounded into the surface.
+///
+/// Out of line, because copies of it took more of the call stack than the call.
+#[inline(never)]
+pub(crate) fn depart<N: Number>(
+    scene: &Scene<'_>,
+    hit: &Hit<N>,
+    outward: bool,
+    to_light: bool,
+) -> [N; 3] {
+    match (outward, to_light) {
+        (true, true) => hit.beside(),
+        (true, false) => hit.outside(),
+        _ => hit.inside(scene),
+    }
+}

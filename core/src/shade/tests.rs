@@ -1,0 +1,446 @@
+//! Mock effects, one at each place where effects attach: each is seen to act. That they do nothing where
+//! they are not in use the self-tests show, whose pictures have their hashes with these effects listed.
+
+use crate::accel::Number;
+use crate::format::Effects;
+use crate::format::limits::work_depth;
+use crate::format::record::Material;
+use crate::observe::event::RayKind;
+use crate::query::Hit;
+use crate::ray::{Pencil, Ray};
+use crate::selftest::TinyBlob;
+use crate::shade::effect::{Effect, Tracer};
+use crate::shade::surface::{Bounce, Filter, Lighting, Secondary, Surface};
+use crate::shade::{Color, EffectsThen};
+use crate::{Counters, Fixed, List, Renderer, Scene, Settings, Workspace};
+
+/// The list of effects of this crate's own tests: a line for each mock, behind the true ones.
+macro_rules! with_mocks {
+    ($($mock:ident = $bit:literal,)*) => {
+        $(impl $mock {
+            const BITS: u32 = 1 << $bit;
+        })*
+
+        pub(crate) type All = EffectsThen<with_mocks!(@ $($mock,)*)>;
+    };
+    (@) => { () };
+    (@ $first:ident, $($rest:ident,)*) => { ($first, with_mocks!(@ $($rest,)*)) };
+}
+
+with_mocks! {
+    Shift = 16,
+    Fog = 17,
+    Tint = 18,
+    Matt = 19,
+    Falloff = 20,
+    Veil = 21,
+    Sky = 22,
+    Pane = 23,
+    ToneMap = 24,
+    Trail = 25,
+}
+
+/// Moves the eye past the scene.
+pub(crate) struct Shift;
+
+impl Effect for Shift {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects(Self::BITS);
+
+    fn camera<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        _: u16,
+        ray: &mut Ray<N>,
+    ) {
+        let scene = tracer.scene();
+        let [x, y, z] = scene.view.eye;
+        // In 2^-13 units.
+        let eye = [x + (300 << 13), y, z].map(N::far);
+        let direction = ray.slope().map(N::widen);
+        if let Ok(shifted) = Pencil::of(scene.bounds(), eye).ray(direction) {
+            *ray = shifted;
+        }
+    }
+}
+
+/// Takes half of the light on the way to a hit.
+pub(crate) struct Fog;
+
+impl Effect for Fog {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects(Self::BITS);
+
+    fn arrive<'s, N: Number, X: Tracer<'s, N>>(
+        _: &mut X,
+        (): &mut (),
+        _: &Ray<N>,
+        _: &Hit<N>,
+        _: &Material,
+        weight: &mut Color<N>,
+    ) {
+        *weight = weight.scaled(N::ONE.half());
+    }
+}
+
+/// Paints all surfaces green.
+pub(crate) struct Tint;
+
+impl Effect for Tint {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects(Self::BITS);
+
+    fn surface<'s, N: Number, X: Tracer<'s, N>>(
+        _: &mut X,
+        (): &mut (),
+        _: &Ray<N>,
+        surface: &mut Surface<'_, N>,
+    ) {
+        surface.diffuse = Color([N::ZERO, N::ONE.half(), N::ZERO]);
+    }
+}
+
+/// Surfaces reflect no light.
+pub(crate) struct Matt;
+
+impl Effect for Matt {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects(Self::BITS);
+
+    fn reflect<'s, N: Number, X: Tracer<'s, N>>(
+        _: &mut X,
+        (): &mut (),
+        _: &Surface<'_, N>,
+        _: &Lighting<'_, N>,
+        reflected: &mut Color<N>,
+    ) {
+        *reflected = Color::BLACK;
+    }
+}
+
+/// Lights shine with half of their radiance.
+pub(crate) struct Falloff;
+
+impl Effect for Falloff {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects(Self::BITS);
+
+    fn light<'s, N: Number, X: Tracer<'s, N>>(
+        _: &mut X,
+        (): &mut (),
+        _: &Surface<'_, N>,
+        _: &Lighting<'_, N>,
+        arriving: &mut Color<N>,
+    ) {
+        *arriving = arriving.scaled(N::ONE.half());
+    }
+}
+
+/// All surfaces let light for others through.
+pub(crate) struct Veil;
+
+impl Effect for Veil {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects(Self::BITS);
+    const FILTERS: bool = true;
+
+    fn filter<'s, N: Number, X: Tracer<'s, N>>(
+        _: &mut X,
+        (): &mut (),
+        _: &Ray<N>,
+        filter: &mut Filter<'_, N>,
+    ) {
+        filter.passes = true;
+    }
+}
+
+/// Rays that hit nothing see blue.
+pub(crate) struct Sky;
+
+impl Effect for Sky {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects(Self::BITS);
+
+    fn miss<'s, N: Number, X: Tracer<'s, N>>(
+        _: &mut X,
+        (): &mut (),
+        _: &Ray<N>,
+        radiance: &mut Color<N>,
+    ) {
+        *radiance = Color::radiance([0, 0, 1 << 20]);
+    }
+}
+
+/// Every surface sends a ray straight on.
+pub(crate) struct Pane;
+
+impl Effect for Pane {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects(Self::BITS);
+    const CASTS: bool = true;
+    const NEEDS_DIRECTION: bool = true;
+
+    fn bounce<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        surface: &Surface<'_, N>,
+        _: &mut Bounce<N>,
+    ) {
+        let secondary = Secondary {
+            kind: RayKind::Refracted,
+            direction: surface.direction,
+            outward: !surface.hit.front,
+            weight: surface.weight,
+        };
+        tracer.send(surface.hit, secondary);
+    }
+}
+
+/// Pictures have a quarter of their light.
+pub(crate) struct ToneMap;
+
+impl Effect for ToneMap {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects(Self::BITS);
+
+    fn pixel<'s, N: Number, X: Tracer<'s, N>>(_: &mut X, (): &mut (), radiance: &mut Color<N>) {
+        *radiance = radiance.scaled(N::ONE.half().half());
+    }
+}
+
+/// Counts the surfaces on the way of a ray; a ray that misses brings as many parts of white.
+pub(crate) struct Trail;
+
+impl Trail {
+    /// Parts of white.
+    const PARTS: i32 = 16;
+}
+
+impl Effect for Trail {
+    type State<N: Number> = i32;
+
+    const EFFECT: Effects = Effects(Self::BITS);
+
+    fn camera<'s, N: Number, X: Tracer<'s, N>>(
+        _: &mut X,
+        surfaces: &mut i32,
+        _: u16,
+        _: &mut Ray<N>,
+    ) {
+        *surfaces = 1;
+    }
+
+    fn surface<'s, N: Number, X: Tracer<'s, N>>(
+        _: &mut X,
+        surfaces: &mut i32,
+        _: &Ray<N>,
+        _: &mut Surface<'_, N>,
+    ) {
+        *surfaces += 1;
+    }
+
+    fn miss<'s, N: Number, X: Tracer<'s, N>>(
+        _: &mut X,
+        surfaces: &mut i32,
+        _: &Ray<N>,
+        radiance: &mut Color<N>,
+    ) {
+        *radiance = Color::radiance([*surfaces * (1 << 20) / Self::PARTS; 3]);
+    }
+}
+
+/// The pixels of the tiny scene, with one sample each, and the rays that they take.
+type Picture = (Vec<[u16; 3]>, Counters);
+
+const TRUE: u32 = Effects::ALL.0;
+
+fn picture<N: Number, const EFFECTS: u32>(depth: u8) -> Picture {
+    let blob = TinyBlob::new();
+    let scene = Scene::from_bytes(blob.bytes()).expect("a scene");
+    let settings = Settings {
+        samples: 1,
+        depth,
+        ..Settings::of(&scene)
+    };
+    let renderer = Renderer::<N, List, EFFECTS>::new(&scene, settings).expect("a renderer");
+    // Up to three rays wait after a hit.
+    let mut space = Workspace::<N, 0, { 2 * work_depth(4) }>::new();
+    let mut space = space.as_view();
+    let mut counters = Counters::default();
+    let places = (0..settings.height).flat_map(|y| (0..settings.width).map(move |x| [x, y]));
+    let pixels = places.map(|[x, y]| renderer.linear(x, y, &mut space, &mut counters));
+    (pixels.collect(), counters)
+}
+
+/// The pixels with and without a mock, without rays that wait.
+fn pairs<const WITH_MOCK: u32>() -> Vec<[[u16; 3]; 2]> {
+    let (without, _) = picture::<f32, TRUE>(0);
+    let (with, _) = picture::<f32, WITH_MOCK>(0);
+    without.into_iter().zip(with).map(Into::into).collect()
+}
+
+/// The background's pixel.
+fn background() -> [u16; 3] {
+    picture::<f32, TRUE>(0).0[0]
+}
+
+/// Whether each channel of a pixel is a part of another's, rounding apart.
+fn is_part(part: u32, [whole, found]: [[u16; 3]; 2]) -> bool {
+    whole
+        .into_iter()
+        .zip(found)
+        .all(|(whole, found)| u32::from(found).abs_diff(u32::from(whole) / part) <= 1)
+}
+
+#[test]
+fn tiny_scene_shows_background_and_surfaces() {
+    let background = background();
+    let (pixels, counters) = picture::<f32, TRUE>(4);
+    let empty = pixels.iter().filter(|&&pixel| pixel == background).count();
+    assert!((100..180).contains(&empty), "{empty}");
+    assert!(counters.shadow > 0 && counters.reflected > 0 && counters.refracted > 0);
+}
+
+#[test]
+fn camera_mock_moves_every_ray_past_the_scene() {
+    const MOCK: u32 = TRUE | Shift::BITS;
+    let (pixels, counters) = picture::<f32, MOCK>(4);
+    assert!(pixels.iter().all(|&pixel| pixel == background()));
+    assert_eq!(counters.secondary(), 0);
+}
+
+#[test]
+fn arrive_mock_halves_surfaces_and_no_background() {
+    let background = background();
+    for pair in pairs::<{ TRUE | Fog::BITS }>() {
+        let part = if pair[0] == background { 1 } else { 2 };
+        assert!(is_part(part, pair), "{pair:?}");
+    }
+}
+
+#[test]
+fn surface_mock_tints_diffuse_light() {
+    let background = background();
+    // Without highlights, which keep the color of the light.
+    const MOCK: u32 = TRUE | Tint::BITS | Matt::BITS;
+    for [without, with] in pairs::<MOCK>() {
+        let [red, green, blue] = with;
+        let tinted = red == 0 && green > 0 && blue == 0;
+        assert!(tinted || with == background && with == without, "{with:?}");
+    }
+}
+
+#[test]
+fn reflect_mock_leaves_ambient_light_alone() {
+    let background = background();
+    let lit = pairs::<{ TRUE | Matt::BITS }>().into_iter();
+    let darker = lit.filter(|[without, with]| with != without);
+    let mut count = 0;
+    for [without, with] in darker {
+        assert!(without != background);
+        assert!((0..3).all(|k| with[k] <= without[k]), "{with:?}");
+        count += 1;
+    }
+    assert!(count > 20, "{count}");
+    let (_, counters) = picture::<f32, { TRUE | Matt::BITS }>(0);
+    assert_eq!(
+        counters.shadow, 0,
+        "nothing is reflected, so no light is asked for"
+    );
+}
+
+#[test]
+fn light_mock_halves_what_lights_add() {
+    let (ambient, _) = picture::<f32, { TRUE | Matt::BITS }>(0);
+    let pairs = pairs::<{ TRUE | Falloff::BITS }>();
+    for ([without, with], ambient) in pairs.into_iter().zip(ambient) {
+        let from_lights = |pixel: [u16; 3]| [0, 1, 2].map(|k| pixel[k] - ambient[k]);
+        let clipped = without.contains(&u16::MAX);
+        let halves = is_part(2, [without, with].map(from_lights));
+        assert!(clipped || halves, "{without:?} {with:?}");
+    }
+}
+
+#[test]
+fn filter_mock_lets_light_through_all_surfaces() {
+    let brighter = pairs::<{ TRUE | Veil::BITS }>().into_iter();
+    let mut count = 0;
+    for [without, with] in brighter {
+        assert!((0..3).all(|k| with[k] >= without[k]), "{with:?}");
+        count += usize::from(with != without);
+    }
+    assert!(count > 0);
+}
+
+#[test]
+fn miss_mock_paints_the_background() {
+    let background = background();
+    for [without, with] in pairs::<{ TRUE | Sky::BITS }>() {
+        let expected = if without == background {
+            [0, 0, u16::MAX]
+        } else {
+            without
+        };
+        assert_eq!(with, expected);
+    }
+}
+
+#[test]
+fn bounce_mock_sends_a_ray_per_hit() {
+    const MOCK: u32 = TRUE | Pane::BITS;
+    let (_, before) = picture::<f32, TRUE>(1);
+    let (pixels, after) = picture::<f32, MOCK>(1);
+    let background = background();
+    let (flat, _) = picture::<f32, TRUE>(0);
+    let hits = flat.iter().filter(|&&pixel| pixel != background).count() as u64;
+    assert_eq!(after.refracted, before.refracted + hits);
+    assert_eq!(after.reflected, before.reflected);
+    assert_ne!(pixels, picture::<f32, TRUE>(1).0);
+}
+
+#[test]
+fn pixel_mock_quarters_radiance_before_it_is_limited() {
+    let pairs = pairs::<{ TRUE | ToneMap::BITS }>();
+    let quarter =
+        |[without, with]: [[u16; 3]; 2]| is_part(4, [without, with]) || without.contains(&u16::MAX);
+    assert!(pairs.into_iter().all(quarter));
+}
+
+#[test]
+fn state_mock_is_inherited_by_the_rays_that_wait() {
+    // Each ray goes straight on, and through glass nothing else does.
+    const MOCK: u32 = TRUE | Pane::BITS | Trail::BITS | Matt::BITS | Tint::BITS;
+    let white = |parts: i32| (65_535 * parts / Trail::PARTS) as u16;
+    let (alone, _) = picture::<f32, { TRUE | Trail::BITS }>(0);
+    assert!(
+        alone[0]
+            .iter()
+            .all(|&channel| channel.abs_diff(white(1)) <= 1)
+    );
+    let (pixels, _) = picture::<f32, MOCK>(4);
+    // Red has no ambient light here: it tells of the rays that miss, one, two or more surfaces behind.
+    let seen = |parts: i32| {
+        pixels
+            .iter()
+            .any(|[red, ..]| red.abs_diff(white(parts)) <= 1)
+    };
+    assert!(seen(1) && seen(3), "{pixels:?}");
+}
+
+#[test]
+fn mocks_act_in_fixed_point_too() {
+    const MOCK: u32 = TRUE | Sky::BITS | ToneMap::BITS;
+    let (pixels, _) = picture::<Fixed, MOCK>(0);
+    let [red, green, blue] = pixels[0];
+    assert_eq!([red, green], [0, 0]);
+    assert!(blue.abs_diff(u16::MAX / 4) <= 1, "{blue}");
+}
