@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use gridel_core::format::checksum;
 use gridel_core::format::limits::MAX_RAY_DEPTH;
 use gridel_core::render::RenderError;
-use gridel_core::{Effects, Format, Settings, Structure};
+use gridel_core::{Format, Settings, Structure};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
