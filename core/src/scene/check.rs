@@ -3,7 +3,9 @@
 use crate::accel::StructureViews;
 use crate::format::range::{At, at_most, exactly};
 use crate::format::record::{Header, UnitBox};
-use crate::format::{BlobError, Effects, Kind, Leaf, SectionKind, Sections, checksum};
+use crate::format::{
+    BlobError, Effects, Field, Kind, Leaf, Location, Reason, SectionKind, Sections, checksum,
+};
 use crate::geometry::Shapes;
 use crate::number::Fixed;
 use crate::number::Scalar;
@@ -38,12 +40,12 @@ fn check_lights(scene: &Scene<'_>) -> Result<(), BlobError> {
     let section = SectionKind::Lights;
     for (index, light) in scene.lights.iter().enumerate() {
         let at = At { section, index };
-        at.within("kind", light.directional.into(), 0, 1)?;
-        at.all_within("colour", &light.color, 0, RADIANCE)?;
+        at.within(Field::Kind, light.directional.into(), 0, 1)?;
+        at.all_within(Field::Color, &light.color, 0, RADIANCE)?;
         let most = if light.directional == 1 { ONE } else { FAR };
-        at.all_within("position or direction", &light.vector, -most, most)?;
+        at.all_within(Field::PositionOrDirection, &light.vector, -most, most)?;
         let zero = light.directional == 1 && light.vector == [0; 3];
-        at.within("number of directions of length 0", zero.into(), 0, 0)?;
+        at.ensure(!zero, Reason::ZeroDirection)?;
     }
     Ok(())
 }
@@ -62,70 +64,52 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
     for (index, material) in materials.iter().enumerate() {
         let at = At { section, index };
         let colors = [
-            ("diffuse colour", material.diffuse),
-            ("odd colour", material.odd),
-            ("highlight", material.highlight),
-            ("mirror", material.mirror),
-            ("transmittance", material.transmit),
+            (Field::Diffuse, material.diffuse),
+            (Field::Odd, material.odd),
+            (Field::Highlight, material.highlight),
+            (Field::Mirror, material.mirror),
+            (Field::Transmittance, material.transmit),
         ];
-        for (what, color) in colors {
-            at.all_within(what, &color, 0, ONE)?;
+        for (field, color) in colors {
+            at.all_within(field, &color, 0, ONE)?;
         }
+        at.within(Field::InverseIor, material.inverse_ior.into(), ONE / 4, ONE)?;
+        at.within(Field::Shininess, material.shininess.into(), 1, 1024)?;
         at.within(
-            "inverse index of refraction",
-            material.inverse_ior.into(),
-            ONE / 4,
-            ONE,
-        )?;
-        at.within("shininess", material.shininess.into(), 1, 1024)?;
-        at.within(
-            "checkerboard's size",
+            Field::CheckerSize,
             material.checker_size.into(),
             0,
             i32::MAX.into(),
         )?;
-        at.all_within("checkerboard's origin", &material.checker_origin, -ONE, ONE)?;
-        at.within("spare word", material.spare.into(), 0, 0)?;
+        at.all_within(Field::CheckerOrigin, &material.checker_origin, -ONE, ONE)?;
+        at.ensure(material.spare == 0, Reason::SpareNotZero)?;
         let uncalled = material.effects().without(Effects(header.effects));
-        at.within(
-            "set of effects that the header does not call for",
-            uncalled.0.into(),
-            0,
-            0,
-        )?;
+        at.ensure(uncalled == Effects::NONE, Reason::MissingEffect)?;
         called = called.with(material.effects());
     }
     // A scene file may turn shadows off.
     if !scene.lights.is_empty() && header.objects > 0 {
         called = called.with(Effects::SHADOW);
     }
-    exactly(
-        "set of effects that nothing calls for",
-        Effects(header.effects).without(called).0.into(),
-        0,
-    )
+    let unneeded = Effects(header.effects).without(called);
+    Location::Header.ensure(unneeded == Effects::NONE, Reason::UnneededEffects)
 }
 
 fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
-    at_most(
-        "number of slots",
-        shapes.total() as u64,
-        header.primitives.into(),
-    )?;
+    at_most(Field::Slots, shapes.total() as u32, header.primitives)?;
     let bounds = &header.bounds;
     // A point of the scene, in 1/256 unit.
-    let point = |at: At, what, point: [i32; 3]| {
+    let point = |at: At, field, point: [i32; 3]| {
         bounds
             .0
             .iter()
             .zip(point)
             .try_for_each(|(sides, coordinate)| {
                 let [low, high] = sides.map(|unit| i64::from(unit) << 8);
-                at.within(what, coordinate.into(), low, high)
+                at.within(field, coordinate.into(), low, high)
             })
     };
-    let inside =
-        |at: At, what, inner: &UnitBox| at.within(what, (!bounds.contains(inner)).into(), 0, 0);
+    let inside = |at: At, inner: &UnitBox| at.ensure(bounds.contains(inner), Reason::OutsideScene);
     let radius = i64::from(i16::MAX) << 9;
 
     let vertices = if Kind::Triangle.is_available() {
@@ -140,7 +124,7 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
         };
         point(
             at,
-            "coordinate",
+            Field::Coordinate,
             shapes.vertices.position(index).unwrap_or_default(),
         )?;
     }
@@ -151,7 +135,7 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
         };
         let corners = shapes.triangles.corners(index).unwrap_or_default();
         at.all_within(
-            "vertex",
+            Field::Vertex,
             &corners.map(|corner| corner as i64),
             0,
             vertices as i64 - 1,
@@ -163,15 +147,15 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
             index,
         };
         let (center, length) = shapes.spheres.get(index).unwrap_or_default();
-        at.within("radius", length.into(), 1, radius)?;
+        at.within(Field::Radius, length.into(), 1, radius)?;
         point(
             at,
-            "lowest coordinate",
+            Field::LowestCoordinate,
             center.map(|x| x.wrapping_sub(length)),
         )?;
         point(
             at,
-            "highest coordinate",
+            Field::HighestCoordinate,
             center.map(|x| x.wrapping_add(length)),
         )?;
     }
@@ -180,53 +164,34 @@ fn check_shapes(shapes: &Shapes<'_>, header: &Header) -> Result<(), BlobError> {
             section: SectionKind::Boxes,
             index,
         };
-        point(at, "lowest coordinate", cuboid.lowest)?;
-        point(at, "highest coordinate", cuboid.highest)?;
-        let inverted = cuboid
-            .lowest
-            .iter()
-            .zip(&cuboid.highest)
-            .filter(|(low, high)| low > high);
-        at.within("number of inverted sides", inverted.count() as i64, 0, 0)?;
+        point(at, Field::LowestCoordinate, cuboid.lowest)?;
+        point(at, Field::HighestCoordinate, cuboid.highest)?;
+        let mut sides = cuboid.lowest.iter().zip(&cuboid.highest);
+        at.ensure(sides.all(|(low, high)| low <= high), Reason::InvertedBox)?;
     }
     for (index, disc) in (0..shapes.records(Kind::Disc)).zip(shapes.discs) {
         let at = At {
             section: SectionKind::Discs,
             index,
         };
-        point(at, "centre", disc.center)?;
-        at.all_within("normal", &disc.normal, -(1 << 24), 1 << 24)?;
-        at.within(
-            "number of normals of length 0",
-            (disc.normal == [0; 3]).into(),
-            0,
-            0,
-        )?;
-        at.within("radius", disc.radius.into(), 1, radius)?;
-        inside(at, "number of boxes outside the scene's", &disc.bounds)?;
+        point(at, Field::Center, disc.center)?;
+        at.all_within(Field::Normal, &disc.normal, -(1 << 24), 1 << 24)?;
+        at.ensure(disc.normal != [0; 3], Reason::ZeroNormal)?;
+        at.within(Field::Radius, disc.radius.into(), 1, radius)?;
+        inside(at, &disc.bounds)?;
     }
     for (index, cone) in (0..shapes.records(Kind::Cone)).zip(shapes.cones) {
         let at = At {
             section: SectionKind::Cones,
             index,
         };
-        point(at, "centre of the base", cone.base)?;
-        point(at, "centre of the apex", cone.apex)?;
-        at.within(
-            "number of axes of length 0",
-            (cone.base == cone.apex).into(),
-            0,
-            0,
-        )?;
+        point(at, Field::BaseCenter, cone.base)?;
+        point(at, Field::ApexCenter, cone.apex)?;
+        at.ensure(cone.base != cone.apex, Reason::ZeroAxis)?;
         let radii = [cone.base_radius, cone.apex_radius];
-        at.all_within("radius", &radii, 0, radius)?;
-        at.within(
-            "number of cones without a radius",
-            (radii == [0; 2]).into(),
-            0,
-            0,
-        )?;
-        inside(at, "number of boxes outside the scene's", &cone.bounds)?;
+        at.all_within(Field::Radius, &radii, 0, radius)?;
+        at.ensure(radii != [0; 2], Reason::ZeroRadii)?;
+        inside(at, &cone.bounds)?;
     }
     Ok(())
 }
@@ -237,11 +202,7 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
     let first = &scene.object_first;
     if first.is_empty() {
         let implied = objects as i64 == primitives || objects <= 1;
-        exactly(
-            "number of objects without an object-first section",
-            u64::from(!implied),
-            0,
-        )?;
+        Location::Header.ensure(implied, Reason::MissingObjectFirst)?;
     } else {
         let section = SectionKind::ObjectFirst;
         if first.len() != objects {
@@ -255,7 +216,7 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
         for index in 0..objects {
             let value = first.get(index).unwrap_or(0).into();
             let most = if index == 0 { 0 } else { primitives };
-            At { section, index }.within("first primitive", value, last, most)?;
+            At { section, index }.within(Field::FirstPrimitive, value, last, most)?;
             last = value;
         }
     }
@@ -272,7 +233,7 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
         for index in 0..objects {
             let value = material.get(index).unwrap_or(0).into();
             let most = scene.materials.len() as i64 - 1;
-            At { section, index }.within("material", value, 0, most)?;
+            At { section, index }.within(Field::Material, value, 0, most)?;
         }
     }
     let order = &scene.order;
@@ -288,7 +249,7 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
         }
         for index in 0..order.len() {
             let value = order.get(index).unwrap_or(0).into();
-            At { section, index }.within("primitive", value, 0, primitives - 1)?;
+            At { section, index }.within(Field::Primitive, value, 0, primitives - 1)?;
         }
     }
     Ok(())
@@ -297,14 +258,14 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
 fn check_structures<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<(), BlobError> {
     let longest = check_leaves(scene, StructureViews::uses_leaves(&scene.space))?;
     exactly(
-        "longest leaf",
+        Field::LongestLeaf,
         scene.space.header.longest_leaf.into(),
-        longest.into(),
+        longest,
     )?;
     let (depth, all_proved) = scene.structures.check(&scene.space, sections)?;
     let found = scene.space.header.stack_depth;
     if all_proved || usize::from(found) < depth {
-        exactly("stack depth", found.into(), depth as u64)?;
+        exactly(Field::StackDepth, found.into(), depth as u32)?;
     }
     Ok(())
 }
@@ -325,24 +286,19 @@ fn check_leaves(scene: &Scene<'_>, hierarchies: bool) -> Result<u32, BlobError> 
     for (index, &word) in (0..scene.space.leaves.len()).zip(scene.space.leaves) {
         let at = At { section, index };
         let Some(leaf) = Leaf::from_word(word) else {
-            let (what, expected) = ("kind", Kind::ALL.len() as i64 - 1);
-            return Err(BlobError::Record {
-                section,
-                index,
-                what,
-                found: (word >> 29).into(),
-                expected,
-            });
+            let range = [0, Kind::ALL.len() as i64 - 1];
+            let location = Location::Record(section, index);
+            return Err(location.out_of_range(Field::Kind, (word >> 29).into(), range));
         };
         at.within(
-            "number of primitives",
+            Field::Primitives,
             leaf.count.into(),
             1,
             Leaf::MAX_COUNT.into(),
         )?;
         let next = &mut next[leaf.kind as usize];
         at.within(
-            "first slot",
+            Field::FirstSlot,
             leaf.first.into(),
             (*next).into(),
             (*next).into(),
@@ -351,7 +307,7 @@ fn check_leaves(scene: &Scene<'_>, hierarchies: bool) -> Result<u32, BlobError> 
         *next = next.wrapping_add(leaf.count);
         longest = longest.max(leaf.count);
         let most = scene.space.shapes.records(leaf.kind) as i64;
-        at.within("end of the slots", (*next).into(), 0, most)?;
+        at.within(Field::EndSlot, (*next).into(), 0, most)?;
     }
     if hierarchies {
         for kind in Kind::ALL {
