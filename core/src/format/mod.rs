@@ -15,6 +15,7 @@ pub mod limits;
 pub(crate) mod link;
 mod node;
 pub(crate) mod range;
+mod reason;
 pub mod record;
 mod requirements;
 mod section;
@@ -24,7 +25,7 @@ pub(crate) mod word;
 
 pub use checksum::{Aligned, checksum};
 pub use effects::Effects;
-pub use error::BlobError;
+pub use error::{BlobError, Location};
 pub use index::Indices;
 pub use kind::Kind;
 pub use leaf::Leaf;
@@ -32,6 +33,7 @@ pub use link::Link;
 #[cfg(feature = "wide")]
 pub use node::Child;
 pub use node::{ClassNode, NodeWord, OctreeNode};
+pub use reason::{Field, Reason};
 pub use requirements::Requirements;
 pub use section::SectionKind;
 pub(crate) use sections::Sections;

@@ -1,27 +1,24 @@
 //! Errors for numbers that are out of their range.
 
-use crate::format::{BlobError, SectionKind};
+use crate::format::{BlobError, Field, Location, Reason, SectionKind};
 
-/// An error unless `found` lies in `0..=most`.
-pub(crate) fn at_most(field: &'static str, found: u64, most: u64) -> Result<(), BlobError> {
-    if found > most {
-        return Err(BlobError::Header {
-            field,
-            found,
-            expected: most,
-        });
-    }
-    Ok(())
+/// An error unless a field of the header is at most `most`.
+#[inline(always)]
+pub(crate) fn at_most(field: Field, found: u32, most: u32) -> Result<(), BlobError> {
+    in_header(field, found, 0, most)
 }
 
-/// An error unless `found` is `expected`.
-pub(crate) fn exactly(field: &'static str, found: u64, expected: u64) -> Result<(), BlobError> {
-    if found != expected {
-        return Err(BlobError::Header {
-            field,
-            found,
-            expected,
-        });
+/// An error unless a field of the header is `expected`.
+#[inline(always)]
+pub(crate) fn exactly(field: Field, found: u32, expected: u32) -> Result<(), BlobError> {
+    in_header(field, found, expected, expected)
+}
+
+#[inline(always)]
+fn in_header(field: Field, found: u32, low: u32, high: u32) -> Result<(), BlobError> {
+    if found < low || found > high {
+        let range = [low.into(), high.into()];
+        return Err(Location::Header.out_of_range(field, found.into(), range));
     }
     Ok(())
 }
@@ -37,21 +34,15 @@ impl At {
     /// An error unless `found` lies in `low..=high`.
     pub(crate) fn within(
         self,
-        what: &'static str,
+        field: Field,
         found: i64,
         low: i64,
         high: i64,
     ) -> Result<(), BlobError> {
-        let expected = if found < low { low } else { high };
         if found < low || found > high {
             let Self { section, index } = self;
-            return Err(BlobError::Record {
-                section,
-                index,
-                what,
-                found,
-                expected,
-            });
+            let location = Location::Record(section, index);
+            return Err(location.out_of_range(field, found, [low, high]));
         }
         Ok(())
     }
@@ -59,13 +50,31 @@ impl At {
     /// An error unless every one of `found` lies in `low..=high`.
     pub(crate) fn all_within<T: Into<i64> + Copy>(
         self,
-        what: &'static str,
+        field: Field,
         found: &[T],
         low: i64,
         high: i64,
     ) -> Result<(), BlobError> {
         found
             .iter()
-            .try_for_each(|&value| self.within(what, value.into(), low, high))
+            .try_for_each(|&value| self.within(field, value.into(), low, high))
+    }
+
+    /// An error for this reason unless a condition holds.
+    pub(crate) fn ensure(self, holds: bool, reason: Reason) -> Result<(), BlobError> {
+        if holds {
+            return Ok(());
+        }
+        Err(Location::Record(self.section, self.index).invalid(reason))
+    }
+}
+
+impl Location {
+    /// An error for this reason unless a condition holds.
+    pub(crate) fn ensure(self, holds: bool, reason: Reason) -> Result<(), BlobError> {
+        if holds {
+            return Ok(());
+        }
+        Err(self.invalid(reason))
     }
 }

@@ -1,6 +1,7 @@
 //! The section table: where each array of records lies.
 
-use crate::format::error::BlobError;
+use crate::format::error::{BlobError, Location};
+use crate::format::reason::{Field, Reason};
 use crate::format::record::{ALIGNMENT, Header, SectionEntry};
 use crate::format::section::SectionKind;
 use core::mem::size_of;
@@ -41,37 +42,27 @@ impl<'a> Sections<'a> {
         let mut end = size_of::<Header>() + table_bytes;
         let mut last = 0;
         for (index, entry) in entries.iter().enumerate() {
-            let malformed = |what, found, expected| BlobError::Table {
-                index,
-                what,
-                found,
-                expected,
-            };
-            let kinds = SectionKind::ALL.len() as u64;
-            if entry.kind == 0 || u64::from(entry.kind) > kinds {
-                return Err(malformed("kind", entry.kind.into(), kinds));
-            }
-            if entry.kind <= last {
-                return Err(malformed(
-                    "kind, which must ascend,",
-                    entry.kind.into(),
-                    u64::from(last) + 1,
-                ));
+            let line = Location::Table(index);
+            let kinds = [i64::from(last) + 1, SectionKind::ALL.len() as i64];
+            let kind = i64::from(entry.kind);
+            if kind < kinds[0] || kind > kinds[1] {
+                return Err(line.out_of_range(Field::Kind, kind, kinds));
             }
             last = entry.kind;
             if entry.spare != 0 {
-                return Err(malformed("spare word", entry.spare.into(), 0));
+                return Err(line.invalid(Reason::SpareNotZero));
             }
             let start = entry.offset as usize;
             let expected = end.checked_next_multiple_of(ALIGNMENT).unwrap_or(end);
             if start != expected {
-                return Err(malformed("offset", entry.offset.into(), expected as u64));
+                let range = [expected as i64; 2];
+                return Err(line.out_of_range(Field::Offset, entry.offset.into(), range));
             }
-            let bytes = bytes_of(blob, entry).ok_or(malformed(
-                "last byte",
-                u64::from(entry.offset) + u64::from(entry.count) * u64::from(entry.stride),
-                blob.len() as u64,
-            ))?;
+            let Some(bytes) = bytes_of(blob, entry) else {
+                let length = i64::from(entry.count) * i64::from(entry.stride);
+                let range = [i64::from(entry.offset), blob.len() as i64];
+                return Err(line.out_of_range(Field::End, range[0] + length, range));
+            };
             end = start.saturating_add(bytes.len());
         }
         if end != blob.len() {

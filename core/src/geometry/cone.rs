@@ -20,7 +20,7 @@
 //! axis, so no point is farther than two reaches from the middle; and `cos |Q| + g` is at most that
 //! and a radius: three reaches, below 2^31. Squares are below 2^62.
 
-use crate::format::BlobError;
+use crate::format::{BlobError, Field, Reason};
 use crate::format::record::UnitBox;
 use crate::geometry::primitive::{InScene, MAX_RADIUS, Primitive};
 use crate::geometry::{Crossing, LEAVING, Part, Surface};
@@ -380,12 +380,12 @@ impl Primitive for Cone {
     }
 
     fn validate(&self, scene: InScene<'_>) -> Result<(), BlobError> {
-        scene.point("centre of the base", self.base)?;
-        scene.point("centre of the apex", self.apex)?;
-        scene.none("number of axes of length 0", self.base == self.apex)?;
+        scene.point(Field::BaseCenter, self.base)?;
+        scene.point(Field::ApexCenter, self.apex)?;
+        scene.at.ensure(self.base != self.apex, Reason::ZeroAxis)?;
         let radii = [self.base_radius, self.apex_radius];
-        scene.at.all_within("radius", &radii, 0, MAX_RADIUS)?;
-        scene.none("number of cones without a radius", radii == [0; 2])?;
+        scene.at.all_within(Field::Radius, &radii, 0, MAX_RADIUS)?;
+        scene.at.ensure(radii != [0; 2], Reason::ZeroRadii)?;
         scene.inner(&self.bounds)
     }
 }

@@ -9,7 +9,7 @@
 //! by more (see [`cull`](crate::accel)).
 
 use crate::axis::pick;
-use crate::format::BlobError;
+use crate::format::{BlobError, Field, Reason};
 use crate::format::record::UnitBox;
 use crate::geometry::primitive::{InScene, Primitive};
 use crate::geometry::{Crossing, LEAVING, Part, Surface, flat};
@@ -91,11 +91,11 @@ impl Primitive for Cuboid {
     }
 
     fn validate(&self, scene: InScene<'_>) -> Result<(), BlobError> {
-        scene.point("lowest coordinate", self.lowest)?;
-        scene.point("highest coordinate", self.highest)?;
-        let sides = self.lowest.iter().zip(&self.highest);
-        let inverted = sides.filter(|(low, high)| low > high).count() as i64;
-        scene.at.within("number of inverted sides", inverted, 0, 0)
+        scene.point(Field::LowestCoordinate, self.lowest)?;
+        scene.point(Field::HighestCoordinate, self.highest)?;
+        let mut sides = self.lowest.iter().zip(&self.highest);
+        let at = scene.at;
+        at.ensure(sides.all(|(low, high)| low <= high), Reason::InvertedBox)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Flat discs: the crossing of their plane, if it lies no farther than the radius from the centre.
 
-use crate::format::BlobError;
+use crate::format::{BlobError, Field, Reason};
 use crate::format::record::UnitBox;
 use crate::geometry::primitive::{InScene, MAX_RADIUS, Primitive};
 use crate::geometry::{Crossing, Part, Surface, cross_plane, flat};
@@ -71,10 +71,10 @@ impl Primitive for Disc {
 
     fn validate(&self, scene: InScene<'_>) -> Result<(), BlobError> {
         let at = scene.at;
-        scene.point("centre", self.center)?;
-        at.all_within("normal", &self.normal, -(1 << 24), 1 << 24)?;
-        scene.none("number of normals of length 0", self.normal == [0; 3])?;
-        at.within("radius", self.radius.into(), 1, MAX_RADIUS)?;
+        scene.point(Field::Center, self.center)?;
+        at.all_within(Field::Normal, &self.normal, -(1 << 24), 1 << 24)?;
+        at.ensure(self.normal != [0; 3], Reason::ZeroNormal)?;
+        at.within(Field::Radius, self.radius.into(), 1, MAX_RADIUS)?;
         scene.inner(&self.bounds)
     }
 }

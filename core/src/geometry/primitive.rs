@@ -1,8 +1,8 @@
 //! What a shape is that has one form of records.
 
-use crate::format::BlobError;
 use crate::format::range::At;
 use crate::format::record::UnitBox;
+use crate::format::{BlobError, Field, Reason};
 use crate::geometry::{Crossing, Part, Surface};
 use crate::number::Arithmetic;
 use crate::ray::Ray;
@@ -66,7 +66,7 @@ pub(crate) struct InScene<'a> {
 impl InScene<'_> {
     /// An error unless a point in 1/256 unit lies in the scene's box.
     #[inline(always)]
-    pub(crate) fn point(self, what: &'static str, point: [i32; 3]) -> Result<(), BlobError> {
+    pub(crate) fn point(self, field: Field, point: [i32; 3]) -> Result<(), BlobError> {
         let mut sides = self.bounds.0.iter().zip(point);
         let inside = sides.all(|(&[low, high], coordinate)| {
             i32::from(low) << 8 <= coordinate && coordinate <= i32::from(high) << 8
@@ -74,30 +74,23 @@ impl InScene<'_> {
         if inside {
             return Ok(());
         }
-        self.point_outside(what, point)
+        self.point_outside(field, point)
     }
 
     /// The error of a point outside of the scene's box.
     #[cold]
     #[inline(never)]
-    fn point_outside(self, what: &'static str, point: [i32; 3]) -> Result<(), BlobError> {
+    fn point_outside(self, field: Field, point: [i32; 3]) -> Result<(), BlobError> {
         let mut sides = self.bounds.0.iter().zip(point);
         sides.try_for_each(|(sides, coordinate)| {
             let [low, high] = sides.map(|unit| i64::from(unit) << 8);
-            self.at.within(what, coordinate.into(), low, high)
+            self.at.within(field, coordinate.into(), low, high)
         })
     }
 
     /// An error unless the box of the record lies in the scene's.
     pub(crate) fn inner(self, bounds: &UnitBox) -> Result<(), BlobError> {
-        self.none(
-            "number of boxes outside the scene's",
-            !self.bounds.contains(bounds),
-        )
-    }
-
-    /// An error if there is what should not be.
-    pub(crate) fn none(self, what: &'static str, found: bool) -> Result<(), BlobError> {
-        self.at.within(what, found.into(), 0, 0)
+        let inside = self.bounds.contains(bounds);
+        self.at.ensure(inside, Reason::OutsideScene)
     }
 }

@@ -4,7 +4,7 @@ use crate::format::kind::shapes;
 use crate::format::limits::{WIDE_INDICES, WIDE_LATTICE};
 use crate::format::range::{At, at_most};
 use crate::format::record::{Header, UnitBox};
-use crate::format::{BlobError, Kind, Leaf, SectionKind, Sections};
+use crate::format::{BlobError, Field, Kind, Leaf, SectionKind, Sections};
 #[cfg(feature = "wide")]
 use crate::geometry::Clusters;
 use crate::geometry::primitive::{InScene, Primitive, beneath};
@@ -93,8 +93,8 @@ macro_rules! registry {
 
             /// Proves that all records lie in the scene's box and that their fields are in range.
             pub(crate) fn validate(&self, header: &Header) -> Result<(), BlobError> {
-                let slots = self.total() as u64;
-                at_most("number of slots", slots, header.primitives.into())?;
+                let slots = self.total() as u32;
+                at_most(Field::Slots, slots, header.primitives)?;
                 let bounds = &header.bounds;
                 let vertices = self.vertices.validate(bounds)?;
                 self.triangles.validate(self.records(Kind::Triangle), vertices)?;

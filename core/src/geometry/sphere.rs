@@ -17,7 +17,7 @@
 use crate::format::limits::WIDE_LATTICE;
 use crate::format::range::At;
 use crate::format::record::{Sphere, Sphere16, Sphere24, UnitBox};
-use crate::format::{BlobError, SectionKind, Sections};
+use crate::format::{BlobError, Field, SectionKind, Sections};
 use crate::geometry::primitive::{InScene, MAX_RADIUS};
 use crate::geometry::{Crossing, Surface};
 use crate::number::Arithmetic;
@@ -47,10 +47,10 @@ impl<'a> Spheres<'a> {
             let at = At { section, index };
             let scene = InScene { at, bounds };
             let (center, radius) = self.get(index).unwrap_or_default();
-            at.within("radius", radius.into(), 1, MAX_RADIUS)?;
+            at.within(Field::Radius, radius.into(), 1, MAX_RADIUS)?;
             let moved = |length: i32| center.map(|x| x.wrapping_add(length));
-            scene.point("lowest coordinate", moved(radius.wrapping_neg()))?;
-            scene.point("highest coordinate", moved(radius))
+            scene.point(Field::LowestCoordinate, moved(radius.wrapping_neg()))?;
+            scene.point(Field::HighestCoordinate, moved(radius))
         })
     }
 

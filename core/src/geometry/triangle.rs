@@ -12,7 +12,7 @@ use crate::axis::pick;
 use crate::format::limits::{WIDE_INDICES, WIDE_LATTICE};
 use crate::format::range::At;
 use crate::format::record::{Corners, UnitBox, Vertex, Vertex16, Vertex24};
-use crate::format::{BlobError, Kind, SectionKind, Sections};
+use crate::format::{BlobError, Field, Kind, SectionKind, Sections};
 use crate::geometry::Project;
 use crate::geometry::primitive::InScene;
 use crate::geometry::project::AxisProjection;
@@ -48,7 +48,8 @@ impl<'a> Vertices<'a> {
         };
         for index in 0..count {
             let at = At { section, index };
-            InScene { at, bounds }.point("coordinate", self.position(index).unwrap_or_default())?;
+            InScene { at, bounds }
+                .point(Field::Coordinate, self.position(index).unwrap_or_default())?;
         }
         Ok(count)
     }
@@ -93,7 +94,7 @@ impl<'a> Triangles<'a> {
         (0..count).try_for_each(|index| {
             let corners = self.corners(index).unwrap_or_default();
             let corners = corners.map(|corner| corner as i64);
-            At { section, index }.all_within("vertex", &corners, 0, vertices as i64 - 1)
+            At { section, index }.all_within(Field::Vertex, &corners, 0, vertices as i64 - 1)
         })
     }
 

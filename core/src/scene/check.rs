@@ -3,7 +3,9 @@
 use crate::accel::StructureViews;
 use crate::format::range::{At, exactly};
 use crate::format::record::Header;
-use crate::format::{BlobError, Effects, Kind, Leaf, SectionKind, Sections, checksum};
+use crate::format::{
+    BlobError, Effects, Field, Kind, Leaf, Location, Reason, SectionKind, Sections, checksum,
+};
 use crate::number::Fixed;
 use crate::number::Scalar;
 use crate::scene::Scene;
@@ -37,12 +39,12 @@ fn check_lights(scene: &Scene<'_>) -> Result<(), BlobError> {
     let section = SectionKind::Lights;
     for (index, light) in scene.lights.iter().enumerate() {
         let at = At { section, index };
-        at.within("kind", light.directional.into(), 0, 1)?;
-        at.all_within("colour", &light.color, 0, RADIANCE)?;
+        at.within(Field::Kind, light.directional.into(), 0, 1)?;
+        at.all_within(Field::Color, &light.color, 0, RADIANCE)?;
         let most = if light.directional == 1 { ONE } else { FAR };
-        at.all_within("position or direction", &light.vector, -most, most)?;
+        at.all_within(Field::PositionOrDirection, &light.vector, -most, most)?;
         let zero = light.directional == 1 && light.vector == [0; 3];
-        at.within("number of directions of length 0", zero.into(), 0, 0)?;
+        at.ensure(!zero, Reason::ZeroDirection)?;
     }
     Ok(())
 }
@@ -61,37 +63,27 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
     for (index, material) in materials.iter().enumerate() {
         let at = At { section, index };
         let colors = [
-            ("diffuse colour", material.diffuse),
-            ("odd colour", material.odd),
-            ("highlight", material.highlight),
-            ("mirror", material.mirror),
-            ("transmittance", material.transmit),
+            (Field::Diffuse, material.diffuse),
+            (Field::Odd, material.odd),
+            (Field::Highlight, material.highlight),
+            (Field::Mirror, material.mirror),
+            (Field::Transmittance, material.transmit),
         ];
-        for (what, color) in colors {
-            at.all_within(what, &color, 0, ONE)?;
+        for (field, color) in colors {
+            at.all_within(field, &color, 0, ONE)?;
         }
+        at.within(Field::InverseIor, material.inverse_ior.into(), ONE / 4, ONE)?;
+        at.within(Field::Shininess, material.shininess.into(), 1, 1024)?;
         at.within(
-            "inverse index of refraction",
-            material.inverse_ior.into(),
-            ONE / 4,
-            ONE,
-        )?;
-        at.within("shininess", material.shininess.into(), 1, 1024)?;
-        at.within(
-            "checkerboard's size",
+            Field::CheckerSize,
             material.checker_size.into(),
             0,
             i32::MAX.into(),
         )?;
-        at.all_within("checkerboard's origin", &material.checker_origin, -ONE, ONE)?;
-        at.within("spare word", material.spare.into(), 0, 0)?;
+        at.all_within(Field::CheckerOrigin, &material.checker_origin, -ONE, ONE)?;
+        at.ensure(material.spare == 0, Reason::SpareNotZero)?;
         let uncalled = material.effects().without(Effects(header.effects));
-        at.within(
-            "set of effects that the header does not call for",
-            uncalled.0.into(),
-            0,
-            0,
-        )?;
+        at.ensure(uncalled == Effects::NONE, Reason::MissingEffect)?;
         called = called.with(material.effects());
     }
     // Without objects lights call for nothing.
@@ -99,11 +91,8 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
         let lights = scene.lights.iter();
         called = lights.fold(called, |called, light| called.with(light.effects()));
     }
-    exactly(
-        "set of effects that nothing calls for",
-        Effects(header.effects).without(called).0.into(),
-        0,
-    )
+    let unneeded = Effects(header.effects).without(called);
+    Location::Header.ensure(unneeded == Effects::NONE, Reason::UnneededEffects)
 }
 
 fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
@@ -112,11 +101,7 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
     let first = &scene.object_first;
     if first.is_empty() {
         let implied = objects as i64 == primitives || objects <= 1;
-        exactly(
-            "number of objects without an object-first section",
-            u64::from(!implied),
-            0,
-        )?;
+        Location::Header.ensure(implied, Reason::MissingObjectFirst)?;
     } else {
         let section = SectionKind::ObjectFirst;
         if first.len() != objects {
@@ -130,7 +115,7 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
         for index in 0..objects {
             let value = first.get(index).unwrap_or(0).into();
             let most = if index == 0 { 0 } else { primitives };
-            At { section, index }.within("first primitive", value, last, most)?;
+            At { section, index }.within(Field::FirstPrimitive, value, last, most)?;
             last = value;
         }
     }
@@ -147,7 +132,7 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
         for index in 0..objects {
             let value = material.get(index).unwrap_or(0).into();
             let most = scene.materials.len() as i64 - 1;
-            At { section, index }.within("material", value, 0, most)?;
+            At { section, index }.within(Field::Material, value, 0, most)?;
         }
     }
     let order = &scene.order;
@@ -163,7 +148,7 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
         }
         for index in 0..order.len() {
             let value = order.get(index).unwrap_or(0).into();
-            At { section, index }.within("primitive", value, 0, primitives - 1)?;
+            At { section, index }.within(Field::Primitive, value, 0, primitives - 1)?;
         }
     }
     Ok(())
@@ -172,14 +157,14 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
 fn check_structures<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<(), BlobError> {
     let longest = check_leaves(scene, StructureViews::uses_leaves(&scene.space))?;
     exactly(
-        "longest leaf",
+        Field::LongestLeaf,
         scene.space.header.longest_leaf.into(),
-        longest.into(),
+        longest,
     )?;
     let (depth, all_proved) = scene.structures.check(&scene.space, sections)?;
     let found = scene.space.header.stack_depth;
     if all_proved || usize::from(found) < depth {
-        exactly("stack depth", found.into(), depth as u64)?;
+        exactly(Field::StackDepth, found.into(), depth as u32)?;
     }
     Ok(())
 }
@@ -200,24 +185,19 @@ fn check_leaves(scene: &Scene<'_>, hierarchies: bool) -> Result<u32, BlobError> 
     for (index, &word) in (0..scene.space.leaves.len()).zip(scene.space.leaves) {
         let at = At { section, index };
         let Some(leaf) = Leaf::from_word(word) else {
-            let (what, expected) = ("kind", Kind::ALL.len() as i64 - 1);
-            return Err(BlobError::Record {
-                section,
-                index,
-                what,
-                found: (word >> 29).into(),
-                expected,
-            });
+            let range = [0, Kind::ALL.len() as i64 - 1];
+            let location = Location::Record(section, index);
+            return Err(location.out_of_range(Field::Kind, (word >> 29).into(), range));
         };
         at.within(
-            "number of primitives",
+            Field::Primitives,
             leaf.count.into(),
             1,
             Leaf::MAX_COUNT.into(),
         )?;
         let next = &mut next[leaf.kind as usize];
         at.within(
-            "first slot",
+            Field::FirstSlot,
             leaf.first.into(),
             (*next).into(),
             (*next).into(),
@@ -226,7 +206,7 @@ fn check_leaves(scene: &Scene<'_>, hierarchies: bool) -> Result<u32, BlobError> 
         *next = next.wrapping_add(leaf.count);
         longest = longest.max(leaf.count);
         let most = scene.space.shapes.records(leaf.kind) as i64;
-        at.within("end of the slots", (*next).into(), 0, most)?;
+        at.within(Field::EndSlot, (*next).into(), 0, most)?;
     }
     if hierarchies {
         for kind in Kind::ALL {

@@ -1,9 +1,10 @@
 //! What a program proves of its own blob while it is compiled, so that loading need not.
 
 use crate::accel::hierarchy::order::Order;
+use crate::format::limits::MAX_STACK_DEPTH;
 use crate::format::record::{Header, SectionEntry};
 use crate::format::word::{half, proved, word};
-use crate::format::{BlobError, SectionKind, Structure, checksum};
+use crate::format::{BlobError, Field, Location, Reason, SectionKind, Structure, checksum};
 use core::mem::offset_of;
 
 /// A blob that was verified when the program was compiled: loading it with [`Scene::prevalidated`](crate::scene::Scene::prevalidated)
@@ -75,11 +76,7 @@ impl<'a> Prevalidated<'a> {
         }
         let structures = proved!(word(blob, offset_of!(Header, structures)));
         if structures & !Self::BITS != 0 {
-            return Err(BlobError::Header {
-                field: "set of structures, all of which are vouched for,",
-                found: structures as u64,
-                expected: Self::BITS as u64,
-            });
+            return Err(Location::Header.invalid(Reason::NotPrevalidated));
         }
         let sections = proved!(half(blob, offset_of!(Header, section_count))) as usize;
         let stack_depth = proved!(half(blob, offset_of!(Header, stack_depth))) as usize;
@@ -88,20 +85,13 @@ impl<'a> Prevalidated<'a> {
             let entry = size_of::<Header>() + index * size_of::<SectionEntry>();
             let kind = proved!(half(blob, entry + offset_of!(SectionEntry, kind)));
             if kind > SectionKind::DualNodes as u16 {
-                return Err(BlobError::Table {
-                    index,
-                    what: "kind of a section that is vouched for",
-                    found: kind as u64,
-                    expected: SectionKind::DualNodes as u64,
-                });
+                return Err(Location::Table(index).invalid(Reason::NotPrevalidated));
             }
             let levels = proved!(levels(blob, entry, kind));
             if levels > stack_depth {
-                return Err(BlobError::Header {
-                    field: "stack depth",
-                    found: stack_depth as u64,
-                    expected: levels as u64,
-                });
+                let range = [levels as i64, MAX_STACK_DEPTH as i64];
+                let found = stack_depth as i64;
+                return Err(Location::Header.out_of_range(Field::StackDepth, found, range));
             }
             index += 1;
         }

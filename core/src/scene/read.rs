@@ -8,7 +8,9 @@ use crate::format::limits::{
 };
 use crate::format::range::{At, at_most, exactly};
 use crate::format::record::{ALIGNMENT, ENDIANNESS, Header, MAGIC, VERSION, View};
-use crate::format::{BlobError, Effects, Indices, SectionKind, Sections, Structure};
+use crate::format::{
+    BlobError, Effects, Field, Indices, Location, Reason, SectionKind, Sections, Structure,
+};
 use crate::geometry::Shapes;
 use crate::scene::Scene;
 #[cfg(feature = "wide")]
@@ -86,11 +88,9 @@ pub(crate) fn scene<'a>(
 
 /// Proves the ranges of the header's fields, and that this build has what the scene calls for.
 fn check_limits(header: &Header) -> Result<(), BlobError> {
-    at_most(
-        "set of effects",
-        header.effects.into(),
-        Effects::ALL.0.into(),
-    )?;
+    let header_has = |holds, reason| Location::Header.ensure(holds, reason);
+    let unknown = header.effects & !Effects::ALL.0;
+    header_has(unknown == 0, Reason::UnknownEffects)?;
     let missing = Effects(header.effects).without(Effects::AVAILABLE);
     if missing != Effects::NONE {
         return Err(BlobError::MissingEffects { missing });
@@ -98,59 +98,37 @@ fn check_limits(header: &Header) -> Result<(), BlobError> {
     let known = Structure::ALL
         .iter()
         .fold(0, |bits, structure| bits | structure.bit());
-    // The list is always there.
-    let list = Structure::List.bit();
-    exactly(
-        "set of the list and of unknown structures",
-        (header.structures & (!known | list)).into(),
-        list.into(),
-    )?;
+    let unknown = header.structures & !known;
+    header_has(unknown == 0, Reason::UnknownStructures)?;
+    let list = header.structures & Structure::List.bit();
+    header_has(list != 0, Reason::MissingList)?;
     at_most(
-        "stack depth",
+        Field::StackDepth,
         header.stack_depth.into(),
-        MAX_STACK_DEPTH as u64,
+        MAX_STACK_DEPTH as u32,
     )?;
-    let stack_bytes = u64::from(header.stack_depth) * size_of::<Entry>() as u64;
-    exactly(
-        "number of stack bytes",
-        header.stack_bytes.into(),
-        stack_bytes,
-    )?;
-    at_most("number of lattice bits", header.lattice_bits.into(), 24)?;
+    let stack_bytes = u32::from(header.stack_depth) * size_of::<Entry>() as u32;
+    exactly(Field::StackBytes, header.stack_bytes, stack_bytes)?;
+    at_most(Field::LatticeBits, header.lattice_bits.into(), 24)?;
     let storage_bits = if header.lattice_bits <= 16 { 16 } else { 24 };
-    exactly(
-        "number of storage bits",
-        header.storage_bits.into(),
-        storage_bits,
-    )?;
-    at_most(
-        "magnitude of the unit's exponent",
-        header.unit_exponent.unsigned_abs().into(),
-        1000,
-    )?;
-    for origin in header.origin {
-        exactly(
-            "number of coordinates of the origin that are no number",
-            u64::from(!origin.is_finite()),
-            0,
-        )?;
+    exactly(Field::StorageBits, header.storage_bits.into(), storage_bits)?;
+    if header.unit_exponent.unsigned_abs() > 1000 {
+        let found = header.unit_exponent.into();
+        return Err(Location::Header.out_of_range(Field::UnitExponent, found, [-1000, 1000]));
     }
-    for axis in header.bounds.0 {
-        exactly(
-            "number of inverted sides of the scene's box",
-            u64::from(axis[0] > axis[1]),
-            0,
-        )?;
-        exactly(
-            "number of sides at -32768",
-            u64::from(axis[0] == i16::MIN),
-            0,
-        )?;
-    }
-    exactly("first spare word", header.spare[0].into(), 0)?;
-    exactly("second spare word", header.spare[1].into(), 0)?;
+    let finite = header.origin.iter().all(|origin| origin.is_finite());
+    header_has(finite, Reason::OriginNotFinite)?;
+    let mut sides = header.bounds.0.iter();
+    header_has(sides.all(|[low, high]| low <= high), Reason::InvertedBounds)?;
+    let mut sides = header.bounds.0.iter();
+    header_has(
+        sides.all(|[low, _]| *low != i16::MIN),
+        Reason::ReservedBounds,
+    )?;
+    header_has(header.spare == [0; 2], Reason::SpareNotZero)?;
     Ok(())
 }
+
 fn check_view<'a>(sections: &Sections<'a>) -> Result<&'a View, BlobError> {
     let section = SectionKind::View;
     let views: &[View] = sections.records(section)?;
@@ -162,23 +140,18 @@ fn check_view<'a>(sections: &Sections<'a>) -> Result<&'a View, BlobError> {
         });
     };
     let at = At { section, index: 0 };
-    at.all_within("eye", &view.eye, -FAR, FAR)?;
+    at.all_within(Field::Eye, &view.eye, -FAR, FAR)?;
     for vector in [view.forward, view.right, view.up] {
-        at.all_within("camera vector", &vector, -(1 << 28), 1 << 28)?;
+        at.all_within(Field::CameraVector, &vector, -(1 << 28), 1 << 28)?;
     }
-    at.all_within("background", &view.background, 0, RADIANCE)?;
-    at.all_within("ambient light", &view.ambient, 0, RADIANCE)?;
-    at.within("cutoff", view.cutoff.into(), 0, RADIANCE)?;
-    at.within("width", view.width.into(), 1, u16::MAX.into())?;
-    at.within("height", view.height.into(), 1, u16::MAX.into())?;
-    at.within(
-        "number of samples",
-        view.samples.into(),
-        1,
-        MAX_SAMPLES.into(),
-    )?;
-    at.within("depth", view.depth.into(), 0, MAX_RAY_DEPTH as i64)?;
-    at.within("display values", view.display_values.into(), 0, 1)?;
+    at.all_within(Field::Background, &view.background, 0, RADIANCE)?;
+    at.all_within(Field::AmbientLight, &view.ambient, 0, RADIANCE)?;
+    at.within(Field::Cutoff, view.cutoff.into(), 0, RADIANCE)?;
+    at.within(Field::Width, view.width.into(), 1, u16::MAX.into())?;
+    at.within(Field::Height, view.height.into(), 1, u16::MAX.into())?;
+    at.within(Field::Samples, view.samples.into(), 1, MAX_SAMPLES.into())?;
+    at.within(Field::RayDepth, view.depth.into(), 0, MAX_RAY_DEPTH as i64)?;
+    at.within(Field::DisplayValues, view.display_values.into(), 0, 1)?;
     if !DISPLAY_VALUES && view.display_values != 0 {
         let missing = "display-values";
         return Err(BlobError::MissingPart { missing });

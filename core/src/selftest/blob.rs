@@ -86,7 +86,7 @@ pub(super) fn explains(checks: &mut Checks<'_>) {
     );
     says(
         &mut |bytes| bytes[offset_of!(Header, stack_depth)] = 1,
-        "the header's number of stack bytes is 0 and must be (at most) 12",
+        "header: its number of stack bytes is 0; it must be 12",
     );
 }
 

@@ -7,7 +7,7 @@
 use super::parts::{Base, Parts, Section};
 use crate::random::Random;
 use gridel_core::format::record::Header;
-use gridel_core::format::{BlobError, SectionKind};
+use gridel_core::format::{BlobError, Field, Location, SectionKind};
 use gridel_core::{Scene, Structure};
 use std::mem::offset_of;
 
@@ -242,17 +242,19 @@ impl Forger {
                     use_scene(&scene, blob.bytes());
                     return;
                 }
-                Err(BlobError::Header {
-                    field: "stack depth",
-                    expected,
+                Err(BlobError::OutOfRange {
+                    location: Location::Header,
+                    field: Field::StackDepth,
+                    range: [expected, _],
                     ..
                 }) => {
                     parts.header.stack_depth = expected as u16;
                     parts.header.stack_bytes = 12 * expected as u32;
                 }
-                Err(BlobError::Header {
-                    field: "longest leaf",
-                    expected,
+                Err(BlobError::OutOfRange {
+                    location: Location::Header,
+                    field: Field::LongestLeaf,
+                    range: [expected, _],
                     ..
                 }) => {
                     parts.header.longest_leaf = expected as u16;

@@ -104,22 +104,14 @@ fn agree_in<N: Number>(scene: &Scene<'_>, rays: &[UnitRay]) {
 pub fn speaks(error: &BlobError) {
     let text = error.to_string();
     let named = match error {
-        BlobError::Header { field, .. } => text.contains(field),
-        BlobError::Table { index, what, .. } => {
-            text.contains(what) && text.contains(&index.to_string())
-        }
         BlobError::Stride { section, .. } | BlobError::Count { section, .. } => {
             text.contains(section.name())
         }
-        BlobError::Record {
-            section,
-            index,
-            what,
-            ..
-        } => {
-            text.contains(section.name())
-                && text.contains(what)
-                && text.contains(&index.to_string())
+        BlobError::OutOfRange {
+            location, field, ..
+        } => text.starts_with(&location.to_string()) && text.contains(field.text()),
+        BlobError::Invalid { location, reason } => {
+            text.starts_with(&location.to_string()) && text.contains(reason.text())
         }
         _ => text.len() > 20,
     };

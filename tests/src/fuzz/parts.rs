@@ -198,6 +198,50 @@ impl Base {
         section.map_or(&mut [], |it| &mut it.bytes)
     }
 
+    /// All bytes of a section, to be replaced or added to.
+    ///
+    /// # Panics
+    /// If it is not there.
+    pub fn bytes(&mut self, kind: SectionKind) -> &mut Vec<u8> {
+        let mut sections = self.parts.sections.iter_mut();
+        let section = sections.find(|it| it.kind == kind as u16);
+        &mut section.expect("the section").bytes
+    }
+
+    /// Number of records of a section.
+    pub fn records(&self, kind: SectionKind) -> usize {
+        let mut sections = self.parts.sections.iter();
+        let section = sections.find(|it| it.kind == kind as u16);
+        section.map_or(0, Section::records)
+    }
+
+    /// A record of a section.
+    pub fn record<T: bytemuck::Pod>(&mut self, kind: SectionKind, index: usize) -> T {
+        let start = index * size_of::<T>();
+        bytemuck::pod_read_unaligned(&self.bytes(kind)[start..start + size_of::<T>()])
+    }
+
+    /// Changes a record of a section.
+    pub fn change<T: bytemuck::Pod>(
+        &mut self,
+        kind: SectionKind,
+        index: usize,
+        change: impl FnOnce(&mut T),
+    ) {
+        let mut record = self.record(kind, index);
+        change(&mut record);
+        let start = index * size_of::<T>();
+        self.bytes(kind)[start..start + size_of::<T>()]
+            .copy_from_slice(bytemuck::bytes_of(&record));
+    }
+
+    /// Changes a record that is an integer of one to four bytes.
+    pub fn set(&mut self, kind: SectionKind, index: usize, value: u32) {
+        let stride = self.bytes(kind).len() / self.records(kind);
+        let start = index * stride;
+        self.bytes(kind)[start..start + stride].copy_from_slice(&value.to_le_bytes()[..stride]);
+    }
+
     /// Removes the first records of a section.
     pub fn drop_first(&mut self, kind: SectionKind, records: usize) {
         let mut sections = self.parts.sections.iter_mut();

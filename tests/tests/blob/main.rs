@@ -5,6 +5,7 @@ mod forged;
 mod fuzz;
 mod mutants;
 mod old;
+mod reasons;
 mod vouched;
 
 use glam::DVec3;

@@ -50,8 +50,9 @@ use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::axis::pick;
+use crate::format::range::At;
 use crate::format::record::{ApexDirection, ApexPoint, ApexWindow, Gridels, Pair};
-use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
+use crate::format::{BlobError, Field, Leaf, SectionKind, Sections, Structure};
 use crate::observe::count::Observer;
 use crate::ray::Ray;
 
@@ -315,66 +316,34 @@ impl<'a> Records<'a> for Views<'a> {
     /// fill it, and the lists; and that the scene holds the hierarchy for all other rays.
     fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
         space.require(Structure::Bvh, Structure::Apex)?;
-        const MOST: u32 = 1 << 29;
+        let last = self.windows.len() as i64 - 1;
         for (index, point) in self.points.iter().enumerate() {
-            let wrong = |what, found: i64, expected: i64| BlobError::Record {
-                section: SectionKind::ApexPoints,
-                index,
-                what,
-                found,
-                expected,
-            };
-            for coordinate in point.at {
-                if coordinate.unsigned_abs() > MOST {
-                    return Err(wrong("coordinate", coordinate.into(), MOST.into()));
-                }
-            }
+            const MOST: i64 = 1 << 29;
+            let section = SectionKind::ApexPoints;
+            let at = At { section, index };
+            at.all_within(Field::Coordinate, &point.at, -MOST, MOST)?;
             for window in point.windows {
-                let exists = usize::from(window) < self.windows.len();
-                if !exists && window != Apex::NO_WINDOW {
-                    let last = self.windows.len() as i64 - 1;
-                    return Err(wrong("window", window.into(), last));
+                if window != Apex::NO_WINDOW {
+                    at.within(Field::Window, window.into(), 0, last)?;
                 }
             }
         }
         for (index, direction) in self.directions.iter().enumerate() {
-            const MOST: u32 = 1 << 24;
-            let wrong = |what, found: i64, expected: i64| BlobError::Record {
-                section: SectionKind::ApexDirections,
-                index,
-                what,
-                found,
-                expected,
-            };
-            if direction.plane.unsigned_abs() > MOST {
-                return Err(wrong("plane", direction.plane.into(), MOST.into()));
-            }
-            if direction.major > 2 {
-                return Err(wrong("major axis", direction.major.into(), 2));
-            }
-            if usize::from(direction.window) >= self.windows.len() {
-                let last = self.windows.len() as i64 - 1;
-                return Err(wrong("window", direction.window.into(), last));
-            }
+            const MOST: i64 = 1 << 24;
+            let section = SectionKind::ApexDirections;
+            let at = At { section, index };
+            at.within(Field::Plane, direction.plane.into(), -MOST, MOST)?;
+            at.within(Field::MajorAxis, direction.major.into(), 0, 2)?;
+            at.within(Field::Window, direction.window.into(), 0, last)?;
         }
         let mut next: u32 = 0;
         for (index, window) in self.windows.iter().enumerate() {
-            let wrong = |what, found: u32, expected: u32| BlobError::Record {
-                section: SectionKind::ApexWindows,
-                index,
-                what,
-                found: found.into(),
-                expected: expected.into(),
-            };
-            if window.first_cell != next {
-                return Err(wrong("first cell", window.first_cell, next));
-            }
-            for cells in window.cells {
-                if cells == 0 || cells > Apex::MOST_CELLS {
-                    let most = Apex::MOST_CELLS.into();
-                    return Err(wrong("number of cells along a side", cells.into(), most));
-                }
-            }
+            let section = SectionKind::ApexWindows;
+            let at = At { section, index };
+            let first = next.into();
+            at.within(Field::FirstCell, window.first_cell.into(), first, first)?;
+            let most = Apex::MOST_CELLS.into();
+            at.all_within(Field::SideCells, &window.cells, 1, most)?;
             let cells = u32::from(window.cells[0]) * u32::from(window.cells[1]);
             // A table has fewer cells than a blob bytes.
             next = next.saturating_add(cells);

@@ -6,7 +6,7 @@ use crate::accel::candidates::lists::{Candidates, ListSections};
 use crate::accel::number::Number;
 use crate::accel::space::Space;
 use crate::format::record::Gridels;
-use crate::format::{BlobError, SectionKind, Sections};
+use crate::format::{BlobError, Location, Reason, SectionKind, Sections};
 use crate::ray::Ray;
 
 /// What the cylinder cubes keep: a partition, and a list for every pair of gridels.
@@ -52,15 +52,8 @@ impl<'a> Table<'a> {
                 expected: 1,
             });
         };
-        if *gridels != Gridels::new(space.bounds(), gridels.count) {
-            return Err(BlobError::Record {
-                section,
-                index: 0,
-                what: "partition, which must be that of the scene's box: number of gridels a side",
-                found: gridels.count.into(),
-                expected: Gridels::MOST.into(),
-            });
-        }
+        let is_scenes = *gridels == Gridels::new(space.bounds(), gridels.count);
+        Location::Section(section).ensure(is_scenes, Reason::WrongPartition)?;
         let ascend = |before: u8, after: u8| before >> 4 <= after >> 4 && before & 15 <= after & 15;
         self.lists
             .check(kinds, Gridels::pairs(gridels.count), end, ascend)

@@ -6,7 +6,8 @@
 //! something has a *key* for every entry, which says where along the way of the ray it and its
 //! neighbours lie: see [`Levels`](crate::accel::candidates::gridels::Levels).
 
-use crate::format::{BlobError, Indices, SectionKind, Sections};
+use crate::format::range::At;
+use crate::format::{BlobError, Field, Indices, Location, Reason, SectionKind, Sections};
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, NodeId};
 use core::ops::Range;
@@ -33,6 +34,26 @@ pub(in crate::accel) fn look_up<C: Observer>(cell: u32, count: &mut C) {
             number: cell,
         }));
     }
+}
+
+/// Proves that lists follow each other without a gap and fill their array of entries: `starts` holds
+/// the first entry of each, and behind the last one the number of entries.
+pub(in crate::accel) fn check_starts(
+    starts: &Indices<'_>,
+    section: SectionKind,
+    entries: usize,
+) -> Result<(), BlobError> {
+    let entries = entries as i64;
+    let lists = starts.len().saturating_sub(1);
+    let mut last = 0;
+    for index in 0..=lists {
+        let start = starts.get(index).unwrap_or(0).into();
+        let low = if index == lists { entries } else { last };
+        let high = if index == 0 { low } else { entries };
+        At { section, index }.within(Field::FirstEntry, start, low, high)?;
+        last = start;
+    }
+    Ok(())
 }
 
 /// The lists of one table.
@@ -77,16 +98,6 @@ impl<'a> Candidates<'a> {
                 expected,
             }),
         };
-        let below = |section, index, what, found: u32, end: usize| match (found as usize) < end {
-            true => Ok(()),
-            false => Err(BlobError::Record {
-                section,
-                index,
-                what,
-                found: found.into(),
-                expected: end as i64 - 1,
-            }),
-        };
         count(
             kinds.cells,
             self.cells.len(),
@@ -94,34 +105,15 @@ impl<'a> Candidates<'a> {
         )?;
         let lists = self.starts.len().saturating_sub(1);
         for index in 0..self.cells.len() {
-            let list = self.cells.get(index).unwrap_or(u32::MAX);
-            below(kinds.cells, index, "list", list, lists)?;
+            let list = self.cells.get(index).unwrap_or(u32::MAX).into();
+            let section = kinds.cells;
+            At { section, index }.within(Field::List, list, 0, lists as i64 - 1)?;
         }
-        let mut last = 0;
-        for index in 0..self.starts.len() {
-            let start = self.starts.get(index).unwrap_or(u32::MAX);
-            let entries = self.entries.len() as u32;
-            let expected = if index == 0 {
-                0
-            } else if index == lists {
-                entries
-            } else {
-                start.clamp(last, entries.max(last))
-            };
-            if start != expected {
-                return Err(BlobError::Record {
-                    section: kinds.starts,
-                    index,
-                    what: "first entry of a list",
-                    found: start.into(),
-                    expected: expected.into(),
-                });
-            }
-            last = start;
-        }
+        check_starts(&self.starts, kinds.starts, self.entries.len())?;
         for index in 0..self.entries.len() {
-            let entry = self.entries.get(index).unwrap_or(u32::MAX);
-            below(kinds.entries, index, "candidate", entry, end)?;
+            let entry = self.entries.get(index).unwrap_or(u32::MAX).into();
+            let section = kinds.entries;
+            At { section, index }.within(Field::Candidate, entry, 0, end as i64 - 1)?;
         }
         let Some(section) = kinds.keys else {
             return Ok(());
@@ -135,15 +127,8 @@ impl<'a> Candidates<'a> {
                 _ => false,
             });
             if let Some(place) = wrong {
-                let before = range.start.wrapping_add(place);
-                let index = before.wrapping_add(1);
-                return Err(BlobError::Record {
-                    section,
-                    index,
-                    what: "key, which must ascend in a list,",
-                    found: self.keys.get(index).copied().unwrap_or(0).into(),
-                    expected: self.keys.get(before).copied().unwrap_or(0).into(),
-                });
+                let index = range.start.wrapping_add(place).wrapping_add(1);
+                return Err(Location::Record(section, index).invalid(Reason::KeyOrder));
             }
         }
         Ok(())

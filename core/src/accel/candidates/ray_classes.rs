@@ -26,8 +26,9 @@ use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::axis::pick;
+use crate::format::range::At;
 use crate::format::record::{Gridels, Pair, UnitBox};
-use crate::format::{BlobError, ClassNode, Leaf, SectionKind, Sections, Structure};
+use crate::format::{BlobError, ClassNode, Field, Leaf, Reason, SectionKind, Sections, Structure};
 use crate::observe::count::Observer;
 use crate::ray::Ray;
 
@@ -236,39 +237,24 @@ impl<'a> Records<'a> for Views<'a> {
         let mut next = 6;
         for (index, &word) in self.nodes.iter().enumerate() {
             let node = ClassNode(word);
-            let wrong = |what, expected: u32| BlobError::Record {
-                section,
-                index,
-                what,
-                found: node.number().into(),
-                expected: expected.into(),
-            };
+            let at = At { section, index };
+            at.ensure(next > index as i64, Reason::NotReached)?;
+            let number = node.number().into();
             match node.dimension() {
-                Some(dimension) if dimension >= ClassNode::DIMENSIONS => {
-                    return Err(BlobError::Record {
-                        section,
-                        index,
-                        what: "dimension",
-                        found: dimension as i64,
-                        expected: ClassNode::DIMENSIONS as i64 - 1,
-                    });
+                Some(dimension) => {
+                    let most = ClassNode::DIMENSIONS as i64 - 1;
+                    at.within(Field::Dimension, dimension as i64, 0, most)?;
+                    at.within(Field::Child, number, next, next)?;
+                    next += 2;
                 }
-                Some(_) if node.number() != next => {
-                    return Err(wrong("first child, which must follow in order,", next));
-                }
-                Some(_) => next += 2,
                 None if node.number() == ClassNode::NONE => {}
-                None if node.number() != cells => {
-                    return Err(wrong("cell of a leaf", cells));
+                None => {
+                    at.within(Field::Cell, number, cells, cells)?;
+                    cells += 1;
                 }
-                None => cells += 1,
-            }
-            // The next node must be one that something leads to.
-            if next as usize <= index {
-                return Err(wrong("number of nodes that are reached up to here", next));
             }
         }
-        if next as usize != self.nodes.len() {
+        if next != self.nodes.len() as i64 {
             return Err(BlobError::Count {
                 section,
                 found: self.nodes.len(),
@@ -277,7 +263,7 @@ impl<'a> Records<'a> for Views<'a> {
         }
         let ascend = |before: u8, after: u8| before <= after;
         self.lists
-            .check(&LISTS, cells.into(), space.shapes.total(), ascend)?;
+            .check(&LISTS, cells as u64, space.shapes.total(), ascend)?;
         Ok(0)
     }
 }

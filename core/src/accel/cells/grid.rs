@@ -19,15 +19,16 @@
 //! ends only where the next cell begins beyond the best hit.
 
 use crate::accel::candidates::lists::look_up;
-use crate::accel::cells::lists::{Divisions, Lists, Tester, check_complete, divide, reach, record};
+use crate::accel::cells::lists::{Divisions, Lists, Tester, check_complete, divide, reach};
 use crate::accel::cull::{Cull, PairCulling};
 use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
+use crate::format::range::At;
 use crate::format::record::GridShape;
-use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
+use crate::format::{BlobError, Field, Leaf, Location, Reason, SectionKind, Sections, Structure};
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, NodeId};
 use crate::ray::Ray;
@@ -196,10 +197,9 @@ impl Views<'_> {
                 let row = z.wrapping_mul(counts[1]).wrapping_add(y);
                 for x in xs[0]..=xs[1] {
                     let list = row.wrapping_mul(counts[0]).wrapping_add(x) as usize;
-                    if !self.lists.holds(list, slot as u32) {
-                        let what = "number of times that a list holds what reaches into its cell";
-                        return Err(record(SectionKind::GridStarts, list, what, 0, 1));
-                    }
+                    let is_listed = self.lists.holds(list, slot as u32);
+                    Location::Record(SectionKind::GridStarts, list)
+                        .ensure(is_listed, Reason::MissingPrimitive)?;
                 }
             }
         }
@@ -247,15 +247,10 @@ impl<'a> Records<'a> for Views<'a> {
         for (axis, count) in shape.counts().into_iter().enumerate() {
             let [low, high] = space.bounds().0[axis];
             let most = if low == high { 1 } else { Divisions::MOST };
-            if count == 0 || count > most {
-                let what = "number of divisions";
-                return Err(record(SectionKind::GridShape, 0, what, count, most));
-            }
+            let section = SectionKind::GridShape;
+            At { section, index: 0 }.within(Field::Divisions, count.into(), 1, most.into())?;
         }
-        if shape.spare != 0 {
-            let found = shape.spare.into();
-            return Err(record(SectionKind::GridShape, 0, "spare word", found, 0));
-        }
+        Location::Section(SectionKind::GridShape).ensure(shape.spare == 0, Reason::SpareNotZero)?;
         let counts = shape.counts();
         // At most 2^30.
         let expected = counts.into_iter().fold(1, u32::wrapping_mul) as usize;

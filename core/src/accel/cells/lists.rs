@@ -5,9 +5,13 @@
 //! box's extent over the number of divisions, in 1/2^16 unit, rounded up. Where the box is flat
 //! there is one division.
 
+use crate::accel::candidates::lists::check_starts;
 use crate::accel::space::Space;
+use crate::format::range::At;
 use crate::format::record::UnitBox;
-use crate::format::{BlobError, Indices, Kind, Leaf, SectionKind, Sections};
+use crate::format::{
+    BlobError, Field, Indices, Kind, Leaf, Location, Reason, SectionKind, Sections,
+};
 use crate::geometry::Shapes;
 use crate::observe::count::Observer;
 
@@ -145,25 +149,7 @@ impl<'a> Lists<'a> {
 
     /// Proves that lists follow each other without a gap and fill the array.
     pub(in crate::accel) fn check(&self, section: SectionKind) -> Result<(), BlobError> {
-        let mut last = 0;
-        for index in 0..self.starts.len() {
-            let found = self.starts.get(index).unwrap_or(0);
-            let rising = if index == 0 {
-                found == 0
-            } else {
-                found >= last
-            };
-            if !rising {
-                return Err(record(section, index, "start of the list", found, last));
-            }
-            last = found;
-        }
-        if last as usize != self.slots.len() {
-            let index = self.starts.len().saturating_sub(1);
-            let expected = self.slots.len() as u32;
-            return Err(record(section, index, "end of the lists", last, expected));
-        }
-        Ok(())
+        check_starts(&self.starts, section, self.slots.len())
     }
 
     /// Proves a list: slots that exist, ascend, and hold primitives that reach into the list's cells.
@@ -179,15 +165,8 @@ impl<'a> Lists<'a> {
         let mut next = 0;
         for index in self.range(list) {
             let slot = self.slots.get(index).unwrap_or(u32::MAX);
-            if slot < next {
-                return Err(record(
-                    section,
-                    index,
-                    "slot, which must ascend,",
-                    slot,
-                    next,
-                ));
-            }
+            let at = At { section, index };
+            at.ensure(slot >= next, Reason::SlotOrder)?;
             next = slot.saturating_add(1);
             let common = reach(slot as usize).map(|range| {
                 [0, 1, 2].map(|k| {
@@ -195,15 +174,9 @@ impl<'a> Lists<'a> {
                     [a.max(c), b.min(d)]
                 })
             });
-            match common {
-                Some(common) if common.iter().all(|[first, last]| first <= last) => {
-                    pairs = pairs.saturating_add(volume(&common));
-                }
-                _ => {
-                    let what = "slot of a primitive that does not reach into the cell";
-                    return Err(record(section, index, what, slot, 0));
-                }
-            }
+            let common = common.filter(|cells| cells.iter().all(|[first, last]| first <= last));
+            at.ensure(common.is_some(), Reason::OutsideCell)?;
+            pairs = pairs.saturating_add(common.as_ref().map_or(0, volume));
         }
         Ok(pairs)
     }
@@ -221,31 +194,10 @@ pub(in crate::accel) fn check_complete(
         .filter_map(reach)
         .fold(0_u64, |sum, range| sum.saturating_add(volume(&range)));
     if listed != needed {
-        return Err(BlobError::Record {
-            section,
-            index: 0,
-            what: "number of cells that primitives are listed in",
-            found: listed as i64,
-            expected: needed as i64,
-        });
+        let (found, needed) = (listed as i64, [needed as i64; 2]);
+        return Err(Location::Section(section).out_of_range(Field::Entries, found, needed));
     }
     Ok(())
-}
-
-pub(in crate::accel) fn record(
-    section: SectionKind,
-    index: usize,
-    what: &'static str,
-    found: u32,
-    expected: u32,
-) -> BlobError {
-    BlobError::Record {
-        section,
-        index,
-        what,
-        found: found.into(),
-        expected: expected.into(),
-    }
 }
 
 /// The cells that a primitive is listed in, given its slot over all kinds: those that its box meets

@@ -10,9 +10,7 @@
 //! culling is monotone, so every node around that leaf is entered no later than at `t`. (See
 //! [`cull`](crate::accel::cull). No direction is special, no interval is reflected.)
 
-use crate::accel::cells::lists::{
-    Divisions, Lists, Range, Tester, check_complete, divide, reach, record,
-};
+use crate::accel::cells::lists::{Divisions, Lists, Range, Tester, check_complete, divide, reach};
 use crate::accel::cull::{Cull, Culling, PairCulling};
 use crate::accel::cull_axis::Interval;
 use crate::accel::number::Number;
@@ -20,7 +18,10 @@ use crate::accel::records::Records;
 use crate::accel::space::Space;
 use crate::accel::stack::{Entry, StackView};
 use crate::accel::traverse::Traverse;
-use crate::format::{BlobError, Leaf, OctreeNode, SectionKind, Sections, Structure};
+use crate::format::range::At;
+use crate::format::{
+    BlobError, Field, Leaf, Location, OctreeNode, Reason, SectionKind, Sections, Structure,
+};
 use crate::observe::count::Observer;
 use crate::observe::event;
 use crate::observe::event::{Event, Sides};
@@ -311,34 +312,28 @@ fn levels(nodes: &[u32]) -> Result<u32, BlobError> {
     let (mut next_node, mut next_list) = (1, 0);
     for (index, &word) in nodes.iter().enumerate() {
         let node = OctreeNode(word);
-        if index >= next_node {
-            return Err(record(
-                section,
-                index,
-                "node that nothing leads to",
-                word,
-                0,
-            ));
-        }
+        let at = At { section, index };
+        at.ensure(index < next_node, Reason::NotReached)?;
         if node == OctreeNode::EMPTY {
             continue;
         }
-        let next = if node.is_leaf() {
+        if node.is_leaf() {
+            at.within(Field::List, node.list().into(), next_list, next_list)?;
             next_list += 1;
-            OctreeNode::leaf(next_list - 1).0
-        } else {
-            if index >= level_end {
-                // The first inner node of a level; its children end no earlier than all nodes so far.
-                levels += 1;
-                level_end = next_node;
-            }
-            next_node += 8;
-            (next_node - 8) as u32
-        };
-        if word != next {
-            let what = "number of the children or the list, in order,";
-            return Err(record(section, index, what, word, next));
+            continue;
         }
+        at.within(
+            Field::Child,
+            word.into(),
+            next_node as i64,
+            next_node as i64,
+        )?;
+        if index >= level_end {
+            // The first inner node of a level; its children end no earlier than all nodes so far.
+            levels += 1;
+            level_end = next_node;
+        }
+        next_node += 8;
     }
     if next_node != nodes.len().max(1) {
         return Err(BlobError::Count {
@@ -348,8 +343,8 @@ fn levels(nodes: &[u32]) -> Result<u32, BlobError> {
         });
     }
     if levels > MOST_LEVELS {
-        let what = "number of levels";
-        return Err(record(section, 0, what, levels, MOST_LEVELS));
+        let range = [0, MOST_LEVELS.into()];
+        return Err(Location::Section(section).out_of_range(Field::Levels, levels.into(), range));
     }
     Ok(levels)
 }

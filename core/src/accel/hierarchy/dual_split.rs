@@ -25,21 +25,23 @@
 
 use crate::accel::cull::{Cull, Culling, PairCulling};
 use crate::accel::cull_axis::{CullAxis, Interval};
+use crate::accel::hierarchy::check::{Path, Tree, check_tree};
 use crate::accel::hierarchy::order::Order;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
 use crate::accel::stack::{Entry, StackView};
 use crate::accel::traverse::Traverse;
-use crate::format::limits::MAX_LEVELS;
+use crate::format::link::Node;
 use crate::format::record::{DualNode, UnitBox};
-use crate::format::{BlobError, Leaf, NodeWord, SectionKind, Sections, Structure};
+use crate::format::{
+    BlobError, Leaf, Location, NodeWord, Reason, SectionKind, Sections, Structure,
+};
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, NodeId, Sides};
 use crate::ray::Ray;
 use crate::target::{NARROW_PRODUCTS, SMALL};
 use core::hint::black_box;
-use heapless::Vec;
 
 /// Whether the compiler is kept from knowing a ray's form by heart: cores that load two words at once,
 /// and have too few registers for what it would know, read the form of an axis faster where it lies.
@@ -328,17 +330,6 @@ pub struct Views<'a>(&'a [DualNode]);
 
 const SECTION: SectionKind = SectionKind::DualNodes;
 
-/// An error at a node.
-fn error(index: usize, what: &'static str, found: i64, expected: i64) -> BlobError {
-    BlobError::Record {
-        section: SECTION,
-        index,
-        what,
-        found,
-        expected,
-    }
-}
-
 impl<'a> Records<'a> for Views<'a> {
     const SECTIONS: &'static [SectionKind] = &[SECTION];
     const USES_LEAVES: bool = true;
@@ -347,63 +338,61 @@ impl<'a> Records<'a> for Views<'a> {
         Ok(Self(sections.records(SECTION)?))
     }
 
-    /// Proves that nodes lie breadth first, so that children come after their parents and every
-    /// node and leaf is reached once, and that primitives lie in their leaves' regions.
-    ///
-    /// Costs the depth of each leaf, and [`MAX_LEVELS`] words of stack.
-    #[inline(never)]
     fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
-        let depth = check_order(self.0, space.leaves.len())?;
-        // The nodes above the current one: twice their number, and 1 where it is above the split.
-        let mut path: Vec<u32, MAX_LEVELS> = Vec::new();
-        let mut current = 0;
-        while let Some(record) = self.0.get(current as usize) {
-            let way = NodeWord(record.way);
-            if way.split() != NodeWord::NONE as usize {
-                // The depth was proved to fit.
-                let _ = path.push(current << 1);
-                current = way.number();
-                continue;
-            }
-            let mut region = self.region(&path, *space.bounds());
-            carve(&mut region, record);
-            let leaf = space.leaf(way.number());
-            if !leaf.is_some_and(|leaf| space.shapes.leaf_inside(leaf, &region)) {
-                let what = "primitives of its leaf outside of its region: excess";
-                return Err(error(current as usize, what, 1, 0));
-            }
-            while path.last().is_some_and(|step| step & 1 == 1) {
-                path.pop();
-            }
-            let Some(step) = path.last_mut() else { break };
-            *step |= 1;
-            let above = self.0.get((*step >> 1) as usize);
-            current = above.map_or(u32::MAX, |above| {
-                NodeWord(above.way).number().wrapping_add(1)
-            });
-        }
-        Ok(depth)
+        check_tree(*self, space, space.bounds())
     }
 }
 
 impl Views<'_> {
-    /// What a path down leaves of the scene's box.
-    fn region(&self, path: &[u32], bounds: UnitBox) -> UnitBox {
-        let mut region = bounds;
-        for &step in path {
-            let Some(record) = self.0.get((step >> 1) as usize) else {
-                break;
-            };
-            carve(&mut region, record);
-            if let Some(sides) = region.0.get_mut(NodeWord(record.way).split()) {
-                if step & 1 == 0 {
-                    sides[1] = sides[1].min((record.split >> 16) as i16);
-                } else {
-                    sides[0] = sides[0].max(record.split as i16);
-                }
-            }
+    /// What a node's children are; of a node that is not there, a leaf that is not there.
+    fn way(self, number: u32) -> NodeWord {
+        let record = self.0.get(number as usize);
+        NodeWord(record.map_or(u32::MAX, |record| record.way))
+    }
+}
+
+impl Tree for Views<'_> {
+    const SECTION: SectionKind = SECTION;
+    const OUTSIDE: Reason = Reason::PrimitiveOutsideRegion;
+    /// A region: what the planes on the way down have left of the scene's box.
+    type Volume = UnitBox;
+
+    fn order(self, leaves: usize) -> Result<usize, BlobError> {
+        check_order(self.0, leaves)
+    }
+
+    fn root(self) -> Node {
+        Node::pair(0)
+    }
+
+    fn leaf(self, node: Node) -> Option<u32> {
+        let way = self.way(node.number());
+        (way.split() == NodeWord::NONE as usize).then_some(way.number())
+    }
+
+    fn child(self, number: u32, side: u32) -> Node {
+        Node::pair(self.way(number).number().wrapping_add(side))
+    }
+
+    #[inline(never)]
+    fn volumes(self, number: u32, parent: &UnitBox) -> [UnitBox; 2] {
+        let mut region = *parent;
+        let Some(record) = self.0.get(number as usize) else {
+            return [region; 2];
+        };
+        carve(&mut region, record);
+        let (mut below, mut above) = (region, region);
+        let axis = NodeWord(record.way).split();
+        if let (Some(below), Some(above)) = (below.0.get_mut(axis), above.0.get_mut(axis)) {
+            below[1] = below[1].min((record.split >> 16) as i16);
+            above[0] = above[0].max(record.split as i16);
         }
-        region
+        [below, above]
+    }
+
+    fn holds(self, space: &Space<'_>, leaf: Leaf, node: Node, parent: &UnitBox, _: &Path) -> bool {
+        let [region, _] = self.volumes(node.number(), parent);
+        space.shapes.leaf_inside(leaf, &region)
     }
 }
 
@@ -434,12 +423,7 @@ fn check_order(nodes: &[DualNode], leaves: usize) -> Result<usize, BlobError> {
         let [first, second] = way.carves();
         let unused = record.way >> 30 != 0 || first == 3 && second != 3;
         if unused {
-            return Err(error(
-                index,
-                "bits that are not in use: number of nodes",
-                1,
-                0,
-            ));
+            return Err(Location::Record(SECTION, index).invalid(Reason::UnusedBits));
         }
         order.dual(way)?;
     }

@@ -13,11 +13,12 @@
 //! proves that a hierarchy loses no hit. Use `dual-split` on boards; the others serve comparisons
 //! (Kay and Kajiya 1986; Stuerzlinger and Tobler 1993).
 //!
-//! Nodes lie breadth first, which `order` proves; the walk and the check of pairs are in
-//! `pairs`, once for every kind of volume.
+//! Nodes lie breadth first, which `order` proves. The walk through pairs is in `pairs` and the check of
+//! all of them in `check`, once for every kind of volume.
 
 #[cfg(feature = "bvh")]
 pub mod bvh;
+mod check;
 #[cfg(any(feature = "slabs", feature = "spheres"))]
 pub mod direction;
 #[cfg(feature = "dual-split")]

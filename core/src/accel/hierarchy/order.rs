@@ -13,7 +13,7 @@ use crate::format::link::Link;
 ))]
 use crate::format::link::Node;
 use crate::format::record::{DualNode, FlaggedPair, Pair};
-use crate::format::{BlobError, SectionKind};
+use crate::format::{BlobError, Field, Location, Reason, SectionKind};
 
 /// The proof that the nodes of a hierarchy lie breadth first, made node by node, with the children
 /// of each. Children then come after their parents, every node and every leaf is reached once, and
@@ -130,13 +130,9 @@ impl Order {
         if number as usize == expected {
             return Ok(());
         }
-        Err(BlobError::Record {
-            section: self.section,
-            index: self.index,
-            what: "number of a child or leaf, which must follow breadth first,",
-            found: number as i64,
-            expected: expected as i64,
-        })
+        let field = if is_leaf { Field::Leaf } else { Field::Child };
+        let node = Location::Record(self.section, self.index);
+        Err(node.out_of_range(field, number as i64, [expected as i64; 2]))
     }
 
     /// Ends a node, which has two children or else is a leaf itself, and goes on to the next.
@@ -145,15 +141,11 @@ impl Order {
         self.branches |= branches;
         let index = self.index;
         let next = index.wrapping_add(1);
-        // A node that nothing leads to, or a child beyond the last node.
-        if self.next_node <= next && next < self.nodes || self.next_node > self.nodes {
-            return Err(BlobError::Record {
-                section: self.section,
-                index,
-                what: "number of nodes that are reached up to here",
-                found: self.next_node as i64,
-                expected: self.nodes as i64,
-            });
+        if self.next_node <= next && next < self.nodes {
+            return Err(Location::Record(self.section, next).invalid(Reason::NotReached));
+        }
+        if self.next_node > self.nodes {
+            return Err(Location::Record(self.section, index).invalid(Reason::BeyondLast));
         }
         if next == self.level_end {
             self.levels = self.levels.wrapping_add(self.branches as usize);
@@ -167,11 +159,9 @@ impl Order {
     /// The number of levels on which nodes have two children, which is the stack that a walk needs.
     pub(crate) const fn levels(self) -> Result<usize, BlobError> {
         if self.levels > MAX_LEVELS {
-            return Err(BlobError::Header {
-                field: "stack depth",
-                found: self.levels as u64,
-                expected: MAX_LEVELS as u64,
-            });
+            let section = Location::Section(self.section);
+            let range = [0, MAX_LEVELS as i64];
+            return Err(section.out_of_range(Field::Levels, self.levels as i64, range));
         }
         Ok(self.levels)
     }

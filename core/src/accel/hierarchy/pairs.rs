@@ -1,20 +1,18 @@
-//! What hierarchies of pairs share: the walk, and the proof that it is sound.
+//! What hierarchies of pairs share: the walk, and what the check asks of them.
 
 use crate::accel::cull::{Culling, PairCulling};
 use crate::accel::cull_axis::Interval;
+use crate::accel::hierarchy::check::{Path, Tree, check_tree};
 use crate::accel::hierarchy::order::Order;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
 use crate::accel::stack::{Entry, StackView};
-use crate::format::limits::MAX_LEVELS;
 use crate::format::link::Node;
 use crate::format::record::UnitBox;
 use crate::format::{BlobError, Leaf, SectionKind, Sections};
-use crate::geometry::Shapes;
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, NodeId, Sides};
-use heapless::Vec;
 
 impl Node {
     /// The node as observers know it.
@@ -91,12 +89,90 @@ impl<P: BoxPair> PairRecord for &P {
 pub(in crate::accel) trait PairArray: Copy {
     /// One of them.
     type Pair: PairRecord;
+    /// What holds all that is below a pair: see [`Tree`].
+    type Volume: Copy;
 
     /// How many there are.
     fn len(self) -> usize;
 
     /// One of them.
     fn pair(self, number: usize) -> Option<Self::Pair>;
+
+    /// The volumes of a pair's children, given the pair's own.
+    fn volumes(self, pair: Self::Pair, parent: &Self::Volume) -> [Self::Volume; 2];
+
+    /// See [`Tree::nests`].
+    fn nests(self, _child: &Self::Volume, _parent: &Self::Volume) -> bool {
+        true
+    }
+
+    /// See [`Tree::holds`].
+    fn holds(self, space: &Space<'_>, leaf: Leaf, volume: &Self::Volume, path: &Path) -> bool;
+}
+
+impl<A: PairArray> Tree for A {
+    const SECTION: SectionKind = A::Pair::SECTION;
+    type Volume = A::Volume;
+
+    /// Proves that there are as many pairs as the leaves call for, in breadth-first order.
+    fn order(self, leaves: usize) -> Result<usize, BlobError> {
+        let expected = leaves.saturating_sub(1);
+        if self.len() != expected {
+            return Err(BlobError::Count {
+                section: Self::SECTION,
+                found: self.len(),
+                expected,
+            });
+        }
+        let mut order = Order::new(Self::SECTION, self.len());
+        for index in 0..self.len() {
+            let Some(pair) = self.pair(index) else {
+                break;
+            };
+            order.pair([0, 1].map(|side| pair.child(index as u32, side)))?;
+        }
+        order.levels()
+    }
+
+    /// The first pair, or the only leaf.
+    #[inline(always)]
+    fn root(self) -> Node {
+        if self.len() == 0 {
+            Node::leaf(0)
+        } else {
+            Node::pair(0)
+        }
+    }
+
+    fn leaf(self, node: Node) -> Option<u32> {
+        node.is_leaf().then_some(node.number())
+    }
+
+    fn child(self, number: u32, side: u32) -> Node {
+        let pair = self.pair(number as usize);
+        // That it exists was proved.
+        pair.map_or(Node::leaf(u32::MAX), |pair| pair.child(number, side))
+    }
+
+    fn volumes(self, number: u32, parent: &Self::Volume) -> [Self::Volume; 2] {
+        let pair = self.pair(number as usize);
+        pair.map_or([*parent; 2], |pair| self.volumes(pair, parent))
+    }
+
+    fn nests(self, child: &Self::Volume, parent: &Self::Volume) -> bool {
+        PairArray::nests(self, child, parent)
+    }
+
+    fn holds(
+        self,
+        space: &Space<'_>,
+        leaf: Leaf,
+        _: Node,
+        volume: &Self::Volume,
+        path: &Path,
+    ) -> bool {
+        PairArray::holds(self, space, leaf, volume, path)
+    }
 }
 
 /// The pairs of a hierarchy of boxes.
@@ -105,6 +181,7 @@ pub struct Pairs<'a, P>(pub(in crate::accel) &'a [P]);
 
 impl<'a, P: BoxPair> PairArray for Pairs<'a, P> {
     type Pair = &'a P;
+    type Volume = UnitBox;
 
     fn len(self) -> usize {
         self.0.len()
@@ -113,6 +190,18 @@ impl<'a, P: BoxPair> PairArray for Pairs<'a, P> {
     #[inline(always)]
     fn pair(self, number: usize) -> Option<&'a P> {
         self.0.get(number)
+    }
+
+    fn volumes(self, pair: &'a P, parent: &UnitBox) -> [UnitBox; 2] {
+        pair.boxes(parent)
+    }
+
+    fn nests(self, child: &UnitBox, parent: &UnitBox) -> bool {
+        parent.contains(child)
+    }
+
+    fn holds(self, space: &Space<'_>, leaf: Leaf, volume: &UnitBox, _: &Path) -> bool {
+        space.shapes.leaf_inside(leaf, volume)
     }
 }
 
@@ -125,7 +214,7 @@ impl<'a, P: BoxPair> Records<'a> for Pairs<'a, P> {
     }
 
     fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
-        check_pairs(*self, space.leaves, &space.shapes, space.bounds())
+        check_tree(*self, space, space.bounds())
     }
 }
 
@@ -168,13 +257,13 @@ where
         let interval = (self.root)(limit);
         if C::ENABLED {
             count.event(Event::Tested {
-                place: root(self.pairs).id(),
+                place: self.pairs.root().id(),
                 sides: self.space.bounds().0.map(|axis| axis.map(Some)),
                 span: span::<N, K>(interval),
             });
         }
         if interval.near <= interval.far {
-            self.descend::<N, K, C>(root(self.pairs), interval, limit, stack, count, leaf);
+            self.descend::<N, K, C>(self.pairs.root(), interval, limit, stack, count, leaf);
         }
     }
 
@@ -281,175 +370,4 @@ where
             }
         }
     }
-}
-
-/// The root of a hierarchy: its first pair, or its only leaf.
-fn root(pairs: impl PairArray) -> Node {
-    if pairs.len() == 0 {
-        Node::leaf(0)
-    } else {
-        Node::pair(0)
-    }
-}
-
-/// Proves a hierarchy: pairs in breadth-first order (so that children come after their parents and
-/// every node is reached once), boxes inside their parents', primitives inside their leaves, and
-/// every leaf used. Returns the stack that a walk needs.
-///
-/// Costs the depth of each leaf, and [`MAX_LEVELS`] words of stack.
-#[inline(never)]
-fn check_pairs<P: BoxPair>(
-    array: Pairs<'_, P>,
-    leaves: &[u32],
-    shapes: &Shapes<'_>,
-    bounds: &UnitBox,
-) -> Result<usize, BlobError> {
-    let section = P::SECTION;
-    let pairs = array.0;
-    let depth = check_order(array, leaves.len())?;
-    if leaves.is_empty() {
-        return Ok(depth);
-    }
-
-    // The pairs above the current node: twice their number, and 1 where it is the right child's.
-    let mut path: Vec<u32, MAX_LEVELS> = Vec::new();
-    let (mut node, mut parent) = (root(array), *bounds);
-    loop {
-        let number = node.number() as usize;
-        if node.is_leaf() {
-            let leaf = leaves.get(number).and_then(|&word| Leaf::from_word(word));
-            let inside = leaf.is_some_and(|leaf| shapes.leaf_inside(leaf, &parent));
-            if !inside {
-                return Err(BlobError::Record {
-                    section: SectionKind::Leaves,
-                    index: number,
-                    what: "leaf, or a primitive of it, lies outside its box: excess",
-                    found: 1,
-                    expected: 0,
-                });
-            }
-        } else if let Some(pair) = pairs.get(number) {
-            let [left, right] = pair.boxes(&parent);
-            for (child, bounds) in [left, right].iter().enumerate() {
-                if !parent.contains(bounds) {
-                    return Err(BlobError::Record {
-                        section,
-                        index: number,
-                        what: "box lies outside its parent's: the number of the child",
-                        found: child as i64,
-                        expected: -1,
-                    });
-                }
-            }
-            // The depth was proved to fit.
-            let _ = path.push(node.number() << 1);
-            (node, parent) = (pair.child(node.number(), 0), left);
-            continue;
-        }
-        while path.last().is_some_and(|step| step & 1 == 1) {
-            path.pop();
-        }
-        let Some(step) = path.last_mut() else {
-            return Ok(depth);
-        };
-        *step |= 1;
-        // Boxes on the way are computed again, which takes less room than to keep them.
-        parent = *bounds;
-        for &step in &path {
-            if let Some(pair) = pairs.get((step >> 1) as usize) {
-                let side = step & 1;
-                node = pair.child(step >> 1, side);
-                parent = pair.boxes(&parent)[(side & 1) as usize];
-            }
-        }
-    }
-}
-
-/// Proves a hierarchy of volumes other than boxes in the same way: volumes as `children` asks, and
-/// primitives in their leaves as `holds` asks. Returns the stack that a walk needs.
-///
-/// `children` gives the volumes of a pair's children from their parent's, or the number of a child
-/// that is not as it must be; `holds` is given a leaf and the volumes from the root to it.
-///
-/// Linear in pairs and primitives. Takes a volume and 8 bytes of stack for each of
-/// [`MAX_LEVELS`] levels.
-#[inline(never)]
-pub(in crate::accel) fn check_tree<A: PairArray, V>(
-    pairs: A,
-    leaves: &[u32],
-    root_volume: V,
-    children: impl Fn(&A::Pair, &V) -> Result<[V; 2], usize>,
-    holds: impl Fn(Leaf, &[V]) -> bool,
-) -> Result<usize, BlobError> {
-    let section = A::Pair::SECTION;
-    let depth = check_order(pairs, leaves.len())?;
-    if leaves.is_empty() {
-        return Ok(depth);
-    }
-
-    let mut path: Vec<V, { MAX_LEVELS + 1 }> = Vec::new();
-    // Pairs whose right child waits, and the length of the path to them. All pushes fit: the depth
-    // was proved.
-    let mut waiting: Vec<(usize, usize), MAX_LEVELS> = Vec::new();
-    let mut node = root(pairs);
-    let _ = path.push(root_volume);
-    loop {
-        let number = node.number() as usize;
-        if node.is_leaf() {
-            let leaf = leaves.get(number).and_then(|&word| Leaf::from_word(word));
-            if !leaf.is_some_and(|leaf| holds(leaf, &path)) {
-                return Err(BlobError::Record {
-                    section: SectionKind::Leaves,
-                    index: number,
-                    what: "leaf, or a primitive of it, lies outside its box: excess",
-                    found: 1,
-                    expected: 0,
-                });
-            }
-        } else if let (Some(pair), Some(parent)) = (pairs.pair(number), path.last()) {
-            let [left, _] = children(&pair, parent).map_err(|child| BlobError::Record {
-                section,
-                index: number,
-                what: "box lies outside its parent's: the number of the child",
-                found: child as i64,
-                expected: -1,
-            })?;
-            let _ = waiting.push((number, path.len()));
-            let _ = path.push(left);
-            node = pair.child(number as u32, 0);
-            continue;
-        }
-        let Some((number, length)) = waiting.pop() else {
-            return Ok(depth);
-        };
-        path.truncate(length);
-        if let (Some(pair), Some(parent)) = (pairs.pair(number), path.last()) {
-            if let Ok([_, right]) = children(&pair, parent) {
-                let _ = path.push(right);
-            }
-            node = pair.child(number as u32, 1);
-        }
-    }
-}
-
-/// Proves that there are as many pairs as the leaves call for, in breadth-first order, and returns
-/// the number of levels of pairs.
-fn check_order<A: PairArray>(pairs: A, leaves: usize) -> Result<usize, BlobError> {
-    let section = A::Pair::SECTION;
-    let expected = leaves.saturating_sub(1);
-    if pairs.len() != expected {
-        return Err(BlobError::Count {
-            section,
-            found: pairs.len(),
-            expected,
-        });
-    }
-    let mut order = Order::new(section, pairs.len());
-    for index in 0..pairs.len() {
-        let Some(pair) = pairs.pair(index) else {
-            break;
-        };
-        order.pair([0, 1].map(|side| pair.child(index as u32, side)))?;
-    }
-    order.levels()
 }

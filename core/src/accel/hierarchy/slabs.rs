@@ -14,8 +14,9 @@
 
 use crate::accel::cull::Cull;
 use crate::accel::cull_axis::{CullAxis, Interval};
+use crate::accel::hierarchy::check::{Path, check_tree};
 use crate::accel::hierarchy::direction::{DIRECTION_COUNTS, DIRECTIONS, Direction};
-use crate::accel::hierarchy::pairs::{PairArray, PairRecord, Walk, check_tree};
+use crate::accel::hierarchy::pairs::{PairArray, PairRecord, Walk};
 use crate::accel::hierarchy::reach::Reach;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
@@ -105,6 +106,7 @@ impl<'a, const FLAGGED: bool> SlabPairs<'a, FLAGGED> {
 
 impl<'a, const FLAGGED: bool> PairArray for SlabPairs<'a, FLAGGED> {
     type Pair = SlabPair<'a, FLAGGED>;
+    type Volume = Volume;
 
     fn len(self) -> usize {
         self.words.len() / self.width()
@@ -116,6 +118,29 @@ impl<'a, const FLAGGED: bool> PairArray for SlabPairs<'a, FLAGGED> {
         let first = number.checked_mul(width)?;
         let words = self.words.get(first..)?.get(..width)?;
         Some(SlabPair(words))
+    }
+
+    fn volumes(self, pair: Self::Pair, parent: &Volume) -> [Volume; 2] {
+        pair.volumes(parent)
+    }
+
+    fn nests(self, child: &Volume, parent: &Volume) -> bool {
+        let mut slabs = parent.iter().zip(child).take(self.root.len());
+        slabs.all(|(outer, inner)| {
+            outer[0] <= inner[0] && inner[0] <= inner[1] && inner[1] <= outer[1]
+        })
+    }
+
+    fn holds(self, space: &Space<'_>, leaf: Leaf, volume: &Volume, _: &Path) -> bool {
+        leaf.slots().into_iter().all(|index| {
+            Reach::of(&space.shapes, leaf.kind, index).is_some_and(|reach| {
+                let mut slabs = DIRECTIONS.iter().zip(volume).take(self.root.len());
+                slabs.all(|(&direction, &[low, high])| {
+                    let [lowest, highest] = reach.slab(direction);
+                    low <= lowest && highest <= high
+                })
+            })
+        })
     }
 }
 
@@ -254,34 +279,6 @@ impl<'a, const FLAGGED: bool> Records<'a> for SlabPairs<'a, FLAGGED> {
         for (volume, &word) in root.iter_mut().zip(pairs.root) {
             *volume = planes(word);
         }
-        let inside = |outer: &Volume, inner: &Volume| {
-            let sides = outer.iter().zip(inner).take(directions);
-            sides.into_iter().all(|(outer, inner)| {
-                outer[0] <= inner[0] && inner[0] <= inner[1] && inner[1] <= outer[1]
-            })
-        };
-        let children = |pair: &SlabPair<'a, FLAGGED>, parent: &Volume| {
-            let children = pair.volumes(parent);
-            match children.iter().position(|child| !inside(parent, child)) {
-                None => Ok(children),
-                Some(child) => Err(child),
-            }
-        };
-        let holds = |leaf: Leaf, path: &[Volume]| {
-            let Some(volume) = path.last() else {
-                return false;
-            };
-            let slots = leaf.first as usize..(leaf.first + leaf.count) as usize;
-            slots.into_iter().all(|index| {
-                Reach::of(&space.shapes, leaf.kind, index).is_some_and(|reach| {
-                    let directions = DIRECTIONS.iter().zip(volume).take(directions);
-                    directions.into_iter().all(|(&direction, &[low, high])| {
-                        let [lowest, highest] = reach.slab(direction);
-                        low <= lowest && highest <= high
-                    })
-                })
-            })
-        };
-        check_tree(pairs, space.leaves, root, children, holds)
+        check_tree(pairs, space, &root)
     }
 }

@@ -11,7 +11,8 @@
 
 use crate::accel::cull::{Cull, PairCulling};
 use crate::accel::cull_axis::Interval;
-use crate::accel::hierarchy::pairs::{PairArray, PairRecord, Walk, check_tree};
+use crate::accel::hierarchy::check::{Path, check_tree};
+use crate::accel::hierarchy::pairs::{PairArray, PairRecord, Walk};
 use crate::accel::hierarchy::reach::Reach;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
@@ -113,30 +114,15 @@ impl<'a> Records<'a> for Views<'a> {
         Ok(Self(sections.records(SectionKind::BallPairs)?))
     }
 
-    /// At most [`MAX_LEVELS`](crate::format::limits::MAX_LEVELS) balls are asked about each primitive.
     fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
-        let holds = |leaf: Leaf, path: &[BoundingSphere]| {
-            let slots = leaf.first as usize..(leaf.first + leaf.count) as usize;
-            // The first of the path stands for the root, whose box is tested.
-            slots.into_iter().all(|index| {
-                Reach::of(&space.shapes, leaf.kind, index).is_some_and(|reach| {
-                    let balls = path.iter().skip(1);
-                    balls
-                        .into_iter()
-                        .all(|ball| reach.in_ball(ball.center, ball.radius))
-                })
-            })
-        };
-        let root = BoundingSphere {
-            center: [0; 3],
-            radius: 0,
-        };
-        check_tree(self.0, space.leaves, root, |pair, _| Ok(pair.balls), holds)
+        check_tree(self.0, space, &())
     }
 }
 
 impl<'a> PairArray for &'a [SpherePair] {
     type Pair = &'a SpherePair;
+    /// Spheres do not lie in each other.
+    type Volume = ();
 
     fn len(self) -> usize {
         <[SpherePair]>::len(self)
@@ -145,5 +131,25 @@ impl<'a> PairArray for &'a [SpherePair] {
     #[inline(always)]
     fn pair(self, number: usize) -> Option<Self::Pair> {
         self.get(number)
+    }
+
+    fn volumes(self, _: &SpherePair, (): &()) -> [(); 2] {
+        [(); 2]
+    }
+
+    /// At most [`MAX_LEVELS`](crate::format::limits::MAX_LEVELS) spheres are asked about each primitive;
+    /// for the root the scene's box is tested.
+    fn holds(self, space: &Space<'_>, leaf: Leaf, (): &(), path: &Path) -> bool {
+        leaf.slots().into_iter().all(|index| {
+            Reach::of(&space.shapes, leaf.kind, index).is_some_and(|reach| {
+                path.iter().all(|&step| {
+                    let pair = self.get((step >> 1) as usize);
+                    pair.is_some_and(|pair| {
+                        let ball = pair.balls[(step & 1) as usize];
+                        reach.in_ball(ball.center, ball.radius)
+                    })
+                })
+            })
+        })
     }
 }

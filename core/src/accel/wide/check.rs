@@ -3,8 +3,9 @@
 use crate::accel::space::Space;
 use crate::format::cluster::{LANES, RADII};
 use crate::format::limits::MAX_STACK_DEPTH;
+use crate::format::range::At;
 use crate::format::record::{UnitBox, WideNode};
-use crate::format::{BlobError, Child, Kind, Leaf, SectionKind};
+use crate::format::{BlobError, Child, Field, Kind, Leaf, Location, Reason, SectionKind};
 use crate::geometry::{Clusters, Packs, Packs24};
 use heapless::Vec;
 
@@ -20,20 +21,21 @@ pub(super) fn check(nodes: &[WideNode], space: &Space<'_>) -> Result<usize, Blob
     check_boxes(nodes, space)
 }
 
-fn wrong(
+/// The error at a record.
+#[cold]
+fn wrong(section: SectionKind, index: usize, reason: Reason) -> BlobError {
+    Location::Record(section, index).invalid(reason)
+}
+
+/// Proves that a number of a record is that which must come next.
+fn follows(
     section: SectionKind,
     index: usize,
-    what: &'static str,
+    field: Field,
     found: usize,
-    expected: usize,
-) -> BlobError {
-    BlobError::Record {
-        section,
-        index,
-        what,
-        found: found as i64,
-        expected: expected as i64,
-    }
+    next: usize,
+) -> Result<(), BlobError> {
+    At { section, index }.within(field, found as i64, next as i64, next as i64)
 }
 
 /// Proves that members ascend from cluster to cluster, and that there are as many as primitives.
@@ -45,15 +47,11 @@ fn check_members(space: &Space<'_>) -> Result<(), BlobError> {
         let Some(members) = clusters.strips.members(strip as u32) else {
             continue;
         };
-        let (what, found) = ("number of the first member", members.first() as usize);
-        if found != next {
-            return Err(wrong(section, strip, what, found, next));
-        }
-        for place in (0..8).filter(|place| members.places() >> place & 1 != 0) {
-            if members.corners(place).is_none() {
-                let what = "arrangement that means nothing, of place";
-                return Err(wrong(section, strip, what, place as usize, LANES));
-            }
+        let first = members.first() as usize;
+        follows(section, strip, Field::FirstMember, first, next)?;
+        let mut places = (0..8).filter(|place| members.places() >> place & 1 != 0);
+        if places.any(|place| members.corners(place).is_none()) {
+            return Err(wrong(section, strip, Reason::UnknownArrangement));
         }
         next += members.count() as usize;
     }
@@ -64,16 +62,15 @@ fn check_members(space: &Space<'_>) -> Result<(), BlobError> {
         let lanes = clusters.packs.lanes(pack as u32);
         let count = lanes.trailing_ones() as usize;
         let is_last = pack + 1 == clusters.packs.len();
-        if count == 0 || !is_last && count < LANES {
-            let (section, what) = (SectionKind::Packs, "number of spheres, of which lane");
-            return Err(wrong(section, pack, what, count, LANES));
+        let section = SectionKind::Packs;
+        if count == 0 {
+            return Err(wrong(section, pack, Reason::EmptyPack));
+        }
+        if !is_last && count < LANES {
+            return Err(wrong(section, pack, Reason::PartialPack));
         }
         if lanes >> count != 0 {
-            let (section, what) = (
-                SectionKind::Packs,
-                "radius behind the last sphere, of lanes",
-            );
-            return Err(wrong(section, pack, what, lanes as usize, 0));
+            return Err(wrong(section, pack, Reason::RadiusAfterLast));
         }
         next += count;
     }
@@ -102,10 +99,8 @@ fn check_members(space: &Space<'_>) -> Result<(), BlobError> {
     // Homes lead to members, where there are any.
     let own = clusters.homes.is_empty();
     for index in 0..clusters.members.len() * usize::from(own) {
-        let primitive = clusters.members.get(index).unwrap_or(u32::MAX);
-        if primitive as usize >= most {
-            return Err(wrong(section, index, "primitive", primitive as usize, most));
-        }
+        let primitive = clusters.members.get(index).unwrap_or(u32::MAX).into();
+        At { section, index }.within(Field::Primitive, primitive, 0, most as i64 - 1)?;
     }
     Ok(())
 }
@@ -113,16 +108,7 @@ fn check_members(space: &Space<'_>) -> Result<(), BlobError> {
 /// Proves that every pack has a window of radii, and that these are in range or 0.
 fn check_radii(packs: &Packs<'_>) -> Result<(), BlobError> {
     let within = |section, index, radius: i32, most: i32| {
-        if (0..=most).contains(&radius) {
-            return Ok(());
-        }
-        Err(BlobError::Record {
-            section,
-            index,
-            what: "radius",
-            found: radius.into(),
-            expected: most.into(),
-        })
+        At { section, index }.within(Field::Radius, radius.into(), 0, most.into())
     };
     const MOST: i32 = (i16::MAX as i32) << 1;
     match packs {
@@ -192,16 +178,17 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
             let child = node.child(lane);
             if child == Child::NONE {
                 let empty = node.child_box(lane) == WideNode::EMPTY;
-                if !empty || lane == 0 {
-                    let what = "lane of a missing child that is not empty, or is the first,";
-                    return Err(wrong(section, index, what, lane, LANES));
+                if lane == 0 {
+                    return Err(wrong(section, index, Reason::NoChild));
+                }
+                if !empty {
+                    return Err(wrong(section, index, Reason::LaneNotEmpty));
                 }
                 ended = true;
                 continue;
             }
             if ended {
-                let what = "lane of a child behind a missing one";
-                return Err(wrong(section, index, what, lane, LANES));
+                return Err(wrong(section, index, Reason::ChildAfterGap));
             }
             let (found, next) = match (child.as_node(), Leaf::from_word(child.0)) {
                 (Some(number), _) => (number as usize, &mut next_node),
@@ -222,25 +209,29 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
                         (first, next)
                     }
                     _ => {
-                        let what = "number of slots of a leaf";
-                        return Err(wrong(section, index, what, leaf.count as usize, 1));
+                        let count = leaf.count.into();
+                        let in_clusters = matches!(leaf.kind, Kind::Triangle | Kind::Sphere);
+                        let slots = [i64::from(!in_clusters); 2];
+                        let node = Location::Record(section, index);
+                        return Err(node.out_of_range(Field::LeafSlots, count, slots));
                     }
                 },
                 (None, None) => {
-                    let (what, kind) = ("kind of a leaf", (child.0 >> 29) as usize);
-                    return Err(wrong(section, index, what, kind, Kind::ALL.len() - 1));
+                    let kinds = [0, Kind::ALL.len() as i64 - 1];
+                    let node = Location::Record(section, index);
+                    return Err(node.out_of_range(Field::LeafKind, (child.0 >> 29).into(), kinds));
                 }
             };
-            if found != *next {
-                let what = "number of a child, which must follow breadth first,";
-                return Err(wrong(section, index, what, found, *next));
-            }
+            let is_node = child.as_node().is_some();
+            let field = if is_node { Field::Child } else { Field::Leaf };
+            follows(section, index, field, found, *next)?;
             *next += 1;
         }
-        // A node that nothing leads to, or a child beyond the last node.
-        if next_node <= index + 1 && index + 1 < nodes.len() || next_node > nodes.len() {
-            let what = "number of nodes that are reached up to here";
-            return Err(wrong(section, index, what, next_node, nodes.len()));
+        if next_node <= index + 1 && index + 1 < nodes.len() {
+            return Err(wrong(section, index + 1, Reason::NotReached));
+        }
+        if next_node > nodes.len() {
+            return Err(wrong(section, index, Reason::BeyondLast));
         }
     }
     let clusters = [
@@ -321,13 +312,7 @@ fn check_homes(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
                 }
             };
             if !leads_back {
-                return Err(wrong(
-                    section,
-                    index,
-                    "home does not lead back to the slot: distance",
-                    1,
-                    0,
-                ));
+                return Err(wrong(section, index, Reason::WrongHome));
             }
         }
     }
@@ -352,11 +337,9 @@ fn check_boxes(nodes: &[WideNode], space: &Space<'_>) -> Result<usize, BlobError
             let after = before + count.count().saturating_sub(1) as u16;
             deepest = deepest.max(after.into());
             if deepest > MAX_STACK_DEPTH {
-                return Err(BlobError::Header {
-                    field: "stack depth",
-                    found: deepest as u64,
-                    expected: MAX_STACK_DEPTH as u64,
-                });
+                let range = [0, MAX_STACK_DEPTH as i64];
+                let location = Location::Section(section);
+                return Err(location.out_of_range(Field::StackDepth, deepest as i64, range));
             }
             for lane in 0..LANES {
                 let child = node.child(lane);
@@ -377,9 +360,7 @@ fn check_boxes(nodes: &[WideNode], space: &Space<'_>) -> Result<usize, BlobError
                     (None, None) => false,
                 };
                 if !within || !parent.contains(&bounds) {
-                    let what =
-                        "box lies outside its parent's, or a primitive outside its box: lane";
-                    return Err(wrong(section, index, what, lane, LANES));
+                    return Err(wrong(section, index, Reason::ChildOutside));
                 }
             }
         }

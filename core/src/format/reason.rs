@@ -1,0 +1,163 @@
+//! What can be wrong with a blob, each in one plain sentence.
+//!
+//! An error carries a byte of these enumerations. Their texts are reached through `Display` alone, so a
+//! program that prints no error does not hold them.
+
+macro_rules! texts {
+    (
+        $(#[$attribute:meta])*
+        $name:ident {
+            $($variant:ident => $text:literal,)*
+        }
+    ) => {
+        $(#[$attribute])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[repr(u8)]
+        #[non_exhaustive]
+        pub enum $name {
+            $(#[doc = concat!("\"", $text, "\"")] $variant,)*
+        }
+
+        impl $name {
+            /// All of them.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+
+            /// Its text.
+            pub const fn text(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $text,)*
+                }
+            }
+        }
+
+        impl core::fmt::Display for $name {
+            fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+                f.write_str(self.text())
+            }
+        }
+    };
+}
+
+texts! {
+    /// A number of a blob that can be out of its range, as an error names it.
+    Field {
+        // Header and section table.
+        StackDepth => "stack depth",
+        StackBytes => "number of stack bytes",
+        LatticeBits => "number of lattice bits",
+        StorageBits => "number of storage bits",
+        UnitExponent => "unit exponent",
+        LongestLeaf => "longest leaf",
+        Slots => "number of slots",
+        Kind => "kind",
+        Offset => "offset",
+        End => "end",
+        // View.
+        Eye => "eye",
+        CameraVector => "camera vector",
+        Background => "background",
+        AmbientLight => "ambient light",
+        Cutoff => "cutoff",
+        Width => "width",
+        Height => "height",
+        Samples => "number of samples",
+        RayDepth => "ray depth",
+        DisplayValues => "flag for display values",
+        // Lights and materials.
+        Color => "colour",
+        PositionOrDirection => "position or direction",
+        Diffuse => "diffuse colour",
+        Odd => "odd colour",
+        Highlight => "highlight",
+        Mirror => "mirror",
+        Transmittance => "transmittance",
+        InverseIor => "inverse index of refraction",
+        Shininess => "shininess",
+        CheckerSize => "checkerboard size",
+        CheckerOrigin => "checkerboard origin",
+        // Primitives and objects.
+        Coordinate => "coordinate",
+        LowestCoordinate => "lowest coordinate",
+        HighestCoordinate => "highest coordinate",
+        Vertex => "vertex",
+        Radius => "radius",
+        Center => "centre",
+        Normal => "normal",
+        BaseCenter => "centre of the base",
+        ApexCenter => "centre of the apex",
+        FirstPrimitive => "first primitive",
+        Material => "material",
+        Primitive => "primitive",
+        // Structures.
+        Primitives => "number of primitives",
+        FirstSlot => "first slot",
+        EndSlot => "end of the slots",
+        Levels => "number of levels",
+        Child => "child's number",
+        Leaf => "leaf's number",
+        LeafKind => "leaf's kind",
+        LeafSlots => "leaf's number of slots",
+        FirstMember => "first member",
+        Divisions => "number of divisions",
+        List => "list",
+        FirstEntry => "first entry",
+        Entries => "number of entries",
+        Candidate => "candidate",
+        Window => "window",
+        Plane => "plane",
+        MajorAxis => "major axis",
+        FirstCell => "first cell",
+        SideCells => "number of cells along a side",
+        Dimension => "dimension",
+        Cell => "cell",
+    }
+}
+
+texts! {
+    /// What is wrong with a part of a blob, where it is not one number that is out of its range.
+    Reason {
+        // Header and section table.
+        UnknownEffects => "it calls for effects that this version of the format does not have",
+        UnneededEffects => "it calls for effects that nothing in the scene needs",
+        MissingList => "it does not name the structure list, which every blob holds",
+        UnknownStructures => "it names structures that this version of the format does not have",
+        OriginNotFinite => "a coordinate of its origin is not finite",
+        InvertedBounds => "a lower side of the scene's box lies above the upper one",
+        ReservedBounds => "a side of the scene's box is -32768, which is reserved",
+        SpareNotZero => "a spare field is not 0",
+        MissingObjectFirst => "it counts several objects, but there is no section object-first",
+        NotPrevalidated => "it calls for a structure that cannot be verified at compile time",
+        // Lights, materials and primitives.
+        ZeroDirection => "its direction has length 0",
+        MissingEffect => "it needs an effect that the header does not call for",
+        InvertedBox => "its lowest corner lies above its highest one",
+        ZeroNormal => "its normal has length 0",
+        ZeroAxis => "its axis has length 0",
+        ZeroRadii => "both of its radii are 0",
+        OutsideScene => "its box lies outside of the scene's box",
+        // Hierarchies.
+        NotReached => "no node leads to it",
+        BeyondLast => "it leads beyond the last node",
+        LeftOutside => "the volume of its left child lies outside of its own",
+        RightOutside => "the volume of its right child lies outside of its own",
+        PrimitiveOutside => "a primitive lies outside of the volume of its leaf",
+        PrimitiveOutsideRegion => "a primitive of its leaf lies outside of its region",
+        UnusedBits => "bits that have no meaning are set",
+        NoChild => "it has no child",
+        LaneNotEmpty => "a lane without a child holds a box",
+        ChildAfterGap => "a child follows a lane without a child",
+        ChildOutside => "the box of a child lies outside of its own, or does not hold what is in it",
+        // Clusters.
+        UnknownArrangement => "an arrangement of its corners does not exist",
+        EmptyPack => "it has no sphere",
+        PartialPack => "it has fewer than eight spheres, but it is not the last pack",
+        RadiusAfterLast => "a radius follows its last sphere",
+        WrongHome => "it does not lead back to its slot",
+        // Cells and candidates.
+        WrongPartition => "its gridels are not those of the scene's box",
+        KeyOrder => "it does not follow the key before it in its list",
+        SlotOrder => "its slot does not follow the slot before it in its list",
+        MissingPrimitive => "it lacks a primitive that reaches into its cell",
+        OutsideCell => "its primitive does not reach into its cell",
+    }
+}
