@@ -20,8 +20,8 @@
 //! axis, so no point is farther than two reaches from the middle; and `cos |Q| + g` is at most that
 //! and a radius: three reaches, below 2^31. Squares are below 2^62.
 
-use crate::format::{BlobError, Field, Reason};
 use crate::format::record::UnitBox;
+use crate::format::{BlobError, Field, Reason};
 use crate::geometry::primitive::{InScene, MAX_RADIUS, Primitive};
 use crate::geometry::{Crossing, LEAVING, Part, Surface};
 use crate::number::Arithmetic;

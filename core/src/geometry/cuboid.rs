@@ -9,8 +9,8 @@
 //! by more (see [`cull`](crate::accel)).
 
 use crate::axis::pick;
-use crate::format::{BlobError, Field, Reason};
 use crate::format::record::UnitBox;
+use crate::format::{BlobError, Field, Reason};
 use crate::geometry::primitive::{InScene, Primitive};
 use crate::geometry::{Crossing, LEAVING, Part, Surface, flat};
 use crate::number::Arithmetic;

@@ -1,7 +1,7 @@
 //! Flat discs: the crossing of their plane, if it lies no farther than the radius from the centre.
 
-use crate::format::{BlobError, Field, Reason};
 use crate::format::record::UnitBox;
+use crate::format::{BlobError, Field, Reason};
 use crate::geometry::primitive::{InScene, MAX_RADIUS, Primitive};
 use crate::geometry::{Crossing, Part, Surface, cross_plane, flat};
 use crate::number::Arithmetic;

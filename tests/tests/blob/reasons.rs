@@ -4,12 +4,13 @@
 use super::small_blob;
 use glam::DVec3;
 use gridel_core::format::record::{
-    ApexDirection, ApexPoint, ApexWindow, Cone, Cuboid, Disc, DualNode, FlaggedPair, GridShape,
-    Gridels, Light, Material, Pair, SectionEntry, Sphere24, Vertex24, View, WideNode,
+    ApexDirection, ApexPoint, ApexWindow, DualNode, FlaggedPair, GridShape, Gridels, Light,
+    Material, Pair, SectionEntry, Sphere24, Vertex24, View, WideNode,
 };
 use gridel_core::format::{
     BlobError, Child, Effects, Field, Kind, Leaf, Link, Reason, SectionKind,
 };
+use gridel_core::geometry::{cone::Cone, cuboid::Cuboid, disc::Disc};
 use gridel_core::{Prevalidated, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;
