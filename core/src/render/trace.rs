@@ -112,7 +112,7 @@ impl Loop<'_, '_> {
             count,
             structure: PhantomData,
         };
-        let (mut ray, weight, kind) = match waiting {
+        let (ray, weight, kind) = match waiting {
             Some(next) => {
                 let (origin, direction) = (next.origin, next.direction.map(N::widen));
                 let far = N::FAR.widen();
@@ -130,14 +130,14 @@ impl Loop<'_, '_> {
                 weight: weight.ratios_to_f64(),
             });
         }
-        if let Some(ray) = &mut ray {
+        if let Some(mut ray) = ray {
             if kind == RayKind::Primary {
                 let mut state = tracing.state;
-                All::camera::<EFFECTS, N, _>(&mut tracing, &mut state, sample, ray);
+                All::camera::<EFFECTS, N, _>(&mut tracing, &mut state, sample, &mut ray);
                 tracing.state = state;
             }
-            tracing.count.ray(kind, ray);
-            tracing.add(ray, weight, radiance);
+            tracing.count.ray(kind, &ray);
+            tracing.add(&ray, weight, radiance);
         }
         let done = !causes_rays || tracing.space.work.is_empty();
         if done {
