@@ -173,6 +173,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             self.bring(Source::Background, brought.times(weight), radiance);
             return;
         };
+        let called = All::called_by_material(material);
         All::arrive::<EFFECTS, N, _>(self, &mut state, ray, &hit, material, &mut weight);
         let normal = if hit.front {
             hit.normal
@@ -187,6 +188,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         let mut surface = Surface {
             hit: &hit,
             material,
+            called,
             normal,
             direction,
             diffuse: Color::ratios(material.diffuse),
@@ -209,7 +211,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         self.bring(Source::Surface, local.times(surface.weight), radiance);
 
         if self.depth >= self.most {
-            if C::ENABLED && All::called_by_material(material).0 & EFFECTS & All::CASTING != 0 {
+            if C::ENABLED && called.0 & EFFECTS & All::CASTING != 0 {
                 self.count.event(Event::TooDeep);
             }
             return;
