@@ -54,6 +54,14 @@ pub struct Workspace<N: Number, const STACK: usize, const WORK: usize> {
 
 impl<N: Number, const STACK: usize, const WORK: usize> Workspace<N, STACK, WORK> {
     /// An empty workspace.
+    ///
+    /// ```
+    /// use gridel_core::{Fixed, Workspace};
+    ///
+    /// // A traversal stack of 24 entries, and room for 5 rays that wait.
+    /// static mut SPACE: Workspace<Fixed, 24, 5> = Workspace::new();
+    /// assert!(size_of::<Workspace<Fixed, 24, 5>>() < 600);
+    /// ```
     pub const fn new() -> Self {
         Self {
             stack: Stack::new(),
