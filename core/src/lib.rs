@@ -70,31 +70,18 @@ pub mod shade;
 mod simd;
 mod target;
 
-#[cfg(feature = "apex")]
 pub use accel::Apex;
-#[cfg(feature = "bvh")]
 pub use accel::Bvh;
-#[cfg(feature = "cylinder-cube")]
 pub use accel::CylinderCube;
-#[cfg(feature = "cylinder-cube-entry")]
 pub use accel::CylinderCubeEntry;
-#[cfg(feature = "cylinder-cube-tight")]
 pub use accel::CylinderCubeTight;
-#[cfg(feature = "dual-split")]
 pub use accel::DualSplit;
-#[cfg(feature = "flagged")]
 pub use accel::Flagged;
-#[cfg(feature = "flagged-slabs")]
 pub use accel::FlaggedSlabs;
-#[cfg(feature = "grid")]
 pub use accel::Grid;
-#[cfg(feature = "octree")]
 pub use accel::Octree;
-#[cfg(feature = "ray-classes")]
 pub use accel::RayClasses;
-#[cfg(feature = "slabs")]
 pub use accel::Slabs;
-#[cfg(feature = "spheres")]
 pub use accel::Spheres;
 #[cfg(feature = "wide")]
 pub use accel::Wide;
