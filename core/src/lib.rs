@@ -9,6 +9,27 @@
 //! - **pictures**: a [`Renderer`] gives pixels row by row or for any rectangle, and a
 //!   [`Cursor`](render::Cursor) gives them a bounded number of rays at a time.
 //!
+//! ```
+//! # static BLOB: &[u8] =
+//! #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+//! use gridel_core::{DualSplit, NoCount, Renderer, Rgb888, Scene, Workspace, closest_hit};
+//!
+//! let scene = Scene::from_bytes(BLOB)?;
+//! let mut space = Workspace::for_any_scene();
+//! let mut space = space.as_view();
+//!
+//! let renderer = Renderer::new(&scene)?;
+//! let mut row = [Rgb888([0; 3]); 64];
+//! renderer.row(0, 120, &mut row, &mut space, &mut NoCount);
+//!
+//! let ray = renderer.primary_ray(160, 120)?;
+//! let mut stack = gridel_core::Stack::<32>::new();
+//! if let Some(hit) = closest_hit::<_, DualSplit, _>(&scene, &ray, stack.as_view(), &mut NoCount) {
+//!     println!("object {} at {:?}", hit.object, hit.point);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! Both are generic over the number format (see [`Number`]): [`Fixed`] for cores without a
 //! floating-point unit, `f32`, `f64`; and over the acceleration structure ([`List`], [`Bvh`],
 //! [`Flagged`], [`DualSplit`] and others in [`accel`]). The structure never changes a bit of an answer.
@@ -49,31 +70,18 @@ pub mod shade;
 mod simd;
 mod target;
 
-#[cfg(feature = "apex")]
 pub use accel::Apex;
-#[cfg(feature = "bvh")]
 pub use accel::Bvh;
-#[cfg(feature = "cylinder-cube")]
 pub use accel::CylinderCube;
-#[cfg(feature = "cylinder-cube-entry")]
 pub use accel::CylinderCubeEntry;
-#[cfg(feature = "cylinder-cube-tight")]
 pub use accel::CylinderCubeTight;
-#[cfg(feature = "dual-split")]
 pub use accel::DualSplit;
-#[cfg(feature = "flagged")]
 pub use accel::Flagged;
-#[cfg(feature = "flagged-slabs")]
 pub use accel::FlaggedSlabs;
-#[cfg(feature = "grid")]
 pub use accel::Grid;
-#[cfg(feature = "octree")]
 pub use accel::Octree;
-#[cfg(feature = "ray-classes")]
 pub use accel::RayClasses;
-#[cfg(feature = "slabs")]
 pub use accel::Slabs;
-#[cfg(feature = "spheres")]
 pub use accel::Spheres;
 #[cfg(feature = "wide")]
 pub use accel::Wide;

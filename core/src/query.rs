@@ -522,6 +522,20 @@ fn numbered<T>(leaf: Leaf, records: Option<&[T]>) -> impl Iterator<Item = (u32, 
 ///
 /// Of hits at the same t the one that comes first in the scene file counts, so the answer is the
 /// same whatever the structure. The stack must be as deep as the blob says.
+///
+/// ```
+/// # static BLOB: &[u8] =
+/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+/// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_primitive};
+///
+/// let scene = Scene::from_bytes(BLOB)?;
+/// let mut stack = Stack::<32>::new();
+/// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+/// let found = closest_primitive::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
+/// let found = found.expect("a ball");
+/// assert_eq!(scene.object(found.primitive), 9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 // Hosts have the room; a ray that goes through memory is waited for.
 #[cfg_attr(feature = "wide", inline(always))]
 #[cfg_attr(not(feature = "wide"), inline)]
@@ -604,6 +618,20 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
 impl<N: Number> Found<N> {
     /// The whole hit: the point and how the surface lies there. `scene` and `ray` are those of the
     /// query.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_primitive};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut stack = Stack::<32>::new();
+    /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+    /// let found = closest_primitive::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
+    /// let hit = found.and_then(|found| found.hit(&scene, &down)).expect("a ball");
+    /// assert_eq!(hit.primitive, 9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[cfg_attr(feature = "wide", inline(always))]
     pub fn hit(&self, scene: &Scene<'_>, ray: &Ray<N>) -> Option<Hit<N>> {
         let best = self.best;
@@ -634,6 +662,20 @@ impl<N: Number> Found<N> {
 impl<N: Number> Hit<N> {
     /// Where a ray starts that goes on from here on the normal's side, so that it does not meet
     /// what it leaves: beside the surface by the hit's error bound.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_hit};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut stack = Stack::<32>::new();
+    /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+    /// let hit = closest_hit::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
+    /// let hit = hit.expect("a ball");
+    /// assert!(hit.outside()[1] > hit.point[1]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn outside(&self) -> [N; 3] {
         let axis = |k: usize| self.point[k] + self.error * self.normal[k];
         [axis(0), axis(1), axis(2)]
@@ -642,6 +684,20 @@ impl<N: Number> Hit<N> {
     /// Where a ray starts that goes on from here on the other side, `scene` being the one that was
     /// asked. Of a solid that is beneath *all* of its faces by their error bounds, so that the ray
     /// leaves the solid again; where the solid is thinner, halfway between them.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_hit};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut stack = Stack::<32>::new();
+    /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+    /// let hit = closest_hit::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
+    /// let hit = hit.expect("a ball");
+    /// assert!(hit.inside(&scene)[1] < hit.point[1]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn inside(&self, scene: &Scene<'_>) -> [N; 3] {
         let surface = [self.point, self.normal];
         match Leaf::from_word(self.place) {
@@ -680,6 +736,21 @@ impl<N: Number> Hit<N> {
 }
 
 /// The first hit of a ray in its interval: [`closest_primitive`] with its surface.
+///
+/// ```
+/// # static BLOB: &[u8] =
+/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+/// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_hit};
+///
+/// let scene = Scene::from_bytes(BLOB)?;
+/// let mut stack = Stack::<32>::new();
+/// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+/// let hit = closest_hit::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
+/// let hit = hit.expect("a ball");
+/// assert!(hit.front && hit.normal[1] > 0.0);
+/// assert_eq!(hit.object, 9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn closest_hit<N: Number, A: Accel, C: Observer>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
@@ -695,6 +766,19 @@ pub fn closest_hit<N: Number, A: Accel, C: Observer>(
 }
 
 /// Whether a ray meets anything in its interval: whether [`closest_hit`] would find something.
+///
+/// ```
+/// # static BLOB: &[u8] =
+/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+/// use gridel_core::{Counters, DualSplit, Ray, Scene, Stack, any_hit};
+///
+/// let scene = Scene::from_bytes(BLOB)?;
+/// let (mut stack, mut counters) = (Stack::<32>::new(), Counters::default());
+/// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+/// assert!(any_hit::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut counters));
+/// assert!(counters.objects > 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 // As above.
 #[cfg_attr(feature = "wide", inline(always))]
 pub fn any_hit<N: Number, A: Accel, C: Observer>(

@@ -259,6 +259,17 @@ enum Origin<N: Arithmetic> {
 impl<N: Arithmetic> Pencil<N> {
     /// The rays from a point, with all `t` that are not negative: see [`Ray::new`].
     ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{Ray, Scene};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let ray = Ray::<f64>::new(scene.bounds(), [0.0; 3], [3.0, -4.0, 0.0], 0.0, 100.0)?;
+    /// assert_eq!(ray.slope(), [0.75, -1.0, 0.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// If the origin is infinite or NaN, or farther than [`FARTHEST`].
     pub fn new(bounds: &UnitBox, origin: [N::Wide; 3]) -> Result<Self, RayError> {
@@ -291,6 +302,19 @@ impl<N: Arithmetic> Pencil<N> {
     }
 
     /// The ray in a direction of any length.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{Pencil, Ray, Scene};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let pencil = Pencil::<f64>::new(scene.bounds(), [0.0; 3])?;
+    /// let ray = pencil.ray([1.0, 0.5, 0.0])?;
+    /// let alone = Ray::<f64>::new(scene.bounds(), [0.0; 3], [1.0, 0.5, 0.0], 0.0, f64::INFINITY)?;
+    /// assert_eq!(ray.slope(), alone.slope());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// If the direction is zero, infinite or NaN.
@@ -425,6 +449,19 @@ impl<N: Arithmetic> Ray<N> {
     /// A ray given in double precision, rounded to this format only after its origin was moved to
     /// the scene: what hosts use, and tests.
     ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{Fixed, Ray, RayError, Scene};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let ray = Ray::<Fixed>::from_f64(scene.bounds(), [0.0; 3], [0.0, 0.0, -2.0], 0.0, 1e9)?;
+    /// assert_eq!(ray.major_axis(), 2);
+    /// let zero = Ray::<Fixed>::from_f64(scene.bounds(), [0.0; 3], [0.0; 3], 0.0, 1e9);
+    /// assert_eq!(zero.err(), Some(RayError::Direction));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Ray::new`].
     #[cfg_attr(feature = "wide", inline(always))]
@@ -447,17 +484,45 @@ impl<N: Arithmetic> Ray<N> {
     }
 
     /// The axis along which `t` is measured: 0, 1 or 2.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// let ray = gridel_core::Ray::<f32>::from_f64(scene.bounds(), [0.0; 3], [1.0, 5.0, 1.0], 0.0, 1.0)?;
+    /// assert_eq!(ray.major_axis(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn major_axis(&self) -> usize {
         self.major
     }
 
     /// The direction, scaled so that its major component is 1 or -1.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// let ray = gridel_core::Ray::<f32>::from_f64(scene.bounds(), [0.0; 3], [1.0, 2.0, -4.0], 0.0, 1.0)?;
+    /// assert_eq!(ray.slope(), [0.25, 0.5, -1.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn slope(&self) -> [N; 3] {
         self.slope
     }
 
     /// Where the ray starts inside of the kernels, in units: its own origin, or where it comes to the
     /// scene's box.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// // From far away a ray starts where it comes to the scene's box.
+    /// let ray = gridel_core::Ray::<f64>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+    /// assert_eq!(ray.start()[1] + ray.moved(), 1e6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn start(&self) -> [N; 3] {
         self.origin
     }

@@ -51,7 +51,7 @@ where
         dither: true,
         ..Settings::of(scene)
     };
-    let renderer = Renderer::<f32, DualSplit, { Effects::ALL.0 }>::new(scene, settings)?;
+    let renderer = Renderer::<f32, DualSplit, { Effects::ALL.0 }>::with_settings(scene, settings)?;
     let mut space = Workspace::<f32, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
     let mut space = space.as_view();
     renderer.check_workspace(&space)?;

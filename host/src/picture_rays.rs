@@ -55,7 +55,7 @@ impl<N: Number> PictureRays<N> {
     /// # Errors
     /// If there are more than [`MOST_RAYS`], or the settings are out of their range.
     pub fn of(scene: &Scene<'_>, settings: Settings) -> Result<Self, PictureRaysError> {
-        let renderer = Renderer::<N, Flagged, { Effects::ALL.0 }>::new(scene, settings)?;
+        let renderer = Renderer::<N, Flagged, { Effects::ALL.0 }>::with_settings(scene, settings)?;
         let pixels = usize::from(settings.width) * usize::from(settings.height);
         let mut rays = Self::default();
         // So many rows at a time that what they cast cannot exceed memory before it is counted.

@@ -131,7 +131,7 @@ fn counted_rows<N: Number, const EFFECTS: u32>(
     job: &Job,
     progress: &(dyn Fn() + Sync),
 ) -> Result<Picture, RenderError> {
-    let renderer = Renderer::<N, DynAccel, EFFECTS>::new(scene, job.settings)?;
+    let renderer = Renderer::<N, DynAccel, EFFECTS>::with_settings(scene, job.settings)?;
     let row = |y, pixels: &mut _| Some(counted_row(&renderer, y, pixels));
     Ok(spread(job, progress, &row))
 }
@@ -141,7 +141,7 @@ fn rows<N: Number, A: Accel, const EFFECTS: u32>(
     job: &Job,
     progress: &(dyn Fn() + Sync),
 ) -> Result<Picture, RenderError> {
-    let renderer = Renderer::<N, A, EFFECTS>::new(scene, job.settings)?;
+    let renderer = Renderer::<N, A, EFFECTS>::with_settings(scene, job.settings)?;
     let row = |y, pixels: &mut _| {
         render_row(&renderer, y, pixels, || NoCount, |_| ());
         None

@@ -116,7 +116,7 @@ fn what_a_display_does_not_show_is_not_traced() {
         dither: true,
         ..Settings::of(&scene)
     };
-    let renderer = Renderer::<f32, DualSplit, { Effects::ALL.0 }>::new(&scene, settings);
+    let renderer = Renderer::<f32, DualSplit, { Effects::ALL.0 }>::with_settings(&scene, settings);
     let renderer = renderer.expect("a renderer");
     let mut space = Workspace::<f32, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
     let mut space = space.as_view();

@@ -58,7 +58,7 @@ fn render<N: Number, A: Accel>(blob: &[u8]) {
     let before = ALLOCATIONS.get();
     let scene = Scene::from_bytes(blob).expect("the compiler's own blob");
     let settings = Settings::of(&scene);
-    let renderer = Renderer::<N, A, { Effects::ALL.0 }>::new(&scene, settings);
+    let renderer = Renderer::<N, A, { Effects::ALL.0 }>::with_settings(&scene, settings);
     let renderer = renderer.expect("the scene is for this renderer");
     for y in 0..settings.height {
         renderer.row(0, y, &mut row, &mut space.as_view(), &mut NoCount);

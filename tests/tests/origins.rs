@@ -519,7 +519,7 @@ fn rendered<N: Number>(scene: &mut SceneFile, away: f64) -> Result<Vec<[u16; 3]>
         height: 24,
         ..Settings::of(&scene)
     };
-    let renderer = Renderer::<N, DualSplit, { Effects::ALL.0 }>::new(&scene, settings)?;
+    let renderer = Renderer::<N, DualSplit, { Effects::ALL.0 }>::with_settings(&scene, settings)?;
     let mut space = Box::new(Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new());
     let mut view = space.as_view();
     let pixels = (0..24 * 24).map(|k| renderer.linear(k % 24, k / 24, &mut view, &mut NoCount));

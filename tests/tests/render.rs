@@ -158,7 +158,8 @@ fn without_effects_there_are_no_secondary_rays() {
 
 fn bytes<N: Number, const EFFECTS: u32>(scene: &Scene<'_>) -> Vec<[u8; 3]> {
     let settings = small(scene);
-    let renderer = Renderer::<N, Flagged, EFFECTS>::new(scene, settings).expect("a renderer");
+    let renderer =
+        Renderer::<N, Flagged, EFFECTS>::with_settings(scene, settings).expect("a renderer");
     let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
     let mut pixels = Vec::new();
     let size = [settings.width, settings.height];
@@ -171,7 +172,7 @@ fn bytes<N: Number, const EFFECTS: u32>(scene: &Scene<'_>) -> Vec<[u8; 3]> {
 /// traces more rays than it may.
 fn steps_do_not_matter<N: Number>(name: &str, scene: &Scene<'_>) {
     let settings = small(scene);
-    let renderer = Renderer::<N, Flagged, { Effects::ALL.0 }>::new(scene, settings);
+    let renderer = Renderer::<N, Flagged, { Effects::ALL.0 }>::with_settings(scene, settings);
     let renderer = renderer.expect("a renderer");
     let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
     let (corner, size) = ([5, 7], [settings.width - 9, settings.height - 11]);
@@ -231,7 +232,8 @@ fn cursors_can_be_dropped_and_ends_are_ends() {
     let fixture = scenes::read(&scenes::fixture_folder().join("glass-chess.toml"));
     let blob = scenes::blob(&fixture, 24);
     let scene = blob.scene().expect("a scene");
-    let renderer = Renderer::<f32, Flagged, { Effects::ALL.0 }>::new(&scene, small(&scene));
+    let renderer =
+        Renderer::<f32, Flagged, { Effects::ALL.0 }>::with_settings(&scene, small(&scene));
     let renderer = renderer.expect("a renderer");
     let mut space = Workspace::<f32, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
     let pixel = |space: &mut Workspace<_, _, _>| {

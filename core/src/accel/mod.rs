@@ -13,6 +13,8 @@ pub mod cells;
 pub(crate) mod clamp;
 pub mod cull;
 pub(crate) mod cull_axis;
+#[cfg(feature = "all-structures")]
+mod dynamic;
 pub mod hierarchy;
 #[cfg(any(
     target_arch = "x86_64",
@@ -37,36 +39,23 @@ pub(crate) mod traverse;
 #[cfg(feature = "wide")]
 pub mod wide;
 
-#[cfg(feature = "apex")]
 pub use candidates::apex::Apex;
-#[cfg(feature = "cylinder-cube")]
 pub use candidates::cylinder_cube::CylinderCube;
-#[cfg(feature = "cylinder-cube-entry")]
 pub use candidates::cylinder_cube_entry::CylinderCubeEntry;
-#[cfg(feature = "cylinder-cube-tight")]
 pub use candidates::cylinder_cube_tight::CylinderCubeTight;
-#[cfg(feature = "ray-classes")]
 pub use candidates::ray_classes::RayClasses;
-#[cfg(feature = "grid")]
 pub use cells::grid::Grid;
-#[cfg(feature = "octree")]
 pub use cells::octree::Octree;
-#[cfg(feature = "bvh")]
+#[cfg(feature = "all-structures")]
+pub use dynamic::DynAccel;
 pub use hierarchy::bvh::Bvh;
-#[cfg(feature = "dual-split")]
 pub use hierarchy::dual_split::DualSplit;
-#[cfg(feature = "flagged")]
 pub use hierarchy::flagged::Flagged;
-#[cfg(feature = "flagged-slabs")]
 pub use hierarchy::flagged_slabs::FlaggedSlabs;
-#[cfg(feature = "slabs")]
 pub use hierarchy::slabs::Slabs;
-#[cfg(feature = "spheres")]
 pub use hierarchy::spheres::Spheres;
 pub use list::List;
 pub use number::Number;
-#[cfg(feature = "all-structures")]
-pub use registry::DynAccel;
 pub use registry::{Accel, StructureViews, StructureVisitor};
 pub use space::Space;
 pub use stack::{Entry, Stack, StackView};

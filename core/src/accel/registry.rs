@@ -1,24 +1,16 @@
 //! Every structure of this build, by name and as a type. [`structures!`] lists them.
 
-#[cfg(feature = "all-structures")]
-use crate::accel::cull::Culling;
-#[cfg(feature = "all-structures")]
-use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
-#[cfg(feature = "all-structures")]
-use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
-#[cfg(feature = "all-structures")]
-use crate::format::Leaf;
 use crate::format::structure::structures;
 use crate::format::{BlobError, Sections, Structure};
-#[cfg(feature = "all-structures")]
-use crate::observe::count::Observer;
-#[cfg(feature = "all-structures")]
-use crate::ray::Ray;
 
 /// A structure of this build, as a type: the code of those that are not named is not in the program.
+#[diagnostic::on_unimplemented(
+    message = "the code of the structure `{Self}` is not in this build",
+    note = "enable the Cargo feature of gridel-core with the structure's name"
+)]
 pub trait Accel: Traverse {
     /// The structure's own records among those of a scene.
     fn views<'s, 'a>(views: &'s StructureViews<'a>) -> &'s Self::Views<'a>;
@@ -33,67 +25,12 @@ pub trait StructureVisitor {
     fn visit<A: Accel>(self) -> Self::Output;
 }
 
-/// The structure that was chosen for a scene while the program runs, by [`Scene::choose`](crate::Scene::choose): what is
-/// built around queries is compiled once for it, and not for every structure. Costs a branch and the
-/// set-up of a culling form a query more than the structure itself.
-#[cfg(feature = "all-structures")]
-#[derive(Clone, Copy, Debug)]
-pub enum DynAccel {}
-
-#[cfg(feature = "all-structures")]
-impl Accel for DynAccel {
-    fn views<'s, 'a>(views: &'s StructureViews<'a>) -> &'s StructureViews<'a> {
-        views
-    }
-}
-
 macro_rules! registry {
     ($(
         $(#[doc = $doc:literal])*
         $variant:ident = $number:literal, $name:literal, $field:ident in $($module:ident)::+,
             if $feature:meta;
     )*) => {
-        impl Structure {
-            /// Hands the structure to a visitor as a type.
-            #[cfg(feature = "all-structures")]
-            pub fn visit<V: StructureVisitor>(self, visitor: V) -> V::Output {
-                match self {
-                    $(Structure::$variant => visitor.visit::<super::$variant>(),)*
-                }
-            }
-        }
-
-        #[cfg(feature = "all-structures")]
-        impl Traverse for DynAccel {
-            const STRUCTURE: Structure = Structure::List;
-            const HAS_CLUSTERS: bool = cfg!(feature = "wide");
-            // All walks are in each copy.
-            const ONE_COPY: bool = true;
-            type Cull<N: Number> = N::Cull;
-            type Views<'a> = StructureViews<'a>;
-
-            fn needs(space: &Space<'_>) -> Structure {
-                space.chosen
-            }
-
-            fn walk<N: Number, C: Observer>(
-                space: &Space<'_>,
-                views: &StructureViews<'_>,
-                ray: &Ray<N>,
-                _: &N::Cull,
-                stack: &mut StackView,
-                count: &mut C,
-                leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
-            ) {
-                match space.chosen {
-                    $(Structure::$variant => {
-                        let cull = <super::$variant as Traverse>::Cull::<N>::new(ray);
-                        super::$variant::walk(space, &views.$field, ray, &cull, stack, count, leaf);
-                    })*
-                }
-            }
-        }
-
         $(
             #[cfg($feature)]
             impl Accel for super::$variant {

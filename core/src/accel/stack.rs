@@ -24,6 +24,15 @@ pub type StackView = VecView<Entry>;
 
 impl<const DEPTH: usize> Stack<DEPTH> {
     /// An empty stack.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// let mut stack = gridel_core::Stack::<32>::new();
+    /// assert!(stack.as_view().capacity() >= scene.stack_depth());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub const fn new() -> Self {
         Self(Vec::new())
     }

@@ -5,6 +5,16 @@ use crate::format::record::Header;
 /// The checksum of a blob: FNV-1a over its 32-bit words, the checksum's own taken as 0.
 ///
 /// Every step is a bijection of the state, so a change of any single word always shows.
+///
+/// ```
+/// # static BLOB: &[u8] =
+/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+/// use gridel_core::format::checksum;
+///
+/// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+/// assert_eq!(checksum(BLOB), scene.header().checksum);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub const fn checksum(blob: &[u8]) -> u32 {
     const OWN_WORD: usize = core::mem::offset_of!(Header, checksum) / 4;
     const fn mix(state: u32, word: u32) -> u32 {
@@ -38,8 +48,11 @@ pub struct Aligned<T: ?Sized>(pub T);
 
 /// Embeds a blob file with the alignment that [`Scene::from_bytes`](crate::Scene::from_bytes) asks for.
 ///
-/// ```ignore
-/// static BLOB: &[u8] = gridel_core::include_blob!("scene.gridel");
+/// ```
+/// # macro_rules! scene { () => { concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel") } }
+/// static BLOB: &[u8] = gridel_core::include_blob!(scene!());
+///
+/// assert!(BLOB.as_ptr().addr().is_multiple_of(16));
 /// ```
 #[macro_export]
 macro_rules! include_blob {

@@ -102,11 +102,25 @@ impl Effects {
     pub const NONE: Effects = Effects(0);
 
     /// Whether all of `other` are in this set.
+    ///
+    /// ```
+    /// use gridel_core::Effects;
+    ///
+    /// let set = Effects::MIRROR.with(Effects::SHADOW);
+    /// assert!(set.contains(Effects::SHADOW) && !set.contains(Effects::GLASS));
+    /// ```
     pub const fn contains(self, other: Effects) -> bool {
         self.0 & other.0 == other.0
     }
 
     /// This set without those of `other`.
+    ///
+    /// ```
+    /// use gridel_core::Effects;
+    ///
+    /// let opaque = Effects::ALL.without(Effects::GLASS).without(Effects::ABSORPTION);
+    /// assert_eq!(opaque.to_string(), "shadow, highlight, mirror, checker");
+    /// ```
     pub const fn without(self, other: Effects) -> Effects {
         Effects(self.0 & !other.0)
     }
@@ -122,6 +136,14 @@ impl Effects {
     }
 
     /// Places for waiting rays that pictures with these effects need at a ray depth: see [`work_depth`].
+    ///
+    /// ```
+    /// use gridel_core::Effects;
+    ///
+    /// assert_eq!(Effects::GLASS.work_depth(4), 5);
+    /// // Shadow rays do not wait.
+    /// assert_eq!(Effects::SHADOW.work_depth(4), 0);
+    /// ```
     pub const fn work_depth(self, depth: u8) -> usize {
         if depth > 0 && self.0 & Self::CASTING.0 != 0 {
             work_depth(depth)
@@ -131,6 +153,12 @@ impl Effects {
     }
 
     /// The names of the effects in this set.
+    ///
+    /// ```
+    /// use gridel_core::Effects;
+    ///
+    /// assert!(Effects::GLASS.with(Effects::SHADOW).names().eq(["shadow", "glass"]));
+    /// ```
     pub fn names(self) -> impl Iterator<Item = &'static str> {
         Self::NAMED
             .into_iter()

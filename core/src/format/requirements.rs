@@ -12,8 +12,11 @@ use core::mem::offset_of;
 /// [`Requirements::of`] is a `const fn`: a program that compares what it provides with what its blob asks for,
 /// as the modules of `gridel build --emit-rust` do, does not compile with a blob that has outgrown it.
 ///
-/// ```ignore
-/// static BLOB: &[u8] = gridel_core::include_blob!("scene.gridel");
+/// ```
+/// # macro_rules! scene { () => { concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel") } }
+/// static BLOB: &[u8] = gridel_core::include_blob!(scene!());
+/// const STACK_DEPTH: usize = 32;
+///
 /// const _: () = {
 ///     let Ok(demand) = gridel_core::Requirements::of(BLOB) else {
 ///         panic!("the blob was damaged")

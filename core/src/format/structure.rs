@@ -96,9 +96,25 @@ impl Structure {
         1 << self as u32
     }
 
+    /// The structure of a set that answers fastest, by and large; `set` holds their [bits](Self::bit).
+    #[cfg(feature = "all-structures")]
+    pub(crate) fn fastest(set: u32) -> Self {
+        let first = [Self::Wide, Self::DualSplit, Self::Flagged, Self::Bvh];
+        let all = first.into_iter().chain(Self::ALL.into_iter().rev());
+        let mut held = all.filter(|structure| set & structure.bit() != 0);
+        held.next().unwrap_or(Self::List)
+    }
+
     /// Whether loading a blob proves that this structure answers as the list does. That lists of
     /// candidates lack nothing cannot be seen in linear time: whoever compiled the blob answers for
     /// it. A walk through them ends all the same, and hits only what is there.
+    ///
+    /// ```
+    /// use gridel_core::Structure;
+    ///
+    /// assert!(Structure::DualSplit.is_proved());
+    /// assert!(!Structure::CylinderCube.is_proved());
+    /// ```
     pub const fn is_proved(self) -> bool {
         !matches!(
             self,

@@ -57,6 +57,13 @@ pub struct Counters {
 
 impl Counters {
     /// All rays.
+    ///
+    /// ```
+    /// use gridel_core::Counters;
+    ///
+    /// let counters = Counters { primary: 2, shadow: 3, ..Counters::default() };
+    /// assert_eq!([counters.rays(), counters.secondary()], [5, 3]);
+    /// ```
     pub fn rays(&self) -> u64 {
         self.primary + self.secondary()
     }

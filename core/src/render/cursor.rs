@@ -100,6 +100,24 @@ impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> Cursor<'r, 's, 'a, N, 
 
 impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFFECTS> {
     /// The same rectangle, rendered a few rays at a time: see [`Cursor`].
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{NoCount, Renderer, Rgb888, Scene, Workspace};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let renderer = Renderer::new(&scene)?;
+    /// let mut space = Workspace::for_any_scene();
+    /// let mut cursor = renderer.cursor([0, 0], [4, 4], space.as_view());
+    /// let mut pixels = 0;
+    /// while !cursor.is_done() {
+    ///     // Time for something else between every ten rays.
+    ///     cursor.step(10, &mut NoCount, |_, _, Rgb888(_)| pixels += 1);
+    /// }
+    /// assert_eq!(pixels, 16);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn cursor<'r>(
         &'r self,
         corner: [u16; 2],

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | where in the pixel, and in which direction | `sample.rs`, `camera.rs` |
 //! | what the ray and those it causes bring | `trace.rs` |
+//! | without a choice of format, structure and effects | `defaults.rs` |
 //! | the samples of a pixel, all pixels of a rectangle | `samples.rs`, `rows.rs` |
 //! | where rendering is between two calls | `cursor.rs` |
 //! | onto a display of `embedded-graphics`, where the feature is on | `display.rs` |
@@ -11,6 +12,8 @@
 
 mod camera;
 mod cursor;
+#[cfg(feature = "all-structures")]
+mod defaults;
 #[cfg(feature = "embedded-graphics-core")]
 mod display;
 mod pixel;

@@ -9,6 +9,14 @@ pub(crate) type Linear = [u16; 3];
 pub trait Pixel: Copy + Default {
     /// Encodes a pixel. `dither` is `None` for rounding to nearest, else the place of the pixel in
     /// the picture, for an ordered pattern of 8 by 8.
+    ///
+    /// ```
+    /// use gridel_core::render::Pixel;
+    /// use gridel_core::{Rgb565, Rgb888};
+    ///
+    /// assert_eq!(Rgb888::encode([65_535, 14_146, 0], None), Rgb888([255, 128, 0]));
+    /// assert_eq!(Rgb565::encode([65_535; 3], None), Rgb565(0xffff));
+    /// ```
     fn encode(linear: [u16; 3], dither: Option<[u16; 2]>) -> Self;
 }
 

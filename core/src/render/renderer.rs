@@ -33,6 +33,15 @@ pub struct Settings {
 
 impl Settings {
     /// What the scene file states, without dithering.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// let settings = gridel_core::Settings::of(&scene);
+    /// assert_eq!([settings.samples, settings.width], [scene.view().samples, scene.view().width]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn of(scene: &Scene<'_>) -> Self {
         let view = scene.view();
         Self {
@@ -141,12 +150,27 @@ pub struct Renderer<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> {
 }
 
 impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFFECTS> {
-    /// A renderer for one scene and picture size.
+    /// A renderer for one scene and picture size, in a number format and through a structure, with the code
+    /// of some effects: the form for firmware, which holds nothing else then.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{DualSplit, Effects, Fixed, Renderer, Scene, Settings};
+    ///
+    /// const EFFECTS: u32 = Effects::SHADOW.with(Effects::MIRROR).0;
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let settings = Settings { width: 160, height: 120, ..Settings::of(&scene) };
+    /// let renderer = Renderer::<Fixed, DualSplit, EFFECTS>::with_settings(&scene, settings)?;
+    /// assert_eq!(renderer.settings().width, 160);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// If a setting is out of its range, the blob lacks the structure, the scene calls for an effect that
     /// is not in `EFFECTS`, or the number format cannot tell the pixels' directions apart.
-    pub fn new(scene: &'s Scene<'a>, settings: Settings) -> Result<Self, RenderError> {
+    pub fn with_settings(scene: &'s Scene<'a>, settings: Settings) -> Result<Self, RenderError> {
         let Settings {
             width,
             height,
@@ -184,11 +208,34 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     }
 
     /// The settings.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{Renderer, Scene, Settings};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// assert_eq!(Renderer::new(&scene)?.settings(), Settings::of(&scene));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn settings(&self) -> Settings {
         self.settings
     }
 
     /// Whether a workspace is large enough.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::render::RenderError;
+    /// use gridel_core::{Renderer, Scene, Workspace};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut short = Workspace::<f32, 1, 1>::new();
+    /// let error = Renderer::new(&scene)?.check_workspace(&short.as_view());
+    /// assert!(matches!(error, Err(RenderError::Workspace { what: "stack", found: 1, .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// If it is not, with what it lacks. Rendering in it all the same is safe, but rays that find
@@ -215,6 +262,18 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     }
 
     /// The ray from the eye through the middle of a pixel, for queries of the caller's own.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{Renderer, Scene};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let ray = Renderer::new(&scene)?.primary_ray(0, 0)?;
+    /// // The camera looks along -z, mostly.
+    /// assert_eq!(ray.slope()[2], -1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// If the blob's camera vectors make no direction.

@@ -9,6 +9,19 @@ use crate::render::{Pixel, Renderer, WorkspaceView};
 use crate::shade::Color;
 impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
     /// One pixel, linear, 65535 being white. Outside of the picture pixels go on.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{NoCount, Renderer, Scene, Workspace};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let renderer = Renderer::new(&scene)?;
+    /// let mut space = Workspace::for_any_scene();
+    /// let background = renderer.linear(0, 0, &mut space.as_view(), &mut NoCount);
+    /// assert_eq!(background, [0; 3]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn linear<C: Observer>(
         &self,
         x: u16,
@@ -26,6 +39,20 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
     }
 
     /// What is seen along a ray of the caller's own, linear, 65535 being white.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{NoCount, Renderer, Scene, Workspace};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let renderer = Renderer::new(&scene)?;
+    /// let mut space = Workspace::for_any_scene();
+    /// let ray = renderer.primary_ray(0, 0)?;
+    /// let seen = renderer.linear_along(&ray, &mut space.as_view(), &mut NoCount);
+    /// assert_eq!(seen, [0; 3]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn linear_along<C: Observer>(
         &self,
         ray: &Ray<N>,
@@ -48,6 +75,19 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
     }
 
     /// One pixel in a display's form.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{NoCount, Renderer, Rgb888, Scene, Workspace};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let renderer = Renderer::new(&scene)?;
+    /// let mut space = Workspace::for_any_scene();
+    /// let Rgb888(pixel) = renderer.pixel(0, 0, &mut space.as_view(), &mut NoCount);
+    /// assert_eq!(pixel, [0; 3]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn pixel<P: Pixel, C: Observer>(
         &self,
         x: u16,
@@ -62,6 +102,20 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
     }
 
     /// A part of a row: as many pixels as `row` has, from column `x` on.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{NoCount, Renderer, Rgb565, Scene, Workspace};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let renderer = Renderer::new(&scene)?;
+    /// let mut space = Workspace::for_any_scene();
+    /// let mut row = [Rgb565(0); 32];
+    /// let middle = renderer.settings().height / 2;
+    /// renderer.row(0, middle, &mut row, &mut space.as_view(), &mut NoCount);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn row<P: Pixel, C: Observer>(
         &self,
         x: u16,
@@ -76,6 +130,21 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
     }
 
     /// Any rectangle, pixel by pixel, row by row from its upper left corner.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{NoCount, Renderer, Rgb888, Scene, Workspace};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let renderer = Renderer::new(&scene)?;
+    /// let mut space = Workspace::for_any_scene();
+    /// let mut pixels = 0;
+    /// let sink = |_, _, Rgb888(_)| pixels += 1;
+    /// renderer.rectangle([10, 20], [4, 3], &mut space.as_view(), &mut NoCount, sink);
+    /// assert_eq!(pixels, 12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn rectangle<P: Pixel, C: Observer>(
         &self,
         corner: [u16; 2],

@@ -65,7 +65,7 @@ impl<N: Number> Samples<N> {
         let mean = if samples == 1 {
             self.sum
         } else {
-            // `Renderer::new` refuses 0 samples.
+            // `Renderer::with_settings` rejects 0 samples.
             self.sum
                 .scaled(N::ratio((1 << 30) / i32::from(samples.max(1))))
         };

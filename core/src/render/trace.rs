@@ -54,6 +54,14 @@ pub struct Workspace<N: Number, const STACK: usize, const WORK: usize> {
 
 impl<N: Number, const STACK: usize, const WORK: usize> Workspace<N, STACK, WORK> {
     /// An empty workspace.
+    ///
+    /// ```
+    /// use gridel_core::{Fixed, Workspace};
+    ///
+    /// // A traversal stack of 24 entries, and room for 5 rays that wait.
+    /// static mut SPACE: Workspace<Fixed, 24, 5> = Workspace::new();
+    /// assert!(size_of::<Workspace<Fixed, 24, 5>>() < 600);
+    /// ```
     pub const fn new() -> Self {
         Self {
             stack: Stack::new(),
@@ -112,7 +120,7 @@ impl Loop<'_, '_> {
             count,
             structure: PhantomData,
         };
-        let (mut ray, weight, kind) = match waiting {
+        let (ray, weight, kind) = match waiting {
             Some(next) => {
                 let (origin, direction) = (next.origin, next.direction.map(N::widen));
                 let far = N::FAR.widen();
@@ -130,14 +138,14 @@ impl Loop<'_, '_> {
                 weight: weight.ratios_to_f64(),
             });
         }
-        if let Some(ray) = &mut ray {
+        if let Some(mut ray) = ray {
             if kind == RayKind::Primary {
                 let mut state = tracing.state;
-                All::camera::<EFFECTS, N, _>(&mut tracing, &mut state, sample, ray);
+                All::camera::<EFFECTS, N, _>(&mut tracing, &mut state, sample, &mut ray);
                 tracing.state = state;
             }
-            tracing.count.ray(kind, ray);
-            tracing.add(ray, weight, radiance);
+            tracing.count.ray(kind, &ray);
+            tracing.add(&ray, weight, radiance);
         }
         let done = !causes_rays || tracing.space.work.is_empty();
         if done {
@@ -173,6 +181,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             self.bring(Source::Background, brought.times(weight), radiance);
             return;
         };
+        let called = All::called_by_material(material);
         All::arrive::<EFFECTS, N, _>(self, &mut state, ray, &hit, material, &mut weight);
         let normal = if hit.front {
             hit.normal
@@ -187,6 +196,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         let mut surface = Surface {
             hit: &hit,
             material,
+            called,
             normal,
             direction,
             diffuse: Color::ratios(material.diffuse),
@@ -209,7 +219,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         self.bring(Source::Surface, local.times(surface.weight), radiance);
 
         if self.depth >= self.most {
-            if C::ENABLED && All::called_by_material(material).0 & EFFECTS & All::CASTING != 0 {
+            if C::ENABLED && called.0 & EFFECTS & All::CASTING != 0 {
                 self.count.event(Event::TooDeep);
             }
             return;

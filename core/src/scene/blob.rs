@@ -29,21 +29,53 @@ pub struct Scene<'a> {
 
 impl<'a> Scene<'a> {
     /// The header.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// assert_eq!(scene.header().blob_bytes as usize, BLOB.len());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn header(&self) -> &'a Header {
         self.space.header
     }
 
     /// Camera, surroundings and rendering defaults.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// assert_eq!(scene.view().display_values, 0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn view(&self) -> &'a View {
         self.view
     }
 
     /// The lights.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// assert_eq!(scene.lights()[0].directional, 0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn lights(&self) -> &'a [Light] {
         self.lights
     }
 
     /// The materials.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// assert!(scene.materials().iter().any(|material| material.mirror != [0; 3]));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn materials(&self) -> &'a [Material] {
         self.materials
     }
@@ -54,6 +86,16 @@ impl<'a> Scene<'a> {
     }
 
     /// The effects that the scene calls for.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::Effects;
+    ///
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// assert_eq!(scene.effects(), Effects::SHADOW.with(Effects::MIRROR));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn effects(&self) -> Effects {
         Effects(self.space.header.effects)
     }
@@ -64,12 +106,33 @@ impl<'a> Scene<'a> {
     }
 
     /// Whether the blob holds a structure.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::Structure;
+    ///
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// assert!(scene.holds(Structure::DualSplit) && !scene.holds(Structure::Grid));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn holds(&self, structure: Structure) -> bool {
         self.space.holds(structure)
     }
 
-    /// The scene with a structure chosen for [`DynAccel`](crate::accel::DynAccel) to walk; `None` if the
-    /// blob does not hold it.
+    /// The scene with a structure chosen for [`DynAccel`](crate::accel::DynAccel) to walk, in place of the
+    /// fastest one; `None` if the blob does not hold it.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::Structure;
+    ///
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// assert!(scene.choose(Structure::List).is_some());
+    /// assert!(scene.choose(Structure::Grid).is_none());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[cfg(feature = "all-structures")]
     pub fn choose(&self, structure: Structure) -> Option<Self> {
         self.holds(structure).then(|| {
@@ -95,6 +158,17 @@ impl<'a> Scene<'a> {
     }
 
     /// Number of primitives of a kind.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::Kind;
+    ///
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// assert_eq!(scene.count(Kind::Sphere), 10);
+    /// assert_eq!(scene.count(Kind::Triangle), 4);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn count(&self, kind: Kind) -> usize {
         self.space.shapes.count(kind)
     }
@@ -176,6 +250,15 @@ impl<'a> Scene<'a> {
     }
 
     /// The object that a primitive belongs to.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// // Objects and primitives count in the order of the scene file.
+    /// assert_eq!(scene.object(0), 0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[cfg_attr(feature = "wide", inline)]
     pub fn object(&self, primitive: u32) -> u32 {
         if self.object_first.is_empty() {
@@ -198,6 +281,15 @@ impl<'a> Scene<'a> {
     }
 
     /// The material of an object.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// let material = scene.material(0).expect("an object");
+    /// assert_eq!(material.mirror, [0; 3]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[inline]
     pub fn material(&self, object: u32) -> Option<&'a Material> {
         let material = self.object_material.get(object as usize).unwrap_or(0);

@@ -7,6 +7,15 @@ use crate::scene::Scene;
 impl Scene<'_> {
     /// The Cargo features of this crate that the scene calls for, beside that of its structure:
     /// the kinds of its primitives, how they are stored, whether its colours are display values, and its effects.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// let features: Vec<&str> = scene.features().collect();
+    /// assert!(features.contains(&"sphere") && features.contains(&"shadow"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn features(&self) -> impl Iterator<Item = &'static str> {
         let kinds = Kind::ALL.map(|kind| (self.count(kind) > 0, kind.name()));
         let others = [

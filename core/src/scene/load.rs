@@ -17,6 +17,19 @@ impl<'a> Scene<'a> {
     ///
     /// Costs time linear in the blob's length and about 2 KiB of stack.
     ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{BlobError, Scene};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// assert_eq!(scene.lights().len(), 1);
+    /// // A damaged blob is rejected with the reason.
+    /// let cut = Scene::from_bytes(&BLOB[..100]);
+    /// assert!(matches!(cut, Err(BlobError::Truncated { .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// If anything of this fails to hold, or the scene calls for an effect, or holds a kind of
     /// primitive, that this build was compiled without. Shortcomings of the scene itself (no lights, no objects) are no errors.
@@ -30,6 +43,16 @@ impl<'a> Scene<'a> {
     }
 
     /// Returns the view of a [prevalidated](Prevalidated) blob, in constant time.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{Prevalidated, Scene};
+    ///
+    /// let scene = Scene::prevalidated(Prevalidated::of(BLOB)?)?;
+    /// assert_eq!(scene.lights().len(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// If the slice is not aligned, or the header, the section table or the view is not as it must

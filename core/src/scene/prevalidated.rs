@@ -13,14 +13,18 @@ use core::mem::offset_of;
 /// [`Prevalidated::of`] is a `const fn`. Evaluated for a `static`, it runs in the compiler, and a program
 /// whose blob fails does not compile:
 ///
-/// ```ignore
-/// static BLOB: &[u8] = gridel_core::include_blob!("scene.gridel");
+/// ```
+/// # macro_rules! scene { () => { concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel") } }
+/// use gridel_core::{Prevalidated, Scene};
+///
+/// static BLOB: &[u8] = gridel_core::include_blob!(scene!());
 /// static PREVALIDATED: Prevalidated<'static> = match Prevalidated::of(BLOB) {
 ///     Ok(blob) => blob,
 ///     Err(_) => panic!("the blob was damaged"),
 /// };
 ///
 /// let scene = Scene::prevalidated(PREVALIDATED)?;
+/// # Ok::<(), gridel_core::BlobError>(())
 /// ```
 ///
 /// **What is proved here**: the checksum, so the blob is what `gridel build` wrote, to the byte; and

@@ -71,7 +71,7 @@ pub(crate) fn scene<'a>(
             shapes,
             leaves: sections.records(SectionKind::Leaves)?,
             #[cfg(feature = "all-structures")]
-            chosen: Structure::List,
+            chosen: Structure::fastest(header.structures),
             #[cfg(feature = "wide")]
             simd: SimdLevel::Portable,
         },

@@ -53,7 +53,8 @@ pub(super) fn matches<N: Number>(checks: &mut Checks<'_>) {
     let Ok(scene) = Scene::from_bytes(blob.bytes()) else {
         return checks.equal(format_args!("the blob"), "refused", "read");
     };
-    let renderer = Renderer::<N, List, { Effects::ALL.0 }>::new(&scene, Settings::of(&scene));
+    let renderer =
+        Renderer::<N, List, { Effects::ALL.0 }>::with_settings(&scene, Settings::of(&scene));
     let Ok(renderer) = renderer else {
         return checks.equal(format_args!("the renderer"), "refused", "made");
     };

@@ -19,6 +19,7 @@ impl Effect for Absorption {
 
     const EFFECT: Effects = Effects::ABSORPTION;
 
+    #[inline(always)]
     fn is_called_by_material(material: &Material) -> bool {
         Glass::is_called_by_material(material) && material.absorption != [0; 3]
     }
@@ -33,7 +34,7 @@ impl Effect for Absorption {
         weight: &mut Color<N>,
     ) {
         if Glass::is_called_by_material(material) && !hit.front {
-            *weight = weight.times(absorb(material, path_length(ray, hit)));
+            *weight = weight.times(left(ray, hit, material));
             if X::Observer::ENABLED {
                 tracer.count().event(Event::Absorbed {
                     weight: weight.ratios_to_f64(),
@@ -50,25 +51,24 @@ impl Effect for Absorption {
         filter: &mut Filter<'_, N>,
     ) {
         if filter.passes && !filter.hit.front {
-            let length = path_length(ray, filter.hit);
-            filter.left = filter.left.times(absorb(filter.material, length));
+            filter.left = filter.left.times(left(ray, filter.hit, filter.material));
         }
     }
 }
 
-/// What is left of light after a length of glass.
-pub(super) fn absorb<N: Number>(material: &Material, length: N) -> Color<N> {
-    Color(
-        material
-            .absorption
-            .map(|coefficient| length.exp_neg(coefficient)),
-    )
-}
-
-/// The length of a ray up to its hit.
-fn path_length<N: Number>(ray: &Ray<N>, hit: &Hit<N>) -> N {
+/// What is left of light that went through glass up to a hit.
+///
+/// Out of line, because copies of it take more code than the calls.
+#[inline(never)]
+fn left<N: Number>(ray: &Ray<N>, hit: &Hit<N>, material: &Material) -> Color<N> {
     // |slope| lies between 1 and the square root of 3.
     let (_, norm) = N::normalize(ray.slope);
     // From far away it is longer than a length can be.
-    N::from_wide(N::narrow(hit.t).wide(norm))
+    absorb(material, N::from_wide(N::narrow(hit.t).wide(norm)))
+}
+
+/// What is left of light after a length of glass.
+pub(super) fn absorb<N: Number>(material: &Material, length: N) -> Color<N> {
+    let coefficients = material.absorption;
+    Color(coefficients.map(|coefficient| length.exp_neg(coefficient)))
 }

@@ -31,7 +31,7 @@ impl Effect for Checker {
         surface: &mut Surface<'_, N>,
     ) {
         let Surface { hit, material, .. } = *surface;
-        if !Self::is_called_by_material(material) {
+        if !surface.called.contains(Self::EFFECT) {
             return;
         }
         let length = |q13: i32| N::narrow(N::far(q13.into()));

@@ -120,6 +120,7 @@ macro_rules! places {
             const DIRECTED: u32 = 0;
             const FILTERING: u32 = 0;
 
+            #[inline(always)]
             fn called_by_material(_: &Material) -> Effects {
                 Effects::NONE
             }
@@ -146,6 +147,7 @@ macro_rules! places {
             const DIRECTED: u32 = First::EFFECT.only_if(First::NEEDS_DIRECTION).0 | Rest::DIRECTED;
             const FILTERING: u32 = First::EFFECT.only_if(First::FILTERS).0 | Rest::FILTERING;
 
+            #[inline(always)]
             fn called_by_material(material: &Material) -> Effects {
                 let first = First::EFFECT.only_if(First::is_called_by_material(material));
                 first.with(Rest::called_by_material(material))

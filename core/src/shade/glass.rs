@@ -54,7 +54,7 @@ impl Effect for Glass {
         bounce: &mut Bounce<N>,
     ) {
         let Surface { hit, material, .. } = *surface;
-        if !Self::is_called_by_material(material) {
+        if !surface.called.contains(Self::EFFECT) {
             return;
         }
         let Split {

@@ -29,7 +29,7 @@ impl Effect for Highlight {
         reflected: &mut Color<N>,
     ) {
         let material = surface.material;
-        if !Self::is_called_by_material(material) {
+        if !surface.called.contains(Self::EFFECT) {
             return;
         }
         // Halfway between the light and where the ray came from.

@@ -1,6 +1,7 @@
 //! What a ray meets, as effects see it.
 
 use crate::accel::Number;
+use crate::format::Effects;
 use crate::format::record::{Light, Material};
 use crate::observe::event::RayKind;
 use crate::query::Hit;
@@ -11,6 +12,8 @@ use crate::shade::Color;
 pub(crate) struct Surface<'h, N: Number> {
     pub(crate) hit: &'h Hit<N>,
     pub(crate) material: &'h Material,
+    /// The effects that the material calls for, asked once per hit.
+    pub(crate) called: Effects,
     /// The normal on the side that the ray came from.
     pub(crate) normal: [N; 3],
     /// The ray's direction, with length 1 if an effect in use needs that.

@@ -271,7 +271,8 @@ fn picture<N: Number, const EFFECTS: u32>(depth: u8) -> Picture {
         depth,
         ..Settings::of(&scene)
     };
-    let renderer = Renderer::<N, List, EFFECTS>::new(&scene, settings).expect("a renderer");
+    let renderer =
+        Renderer::<N, List, EFFECTS>::with_settings(&scene, settings).expect("a renderer");
     // Up to three rays wait after a hit.
     let mut space = Workspace::<N, 0, { 2 * work_depth(4) }>::new();
     let mut space = space.as_view();

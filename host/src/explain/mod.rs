@@ -90,7 +90,7 @@ fn watch<N: Number, const EFFECTS: u32>(
     settings: Settings,
     subject: Subject,
 ) -> Told {
-    let renderer = Renderer::<N, DynAccel, EFFECTS>::new(scene, settings)?;
+    let renderer = Renderer::<N, DynAccel, EFFECTS>::with_settings(scene, settings)?;
     let mut space = Box::new(Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new());
     let mut space = space.as_view();
     let mut recorder = Recorder::default();

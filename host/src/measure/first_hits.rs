@@ -33,7 +33,7 @@ fn first_hits_in<N: Number>(
     scene: &Scene<'_>,
     settings: Settings,
 ) -> Result<Vec<FirstHit>, RenderError> {
-    let renderer = Renderer::<N, DynAccel, { Effects::ALL.0 }>::new(scene, settings)?;
+    let renderer = Renderer::<N, DynAccel, { Effects::ALL.0 }>::with_settings(scene, settings)?;
     let unit = f64::powi(2.0, scene.header().unit_exponent.into());
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
     let mut first = |x: u16, y: u16| {

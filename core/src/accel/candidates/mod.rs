@@ -13,17 +13,12 @@
 //! time that a list is complete: see [`Structure::is_proved`](crate::Structure::is_proved). Use them for scenes of few
 //! primitives that many rays of one sort meet.
 
-#[cfg(feature = "apex")]
 pub mod apex;
-#[cfg(feature = "cylinder-cube")]
 pub mod cylinder_cube;
-#[cfg(feature = "cylinder-cube-entry")]
 pub mod cylinder_cube_entry;
-#[cfg(feature = "cylinder-cube-tight")]
 pub mod cylinder_cube_tight;
 mod gridel_table;
 pub mod gridels;
 mod line;
 pub(in crate::accel) mod lists;
-#[cfg(feature = "ray-classes")]
 pub mod ray_classes;

@@ -8,9 +8,6 @@
 //! their density. Both take more memory than a hierarchy and are rarely faster; loading proves that
 //! every primitive is in every cell that it reaches.
 
-#[cfg(feature = "grid")]
 pub mod grid;
-#[cfg(any(feature = "grid", feature = "octree"))]
 pub mod lists;
-#[cfg(feature = "octree")]
 pub mod octree;

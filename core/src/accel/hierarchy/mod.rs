@@ -16,28 +16,14 @@
 //! Nodes lie breadth first, which `order` proves. The walk through pairs is in `pairs` and the check of
 //! all of them in `check`, once for every kind of volume.
 
-#[cfg(feature = "bvh")]
 pub mod bvh;
 mod check;
-#[cfg(any(feature = "slabs", feature = "spheres"))]
 pub mod direction;
-#[cfg(feature = "dual-split")]
 pub mod dual_split;
-#[cfg(feature = "flagged")]
 pub mod flagged;
-#[cfg(feature = "flagged-slabs")]
 pub mod flagged_slabs;
 pub(crate) mod order;
-#[cfg(any(
-    feature = "bvh",
-    feature = "flagged",
-    feature = "slabs",
-    feature = "spheres"
-))]
 pub(in crate::accel) mod pairs;
-#[cfg(any(feature = "slabs", feature = "spheres"))]
 pub mod reach;
-#[cfg(any(feature = "slabs", feature = "spheres"))]
 pub mod slabs;
-#[cfg(feature = "spheres")]
 pub mod spheres;

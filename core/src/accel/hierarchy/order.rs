@@ -1,16 +1,8 @@
 //! Breadth-first order: what makes every walk through a hierarchy end.
 
-#[cfg(feature = "dual-split")]
 use crate::format::NodeWord;
 use crate::format::limits::MAX_LEVELS;
-#[cfg(feature = "flagged")]
 use crate::format::link::Link;
-#[cfg(any(
-    feature = "bvh",
-    feature = "flagged",
-    feature = "slabs",
-    feature = "spheres"
-))]
 use crate::format::link::Node;
 use crate::format::record::{DualNode, FlaggedPair, Pair};
 use crate::format::{BlobError, Field, Location, Reason, SectionKind};
@@ -68,26 +60,17 @@ impl Order {
     /// Takes the current node whole, given the last two words of its record.
     pub(crate) const fn record(&mut self, words: [u32; 2]) -> Result<(), BlobError> {
         match (self.section, words) {
-            #[cfg(feature = "bvh")]
             (SectionKind::Pairs, [left, right]) => self.pair([Node(left), Node(right)]),
-            #[cfg(feature = "flagged")]
             (SectionKind::FlaggedPairs, [_, link]) => {
                 let (link, number) = (Link(link), self.index as u32);
                 self.pair([link.child(number, 0), link.child(number, 1)])
             }
-            #[cfg(feature = "dual-split")]
             (SectionKind::DualNodes, [_, way]) => self.dual(NodeWord(way)),
             _ => Ok(()),
         }
     }
 
     /// Takes the current node, a pair.
-    #[cfg(any(
-        feature = "bvh",
-        feature = "flagged",
-        feature = "slabs",
-        feature = "spheres"
-    ))]
     #[inline(always)]
     pub(in crate::accel) const fn pair(
         &mut self,
@@ -103,7 +86,6 @@ impl Order {
     }
 
     /// Takes the current node, which has a split or is a leaf.
-    #[cfg(feature = "dual-split")]
     #[inline(always)]
     pub(in crate::accel) const fn dual(&mut self, way: NodeWord) -> Result<(), BlobError> {
         let is_leaf = way.split() == NodeWord::NONE as usize;

@@ -34,7 +34,7 @@ fn render(space: &mut Space, row: &mut [Rgb565; WIDTH]) {
         return;
     };
     let settings = Settings::of(&scene);
-    let Ok(renderer) = SceneRenderer::new(&scene, settings) else {
+    let Ok(renderer) = SceneRenderer::with_settings(&scene, settings) else {
         return;
     };
     let mut space = space.as_view();

@@ -36,7 +36,7 @@ fn run(memory: &'static mut Memory) {
     let Some(scene) = &loaded else {
         fail("the blob is refused")
     };
-    let Ok(picture) = scene::Picture::new(scene, Settings::of(scene)) else {
+    let Ok(picture) = scene::Picture::with_settings(scene, Settings::of(scene)) else {
         fail("the scene is not for this renderer")
     };
     let mut space = memory.space.as_view();

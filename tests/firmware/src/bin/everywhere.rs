@@ -75,7 +75,7 @@ fn render<N: Number>(
     file: &File,
 ) {
     let settings = Settings::of(scene);
-    let renderer = Renderer::<N, DynAccel, { Effects::ALL.0 }>::new(scene, settings);
+    let renderer = Renderer::<N, DynAccel, { Effects::ALL.0 }>::with_settings(scene, settings);
     let Ok(renderer) = renderer else {
         fail("the scene is not for this renderer")
     };

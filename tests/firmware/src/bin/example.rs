@@ -17,7 +17,7 @@ fn main() -> ! {
     static mut ROW: [Rgb565; 320] = [Rgb565(0); 320];
     let scene = Scene::from_bytes(BLOB).unwrap_or_else(|_| halt());
     let settings = Settings::of(&scene);
-    let picture = Picture::new(&scene, settings).unwrap_or_else(|_| halt());
+    let picture = Picture::with_settings(&scene, settings).unwrap_or_else(|_| halt());
     let mut space = SPACE.as_view();
     picture.check_workspace(&space).unwrap_or_else(|_| halt());
     for y in 0..settings.height {

@@ -41,7 +41,7 @@ fn run(memory: &'static mut Memory) {
         fail("the blob is refused")
     };
     let settings = Settings::of(scene);
-    let Ok(renderer) = SceneRenderer::new(scene, settings) else {
+    let Ok(renderer) = SceneRenderer::with_settings(scene, settings) else {
         fail("the scene is not for this renderer")
     };
     let Memory { space, row, stack } = memory;

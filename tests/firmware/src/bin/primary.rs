@@ -34,7 +34,7 @@ fn run(stack: &'static mut Memory) {
 /// Every ray of the picture, the set-up of the camera included.
 fn trace(scene: &Scene<'static>, stack: &mut Memory, rays: &mut rays::Rays) {
     let settings = Settings::of(scene);
-    let Ok(renderer) = SceneRenderer::new(scene, settings) else {
+    let Ok(renderer) = SceneRenderer::with_settings(scene, settings) else {
         fail("the scene is not for this renderer")
     };
     for y in 0..settings.height {

@@ -1,0 +1,74 @@
+//! Structures that are chosen while the program runs.
+
+use crate::accel::cull::Culling;
+use crate::accel::number::Number;
+use crate::accel::registry::{Accel, StructureViews, StructureVisitor};
+use crate::accel::space::Space;
+use crate::accel::stack::StackView;
+use crate::accel::traverse::Traverse;
+use crate::format::structure::structures;
+use crate::format::{Leaf, Structure};
+use crate::observe::count::Observer;
+use crate::ray::Ray;
+
+/// The structure that was chosen for a scene while the program runs, by [`Scene::choose`](crate::Scene::choose): what is
+/// built around queries is compiled once for it, and not for every structure. Costs a branch and the
+/// set-up of a culling form a query more than the structure itself.
+#[derive(Clone, Copy, Debug)]
+pub enum DynAccel {}
+
+impl Accel for DynAccel {
+    fn views<'s, 'a>(views: &'s StructureViews<'a>) -> &'s StructureViews<'a> {
+        views
+    }
+}
+
+macro_rules! dynamic {
+    ($(
+        $(#[doc = $doc:literal])*
+        $variant:ident = $number:literal, $name:literal, $field:ident in $($module:ident)::+,
+            if $feature:meta;
+    )*) => {
+        impl Structure {
+            /// Hands the structure to a visitor as a type.
+            pub fn visit<V: StructureVisitor>(self, visitor: V) -> V::Output {
+                match self {
+                    $(Structure::$variant => visitor.visit::<super::$variant>(),)*
+                }
+            }
+        }
+
+        impl Traverse for DynAccel {
+            const STRUCTURE: Structure = Structure::List;
+            const HAS_CLUSTERS: bool = cfg!(feature = "wide");
+            // All walks are in each copy.
+            const ONE_COPY: bool = true;
+            type Cull<N: Number> = N::Cull;
+            type Views<'a> = StructureViews<'a>;
+
+            fn needs(space: &Space<'_>) -> Structure {
+                space.chosen
+            }
+
+            fn walk<N: Number, C: Observer>(
+                space: &Space<'_>,
+                views: &StructureViews<'_>,
+                ray: &Ray<N>,
+                _: &N::Cull,
+                stack: &mut StackView,
+                count: &mut C,
+                leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
+            ) {
+                match space.chosen {
+                    $(Structure::$variant => {
+                        let cull = <super::$variant as Traverse>::Cull::<N>::new(ray);
+                        let views = <super::$variant as Accel>::views(views);
+                        super::$variant::walk(space, views, ray, &cull, stack, count, leaf);
+                    })*
+                }
+            }
+        }
+    };
+}
+
+structures!(dynamic);
