@@ -46,8 +46,6 @@ struct Place<N> {
     frame: Frame<N>,
     /// The way from the axis to the point, in the frame: of length 1.
     outward: [N; 2],
-    /// Distance from the axis.
-    rho: N,
     /// Height along the axis.
     y: N,
     /// The way from the circle to the point, outward and along the axis: of length 1.
@@ -105,7 +103,6 @@ impl Torus {
         Place {
             frame,
             outward,
-            rho: rho.scale_down(bits),
             y: y.scale_down(bits),
             away,
         }
@@ -136,10 +133,10 @@ impl Torus {
         let [major, minor] = self.radii::<N>();
         let center = self.center.map(N::from_lattice);
         let error = N::error_bound(extent(center) + major + minor);
-        if place.rho <= error {
+        let [across, along] = place.away;
+        if major + minor * across <= error {
             return self.pit(&place, error, toward);
         }
-        let [across, along] = place.away;
         let normal = place.frame.vector(along, place.outward.map(|x| across * x));
         Surface {
             normal: N::normalize(normal).0,

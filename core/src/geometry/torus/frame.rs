@@ -1,6 +1,6 @@
 //! Coordinates along the axis of a torus and across it.
 
-use crate::number::Arithmetic;
+use crate::number::{Arithmetic, Convert, Fixed, Format};
 
 /// Three directions at right angles, each of length 1.
 pub(super) struct Frame<N> {
@@ -11,9 +11,25 @@ pub(super) struct Frame<N> {
 impl<N: Arithmetic> Frame<N> {
     /// The frame of an axis of any length but 0. It does not depend on any ray, so its angles are right
     /// however little of a ray leads across.
+    ///
+    /// In single precision what rounds its lengths would be a third of all that is rounded; integers of
+    /// 30 bits lose next to nothing.
     pub(super) fn new(axis: [i32; 3]) -> Self {
+        if N::FORMAT != Format::F32 {
+            return Self::rounded(axis);
+        }
+        let Frame { axis, across } = Frame::<Fixed>::rounded(axis);
+        let single = |v: [Fixed; 3]| v.map(|x| N::ratio(x.to_q30()));
+        Self {
+            axis: single(axis),
+            across: across.map(single),
+        }
+    }
+
+    /// The same, of numbers that are rounded to the format at every step.
+    fn rounded(axis: [i32; 3]) -> Self {
         let [x, y, z] = axis.map(i32::unsigned_abs);
-        let (axis, _) = N::normalize(N::direction(axis.map(i64::from)));
+        let axis = divided(N::direction(axis.map(i64::from)));
         let [a, b, c] = axis;
         // The axis times that of the coordinates that is farthest from it.
         let first = if x <= y && x <= z {
@@ -23,7 +39,7 @@ impl<N: Arithmetic> Frame<N> {
         } else {
             [b, -a, N::ZERO]
         };
-        let (first, _) = N::normalize(first);
+        let first = divided(first);
         let cross = |i: usize, j: usize| axis[i] * first[j] - axis[j] * first[i];
         Self {
             axis,
@@ -42,6 +58,17 @@ impl<N: Arithmetic> Frame<N> {
         let [a, b] = self.across;
         let axis = |k: usize| along * self.axis[k] + first * a[k] + second * b[k];
         [axis(0), axis(1), axis(2)]
+    }
+}
+
+/// A vector scaled to length 1: in floats by quotients, which are rounded once where products with an
+/// inverse are rounded twice.
+fn divided<N: Arithmetic>(v: [N; 3]) -> [N; 3] {
+    let (unit, length) = N::normalize(v);
+    if N::FORMAT == Format::Fixed {
+        unit
+    } else {
+        v.map(|x| x.div(length))
     }
 }
 

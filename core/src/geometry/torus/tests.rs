@@ -190,7 +190,7 @@ fn torus(random: &mut Random, class: u64) -> Torus {
         1 => [random.within(-3, 3), 1, random.within(-3, 3)],
         _ => random.direction().map(|x| (x * f64::from(1 << 24)) as i32),
     };
-    let room = f64::from(1 << 23) - reach;
+    let room = f64::from(32_767 << 8) - reach - 2.0;
     let room = room * [0.0, 1.0, random.magnitude(1e-6, 1.0)][random.below(3) as usize];
     Torus {
         center: random.direction().map(|x| (x * room) as i32),
@@ -291,12 +291,15 @@ fn ray(random: &mut Random, torus: &Torus) -> (Vector, Vector) {
     (lattice(along(target, -back, way)), way)
 }
 
+fn is_full() -> bool {
+    std::env::var_os("GRIDEL_FULL").is_some_and(|value| value == "1")
+}
+
 /// Holds random tori and rays to the bound.
 fn hold<N: Arithmetic>(class: u64) {
-    let full = std::env::var_os("GRIDEL_FULL").is_some_and(|value| value == "1");
     let mut random = Random(0x7045 + class);
     let (mut worst, mut about, mut rays) = (0.0, String::new(), 0);
-    for _ in 0..if full { 100_000 } else { 2000 } {
+    for _ in 0..if is_full() { 100_000 } else { 2000 } {
         let torus = torus(&mut random, class);
         for _ in 0..6 {
             let (origin, direction) = ray(&mut random, &torus);
@@ -356,6 +359,120 @@ fn spindle_tori_are_met_within_the_bound() {
 fn tori_with_a_shallow_pit_are_met_within_the_bound() {
     hold::<Fixed>(5);
     hold::<f32>(5);
+}
+
+/// How many rays left a torus, went on inside of it, and could not because the tube is too thin.
+#[derive(Debug, Default)]
+struct Left {
+    away: u32,
+    through: u32,
+    thin: u32,
+    /// The most that a surface was off, as a part of its error bound.
+    off: f64,
+    /// The least that a start was outside or inside, as a part of the error bound.
+    least: f64,
+}
+
+/// Lets rays leave a torus on both sides of where a ray meets it.
+fn leave<N: Arithmetic>(torus: &Torus, ray: &Ray<N>, random: &mut Random, left: &mut Left) {
+    let exact = Exact::of(torus);
+    let Some(crossing) = torus.cross(ray, N::recip_norm2(ray.slope)) else {
+        return;
+    };
+    let enters = crossing.enter.0 >= ray.tmin;
+    let t = if enters {
+        crossing.enter.0
+    } else {
+        crossing.leave.0
+    };
+    let toward = if enters {
+        ray.slope.map(|x| -x)
+    } else {
+        ray.slope
+    };
+    let surface = torus.surface(ray.at(t), toward);
+    let real = |v: [N; 3]| v.map(N::length_to_f64);
+    let (point, error) = (surface.point, surface.error);
+    // Not that of a pit, which is longer.
+    let bound = N::error_bound(N::length_from_f64(exact.extent())).length_to_f64();
+    let off = exact.excess(real(point)).abs() / error.length_to_f64();
+    left.off = left.off.max(off);
+    assert!(off <= 1.0, "{torus:?} {ray:?} {surface:?} {off}");
+    let normal = surface.normal.map(N::ratio_to_f64);
+    assert!(
+        (dot(normal, normal).sqrt() - 1.0).abs() < 1e-6,
+        "{normal:?}"
+    );
+    for side in [1.0, -1.0] {
+        let start = if side > 0.0 {
+            [0, 1, 2].map(|k| point[k] + error * surface.normal[k])
+        } else {
+            torus.inside(point, error)
+        };
+        let depth = side * exact.excess(real(start));
+        if side < 0.0 && depth < 0.5 * bound {
+            left.thin += 1;
+            continue;
+        }
+        left.least = left.least.min(depth / bound);
+        let way = random.direction();
+        let cosine = side * dot(way, normal);
+        let lift = match random.below(3) {
+            0 => random.unit() * 1e-3,
+            1 => 0.0,
+            _ => cosine.abs(),
+        };
+        let way = along(way, side * (lift - cosine), normal);
+        let origin = start;
+        let Some(next) =
+            Ray::from_inside(&WORLD, origin, way.map(N::far_from_f64), N::far(1 << 60))
+        else {
+            continue;
+        };
+        let found = torus.cross(&next, N::recip_norm2(next.slope));
+        let about = || format!("{torus:?} {ray:?} {surface:?} {side} {next:?} {found:?} {depth}");
+        if side > 0.0 {
+            // Perhaps another part of it, but not from inside.
+            assert!(
+                found.is_none_or(|it| it.enter.0 >= next.tmin),
+                "{}",
+                about()
+            );
+            left.away += 1;
+        } else {
+            let leaves = found.is_some_and(|it| it.enter.0 < next.tmin);
+            assert!(leaves, "{}", about());
+            left.through += 1;
+        }
+    }
+}
+
+fn leave_all<N: Arithmetic>() {
+    for class in 0..6 {
+        let mut random = Random(0x1ea7e + class);
+        let mut left = Left {
+            least: f64::INFINITY,
+            ..Left::default()
+        };
+        for _ in 0..if is_full() { 100_000 } else { 2500 } {
+            let torus = torus(&mut random, class);
+            for _ in 0..4 {
+                let (origin, direction) = ray(&mut random, &torus);
+                if let Ok(ray) = Ray::<N>::from_f64(&WORLD, origin, direction, 0.0, 1e9) {
+                    leave(&torus, &ray, &mut random, &mut left);
+                }
+            }
+        }
+        std::eprintln!("{} {class}: {left:?}", N::FORMAT.name());
+    }
+}
+
+/// Along the axis into pits, on and beside it.
+#[test]
+fn rays_that_leave_a_torus_do_not_meet_it_from_inside() {
+    leave_all::<Fixed>();
+    leave_all::<f32>();
+    leave_all::<f64>();
 }
 
 /// What went wrong once in `fixed`: a tangent to a thin ring along its inside, where the walk took a slope
