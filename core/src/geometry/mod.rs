@@ -18,7 +18,6 @@ pub(crate) mod sphere;
 #[cfg(feature = "wide")]
 pub(crate) mod strip;
 mod surface;
-pub(crate) mod torus;
 pub(crate) mod triangle;
 
 #[cfg(feature = "wide")]

@@ -1,6 +1,8 @@
 //! Tori of every size and rays of every sort, against the distance from the circle in double precision.
 
 use crate::format::record::UnitBox;
+use crate::geometry::LEAVING;
+use crate::geometry::primitive::Primitive;
 use crate::geometry::torus::Torus;
 use crate::number::{Arithmetic, Fixed, Format};
 use crate::ray::Ray;
@@ -385,12 +387,8 @@ fn leave<N: Arithmetic>(torus: &Torus, ray: &Ray<N>, random: &mut Random, left: 
     } else {
         crossing.leave.0
     };
-    let toward = if enters {
-        ray.slope.map(|x| -x)
-    } else {
-        ray.slope
-    };
-    let surface = torus.surface(ray.at(t), toward);
+    let part = if enters { 0 } else { LEAVING };
+    let surface = torus.surface(ray, part, ray.at(t));
     let real = |v: [N; 3]| v.map(N::length_to_f64);
     let (point, error) = (surface.point, surface.error);
     // Not that of a pit, which is longer.
@@ -407,7 +405,7 @@ fn leave<N: Arithmetic>(torus: &Torus, ray: &Ray<N>, random: &mut Random, left: 
         let start = if side > 0.0 {
             [0, 1, 2].map(|k| point[k] + error * surface.normal[k])
         } else {
-            torus.inside(point, error)
+            torus.inside([point, surface.normal], error)
         };
         let depth = side * exact.excess(real(start));
         if side < 0.0 && depth < 0.5 * bound {
