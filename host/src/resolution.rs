@@ -6,7 +6,7 @@
 //! apart with certainty from the surface that it touches.
 
 use glam::DVec3;
-use gridel_core::geometry::Geometry;
+use gridel_core::geometry::{Geometry, torus::Torus};
 use gridel_core::{Format, Kind, Scene};
 use serde::Serialize;
 
@@ -66,6 +66,7 @@ impl Extent {
             Geometry::Disc(disc) => around(units(disc.center), length(disc.radius)),
             Geometry::Cone(cone) => around(units(cone.base), length(cone.base_radius))
                 .with(around(units(cone.apex), length(cone.apex_radius))),
+            Geometry::Torus(torus) => around(units(torus.center), torus_reach(torus)),
         }
     }
 
@@ -91,6 +92,10 @@ fn length(steps: i32) -> f64 {
     f64::from(steps) / 256.0
 }
 
+fn torus_reach(torus: &Torus) -> f64 {
+    length(torus.major_radius + torus.minor_radius)
+}
+
 fn units(steps: [i32; 3]) -> DVec3 {
     DVec3::from_array(steps.map(length))
 }
@@ -111,6 +116,7 @@ fn feature(geometry: &Geometry) -> Option<f64> {
             let height = units(cone.base).distance(units(cone.apex));
             height.min(2.0 * length(cone.base_radius.max(cone.apex_radius)))
         }
+        Geometry::Torus(torus) => 2.0 * length(torus.minor_radius),
     })
 }
 
@@ -155,7 +161,7 @@ fn bound(format: Format, geometry: &Geometry, place: DVec3) -> f64 {
             DVec3::from_array(disc.normal.map(f64::from)),
             units(disc.center),
         ),
-        Geometry::Cone(_) => {
+        Geometry::Cone(_) | Geometry::Torus(_) => {
             let largest = Extent::of(geometry).magnitude();
             match format {
                 Format::Fixed => 8.0 * step(format, 1.0),

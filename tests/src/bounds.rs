@@ -20,7 +20,7 @@ pub struct Bound {
 }
 
 /// Allowed errors of t, and of whether there is a hit.
-pub const CROSSING: [Bound; 7] = [
+pub const CROSSING: [Bound; 8] = [
     bound("sphere", 8.0, "judged at the point closest to the centre"),
     bound("triangle", 8.0, "exact edge tests; t from the plane"),
     bound("box", 8.0, "one difference and one quotient an axis"),
@@ -36,10 +36,15 @@ pub const CROSSING: [Bound; 7] = [
         8.0,
         "and once more near the root where the solid is thin",
     ),
+    bound(
+        "torus",
+        8.0,
+        "Newton's steps from ends of pieces of one curvature",
+    ),
 ];
 
 /// Allowed errors of normals: components off by `u` times the condition, in `fixed` by 2^-28.
-pub const NORMAL: [Bound; 7] = [
+pub const NORMAL: [Bound; 8] = [
     bound("sphere", 8.0, "the hit's point less the centre, normalised"),
     bound(
         "triangle",
@@ -62,6 +67,11 @@ pub const NORMAL: [Bound; 7] = [
         "frustum",
         8.0,
         "times coordinate over the radius at the hit: likewise",
+    ),
+    bound(
+        "torus",
+        8.0,
+        "times coordinate over the minor radius, or over the distance from the axis",
     ),
 ];
 

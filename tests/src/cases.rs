@@ -15,8 +15,8 @@ pub struct Case {
 }
 
 /// Names of shapes, in the order of their numbers here.
-pub const SHAPES: [&str; 7] = [
-    "sphere", "triangle", "box", "disc", "cylinder", "cone", "frustum",
+pub const SHAPES: [&str; 8] = [
+    "sphere", "triangle", "box", "disc", "cylinder", "cone", "frustum", "torus",
 ];
 
 /// How large, and how far from the scene's middle: units.
@@ -87,6 +87,19 @@ fn solid(random: &mut Random, shape: usize, center: DVec3, size: f64, stretch: f
                 radius: length(size * (0.2 + random.unit())),
             }
         }
+        7 => {
+            // Rings, thin ones, horns and spindles.
+            let axis = direction(random);
+            let axis = axis / axis.abs().max_element() * f64::from(1 << 24);
+            let major_radius = length(size * (0.1 + 0.5 * random.unit()));
+            let share = [0.5 / stretch, 0.9, 1.0, 1.5][random.below(4)];
+            Solid::Torus {
+                center: lattice_point(center),
+                axis: (axis.round() / f64::from(1 << 24)).to_array(),
+                major_radius,
+                minor_radius: length(major_radius * share),
+            }
+        }
         _ => {
             // Needles and coins.
             let flat = random.one_in(2);
@@ -149,6 +162,17 @@ pub fn shape_of(solid: &Solid) -> Shape {
             apex: v(apex),
             apex_radius,
         },
+        Solid::Torus {
+            center,
+            axis,
+            major_radius,
+            minor_radius,
+        } => Shape::Torus {
+            center: v(center),
+            axis: v(axis),
+            major_radius,
+            minor_radius,
+        },
         Solid::Triangle(corners) => Shape::Mesh {
             vertices: corners.map(v).to_vec(),
             triangles: vec![[0, 1, 2]],
@@ -190,6 +214,23 @@ fn place(random: &mut Random, solid: &Solid) -> DVec3 {
         } => {
             let part = [1.0, 0.9999, 1.0001, random.unit()][random.below(4)];
             v(center) + around(random, v(normal).normalize(), radius * part)
+        }
+        Solid::Torus {
+            center,
+            axis,
+            major_radius,
+            minor_radius,
+        } => {
+            let axis = v(axis).normalize();
+            let outward = around(random, axis, 1.0);
+            let angle = std::f64::consts::TAU
+                * [0.0, 0.25, 0.5, random.unit(), random.unit()][random.below(5)];
+            let part = [1.0, 1.0, 0.9999, 1.0001, random.unit()][random.below(5)];
+            let tube = (outward * angle.cos() + axis * angle.sin()) * minor_radius * part;
+            match random.below(8) {
+                0 => v(center),
+                _ => v(center) + outward * major_radius + tube,
+            }
         }
         Solid::Triangle([a, b, c]) => match random.below(4) {
             0 => v(a),
@@ -235,6 +276,10 @@ fn own_direction(random: &mut Random, solid: &Solid) -> DVec3 {
         Solid::Disc { normal, .. } => match random.below(2) {
             0 => v(normal),
             _ => v(normal).any_orthonormal_vector(),
+        },
+        Solid::Torus { axis, .. } => match random.below(2) {
+            0 => v(axis),
+            _ => v(axis).cross(v(random.direction())),
         },
         Solid::Triangle([a, b, c]) => match random.below(2) {
             0 => v(b) - v(a),

@@ -88,8 +88,8 @@ pub fn verdict<N: Number>(
     let step = length_step::<N>(place.max(solid.extent()).max(t.unwrap_or(0.0)));
     let explains = |&&error: &&f64| is_right(solid, &line, t, error * step);
     let crossing = *LADDER.iter().find(explains).unwrap_or(&f64::INFINITY);
-    let span = solid.span(&line, &Real::of(0.0));
-    let exists = span.is_some_and(|span| !span.1.is_negative());
+    let spans = solid.spans(&line, &Real::of(0.0));
+    let exists = spans.iter().any(|span| !span.1.is_negative());
     let mut verdict = Verdict {
         hit,
         crossing,
@@ -109,7 +109,9 @@ pub fn verdict<N: Number>(
         let apart = |k: usize| (&face.exact[k] - Real::of(normal[k])).to_f64().abs();
         apart(0).max(apart(1)).max(apart(2)) / normal_step::<N>(face)
     };
-    let off = solid.normals(point).into_iter().map(|face| {
+    let pit = solid.pit_normals(point, hit.error.length_to_f64());
+    let faces = pit.unwrap_or_else(|| solid.normals(point));
+    let off = faces.into_iter().map(|face| {
         let off = apart(&face);
         // Where the point's rounding turned the normal to the wrong side of the ray, the hit's is
         // level with the ray.
@@ -129,11 +131,21 @@ pub fn verdict<N: Number>(
     verdict.length = (length - 1.0).abs() / ulp_of_one::<N>();
     verdict.point = solid.excesses(point)[0].abs() / hit.error.length_to_f64();
     // Entering or leaving is told apart where a solid smaller by the bound is met, too.
-    if let (false, Some((enter, leave))) =
-        (solid.is_flat(), solid.span(&line, &Real::of(-8.0 * step)))
-    {
-        let t = Real::of(N::far_to_f64(hit.t));
-        verdict.wrong_side = if hit.front { t > enter } else { t < leave };
+    let t = Real::of(N::far_to_f64(hit.t));
+    let smaller = solid.spans(&line, &Real::of(-8.0 * step));
+    // The next one, and of a ray that starts inside that it is in.
+    let ahead = smaller.into_iter().find(|(_, leave)| !leave.is_negative());
+    if let (false, Some((enter, leave))) = (solid.is_flat(), ahead) {
+        verdict.wrong_side = if hit.front {
+            t > enter
+        } else if matches!(solid, Solid::Torus { .. }) {
+            // A ray that starts next to the surface may leave it and come to another part.
+            let around = solid.spans(&line, &Real::of(8.0 * step));
+            let around = around.iter().find(|it| it.0 <= t && t <= it.1);
+            enter <= t && t < leave || around.is_none_or(|it| it.0.is_positive())
+        } else {
+            t < leave
+        };
     }
     Some(verdict)
 }

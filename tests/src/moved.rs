@@ -30,6 +30,17 @@ pub fn with(scene: &Scene, turn: impl Fn(DVec3) -> DVec3, scale: f64, shift: DVe
                 normal: turn(*normal),
                 radius: length(*radius),
             },
+            Shape::Torus {
+                center,
+                axis,
+                major_radius,
+                minor_radius,
+            } => Shape::Torus {
+                center: point(*center),
+                axis: turn(*axis),
+                major_radius: length(*major_radius),
+                minor_radius: length(*minor_radius),
+            },
             Shape::Cone {
                 base,
                 base_radius,

@@ -108,6 +108,15 @@ fn reach(solid: &Solid, axis: usize, sign: f64) -> Real {
             normal,
             radius,
         } => rim(center[axis], &unit(&vector(*normal)), *radius),
+        Solid::Torus {
+            center,
+            axis: way,
+            major_radius,
+            minor_radius,
+        } => {
+            let circle = rim(center[axis], &unit(&vector(*way)), *major_radius);
+            circle + Real::of(*minor_radius)
+        }
         Solid::Cone {
             base,
             apex,

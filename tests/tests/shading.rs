@@ -117,7 +117,7 @@ fn glass_is_left_as_often_as_it_is_entered() {
         assert_eq!(odd, 0);
         assert!(surfaces > paths / 4);
     }
-    let solid_shapes = [0, 2, 4, 5, 6];
+    let solid_shapes = [0, 2, 4, 5, 6, 7];
     let paths = part_of(25_000, 1_000_000);
     for shape in solid_shapes {
         let count = paths / solid_shapes.len() / 100;
@@ -152,6 +152,7 @@ fn thickness(solid: &Solid) -> f64 {
         } => vector(*base)
             .distance(vector(*apex))
             .min(base_radius.max(*apex_radius)),
+        Solid::Torus { minor_radius, .. } => *minor_radius,
         _ => 0.0,
     }
 }

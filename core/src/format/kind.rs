@@ -22,6 +22,8 @@ macro_rules! shapes {
                 Disc = 3, "disc", [discs: disc::Disc], [Discs = 11, "discs"];
                 /// A capped cylinder, cone or frustum.
                 Cone = 4, "cone", [cones: cone::Cone], [Cones = 12, "cones"];
+                /// A torus.
+                Torus = 5, "torus", [tori: torus::Torus], [Tori = 60, "tori"];
             }
         }
     };

@@ -83,6 +83,7 @@ texts! {
         Radius => "radius",
         Center => "centre",
         Normal => "normal",
+        Axis => "axis",
         BaseCenter => "centre of the base",
         ApexCenter => "centre of the apex",
         FirstPrimitive => "first primitive",

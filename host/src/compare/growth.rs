@@ -80,7 +80,9 @@ fn by_distance(scene: &Scene) -> Vec<Part> {
                 }));
                 continue;
             }
-            Shape::Sphere { center, .. } | Shape::Disc { center, .. } => *center,
+            Shape::Sphere { center, .. }
+            | Shape::Disc { center, .. }
+            | Shape::Torus { center, .. } => *center,
             Shape::Box { min, max } => min.midpoint(*max),
             Shape::Cone { base, apex, .. } => base.midpoint(*apex),
         };

@@ -4,11 +4,11 @@ use super::CompileError;
 use super::estimate::{Rays, ordinary_tests};
 use super::pairs::Flat;
 use super::section::{Section, indices, section};
-use gridel_core::Structure;
 use gridel_core::accel::cells::grid::MARGIN;
 use gridel_core::accel::cells::lists::{Divisions, cells_of, divide};
 use gridel_core::format::SectionKind;
 use gridel_core::format::record::{GridShape, UnitBox};
+use gridel_core::{Kind, Structure};
 
 /// Most bytes that a grid or an octree may take while it is built, its part of the blob included.
 pub const MOST_BYTES: u64 = 256 << 20;
@@ -48,7 +48,7 @@ fn usual_divisions(bounds: &UnitBox, cells: f64) -> [u32; 3] {
 
 /// The boxes of the primitives in the order of their slots.
 pub fn slot_boxes(flat: &Flat, boxes: &[super::hierarchy::Primitive]) -> Vec<UnitBox> {
-    let mut of_kind = [const { Vec::new() }; 5];
+    let mut of_kind = [const { Vec::new() }; Kind::ALL.len()];
     for primitive in boxes {
         let known: &mut Vec<UnitBox> = &mut of_kind[primitive.kind as usize];
         let place = primitive.index as usize;

@@ -9,7 +9,7 @@
 use glam::DVec3;
 
 /// More than the arithmetic here is off, relative.
-const ROUNDED_UP: f64 = 1.0 + 1e-12;
+pub(super) const ROUNDED_UP: f64 = 1.0 + 1e-12;
 
 /// A disc; the normal has any length.
 #[derive(Clone, Copy, Debug)]

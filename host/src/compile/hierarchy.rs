@@ -30,6 +30,7 @@ impl Primitive {
             Kind::Triangle | Kind::Sphere => 1.0,
             Kind::Box | Kind::Disc => 2.0,
             Kind::Cone => 6.0,
+            Kind::Torus => 12.0,
         }
     }
 

@@ -24,6 +24,7 @@ mod section;
 mod solids;
 mod structures;
 mod surroundings;
+mod torus;
 mod volumes;
 mod wide;
 mod writer;

@@ -1,6 +1,7 @@
 //! Lays a hierarchy out as pairs in breadth-first order, plain and flagged.
 
 use super::hierarchy::{Node, Primitive};
+use gridel_core::Kind;
 use gridel_core::format::record::{DualNode, FlaggedPair, Pair, UnitBox, plane_word};
 use gridel_core::format::{Leaf, Link};
 
@@ -13,7 +14,7 @@ pub struct Flat {
     pub dual: Vec<DualNode>,
     pub leaves: Vec<u32>,
     /// The primitives in the order of their slots, kind by kind.
-    pub slots: [Vec<u32>; 5],
+    pub slots: [Vec<u32>; Kind::ALL.len()],
     /// Levels of pairs: what a walk's stack must hold.
     pub depth: usize,
     /// Primitives of the longest leaf.

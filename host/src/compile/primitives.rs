@@ -7,13 +7,13 @@ use super::flattened::{self, is_degenerate};
 use super::hierarchy::Primitive;
 use super::lattice::Lattice;
 use super::solids::{self, Snapped, SnappedSphere, disc_reach};
-
+use super::torus;
 use crate::scene::{Object, Scene, Shape};
 use crate::table::grouped;
 use glam::{DVec3, IVec3};
 use gridel_core::Kind;
 use gridel_core::format::record::UnitBox;
-use gridel_core::geometry::{cone::Cone, cuboid::Cuboid, disc::Disc};
+use gridel_core::geometry::{cone::Cone, cuboid::Cuboid, disc::Disc, torus::Torus};
 use serde::{Serialize, Serializer};
 use std::collections::HashMap;
 
@@ -34,8 +34,9 @@ pub struct Primitives {
     pub boxes: Vec<Cuboid>,
     pub discs: Vec<Disc>,
     pub cones: Vec<Cone>,
+    pub tori: Vec<Torus>,
     /// For each kind, the numbers of its primitives in scene-file order.
-    pub numbers: [Vec<u32>; 5],
+    pub numbers: [Vec<u32>; Kind::ALL.len()],
     /// Primitives in the scene file, the collapsed ones included.
     pub total: u32,
     /// For each object, its first primitive.
@@ -124,6 +125,15 @@ pub fn extent(scene: &Scene) -> (DVec3, DVec3) {
                     add(*center - reach * *radius, *center + reach * *radius);
                 }
             }
+            Shape::Torus {
+                center,
+                axis,
+                major_radius,
+                minor_radius,
+            } => {
+                let reach = torus::reach(*axis, [*major_radius, *minor_radius]);
+                add(*center - reach, *center + reach);
+            }
         }
     }
     if lowest.x > highest.x {
@@ -154,6 +164,17 @@ pub fn is_finite(shape: &Shape) -> bool {
                 && apex.is_finite()
                 && base_radius.is_finite()
                 && apex_radius.is_finite()
+        }
+        Shape::Torus {
+            center,
+            axis,
+            major_radius,
+            minor_radius,
+        } => {
+            center.is_finite()
+                && axis.is_finite()
+                && major_radius.is_finite()
+                && minor_radius.is_finite()
         }
     }
 }
@@ -231,6 +252,7 @@ impl Primitives {
             of(Kind::Box, self.boxes.len(), &cuboid),
             of(Kind::Disc, self.discs.len(), &|i| self.discs[i].bounds),
             of(Kind::Cone, self.cones.len(), &|i| self.cones[i].bounds),
+            of(Kind::Torus, self.tori.len(), &|i| self.tori[i].bounds),
         ]
         .concat()
     }
@@ -328,6 +350,16 @@ impl Primitives {
                 let cone = solids::cone(ends, lattice);
                 self.add_solid(object, Kind::Cone, cone, lattice, |all| &mut all.cones);
             }
+            Shape::Torus {
+                center,
+                axis,
+                major_radius,
+                minor_radius,
+            } => {
+                let radii = [*major_radius, *minor_radius];
+                let torus = torus::snapped((*center, *axis), radii, lattice);
+                self.add_solid(object, Kind::Torus, torus, lattice, |all| &mut all.tori);
+            }
         }
         if self.total as usize > MOST {
             let count = self.total as usize;
@@ -340,7 +372,7 @@ impl Primitives {
         Ok(())
     }
 
-    /// Adds a sphere, box, disc or cone, or passes over one that the lattice leaves nothing of.
+    /// Adds a sphere, box, disc, cone or torus, or passes over one that the lattice leaves nothing of.
     fn add_solid<T>(
         &mut self,
         object: &Object,

@@ -28,7 +28,7 @@ pub struct Snapped<T> {
     pub fits: bool,
 }
 
-fn real(point: [i32; 3]) -> DVec3 {
+pub(super) fn real(point: [i32; 3]) -> DVec3 {
     DVec3::from_array(point.map(f64::from))
 }
 
@@ -189,7 +189,7 @@ fn straightest(given: &Frustum, mut best: (Frustum, f64)) -> (Frustum, f64) {
 
 /// The box around points with a reach along each axis, rounded outward by more than the reach can
 /// be off, and whether it lies in the range of box coordinates.
-fn around(points: &[([i32; 3], DVec3)]) -> (UnitBox, bool) {
+pub(super) fn around(points: &[([i32; 3], DVec3)]) -> (UnitBox, bool) {
     const MOST: f64 = (i16::MAX as i32 * 256) as f64;
     let ends = points.iter().map(|&(center, reach)| {
         let slack = reach * 1e-9;

@@ -186,7 +186,7 @@ fn faces(shape: &Shape) -> Vec<DVec3> {
         Shape::Disc { normal, radius, .. } => {
             vec![unit(*normal) * (2.0 * std::f64::consts::PI * radius * radius)]
         }
-        Shape::Sphere { .. } | Shape::Cone { .. } => Vec::new(),
+        Shape::Sphere { .. } | Shape::Cone { .. } | Shape::Torus { .. } => Vec::new(),
     }
 }
 

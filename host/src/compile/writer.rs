@@ -193,6 +193,10 @@ fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Sect
             SectionKind::Cones,
             &in_order(&primitives.cones, slots(Kind::Cone)),
         ),
+        section(
+            SectionKind::Tori,
+            &in_order(&primitives.tori, slots(Kind::Torus)),
+        ),
     ]
 }
 

@@ -37,7 +37,7 @@ fn holds_together(scene: &Scene) -> bool {
             }
             Shape::Sphere { center, radius } => center.is_finite() && *radius > 0.0,
             Shape::Cone { base, apex, .. } => base.is_finite() && apex.is_finite() && base != apex,
-            Shape::Box { .. } | Shape::Disc { .. } => false,
+            Shape::Box { .. } | Shape::Disc { .. } | Shape::Torus { .. } => false,
         };
         shape && object.material < scene.materials.len()
     })

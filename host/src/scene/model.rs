@@ -155,6 +155,14 @@ pub enum Shape {
         apex: DVec3,
         apex_radius: f64,
     },
+    /// What a disc of the minor radius sweeps along a circle of the major radius around an axis of any
+    /// length above 0.
+    Torus {
+        center: DVec3,
+        axis: DVec3,
+        major_radius: f64,
+        minor_radius: f64,
+    },
 }
 
 /// Rendering defaults; the command line overrides them.

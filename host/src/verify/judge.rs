@@ -208,31 +208,39 @@ impl<'c> Crossings<'c> {
 
     /// Whether one of the shapes is met at `t` by a ray that counts from `begin`.
     pub fn may_be_met_at(&self, t: &Real, begin: &Real) -> bool {
-        let Some((first, last)) = self.solid.span(self.line, &self.off) else {
+        let largest = self.solid.spans(self.line, &self.off);
+        let Some((first, last)) = largest.iter().find(|(first, last)| first <= t && t <= last)
+        else {
             return false;
         };
-        if *t < first || *t > last {
-            return false;
-        }
-        let smallest = self.solid.span(self.line, &-&self.off);
-        let Some((enter, leave)) = smallest.filter(|_| !self.solid.is_flat()) else {
+        if self.solid.is_flat() {
             return true;
-        };
-        *t <= enter || leave <= *t && first <= *begin
+        }
+        // What all of the shapes hold, no ray passes unseen; one that may have started inside of it, or of
+        // a larger one around it, leaves.
+        let smallest = self.solid.spans(self.line, &-&self.off);
+        smallest.iter().all(|(enter, leave)| {
+            let is_around = first <= enter && leave <= last;
+            t <= enter || leave <= t && (leave <= begin || is_around && first <= begin)
+        })
     }
 
     /// By where every one of the shapes is met by a ray that counts from `begin`; `None` if one of
     /// them may not be met at all.
     pub fn are_met_by(&self, begin: &Real) -> Option<Real> {
-        let (enter, leave) = self.solid.span(self.line, &-&self.off)?;
-        let (first, last) = self.solid.span(self.line, &self.off)?;
-        match (first > *begin, self.solid.is_flat()) {
-            (true, true) => Some(last),
-            (true, false) => Some(enter),
-            (false, true) => None,
-            // It may start inside of one and outside of another.
-            (false, false) => (leave > *begin).then_some(last),
-        }
+        let smallest = self.solid.spans(self.line, &-&self.off);
+        let largest = self.solid.spans(self.line, &self.off);
+        smallest.into_iter().find_map(|(enter, leave)| {
+            let around = |(first, last): &&(Real, Real)| *first <= enter && leave <= *last;
+            let (first, last) = largest.iter().find(around)?.clone();
+            match (first > *begin, self.solid.is_flat()) {
+                (true, true) => Some(last),
+                (true, false) => Some(enter),
+                (false, true) => None,
+                // It may start inside of one and outside of another.
+                (false, false) => (leave > *begin).then_some(last),
+            }
+        })
     }
 }
 
@@ -277,6 +285,12 @@ fn solid(geometry: Geometry) -> Solid {
             apex: cone.apex.map(length),
             base_radius: length(cone.base_radius),
             apex_radius: length(cone.apex_radius),
+        },
+        Geometry::Torus(torus) => Solid::Torus {
+            center: torus.center.map(length),
+            axis: torus.axis.map(f64::from),
+            major_radius: length(torus.major_radius),
+            minor_radius: length(torus.minor_radius),
         },
     }
 }

@@ -13,6 +13,7 @@ pub mod random;
 pub mod rays;
 mod shadow;
 pub mod solid;
+mod torus;
 
 pub use crate::trace::UnitRay;
 pub use check::{Fault, Heard, Outcome, Promise, ask, ask_all, check, depart, leave, sealed};

@@ -82,6 +82,11 @@ fn on(geometry: &Geometry, random: &mut Random) -> DVec3 {
             let share = random.unit();
             units(cone.base).lerp(units(cone.apex), share)
         }
+        Geometry::Torus(torus) => {
+            let axis = DVec3::from_array(torus.axis.map(f64::from)).normalize();
+            let across = direction - direction.dot(axis) * axis;
+            units(torus.center) + length(torus.major_radius) * across
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 //! gives it. So a ray that barely touches is judged as fairly as one that strikes head on.
 
 use super::exact::{Real, Vector, along, cross, dot, minus, norm, scaled, unit, vector};
+use super::torus::Torus;
 
 /// A shape in units, all of its numbers on the lattice.
 #[derive(Clone, Debug)]
@@ -27,6 +28,12 @@ pub enum Solid {
         center: [f64; 3],
         normal: [f64; 3],
         radius: f64,
+    },
+    Torus {
+        center: [f64; 3],
+        axis: [f64; 3],
+        major_radius: f64,
+        minor_radius: f64,
     },
     Triangle([[f64; 3]; 3]),
 }
@@ -120,8 +127,34 @@ impl Solid {
         matches!(self, Solid::Disc { .. } | Solid::Triangle(_))
     }
 
-    /// The crossing with the shape, moved outward by a length (inward by a negative one).
-    pub fn span(&self, line: &Line, grow: &Real) -> Span {
+    /// The crossings with the shape, moved outward by a length (inward by a negative one), in order.
+    pub fn spans(&self, line: &Line, grow: &Real) -> Vec<(Real, Real)> {
+        let Some(torus) = self.torus() else {
+            return self.span(line, grow).into_iter().collect();
+        };
+        let minor = &torus.minor + grow;
+        if minor.is_positive() {
+            torus.spans(line, &minor)
+        } else {
+            Vec::new()
+        }
+    }
+
+    fn torus(&self) -> Option<Torus> {
+        let Solid::Torus {
+            center,
+            axis,
+            major_radius,
+            minor_radius,
+        } = *self
+        else {
+            return None;
+        };
+        Some(Torus::new(center, axis, [major_radius, minor_radius]))
+    }
+
+    /// The crossing with a convex shape.
+    fn span(&self, line: &Line, grow: &Real) -> Span {
         match self {
             Solid::Sphere { center, radius } => {
                 let radius = Real::of(*radius) + grow;
@@ -139,6 +172,7 @@ impl Solid {
                 overlap(Some(span), slab(&place, &line.slope[axis], &reach))
             }),
             Solid::Cone { .. } => self.cone_span(line, grow),
+            Solid::Torus { .. } => None,
             Solid::Disc {
                 center,
                 normal,
@@ -261,6 +295,10 @@ impl Solid {
                     .map(|x| x.to_f64())
                     .to_vec()
             }),
+            Solid::Torus { .. } => {
+                let excess = |torus: Torus| (torus.distance(&p) - &torus.minor).to_f64();
+                self.torus().map(excess).into_iter().collect()
+            }
         };
         excesses.sort_by(|a, b| b.total_cmp(a));
         excesses
@@ -278,6 +316,11 @@ impl Solid {
                 base_radius,
                 apex_radius,
             } => apart(base, apex).max(*base_radius).max(*apex_radius),
+            Solid::Torus {
+                major_radius,
+                minor_radius,
+                ..
+            } => major_radius + minor_radius,
             Solid::Triangle([a, b, c]) => apart(a, b).max(apart(b, c)),
         }
     }
@@ -298,6 +341,14 @@ impl Solid {
             Solid::Triangle([a, b, c]) => {
                 let [a, b, c] = [*a, *b, *c].map(vector);
                 vec![Normal::flat(unit(&cross(&minus(&b, &a), &minus(&c, &a))))]
+            }
+            Solid::Torus { minor_radius, .. } => {
+                let normal = |torus: Torus| Normal {
+                    exact: torus.normal(&p),
+                    condition: 1.0 + self.extent() / minor_radius.min(torus.from_axis(&p)),
+                    size: f64::INFINITY,
+                };
+                self.torus().map(normal).into_iter().collect()
             }
             Solid::Cone { .. } => {
                 let Some(frame) = self.frame() else {
@@ -322,6 +373,17 @@ impl Solid {
                 ]
             }
         }
+    }
+
+    /// The normals where a torus meets its axis, if that is as near to a point as it may be off by: the
+    /// axis, either way.
+    pub fn pit_normals(&self, point: [f64; 3], off: f64) -> Option<Vec<Normal>> {
+        let torus = self.torus()?;
+        let axis = torus.axis_within(&vector(point), off)?;
+        Some(vec![
+            Normal::flat(axis.clone()),
+            Normal::flat(axis.map(|x| -x)),
+        ])
     }
 
     /// The mantle's normal on the side of a direction, where a point is as near to the axis as it may be
@@ -355,6 +417,12 @@ impl Solid {
                 base_radius,
                 apex_radius,
             } => largest(base).max(largest(apex)) + base_radius.max(*apex_radius),
+            Solid::Torus {
+                center,
+                major_radius,
+                minor_radius,
+                ..
+            } => largest(center) + major_radius + minor_radius,
             Solid::Triangle(corners) => corners.iter().map(largest).fold(0.0, f64::max),
         }
     }

@@ -1,7 +1,7 @@
 //! The reported displacement bounds how far apart the given and the snapped surfaces are, and what
 //! compiles loads.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use gridel_core::geometry::Geometry;
 use gridel_core::{Bvh, Kind, NoCount, Structure};
 use gridel_host::compile::{Compiled, Options, compile};
@@ -20,6 +20,7 @@ enum Surface {
     Disc(DVec3, DVec3, f64),
     Cone([(DVec3, f64); 2]),
     Triangle([DVec3; 3]),
+    Torus(DVec3, DVec3, [f64; 2]),
 }
 
 fn any_normal(axis: DVec3) -> DVec3 {
@@ -65,6 +66,18 @@ impl Surface {
                     _ => {
                         let radius = base_radius + (apex_radius - base_radius) * along;
                         base + (apex - base) * along + outward * radius
+                    }
+                }
+            }
+            Self::Torus(center, axis, [major, minor]) => {
+                let outward = around(random, axis);
+                loop {
+                    let angle = std::f64::consts::TAU * random.unit();
+                    let across = major + minor * angle.cos();
+                    // The inner sheet of a spindle torus is no surface.
+                    if across >= 0.0 {
+                        let along = axis.normalize() * minor * angle.sin();
+                        break center + outward * across + along;
                     }
                 }
             }
@@ -115,6 +128,19 @@ impl Surface {
                 })
                 .fold(f64::INFINITY, f64::min)
             }
+            Self::Torus(center, axis, [major, minor]) => {
+                let (along, across) = cylindrical(point - center, axis);
+                let from_circle = (across - major).hypot(along);
+                if from_circle >= minor || minor <= major {
+                    return (from_circle - minor).abs();
+                }
+                // Beneath the surface of a spindle torus: outward, or if that leads to the axis, to the pit.
+                let part = minor / from_circle.max(f64::MIN_POSITIVE);
+                let above = DVec2::new(major + (across - major) * part, along.abs() * part);
+                let pit = DVec2::new(0.0, (minor * minor - major * major).sqrt());
+                let nearest = if above.x < 0.0 { pit } else { above };
+                nearest.distance(DVec2::new(across, along.abs()))
+            }
             Self::Triangle([a, b, c]) => {
                 let normal = (b - a).cross(c - a);
                 let is_inside = [(a, b), (b, c), (c, a)]
@@ -158,6 +184,15 @@ fn given(scene: &scene::Scene, in_units: impl Fn(DVec3) -> DVec3, unit: f64) -> 
             normal,
             radius,
         } => vec![Surface::Disc(in_units(*center), *normal, radius / unit)],
+        Shape::Torus {
+            center,
+            axis,
+            major_radius,
+            minor_radius,
+        } => {
+            let radii = [major_radius / unit, minor_radius / unit];
+            vec![Surface::Torus(in_units(*center), *axis, radii)]
+        }
         Shape::Cone {
             base,
             base_radius,
@@ -189,6 +224,11 @@ fn snapped(geometry: Geometry) -> Surface {
             point(disc.center),
             DVec3::from_array(disc.normal.map(f64::from)),
             length(disc.radius),
+        ),
+        Geometry::Torus(torus) => Surface::Torus(
+            point(torus.center),
+            DVec3::from_array(torus.axis.map(f64::from)),
+            [length(torus.major_radius), length(torus.minor_radius)],
         ),
         Geometry::Cone(cone) => Surface::Cone([
             (point(cone.base), length(cone.base_radius)),
@@ -274,6 +314,12 @@ fn shape(random: &mut Random, kind: usize) -> Shape {
             },
             radius: size,
         },
+        7 => Shape::Torus {
+            center,
+            axis: point(random, 1.0),
+            major_radius: size,
+            minor_radius: size * [thin, 0.5, 1.0, 2.0][random.below(4)],
+        },
         _ => {
             let (tall, wide) = if random.one_in(2) {
                 (thin, 1.0)
@@ -315,8 +361,8 @@ fn displacement_bounds_every_surface_at_every_lattice() {
         for lattice_bits in 10..=24 {
             // Alone it reaches to the ends of the lattice.
             let count = if random.one_in(2) { 1 } else { 8 };
-            let kind = random.below(7);
-            let shapes = (0..count).map(|more| shape(&mut random, (kind + more) % 7));
+            let kind = random.below(8);
+            let shapes = (0..count).map(|more| shape(&mut random, (kind + more) % 8));
             let scene = scenes::of(shapes.collect::<Vec<_>>());
             let compiled = compiled(&scene, lattice_bits, &proved);
             check(&scene, &compiled, 24, &mut random);

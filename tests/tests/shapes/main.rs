@@ -7,6 +7,7 @@ mod cylinder;
 mod disc;
 mod self_hits;
 mod sphere;
+mod torus;
 mod triangle;
 
 use gridel_core::Number;

@@ -94,7 +94,7 @@ pub struct Targets<'f> {
     pub bounds: UnitBox,
     targets: Vec<Target>,
     /// The first slot of each kind.
-    first: [usize; 5],
+    first: [usize; Kind::ALL.len()],
     flat: &'f Flat,
 }
 
@@ -105,8 +105,8 @@ const LEAF: Node = 1 << 31;
 impl<'f> Targets<'f> {
     pub fn new(primitives: &Primitives, flat: &'f Flat, bounds: UnitBox) -> Self {
         let boxes = primitives.boxes();
-        let mut first = [0; 5];
-        let mut box_first = [0; 5];
+        let mut first = [0; Kind::ALL.len()];
+        let mut box_first = [0; Kind::ALL.len()];
         let (mut slots, mut numbers) = (0, 0);
         for kind in Kind::ALL {
             first[kind as usize] = slots;
@@ -229,7 +229,7 @@ fn surface(primitives: &Primitives, kind: Kind, index: usize) -> Surface {
             let normal = DVec3::from_array(disc.normal.map(f64::from));
             flat(normal, DVec3::from_array(units(disc.center)))
         }
-        Kind::Box | Kind::Cone => Surface::Box,
+        Kind::Box | Kind::Cone | Kind::Torus => Surface::Box,
     }
 }
 

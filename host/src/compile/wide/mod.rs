@@ -61,11 +61,11 @@ pub struct Wide {
     strips: Vec<Strip>,
     packs: Vec<Pack>,
     /// The primitives that are in no cluster, in the order of their slots, kind by kind.
-    pub slots: [Vec<u32>; 5],
+    pub slots: [Vec<u32>; Kind::ALL.len()],
     /// Where other structures share the primitives: for each slot, where it lies in the hierarchy.
     homes: Vec<u32>,
     /// Where other structures share the primitives: for each kind, the slot of each primitive.
-    shared: Option<[Vec<u32>; 5]>,
+    shared: Option<[Vec<u32>; Kind::ALL.len()]>,
     pub stack_depth: usize,
 }
 
@@ -100,7 +100,7 @@ impl Wide {
                 .map(|(n, it)| (it.bounds, Item::Strip(n))),
         );
         items.extend((0..).zip(&packs).map(|(n, it)| (it.bounds, Item::Pack(n))));
-        for kind in [Kind::Box, Kind::Disc, Kind::Cone] {
+        for kind in Kind::ALL.into_iter().filter(|kind| !kind.is_clustered()) {
             items.extend(of_kind(kind).map(|it| (it.bounds.into(), Item::Single(kind, it.index))));
         }
         let bounds: Vec<Hull> = items.iter().map(|item| item.0).collect();

@@ -17,7 +17,7 @@ use std::rc::Rc;
 const KEYS: &[&str] = &["kind", "name", "material"];
 
 const KINDS: &[&str] = &[
-    "sphere", "box", "disc", "cylinder", "cone", "frustum", "triangle", "mesh", "group",
+    "sphere", "box", "disc", "cylinder", "cone", "frustum", "torus", "triangle", "mesh", "group",
     "instance", "import",
 ];
 

@@ -18,6 +18,7 @@ pub(super) fn keys(kind: &str) -> &'static [&'static str] {
         "cylinder" => &["base", "top", "radius"],
         "cone" => &["base", "apex", "radius"],
         "frustum" => &["base", "top", "base_radius", "top_radius"],
+        "torus" => &["center", "axis", "major_radius", "minor_radius"],
         "triangle" => &["vertices"],
         _ => &["vertices", "faces"],
     }
@@ -43,6 +44,12 @@ pub(super) fn read(kind: &str, fields: &Fields<'_>) -> Result<Shape, SceneError>
         }
         "cone" => return cone(fields, "apex", radius("radius")?, 0.0),
         "frustum" => return cone(fields, "top", radius("base_radius")?, radius("top_radius")?),
+        "torus" => Shape::Torus {
+            center: vector("center")?,
+            axis: fields.require("axis")?.direction()?,
+            major_radius: radius("major_radius")?,
+            minor_radius: radius("minor_radius")?,
+        },
         "triangle" => return triangle(fields),
         _ => return mesh(fields),
     };

@@ -128,6 +128,20 @@ pub(super) fn apply(by: &DAffine3, shape: &Shape) -> Result<Shape, Misfit> {
             normal: to_size_one(by.matrix3).1 * unit(*normal),
             radius: radius * similarity(by.matrix3)?,
         },
+        Shape::Torus {
+            center,
+            axis,
+            major_radius,
+            minor_radius,
+        } => {
+            let scale = similarity(by.matrix3)?;
+            Shape::Torus {
+                center: by.transform_point3(*center),
+                axis: to_size_one(by.matrix3).1 * unit(*axis),
+                major_radius: major_radius * scale,
+                minor_radius: minor_radius * scale,
+            }
+        }
         Shape::Cone {
             base,
             base_radius,
@@ -162,6 +176,17 @@ fn in_range(shape: &Shape) -> bool {
             normal,
             radius,
         } => center.is_finite() && normal.is_finite() && length(*radius),
+        Shape::Torus {
+            center,
+            axis,
+            major_radius,
+            minor_radius,
+        } => {
+            center.is_finite()
+                && axis.is_finite()
+                && length(*major_radius)
+                && length(*minor_radius)
+        }
         Shape::Cone {
             base,
             base_radius,

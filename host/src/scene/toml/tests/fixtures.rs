@@ -21,6 +21,7 @@ fn kind(object: &Object) -> &'static str {
         Shape::Mesh { .. } => "mesh",
         Shape::Box { .. } => "box",
         Shape::Disc { .. } => "disc",
+        Shape::Torus { .. } => "torus",
         Shape::Cone {
             base_radius,
             apex_radius,

@@ -1,0 +1,211 @@
+//! Tori: the solid that a disc sweeps along a circle around an axis.
+//!
+//! With `R` the circle's radius, `r` the disc's, `rho` a point's distance from the axis and `y` its
+//! height along it, a point lies in the solid where `h = (rho - R)^2 + y^2 - r^2` is not positive. So
+//! a spindle torus (`r > R`) has its outer surface alone. The textbook's quartic is
+//! `h ((rho + R)^2 + y^2 - r^2)`; it is neither expanded nor solved in radicals, because its
+//! coefficients lose the tube of a thin ring to rounding: see [`profile`](self::profile).
+//!
+//! The line's origin is its point closest to the centre, so lengths are those of the solid, wherever
+//! the ray comes from.
+//!
+//! **Ranges of `fixed`.** The reach `R + r` is at most 2^16 units, or 2^29 sub-steps, and scaled up below
+//! that. A line that passes farther from the centre is rejected, and it counts as far as it is within
+//! reach, so no position exceeds 2^29 by more than what is rounded, and no sum of three squares 2^60.
+
+mod frame;
+mod profile;
+
+
+use crate::format::record::UnitBox;
+use crate::format::{BlobError, Field, Reason};
+use crate::geometry::primitive::{InScene, MAX_RADIUS, Primitive};
+use crate::geometry::{Crossing, LEAVING, Part, Surface};
+use crate::number::Arithmetic;
+use crate::number::extent;
+use crate::ray::Ray;
+use bytemuck::{Pod, Zeroable};
+use core::mem::offset_of;
+use frame::{Frame, unit};
+use profile::Profile;
+
+/// A torus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Torus {
+    /// Centre in 1/256 unit.
+    pub center: [i32; 3],
+    /// The axis of rotation; not zero, magnitudes of at most 2^24, of any length.
+    pub axis: [i32; 3],
+    /// Radius of the circle in 1/256 unit, not negative.
+    pub major_radius: i32,
+    /// Radius of the disc that is swept along the circle in 1/256 unit, above 0.
+    pub minor_radius: i32,
+    /// Its box.
+    pub bounds: UnitBox,
+}
+
+const _: () = {
+    assert!(size_of::<Torus>() == 44);
+    assert!(offset_of!(Torus, major_radius) == 24 && offset_of!(Torus, bounds) == 32);
+};
+
+/// A point near the surface as seen from the centre.
+struct Place<N> {
+    /// The way from the axis to the point, in the frame: of length 1.
+    outward: [N; 2],
+    /// Height along the axis.
+    y: N,
+    /// The way from the circle to the point, outward and along the axis: of length 1.
+    away: [N; 2],
+}
+
+impl Torus {
+    fn radii<N: Arithmetic>(&self) -> [N; 2] {
+        [self.major_radius, self.minor_radius].map(N::from_lattice)
+    }
+
+    /// Where a point near the surface lies. On the axis any way across is outward, and on the circle
+    /// any way is away from it.
+    fn place<N: Arithmetic>(&self, frame: &Frame<N>, point: [N; 3]) -> Place<N> {
+        let q = |k: usize| point[k] - N::from_lattice(self.center[k]);
+        let [major, minor] = self.radii::<N>();
+        let bits = N::headroom(major + minor);
+        let (y, across) = frame.parts([q(0), q(1), q(2)].map(|x| x.scale_up(bits)));
+        let (outward, rho) = unit(across, [N::ONE, N::ZERO]);
+        let (away, _) = unit([rho - major.scale_up(bits), y], [N::ONE, N::ZERO]);
+        Place {
+            outward,
+            y: y.scale_down(bits),
+            away,
+        }
+    }
+
+    /// The point at a place whose distance from the circle is changed.
+    fn beside<N: Arithmetic>(&self, frame: &Frame<N>, place: &Place<N>, distance: N) -> [N; 3] {
+        let across = N::from_lattice(self.major_radius) + distance * place.away[0];
+        let across = place.outward.map(|x| across * x);
+        let q = frame.vector(distance * place.away[1], across);
+        let axis = |k: usize| N::from_lattice(self.center[k]) + q[k];
+        [axis(0), axis(1), axis(2)]
+    }
+
+    /// The surface where it meets the axis, seen from where `toward` leads. A point of the axis at a height `y` is
+    /// `sqrt(R^2 + y^2) - r` away from the solid.
+    #[cold]
+    fn pit<N: Arithmetic>(
+        &self,
+        (frame, place): (&Frame<N>, &Place<N>),
+        error: N,
+        toward: [N; 3],
+    ) -> Surface<N> {
+        let [major, minor] = self.radii::<N>();
+        let height = |r: N| N::root(r.wide(r) - major.wide(major));
+        let (bottom, clear) = (height(minor), height(minor + error));
+        let (rise, _) = frame.parts(toward);
+        let is_up = place.y > N::ZERO || place.y == N::ZERO && rise >= N::ZERO;
+        let turn = |x: N| if is_up { x } else { -x };
+        let q = frame.vector(turn(bottom), [N::ZERO; 2]);
+        let axis = |k: usize| N::from_lattice(self.center[k]) + q[k];
+        Surface {
+            normal: frame.vector(turn(N::ONE), [N::ZERO; 2]),
+            point: [axis(0), axis(1), axis(2)],
+            error: clear - bottom + error,
+            is_exact: false,
+        }
+    }
+}
+
+impl Primitive for Torus {
+    const NEEDS_NORM: bool = true;
+    const TESTS_BOX: bool = true;
+
+    #[inline(always)]
+    fn bounds(&self) -> UnitBox {
+        self.bounds
+    }
+
+    /// The first stretch of the line inside the solid that does not end before the ray's interval.
+    /// `recip_norm2` is [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2) of the ray's slopes.
+    fn cross<N: Arithmetic>(&self, ray: &Ray<N>, recip_norm2: N) -> Option<Crossing<N>> {
+        let axis = |k: usize| N::from_lattice(self.center[k]) - ray.origin[k];
+        let relative = [axis(0), axis(1), axis(2)];
+        let closest = N::from_wide(N::wide_scale(N::dot(relative, ray.slope), recip_norm2));
+        let axis = |k: usize| closest * ray.slope[k] - relative[k];
+        let apart = [axis(0), axis(1), axis(2)];
+        let reach = N::from_lattice(self.major_radius.wrapping_add(self.minor_radius));
+        // The box first, so that squares stay in range.
+        let near = |k: usize| apart[k].abs() <= reach;
+        if !(near(0) && near(1) && near(2) && N::dot(apart, apart) <= reach.wide(reach)) {
+            return None;
+        }
+
+        // From here on lengths are shifted up as far as their products allow.
+        let bits = N::headroom(reach);
+        let radii =
+            [self.major_radius, self.minor_radius].map(|x| N::from_lattice(x).scale_up(bits));
+        let apart = apart.map(|x| x.scale_up(bits));
+        let reach = reach.scale_up(bits);
+        let half_chord = reach.wide(reach) - N::dot(apart, apart);
+        let half_chord = N::root(N::wide_scale(half_chord, recip_norm2));
+        let profile = Profile::new(&Frame::new(self.axis), (apart, ray.slope), radii);
+        let cuts = profile.cuts(half_chord, recip_norm2)?;
+        let back = |s: N| closest + s.scale_down(bits);
+        let (enter, leave) = profile.first_inside(cuts, |leave| back(leave) >= ray.tmin)?;
+        Some(Crossing {
+            enter: (back(enter), 0),
+            leave: (back(leave), 0),
+        })
+    }
+
+    /// Outward.
+    ///
+    /// Next to the axis, in the pit of a spindle torus and at the centre of a horn torus, the surface
+    /// has no normal, and a step away from one of its sides leads through the other: there the normal is
+    /// the axis, and the error bound is as long as the way to where the pit is wide enough.
+    fn surface<N: Arithmetic>(&self, ray: &Ray<N>, part: Part, point: [N; 3]) -> Surface<N> {
+        let frame = Frame::new(self.axis);
+        let place = self.place(&frame, point);
+        let [major, minor] = self.radii::<N>();
+        let center = self.center.map(N::from_lattice);
+        let error = N::error_bound(extent(center) + major + minor);
+        if major + minor * place.away[0] <= error {
+            let leaves = part & LEAVING != 0;
+            let toward = ray.slope.map(|x| if leaves { x } else { -x });
+            return self.pit((&frame, &place), error, toward);
+        }
+        let point = self.beside(&frame, &place, minor);
+        // That of the rounded point, which thin rings far from the lattice's middle turn away from.
+        let Place { outward, away, .. } = self.place(&frame, point);
+        let normal = frame.vector(away[1], outward.map(|x| away[0] * x));
+        Surface {
+            normal: N::normalize(normal).0,
+            point,
+            error,
+            is_exact: false,
+        }
+    }
+
+    /// A point `depth` beneath a point of the surface, or on the circle where the tube is thinner.
+    fn inside<N: Arithmetic>(&self, [point, _]: [[N; 3]; 2], depth: N) -> [N; 3] {
+        let [_, minor] = self.radii::<N>();
+        let frame = Frame::new(self.axis);
+        let place = self.place(&frame, point);
+        self.beside(&frame, &place, (minor - depth).max(N::ZERO))
+    }
+
+    fn validate(&self, scene: InScene<'_>) -> Result<(), BlobError> {
+        let at = scene.at;
+        scene.point(Field::Center, self.center)?;
+        at.all_within(Field::Axis, &self.axis, -(1 << 24), 1 << 24)?;
+        at.ensure(self.axis != [0; 3], Reason::ZeroAxis)?;
+        let [major, minor] = [self.major_radius, self.minor_radius].map(i64::from);
+        at.within(Field::Radius, minor, 1, MAX_RADIUS)?;
+        // The sum of both is the reach.
+        at.within(Field::Radius, major, 0, MAX_RADIUS.saturating_sub(minor))?;
+        scene.inner(&self.bounds)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,217 @@
+//! Tori: thin rings, horns and spindles; through the hole, along the axis, in the plane of the circle,
+//! along tangents, from inside and from far away.
+
+use super::{hold, hold_all, of_every_sort};
+use glam::DVec3;
+use gridel_core::Number;
+use gridel_tests::cases::{Case, lattice, slope};
+use gridel_tests::effort::part_of;
+use gridel_tests::every_format;
+use gridel_tests::random::Random;
+use gridel_tests::solid::Solid;
+
+/// A torus as a ray is aimed at it.
+struct Target {
+    center: DVec3,
+    /// Of length 1, like those across it, which are at right angles.
+    axis: DVec3,
+    outward: DVec3,
+    around: DVec3,
+    major: f64,
+    minor: f64,
+}
+
+fn direction(random: &mut Random) -> DVec3 {
+    DVec3::from_array(random.direction())
+}
+
+/// Tori of a proportion each, and rays aimed at them.
+fn tori(
+    class: &'static str,
+    seed: u64,
+    proportion: impl Fn(&mut Random) -> f64,
+    aim: impl Fn(&mut Random, &Target) -> (DVec3, DVec3),
+) -> Vec<Case> {
+    let mut random = Random(seed);
+    let length = |x: f64| lattice(x).max(1.0 / 256.0);
+    let case = |_| {
+        let random = &mut random;
+        let reach = random.magnitude(0.05, 8000.0);
+        let axis = match random.below(3) {
+            0 => DVec3::AXES[random.below(3)],
+            1 => {
+                DVec3::from_array([0; 3].map(|_| f64::from(random.within(-2, 2)))) + DVec3::Z * 0.5
+            }
+            _ => direction(random),
+        };
+        let axis = axis / axis.abs().max_element() * f64::from(1 << 24);
+        let axis = axis.round() / f64::from(1 << 24);
+        let major = length(reach);
+        let minor = length(major * proportion(random));
+        let center = (direction(random) * random.unit() * 8000.0).map(lattice);
+        let solid = Solid::Torus {
+            center: center.to_array(),
+            axis: axis.to_array(),
+            major_radius: major,
+            minor_radius: minor,
+        };
+        let rays = (0..30).map(|_| {
+            let axis = axis.normalize();
+            let outward = axis.cross(direction(random)).normalize();
+            let target = Target {
+                center,
+                axis,
+                outward,
+                around: axis.cross(outward),
+                major,
+                minor,
+            };
+            let (origin, way) = aim(random, &target);
+            let way = if random.one_in(2) { way } else { -way };
+            (origin.map(lattice).to_array(), slope(way))
+        });
+        let rays = rays.collect();
+        Case { class, solid, rays }
+    };
+    (0..part_of(40, 2000)).map(case).collect()
+}
+
+fn any(random: &mut Random) -> f64 {
+    [1.0, 1.5, random.magnitude(1e-5, 1.0), random.unit()][random.below(4)]
+}
+
+#[test]
+fn tori_and_rays_of_every_sort() {
+    of_every_sort(7);
+}
+
+#[test]
+fn rays_through_the_hole_and_along_the_axis() {
+    let cases = tori("hole", 70, any, |random, target| {
+        let part = [0.0, 1.0, random.unit()][random.below(3)];
+        let place = target.center + target.outward * (target.major - target.minor) * part;
+        let lean = direction(random) * [0.0, random.magnitude(1e-6, 1.0)][random.below(2)];
+        (
+            place - target.axis * random.magnitude(1e-2, 4.0) * target.major,
+            target.axis + lean,
+        )
+    });
+    hold_all("holes of tori", "torus", &cases);
+}
+
+#[test]
+fn rays_in_the_plane_of_the_circle_and_tangents_of_its_equators() {
+    let cases = tori("equator", 71, any, |random, target| {
+        let equator = match random.below(4) {
+            0 => target.major - target.minor,
+            1 => target.major + target.minor,
+            2 => target.major,
+            _ => (target.major + target.minor) * random.unit(),
+        };
+        let place = target.center + target.outward * equator;
+        let lean = direction(random) * [0.0, random.magnitude(1e-7, 1e-2)][random.below(2)];
+        (
+            place - target.around * random.unit() * target.major,
+            target.around + lean,
+        )
+    });
+    hold_all("equators of tori", "torus", &cases);
+}
+
+/// On the circle at the top, inside and outside, at all slants; a saddle's tangents among them.
+#[test]
+fn tangents_of_tori() {
+    let cases = tori("tangent", 72, any, |random, target| {
+        let angle = std::f64::consts::TAU * [0.25, random.unit()][random.below(2)];
+        let normal = target.outward * angle.cos() + target.axis * angle.sin();
+        let up = target.axis * angle.cos() - target.outward * angle.sin();
+        let off = [0.0, random.signed() * random.magnitude(1e-7, 1e-2)][random.below(2)];
+        let on =
+            target.center + target.outward * target.major + normal * target.minor * (1.0 + off);
+        let way = target.around * random.signed() + up * random.signed();
+        (on - way * random.magnitude(1e-2, 1e2) * target.minor, way)
+    });
+    hold_all("tangents of tori", "torus", &cases);
+}
+
+/// From inside: always a hit, and the ray leaves.
+#[test]
+fn from_inside_a_torus() {
+    fn judge<N: Number>() {
+        let proportion = |random: &mut Random| 0.1 + random.unit();
+        let cases = tori("inside", 73, proportion, |random, target| {
+            let tube = direction(random) * target.minor * 0.9 * random.unit();
+            (
+                target.center + target.outward * target.major + tube,
+                direction(random),
+            )
+        });
+        let roomy = |case: &Case| matches!(case.solid, Solid::Torus { minor_radius, .. } if minor_radius > 1.0);
+        let cases: Vec<Case> = cases.into_iter().filter(roomy).collect();
+        let worst = hold::<N>("inside tori", "torus", &cases);
+        assert_eq!(worst.hits, worst.rays);
+    }
+    every_format!(judge());
+}
+
+/// A ring whose tube is one step of the lattice, from its own size up to that of the lattice.
+#[test]
+fn rings_of_one_step() {
+    let thinnest = |_: &mut Random| 0.0;
+    let cases = tori("one step", 74, thinnest, |random, target| {
+        let tube = direction(random) * target.minor * random.unit();
+        let place = target.center + target.outward * target.major + tube;
+        let way = match random.below(3) {
+            0 => target.around + direction(random) * random.magnitude(1e-6, 1e-1),
+            _ => direction(random),
+        };
+        (place - way * random.magnitude(1e-2, 1e2), way)
+    });
+    hold_all("rings of one step", "torus", &cases);
+}
+
+/// Radii at both ends of their ranges: a step each, and a reach as large as the lattice, around an axis of
+/// coordinates and around a diagonal, where it reaches beyond the lattice's end from the centre.
+#[test]
+fn tori_at_the_ends_of_the_lattice() {
+    let mut random = Random(75);
+    let step = 1.0 / 256.0;
+    let tori = [
+        ([0.0, 0.0, 1.0], step, step),
+        ([0.0, 0.0, 1.0], 32_000.0, step),
+        ([0.0, 0.0, 1.0], step, 32_000.0),
+        ([0.0, 0.0, 1.0], 16_000.0, 16_000.0),
+        ([0.0, 0.0, 1.0], 16_000.0, 16_000.0 - step),
+        ([0.0, 0.0, 1.0], 16_000.0, 16_000.0 + step),
+        ([1.0, 1.0, 1.0], 39_000.0, 100.0),
+        ([1.0, -1.0, 1.0], 30_000.0, 8000.0),
+    ];
+    let cases = tori.map(|(axis, major_radius, minor_radius)| {
+        let solid = Solid::Torus {
+            center: [0.0; 3],
+            axis,
+            major_radius,
+            minor_radius,
+        };
+        let axis = DVec3::from_array(axis).normalize();
+        let reach = major_radius + minor_radius;
+        let rays = (0..part_of(60, 2000)).map(|_| {
+            let outward = axis.cross(direction(&mut random)).normalize();
+            let tube = direction(&mut random) * minor_radius * random.unit();
+            let place = outward * major_radius + tube;
+            let way = match random.below(4) {
+                0 => axis,
+                1 => axis.cross(outward),
+                _ => direction(&mut random),
+            };
+            let back = random.unit() * 2.0 * reach;
+            ((place - way * back).map(lattice).to_array(), slope(way))
+        });
+        Case {
+            class: "ends",
+            rays: rays.collect(),
+            solid,
+        }
+    });
+    hold_all("tori at the ends", "torus", &cases);
+}
