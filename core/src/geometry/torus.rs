@@ -16,7 +16,6 @@
 mod frame;
 mod profile;
 
-
 use crate::format::record::UnitBox;
 use crate::format::{BlobError, Field, Reason};
 use crate::geometry::primitive::{InScene, MAX_RADIUS, Primitive};
