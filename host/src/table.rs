@@ -92,6 +92,20 @@ pub fn power_of_two(power: f64) -> String {
     format!("2^{} = {power:.3e}", power.log2().round())
 }
 
+/// Most characters of a name that texts show.
+const MAX_SHOWN: usize = 80;
+
+/// A name of a scene file as a terminal can show it: on one line, control characters escaped as in
+/// Rust, and at most 80 characters.
+pub fn printable(name: &str) -> String {
+    let (shown, rest) = match name.char_indices().nth(MAX_SHOWN) {
+        Some((end, _)) => (&name[..end], "..."),
+        None => (name, ""),
+    };
+    let escaped = shown.escape_debug().to_string();
+    escaped.replace("\\\"", "\"").replace("\\'", "'") + rest
+}
+
 /// A number with six digits that count, and without zeros that do not.
 pub fn significant(number: f64) -> String {
     if number == 0.0 {
@@ -115,6 +129,16 @@ pub fn significant(number: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn printable_escapes_control_characters_and_shortens() {
+        assert_eq!(printable("Käse \"gelb\" d'or"), "Käse \"gelb\" d'or");
+        assert_eq!(printable("a\nb\u{1b}[31m\0"), "a\\nb\\u{1b}[31m\\0");
+        assert_eq!(printable("left\u{202e}right"), "left\\u{202e}right");
+        assert_eq!(printable("a\\'b"), "a\\\\'b");
+        assert_eq!(printable(&"ä".repeat(80)), "ä".repeat(80));
+        assert_eq!(printable(&"ä".repeat(81)), "ä".repeat(80) + "...");
+    }
 
     #[test]
     fn columns_line_up() {

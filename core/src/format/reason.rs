@@ -85,6 +85,7 @@ texts! {
         Normal => "normal",
         BaseCenter => "centre of the base",
         ApexCenter => "centre of the apex",
+        NameStart => "start",
         FirstPrimitive => "first primitive",
         Material => "material",
         Primitive => "primitive",
@@ -135,6 +136,9 @@ texts! {
         ZeroAxis => "its axis has length 0",
         ZeroRadii => "both of its radii are 0",
         OutsideScene => "its box lies outside of the scene's box",
+        // Names.
+        NotUtf8 => "it is not UTF-8",
+        InsideCharacter => "it starts inside of a character",
         // Hierarchies.
         NotReached => "no node leads to it",
         BeyondLast => "it leads beyond the last node",

@@ -8,8 +8,9 @@ mod story;
 mod text;
 mod walk;
 
+pub use crate::compile::Names;
 pub use story::{Fall, Hit, Lighting, Ray, Sample, Story, Weighted};
-pub use text::{Names, Shown};
+pub use text::Shown;
 pub use walk::{Candidate, Culled, Plane, Side, Step, Tested, Verdict, Walk};
 
 use crate::render::{ALL, OPAQUE, chosen};

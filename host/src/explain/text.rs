@@ -2,34 +2,9 @@
 
 use super::story::{Fall, Hit, Lighting, Ray, Sample, Story};
 use super::walk::{Culled, Plane, Side, Step, Tested, Verdict, Walk};
-use crate::table::{counted, significant};
+use crate::compile::Names;
+use crate::table::{counted, printable, significant};
 use std::fmt::{self, Display, Formatter};
-
-/// What the scene file calls its objects and what they are made of; empty for a blob, which keeps no
-/// names.
-#[derive(Clone, Debug, Default)]
-pub struct Names {
-    /// Of each object.
-    pub objects: Vec<String>,
-    /// Of each object's material.
-    pub materials: Vec<String>,
-}
-
-impl Names {
-    fn object(&self, number: u32) -> String {
-        match self.objects.get(number as usize) {
-            Some(name) => format!("{name} (object {number})"),
-            None => format!("object {number}"),
-        }
-    }
-
-    fn material(&self, number: u32) -> String {
-        match self.materials.get(number as usize) {
-            Some(name) => format!(" of {name}"),
-            None => String::new(),
-        }
-    }
-}
 
 /// A story as text.
 pub struct Shown<'s> {
@@ -81,11 +56,11 @@ impl Display for Shown<'_> {
                 }
                 for lighting in ray.lights.iter().filter(|_| self.all_walks) {
                     for walk in &lighting.shadow {
-                        let light = lighting.light;
+                        let light = self.light(lighting.light);
                         let sample = number + 1;
                         writeln!(
                             f,
-                            "\nThe way from ray {place} of sample {sample} to light {light}"
+                            "\nThe way from ray {place} of sample {sample} to {light}"
                         )?;
                         self.walk(f, walk)?;
                     }
@@ -97,6 +72,27 @@ impl Display for Shown<'_> {
 }
 
 impl Shown<'_> {
+    fn object(&self, number: u32) -> String {
+        match self.names.object(number) {
+            Some(name) => format!("{} (object {number})", printable(name)),
+            None => format!("object {number}"),
+        }
+    }
+
+    fn material(&self, object: u32) -> String {
+        match self.names.material_of(object) {
+            Some(name) => format!(" of {}", printable(name)),
+            None => String::new(),
+        }
+    }
+
+    fn light(&self, number: u32) -> String {
+        match self.names.light(number) {
+            Some(name) => format!("{} (light {number})", printable(name)),
+            None => format!("light {number}"),
+        }
+    }
+
     /// What most likely answers the question that was asked.
     fn sentences(&self) -> Vec<String> {
         let mut sentences = Vec::new();
@@ -192,8 +188,8 @@ impl Shown<'_> {
             "{indent}  meets the {} of {kind} {}, which is {}{}, at distance {} within {}",
             if hit.front { "front" } else { "back" },
             hit.primitive,
-            self.names.object(hit.object),
-            self.names.material(hit.object),
+            self.object(hit.object),
+            self.material(hit.object),
             precise(hit.distance, hit.distance_error),
             bound(hit.distance_error)
         )?;
@@ -240,7 +236,7 @@ impl Shown<'_> {
 
     /// What becomes of a light, as a clause.
     fn fall(&self, lighting: &Lighting) -> String {
-        let light = lighting.light;
+        let light = self.light(lighting.light);
         let cosine = significant(lighting.cosine);
         let glass = match lighting.filtered.last() {
             Some(left) => format!(
@@ -252,23 +248,23 @@ impl Shown<'_> {
         };
         match lighting.fall {
             Fall::Lit => format!(
-                "light {light} shines on it at a cosine of {cosine}{glass}: {}",
+                "{light} shines on it at a cosine of {cosine}{glass}: {}",
                 color(lighting.radiance)
             ),
-            Fall::Behind => format!("light {light} is behind the surface (cosine {cosine})"),
+            Fall::Behind => format!("{light} is behind the surface (cosine {cosine})"),
             Fall::Blocked {
                 kind,
                 primitive,
                 object,
             } => format!(
-                "light {light} is blocked by {kind} {primitive}, which is {}{}{glass}",
-                self.names.object(object),
-                self.names.material(object)
+                "{light} is blocked by {kind} {primitive}, which is {}{}{glass}",
+                self.object(object),
+                self.material(object)
             ),
-            Fall::Faded => format!("light {light} fades away{glass}"),
-            Fall::Here => format!("light {light} lies at this very point, and has no direction"),
+            Fall::Faded => format!("{light} fades away{glass}"),
+            Fall::Here => format!("{light} lies at this very point, and has no direction"),
             Fall::Unreflected => {
-                format!("light {light} shines on it, and the material reflects none of it")
+                format!("{light} shines on it, and the material reflects none of it")
             }
         }
     }
