@@ -4,7 +4,7 @@ mod board;
 mod named;
 mod values;
 
-pub use board::{Board, Program};
+pub use board::{Board, Firmware, Program};
 pub use named::Named;
 
 use crate::measure::board::{BOARDS, Board as Target};
@@ -146,7 +146,7 @@ impl Manifest {
         let boards = self.checks.iter().flat_map(|check| &check.boards);
         let programs = boards.filter_map(|board| match &board.program {
             Program::Elf(file) => Some(file),
-            Program::Firmware { .. } => None,
+            Program::Firmware(_) => None,
         });
         let named = scenes.chain(programs).map(|named| named.path.as_path());
         std::iter::once(self.path.as_path()).chain(named)

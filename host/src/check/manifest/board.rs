@@ -30,12 +30,16 @@ pub enum Program {
     /// It was built before.
     Elf(Named),
     /// It is built from a Cargo package.
-    Firmware {
-        folder: Named,
-        program: String,
-        target: String,
-        features: Vec<String>,
-    },
+    Firmware(Firmware),
+}
+
+/// A Cargo package, and what is built of it.
+#[derive(Clone, Debug)]
+pub struct Firmware {
+    pub folder: Named,
+    pub program: String,
+    pub target: String,
+    pub features: Vec<String>,
 }
 
 impl Board {
@@ -57,14 +61,14 @@ impl Board {
                 }
                 Program::Elf(Named::read(path, folder)?)
             }
-            (None, Some(path)) => Program::Firmware {
+            (None, Some(path)) => Program::Firmware(Firmware {
                 folder: Named::read(path, folder)?,
                 program: text(fields.require("program")?)?,
                 target: text(fields.require("target")?)?,
                 features: fields.or("features", Vec::new(), |list| {
                     list.items("`features = [\"f32\"]`")?.map(text).collect()
                 })?,
-            },
+            }),
             (Some(elf), Some(_)) => {
                 return Err(elf.error(
                     "this board has both an `elf` and a `firmware`",
