@@ -117,6 +117,16 @@ pub struct TableStats {
 /// # Errors
 /// If the scene does not fit a lattice, a count does not fit the format, or the blob is larger than
 /// the options allow.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// let compiled = compile(&imported.scene, &Options::default())?;
+/// assert_eq!(compiled.report.bytes, compiled.blob.bytes().len());
+/// assert!(compiled.report.largest_displacement < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileError> {
     compile_telling(scene, options, &|_, _, _| ())
 }
@@ -338,6 +348,15 @@ impl Hierarchies {
 ///
 /// # Errors
 /// If the scene does not fit a lattice.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// let census = gridel_host::compile::cube_census(&imported.scene, 4)?;
+/// println!("{census:?}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn cube_census(scene: &Scene, gridels: u32) -> Result<CubeCensus, CompileError> {
     let bits = Options::default().lattice_bits;
     let (_, snapped) = snap(scene, primitives::extent(scene), bits)?;

@@ -9,6 +9,22 @@ use serde::Serialize;
 
 /// The names of objects, materials and lights, as a blob counts them: it has only materials that an
 /// object has. A name is empty, or missing at the end, where there is none.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// # use gridel_host::compile::Names;
+/// let options = Options {
+///     names: true,
+///     ..Options::default()
+/// };
+/// let blob = compile(&imported.scene, &options)?.blob;
+/// let names = Names::of_blob(&blob.scene()?, blob.bytes())?;
+/// assert_eq!(names.object(0), Some("ball"));
+/// assert_eq!(names.light(0), None);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Names {
     pub objects: Vec<String>,

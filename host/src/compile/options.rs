@@ -9,6 +9,19 @@ use gridel_core::format::Leaf;
 pub const LARGEST_LEAF: usize = Leaf::MAX_COUNT as usize;
 
 /// What to put into a blob.
+///
+/// ```
+/// use gridel_core::Structure;
+/// use gridel_host::compile::Options;
+///
+/// let options = Options {
+///     structures: vec![Structure::Flagged],
+///     lattice_bits: 16,
+///     names: true,
+///     ..Options::default()
+/// };
+/// assert_eq!(options.max_bytes, None);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Acceleration structures; the list is always there.
