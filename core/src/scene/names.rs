@@ -127,7 +127,10 @@ fn check(starts: &Indices<'_>, text: &str) -> Result<(), BlobError> {
         let longest = if index == 0 { 0 } else { MAX_NAME_BYTES as i64 };
         let high = length.min(last.saturating_add(longest));
         at.within(Field::NameStart, start, low, high)?;
-        at.ensure(text.is_char_boundary(start as usize), Reason::InsideCharacter)?;
+        at.ensure(
+            text.is_char_boundary(start as usize),
+            Reason::InsideCharacter,
+        )?;
         last = start;
     }
     Ok(())

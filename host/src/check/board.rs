@@ -59,7 +59,7 @@ fn try_run(manifest: &Manifest, board: &Board, blob: &Blob) -> Result<Output, Ob
             if !firmware.folder.path.is_dir() {
                 let error = manifest.error(
                     &firmware.folder,
-                    "is no folder",
+                    "is not a folder",
                     "write the path of a Cargo package's folder, relative to the manifest",
                 );
                 return Err(Obstacle::Failure(explained(&error)));
@@ -95,8 +95,8 @@ fn built_before(manifest: &Manifest, file: &Named) -> Result<PathBuf, Obstacle> 
     let read = start.take(ELF.len() as u64).read_to_end(&mut magic);
     read.map_err(cannot_be_read)?;
     if magic != ELF {
-        let remedy = "write the path of the program as the linker made it";
-        let error = manifest.error(file, "is no ELF file: it does not begin like one", remedy);
+        let remedy = "write the path of the program that the linker wrote";
+        let error = manifest.error(file, "is not an ELF file: it does not begin as one", remedy);
         return Err(Obstacle::Failure(explained(&error)));
     }
     Ok(path)

@@ -238,7 +238,7 @@ impl Run<'_> {
                 let remedy = if may_be_recorded {
                     "check the path, or let `gridel check --bless` record the picture there"
                 } else {
-                    "write the path of a PNG with 8 bits a channel; `--bless` overwrites no others"
+                    "write the path of a PNG with 8 bits per channel; `--bless` overwrites no others"
                 };
                 let cause = format!("cannot be read: {error}");
                 let error = self.manifest.error(&reference.picture, cause, remedy);
@@ -319,7 +319,7 @@ impl Run<'_> {
                     self.held_to(on(), compared, keys, None);
                 }
                 (Some(None), _) => {
-                    let why = format!("the program prints no figure {name:?}");
+                    let why = format!("the program does not print the figure {name:?}");
                     self.push(on(), name, None, most, Outcome::Broken(why));
                 }
                 (None, Some(outcome)) => {
@@ -434,7 +434,7 @@ fn structure(check: &Check, scene: &Scene<'_>) -> Result<Structure, String> {
         None => Ok(best_structures(scene).next().unwrap_or(Structure::List)),
         Some(structure) if scene.holds(structure) => Ok(structure),
         Some(structure) => Err(format!(
-            "{} holds no structure {name}: build it with `--accel {name}`",
+            "{} has no structure {name}: build it with `--accel {name}`",
             check.scene.path.display(),
             name = structure.name()
         )),

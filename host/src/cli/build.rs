@@ -145,13 +145,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         if folder.exists() && !folder.is_dir() {
             return Err(Failure::usage(
                 format!("{} is not a folder", folder.display()),
-                "give the folder that the module and its blob shall lie in; it need not exist",
+                "give the folder that the module and its blob lie in; it need not exist",
             ));
         }
         refuse_foreign(&folder.join(emit::BLOB), "blob", is_blob)?;
         refuse_foreign(
             &folder.join(emit::MODULE),
-            "module of gridel's",
+            "module of Gridel",
             emit::is_module,
         )?;
     }
@@ -258,7 +258,7 @@ fn refuse_foreign(
     if is_foreign {
         return Err(Failure::usage(
             format!(
-                "{} is there and is no {sort}: it would be lost",
+                "{} exists and is not a {sort}: it would be overwritten",
                 path.display()
             ),
             "write to another name or folder, or move that file away",

@@ -68,13 +68,13 @@ pub struct Arguments {
     aim: Aim,
 }
 
-/// Tells a story.
+/// Explains a pixel or a ray.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.ray.is_some()
         && let Some(option) = arguments.picture.of_pixels()
     {
         return Err(Failure::usage(
-            format!("{option} is for pixels, and a ray is explained"),
+            format!("{option} is for pixels, not for --ray"),
             "leave the option out",
         ));
     }

@@ -208,7 +208,7 @@ impl Source {
                 let held: Vec<_> = held.map(Structure::name).collect();
                 Err(Failure::usage(
                     format!(
-                        "{} holds no structure {}, only: {}",
+                        "{} has no structure {}, only: {}",
                         self.input.path().display(),
                         structure.name(),
                         held.join(", ")
@@ -230,7 +230,7 @@ impl Source {
         ] {
             if left_out.count() > 0 {
                 warn(format!(
-                    "{}: {} {why}, left out; `gridel build` names the first",
+                    "{}: {} {why}, left out; `gridel build` lists the first",
                     self.input.path().display(),
                     counted(left_out.count(), "primitive")
                 ));

@@ -321,7 +321,7 @@ impl Traced {
         }
         for seconds in &self.seconds {
             text.push_str(&format!(
-                "{seconds:.6} s, {} rays a second\n",
+                "{seconds:.6} s, {} rays per second\n",
                 grouped((self.rays as f64 / seconds.max(f64::MIN_POSITIVE)).round())
             ));
         }

@@ -400,10 +400,10 @@ fn nothing_of_the_users_own_is_written_over() {
         "src",
     ];
     for (path, said) in [
-        ("scene.bin", "scene.bin is there and is no blob"),
+        ("scene.bin", "scene.bin exists and is not a blob"),
         (
             "src/scene.rs",
-            "scene.rs is there and is no module of gridel's",
+            "scene.rs exists and is not a module of Gridel",
         ),
     ] {
         std::fs::create_dir_all(folder.path("src")).unwrap();

@@ -82,8 +82,8 @@ pub(super) fn hashes(
             .all(|it| matches!(it, b'0'..=b'9' | b'a'..=b'f'));
         if hash.len() != 16 || !digits {
             return Err(value.error(
-                format!("`{hash}` is no hash of a picture: those have 16 hexadecimal digits"),
-                "remove it, and let `gridel check --bless` record the picture's",
+                format!("`{hash}` is not a picture hash; a hash has 16 hexadecimal digits"),
+                "remove it, and let `gridel check --bless` record the hash",
             ));
         }
         Ok((String::from(*name), hash.to_owned()))

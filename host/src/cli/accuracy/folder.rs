@@ -28,7 +28,7 @@ pub fn kept(folder: &Path, key: &str) -> Result<Option<Results>, Failure> {
     let foreign = |path: &Path| {
         Err(Failure::usage(
             format!(
-                "{} is not of a run with this scene and these options: it would be lost",
+                "{} is from a run with another scene or other options: it would be overwritten",
                 path.display()
             ),
             "give another folder with `-o`, or remove that one",

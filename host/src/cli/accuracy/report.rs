@@ -48,7 +48,7 @@ pub fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Ch
         ]);
     }
     let mut text = format!(
-        "{}, {} x {} pixels; * no other is as right at a cost that is surely no higher\n{table}\n",
+        "{}, {} x {} pixels; * no other setting has a smaller error at a cost that is surely not higher\n{table}\n",
         counted(results.points.len(), "setting"),
         size[0],
         size[1]
