@@ -93,6 +93,6 @@ pub use observe::event::{Event, RayKind};
 pub use query::{Found, Hit, any_hit, closest_hit, closest_primitive};
 pub use ray::{Pencil, Ray, RayError};
 pub use render::{Renderer, Rgb565, Rgb888, Settings, Workspace};
-pub use scene::{Prevalidated, Scene};
+pub use scene::{Names, Prevalidated, Scene};
 #[cfg(feature = "wide")]
 pub use simd::SimdLevel;

@@ -8,6 +8,18 @@ use std::io::{self, Read};
 use std::path::Path;
 
 /// A blob's bytes, aligned as the core asks.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// # use gridel_host::blob::Blob;
+/// let blob = compile(&imported.scene, &Options::default())?.blob;
+/// let copy = Blob::new(blob.bytes());
+/// assert_eq!(copy.scene()?.header().primitives, 1);
+/// assert!(Blob::new(b"no blob").scene().is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Blob {
     words: Vec<u128>,
@@ -72,11 +84,32 @@ pub fn is_blob(path: &Path) -> io::Result<bool> {
 }
 
 /// Whether bytes begin as a blob does, the last two bytes of the magic aside.
+///
+/// ```
+/// use gridel_host::blob::begins_as_blob;
+///
+/// assert!(begins_as_blob(b"GRIDEL\x1a\n"));
+/// assert!(!begins_as_blob(b"ply\n"));
+/// ```
 pub fn begins_as_blob(bytes: &[u8]) -> bool {
     bytes.starts_with(&MAGIC[..6])
 }
 
 /// The structures that a scene holds, the one that a verb takes unless it is told first.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// # let blob = compile(&imported.scene, &Options::default())?.blob;
+/// # let scene = blob.scene()?;
+/// use gridel_core::Structure;
+/// use gridel_host::blob::best_structures;
+///
+/// let structures: Vec<_> = best_structures(&scene).collect();
+/// assert_eq!(structures, [Structure::DualSplit, Structure::List]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn best_structures(scene: &Scene<'_>) -> impl Iterator<Item = Structure> {
     const BEST_FIRST: [Structure; Structure::ALL.len()] = [
         Structure::Wide,

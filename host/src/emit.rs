@@ -43,6 +43,26 @@ impl Emitted<'_> {
     }
 
     /// The module's text.
+    ///
+    /// ```
+    /// # use gridel_host::compile::{Options, compile};
+    /// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+    /// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+    /// # let blob = compile(&imported.scene, &Options::default())?.blob;
+    /// # let scene = blob.scene()?;
+    /// use gridel_core::{Format, Structure};
+    /// use gridel_host::emit::Emitted;
+    ///
+    /// let emitted = Emitted {
+    ///     scene: &scene,
+    ///     structure: Structure::DualSplit,
+    ///     format: Format::Fixed,
+    ///     budget: None,
+    /// };
+    /// assert!(emitted.features().contains(&"sphere"));
+    /// assert!(emitted.module().contains("pub static BLOB"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn module(&self) -> String {
         let scene = self.scene;
         let view = scene.view();

@@ -23,6 +23,27 @@
 //! | write a file whole or not at all | [`output`] |
 //!
 //! The program `gridel` is a thin layer over this library: what it does can be done from here.
+//!
+//! ```
+//! use gridel_core::{Format, Settings, Structure};
+//! use gridel_host::compile::{Options, compile};
+//! use gridel_host::render::{Job, render};
+//! use gridel_host::scene::read;
+//!
+//! let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1";
+//! let imported = read("ball.toml".as_ref(), file.into(), &Default::default())?;
+//! let blob = compile(&imported.scene, &Options::default())?.blob;
+//! let scene = blob.scene()?;
+//! let settings = Settings {
+//!     width: 16,
+//!     height: 12,
+//!     ..Settings::of(&scene)
+//! };
+//! let job = Job::whole(Format::F32, Structure::DualSplit, settings);
+//! let picture = render(&scene, &job, &|| ())?;
+//! assert_eq!(picture.pixels.len(), 16 * 12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 pub mod accuracy;
 pub mod blob;
 pub mod check;

@@ -22,12 +22,12 @@ pub struct Part {
 pub enum PartError {
     #[error("it cannot be read: {0}")]
     Read(#[from] io::Error),
-    #[error("it is no PNG picture of three bytes a pixel: {0}")]
+    #[error("it is not a PNG picture with 3 bytes per pixel: {0}")]
     Png(String),
-    #[error("it is no PPM picture (P6) of three bytes a pixel")]
+    #[error("it is not a PPM picture (P6) with 3 bytes per pixel")]
     Ppm,
     #[error(
-        "it does not say which rows it has and how they were made, so it is no part of a picture"
+        "it does not state which rows it has and how they were rendered, so it is not a part of a picture"
     )]
     Whole,
     #[error("it says that it has the rows {}..{}, but it has {found}", .rows.start, .rows.end)]

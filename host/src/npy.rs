@@ -40,6 +40,10 @@ const COLUMNS: usize = 8;
 ///
 /// # Errors
 /// If it is no NumPy file of such an array, is cut off, or has anything behind the array.
+///
+/// ```
+/// assert!(gridel_host::npy::read_rays(b"1 2 3").is_err());
+/// ```
 pub fn read_rays(file: &[u8]) -> Result<Vec<SceneRay>, RaysError> {
     let (header, data) = header(file)?;
     let (size, read): (usize, fn(&[u8]) -> f64) = match header.element {
@@ -210,6 +214,16 @@ fn integers(text: &str) -> Option<(Vec<u64>, &str)> {
 ///
 /// # Errors
 /// If `out` has one.
+///
+/// ```
+/// use gridel_host::npy::write_hits;
+/// use gridel_host::trace::SceneHit;
+///
+/// let mut file = Vec::new();
+/// write_hits(&mut file, &[SceneHit::MISS; 3])?;
+/// assert!(file.starts_with(b"\x93NUMPY"));
+/// # Ok::<(), std::io::Error>(())
+/// ```
 pub fn write_hits(out: &mut dyn Write, hits: &[SceneHit]) -> io::Result<()> {
     let mut header = format!(
         "{{'descr': [('t', '<f8'), ('object', '<u4'), ('primitive', '<u4'), \

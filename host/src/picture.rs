@@ -117,6 +117,13 @@ impl FromStr for Rows {
 
 /// A hash of a picture: FNV-1a with 64 bits over its linear channels of 16 bits, the lower byte
 /// first, red before green before blue, row by row; in hexadecimal.
+///
+/// ```
+/// use gridel_host::picture::hash;
+///
+/// assert_eq!(hash(&[]), "cbf29ce484222325");
+/// assert_ne!(hash(&[[0; 3]]), hash(&[[1; 3]]));
+/// ```
 pub fn hash(pixels: &[[u16; 3]]) -> String {
     let channels = pixels.iter().flatten();
     let bytes = channels.flat_map(|channel| channel.to_le_bytes());
@@ -140,6 +147,13 @@ pub enum PictureFormat {
 
 impl PictureFormat {
     /// The format that a file's extension names: `png`, `ppm` or `rgb565`.
+    ///
+    /// ```
+    /// use gridel_host::picture::PictureFormat;
+    ///
+    /// assert_eq!(PictureFormat::of("a.PNG".as_ref()), Some(PictureFormat::Png));
+    /// assert_eq!(PictureFormat::of("a.jpg".as_ref()), None);
+    /// ```
     pub fn of(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
         match extension.as_str() {

@@ -56,6 +56,26 @@ impl Job {
 ///
 /// # Errors
 /// If the blob lacks the structure or a setting is out of its range.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// # let blob = compile(&imported.scene, &Options::default())?.blob;
+/// # let scene = blob.scene()?;
+/// use gridel_core::{Format, Settings, Structure};
+/// use gridel_host::render::{Job, render};
+///
+/// let settings = Settings {
+///     width: 8,
+///     height: 6,
+///     ..Settings::of(&scene)
+/// };
+/// let job = Job::whole(Format::Fixed, Structure::DualSplit, settings);
+/// let picture = render(&scene, &job, &|| ())?;
+/// assert_eq!(picture.pixels.len(), 48);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn render(
     scene: &Scene<'_>,
     job: &Job,

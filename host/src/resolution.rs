@@ -174,6 +174,16 @@ fn bound(format: Format, geometry: &Geometry, place: DVec3) -> f64 {
 /// The objects that `fixed` or `f32` does not resolve, in scene-file order.
 ///
 /// Takes time for every primitive, and more only where features are some 2^-16 of the scene.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// # let blob = compile(&imported.scene, &Options::default())?.blob;
+/// # let scene = blob.scene()?;
+/// assert!(gridel_host::resolution::unresolved(&scene).is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn unresolved(scene: &Scene<'_>) -> Vec<Unresolved> {
     let mut objects: Vec<(Extent, Option<f64>)> = Vec::new();
     let mut surfaces = Vec::new();

@@ -10,6 +10,14 @@ pub enum Align {
 }
 
 /// A table whose columns are as wide as their widest cells, with two spaces between them.
+///
+/// ```
+/// use gridel_host::table::{Align, Table};
+///
+/// let mut table = Table::new([("part", Align::Left), ("bytes", Align::Right)]);
+/// table.row([String::from("header"), String::from("96")]);
+/// assert_eq!(table.to_string(), "part    bytes\nheader     96\n");
+/// ```
 #[derive(Clone, Debug)]
 pub struct Table {
     columns: Vec<Align>,
@@ -61,6 +69,10 @@ impl fmt::Display for Table {
 }
 
 /// A whole number, not negative, with a comma before every third digit from its end.
+///
+/// ```
+/// assert_eq!(gridel_host::table::grouped(1_234_567), "1,234,567");
+/// ```
 pub fn grouped(number: impl ToString) -> String {
     let digits = number.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
@@ -74,6 +86,10 @@ pub fn grouped(number: impl ToString) -> String {
 }
 
 /// A number of things: `1 thread`, `2 threads`, `3 meshes`, `4 entries`.
+///
+/// ```
+/// assert_eq!(gridel_host::table::counted(2, "mesh"), "2 meshes");
+/// ```
 pub fn counted(number: usize, thing: &str) -> String {
     let things = if number == 1 {
         thing.to_owned()
@@ -92,7 +108,29 @@ pub fn power_of_two(power: f64) -> String {
     format!("2^{} = {power:.3e}", power.log2().round())
 }
 
+/// Most characters of a name that texts show.
+const MAX_SHOWN: usize = 80;
+
+/// A name of a scene file as a terminal can show it: on one line, control characters escaped as in
+/// Rust, and at most 80 characters.
+///
+/// ```
+/// assert_eq!(gridel_host::table::printable("a\nb"), "a\\nb");
+/// ```
+pub fn printable(name: &str) -> String {
+    let (shown, rest) = match name.char_indices().nth(MAX_SHOWN) {
+        Some((end, _)) => (&name[..end], "..."),
+        None => (name, ""),
+    };
+    let escaped = shown.escape_debug().to_string();
+    escaped.replace("\\\"", "\"").replace("\\'", "'") + rest
+}
+
 /// A number with six digits that count, and without zeros that do not.
+///
+/// ```
+/// assert_eq!(gridel_host::table::significant(0.1 + 0.2), "0.3");
+/// ```
 pub fn significant(number: f64) -> String {
     if number == 0.0 {
         return String::from("0");
@@ -115,6 +153,16 @@ pub fn significant(number: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn printable_escapes_control_characters_and_shortens() {
+        assert_eq!(printable("Käse \"gelb\" d'or"), "Käse \"gelb\" d'or");
+        assert_eq!(printable("a\nb\u{1b}[31m\0"), "a\\nb\\u{1b}[31m\\0");
+        assert_eq!(printable("left\u{202e}right"), "left\\u{202e}right");
+        assert_eq!(printable("a\\'b"), "a\\\\'b");
+        assert_eq!(printable(&"ä".repeat(80)), "ä".repeat(80));
+        assert_eq!(printable(&"ä".repeat(81)), "ä".repeat(80) + "...");
+    }
 
     #[test]
     fn columns_line_up() {

@@ -75,6 +75,33 @@ pub struct Query {
 }
 
 /// Traces rays one after the other on this thread. Returns which were rejected, and why.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// # let blob = compile(&imported.scene, &Options::default())?.blob;
+/// # let scene = blob.scene()?;
+/// use glam::DVec3;
+/// use gridel_core::{Format, Structure};
+/// use gridel_host::trace::{Query, SceneHit, SceneRay, trace};
+///
+/// let ray = SceneRay {
+///     origin: DVec3::new(0.0, 0.0, 5.0),
+///     tmin: 0.0,
+///     direction: DVec3::NEG_Z,
+///     tmax: f64::INFINITY,
+/// };
+/// let query = Query {
+///     format: Format::F64,
+///     structure: Structure::DualSplit,
+///     any: false,
+/// };
+/// let mut hits = [SceneHit::MISS];
+/// let rejected = trace(&scene, &[ray], query, &mut hits);
+/// assert_eq!((hits[0].t, rejected.count), (4.0, 0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn trace(
     scene: &Scene<'_>,
     rays: &[SceneRay],

@@ -445,7 +445,7 @@ fn hits_lie_on_their_rays(story: &Story, about: &dyn Fn() -> String) -> (usize, 
             let (origin, rest) = rest.split_once(") along (").expect("a direction");
             let (direction, _) = rest.split_once("):").expect("an end");
             ray = Some((vector(origin), vector(direction)));
-        } else if line.starts_with("meets the ") {
+        } else if line.starts_with("hits the ") {
             let (_, rest) = line.rsplit_once(", at distance ").expect("a distance");
             let (at, within) = rest.split_once(" within ").expect("a bound");
             let number = |text: &str| text.parse::<f64>().expect("a number");

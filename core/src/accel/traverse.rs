@@ -32,6 +32,7 @@ pub trait Traverse: Send + Sync {
     /// Calls `leaf` for every leaf whose box the ray can meet, nearer ones first where the
     /// structure knows. `leaf` returns the t beyond which nothing counts any more, or `None` to
     /// end the walk.
+    #[expect(clippy::too_many_arguments, reason = "its arguments stay in registers")]
     fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
         views: &Self::Views<'_>,
@@ -43,6 +44,7 @@ pub trait Traverse: Send + Sync {
     );
 
     /// The same for any hit: in any order, up to the first leaf of which `hits` is true.
+    #[expect(clippy::too_many_arguments, reason = "its arguments stay in registers")]
     #[inline(always)]
     fn walk_any<N: Number, C: Observer>(
         space: &Space<'_>,

@@ -12,6 +12,9 @@ pub const MAX_RAY_DEPTH: usize = 16;
 /// Most samples a pixel.
 pub const MAX_SAMPLES: u16 = 256;
 
+/// Most bytes of a name.
+pub const MAX_NAME_BYTES: usize = 255;
+
 /// Places for waiting rays that a ray depth needs.
 pub const fn work_depth(depth: u8) -> usize {
     depth as usize + 1

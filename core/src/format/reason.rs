@@ -86,6 +86,7 @@ texts! {
         Axis => "axis",
         BaseCenter => "centre of the base",
         ApexCenter => "centre of the apex",
+        NameStart => "start",
         FirstPrimitive => "first primitive",
         Material => "material",
         Primitive => "primitive",
@@ -136,6 +137,9 @@ texts! {
         ZeroAxis => "its axis has length 0",
         ZeroRadii => "both of its radii are 0",
         OutsideScene => "its box lies outside of the scene's box",
+        // Names.
+        NotUtf8 => "it is not UTF-8",
+        InsideCharacter => "it starts inside of a character",
         // Hierarchies.
         NotReached => "no node leads to it",
         BeyondLast => "it leads beyond the last node",

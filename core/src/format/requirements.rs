@@ -38,7 +38,7 @@ pub struct Requirements {
     pub height: usize,
     structures: u32,
     /// A bit for each [`SectionKind`] of which there are records.
-    sections: u64,
+    sections: u128,
     wide_lattice: bool,
     wide_indices: bool,
     display_values: bool,
@@ -71,7 +71,7 @@ impl Requirements {
             let stride = proved!(half(blob, entry + offset_of!(SectionEntry, stride))) as usize;
             let count = proved!(word(blob, entry + offset_of!(SectionEntry, count)));
             let start = proved!(word(blob, entry + offset_of!(SectionEntry, offset))) as usize;
-            if count > 0 && kind < u64::BITS as u16 {
+            if count > 0 && kind < u128::BITS as u16 {
                 demand.sections |= 1 << kind;
             }
             if kind == SectionKind::View as u16 {

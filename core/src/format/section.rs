@@ -164,6 +164,11 @@ macro_rules! sections {
             ApexDirections = 58, "apex-directions", "direction" of "apex";
             /// Windows of [radii](crate::format::cluster) in 1/256 unit, `i32` each. Only for packs of 24 bits.
             Radii = 59, "radii", "radius" of "wide";
+            /// For each object, then each material, then each light, where its name begins in the text;
+            /// then the length of the text (1 to 4 bytes). Absent where nothing has a name.
+            NameStarts = 60, "name-starts", "name" of "name-starts";
+            /// The names, UTF-8, one behind the other.
+            NameText = 61, "name-text", "byte" of "name-text";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

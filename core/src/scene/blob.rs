@@ -292,7 +292,12 @@ impl<'a> Scene<'a> {
     /// ```
     #[inline]
     pub fn material(&self, object: u32) -> Option<&'a Material> {
-        let material = self.object_material.get(object as usize).unwrap_or(0);
-        self.materials.get(material as usize)
+        self.materials.get(self.material_number(object) as usize)
+    }
+
+    /// The number of an object's material among the [materials](Self::materials).
+    #[inline]
+    pub fn material_number(&self, object: u32) -> u32 {
+        self.object_material.get(object as usize).unwrap_or(0)
     }
 }

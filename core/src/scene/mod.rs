@@ -7,8 +7,10 @@ mod blob;
 mod check;
 mod features;
 mod load;
+mod names;
 mod prevalidated;
 mod read;
 
 pub use blob::Scene;
+pub use names::Names;
 pub use prevalidated::Prevalidated;

@@ -55,6 +55,7 @@ impl Avx2 {
     ) -> R {
         #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
         #[inline(never)]
+        #[expect(clippy::too_many_arguments, reason = "its arguments stay in registers")]
         fn with_avx2<A, B, C, D, E, R>(
             avx2: Avx2,
             function: impl FnOnce(Avx2, A, B, C, D, E) -> R,

@@ -94,7 +94,7 @@ pub enum MeasureError {
     #[error("the scene cannot be rendered: {0}")]
     #[diagnostic(help("change `[render]` in the scene file"))]
     Render(#[from] RenderError),
-    #[error("a compiled scene is refused: {0}")]
+    #[error("a compiled scene is rejected: {0}")]
     #[diagnostic(help("this is a fault of gridel: report it with the scene file"))]
     Blob(#[from] gridel_core::BlobError),
 }

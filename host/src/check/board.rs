@@ -1,7 +1,7 @@
 //! Programs on emulated boards.
 
 use super::explained::explained;
-use super::manifest::{Board, Manifest, Named, Program};
+use super::manifest::{Board, Firmware, Manifest, Named, Program};
 use crate::blob::Blob;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -55,29 +55,16 @@ fn try_run(manifest: &Manifest, board: &Board, blob: &Blob) -> Result<Output, Ob
     let folder = tempfile::tempdir().map_err(failed("a temporary folder cannot be made"))?;
     let program = match &board.program {
         Program::Elf(file) => built_before(manifest, file)?,
-        Program::Firmware {
-            folder: package,
-            program,
-            target,
-            features,
-        } => {
-            if !package.path.is_dir() {
+        Program::Firmware(firmware) => {
+            if !firmware.folder.path.is_dir() {
                 let error = manifest.error(
-                    package,
-                    "is no folder",
+                    &firmware.folder,
+                    "is not a folder",
                     "write the path of a Cargo package's folder, relative to the manifest",
                 );
                 return Err(Obstacle::Failure(explained(&error)));
             }
-            build(
-                board,
-                &package.path,
-                program,
-                target,
-                features,
-                blob,
-                folder.path(),
-            )?
+            build(board, firmware, blob, folder.path())?
         }
     };
     let printed = emulate(board, &program, folder.path())?;
@@ -108,8 +95,8 @@ fn built_before(manifest: &Manifest, file: &Named) -> Result<PathBuf, Obstacle> 
     let read = start.take(ELF.len() as u64).read_to_end(&mut magic);
     read.map_err(cannot_be_read)?;
     if magic != ELF {
-        let remedy = "write the path of the program as the linker made it";
-        let error = manifest.error(file, "is no ELF file: it does not begin like one", remedy);
+        let remedy = "write the path of the program that the linker wrote";
+        let error = manifest.error(file, "is not an ELF file: it does not begin as one", remedy);
         return Err(Obstacle::Failure(explained(&error)));
     }
     Ok(path)
@@ -118,13 +105,16 @@ fn built_before(manifest: &Manifest, file: &Named) -> Result<PathBuf, Obstacle> 
 /// Builds the program of a Cargo package for a blob.
 fn build(
     board: &Board,
-    package: &Path,
-    program: &str,
-    target: &str,
-    features: &[String],
+    firmware: &Firmware,
     blob: &Blob,
     folder: &Path,
 ) -> Result<PathBuf, Obstacle> {
+    let Firmware {
+        folder: Named { path: package, .. },
+        program,
+        target,
+        features,
+    } = firmware;
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     if Command::new(&cargo).arg("--version").output().is_err() {
         return Err(Obstacle::Missing(String::from("cargo is not installed")));
@@ -180,7 +170,7 @@ fn build(
         .split(|&byte| byte == b'\n')
         .filter_map(|line| {
             let message: serde_json::Value = serde_json::from_slice(line).ok()?;
-            let named = message["target"]["name"] == program;
+            let named = message["target"]["name"] == program.as_str();
             named.then(|| message["executable"].as_str().map(PathBuf::from))?
         });
     let built = built.next_back().ok_or_else(|| {

@@ -1,4 +1,4 @@
-//! Pictures as people compare them: 8 bits a channel, beside each other.
+//! Pictures as people compare them: 8 bits per channel, beside each other.
 
 use crate::picture::write_png;
 use crate::render;
@@ -48,7 +48,7 @@ impl Image {
             (png::ColorType::Rgba, png::BitDepth::Eight) => 4,
             (color, depth) => {
                 return Err(io::Error::other(format!(
-                    "it has {color:?} pixels of {depth:?} bits, and only RGB of 8 bits a channel \
+                    "it has {color:?} pixels of {depth:?} bits, and only RGB of 8 bits per channel \
                      is compared"
                 )));
             }

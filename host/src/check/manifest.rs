@@ -1,15 +1,23 @@
 //! The manifest, read: every key is known, every value in its range.
 
-use crate::measure::board::{self, BOARDS};
+mod board;
+mod named;
+mod values;
+
+pub use board::{Board, Firmware, Program};
+pub use named::Named;
+
+use crate::measure::board::{BOARDS, Board as Target};
 use crate::output::place;
 use crate::scene::SceneError;
-use crate::scene::toml::source::{Source, Span, nearest};
+use crate::scene::toml::source::{Source, Span};
 use crate::scene::toml::value::{Fields, Value};
 use gridel_core::format::limits::MAX_SAMPLES;
 use gridel_core::{Format, Structure};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
+use values::{formats, hashes, size, structure, target};
 
 /// A manifest, and the text that it was read from.
 #[derive(Clone, Debug)]
@@ -17,13 +25,6 @@ pub struct Manifest {
     pub path: PathBuf,
     pub(super) text: String,
     pub checks: Vec<Check>,
-}
-
-/// A file or folder that a manifest names, and where in its text it does.
-#[derive(Clone, Debug)]
-pub struct Named {
-    pub path: PathBuf,
-    span: Span,
 }
 
 /// One scene, and what is expected of it.
@@ -43,7 +44,7 @@ pub struct Check {
     pub reference: Option<Reference>,
     pub budget: Budget,
     /// The board whose memory the scene must fit.
-    pub target: Option<&'static board::Board>,
+    pub target: Option<&'static Target>,
     pub boards: Vec<Board>,
     /// Names for pictures of what is broken: of each format, and behind them of each board.
     pub(super) evidence: Vec<String>,
@@ -70,36 +71,6 @@ pub struct Budget {
     pub flash: Option<u64>,
     pub ram: Option<u64>,
     pub call_stack: Option<u64>,
-}
-
-/// A program on an emulated board.
-#[derive(Clone, Debug)]
-pub struct Board {
-    pub machine: String,
-    pub emulator: String,
-    pub program: Program,
-    /// The file with the picture that the program writes.
-    pub picture: Option<String>,
-    pub format: Format,
-    /// Of `-icount`: an instruction takes 2^shift ns on the board's clock.
-    pub shift: u32,
-    pub seconds: u32,
-    /// The most for each figure that the program prints.
-    pub budget: BTreeMap<String, u64>,
-}
-
-/// Where a board's program comes from.
-#[derive(Clone, Debug)]
-pub enum Program {
-    /// It was built before.
-    Elf(Named),
-    /// It is built from a Cargo package.
-    Firmware {
-        folder: Named,
-        program: String,
-        target: String,
-        features: Vec<String>,
-    },
 }
 
 impl Manifest {
@@ -175,7 +146,7 @@ impl Manifest {
         let boards = self.checks.iter().flat_map(|check| &check.boards);
         let programs = boards.filter_map(|board| match &board.program {
             Program::Elf(file) => Some(file),
-            Program::Firmware { .. } => None,
+            Program::Firmware(_) => None,
         });
         let named = scenes.chain(programs).map(|named| named.path.as_path());
         std::iter::once(self.path.as_path()).chain(named)
@@ -204,15 +175,6 @@ impl Manifest {
     pub fn steps(&self) -> usize {
         let steps = |check: &Check| check.formats.len() + check.boards.len();
         self.checks.iter().map(steps).sum()
-    }
-}
-
-impl Named {
-    fn read(value: Value<'_>, folder: &Path) -> Result<Self, SceneError> {
-        Ok(Self {
-            path: folder.join(value.filled()?),
-            span: value.span(),
-        })
     }
 }
 
@@ -382,65 +344,6 @@ impl Budget {
     }
 }
 
-impl Board {
-    fn read(table: Value<'_>, folder: &Path) -> Result<Self, SceneError> {
-        let keys = [
-            "machine", "emulator", "elf", "firmware", "program", "target", "features", "picture",
-            "format", "shift", "seconds", "budget",
-        ];
-        let fields = table.fields("board", &[&keys])?;
-        let text = |value: Value<'_>| value.filled().map(str::to_owned);
-        let program = match (fields.get("elf"), fields.get("firmware")) {
-            (Some(path), None) => {
-                let foreign = ["program", "target", "features"];
-                if let Some(value) = foreign.into_iter().find_map(|key| fields.get(key)) {
-                    return Err(value.error(
-                        format!("a program that was built before needs no `{}`", value.key),
-                        "remove the key, or give a `firmware` folder in place of `elf`",
-                    ));
-                }
-                Program::Elf(Named::read(path, folder)?)
-            }
-            (None, Some(path)) => Program::Firmware {
-                folder: Named::read(path, folder)?,
-                program: text(fields.require("program")?)?,
-                target: text(fields.require("target")?)?,
-                features: fields.or("features", Vec::new(), |list| {
-                    list.items("`features = [\"f32\"]`")?.map(text).collect()
-                })?,
-            },
-            (Some(elf), Some(_)) => {
-                return Err(elf.error(
-                    "this board has both an `elf` and a `firmware`",
-                    "remove one: a program is built before, or from a folder",
-                ));
-            }
-            (None, None) => {
-                return Err(table.error(
-                    "this board has no program",
-                    "add a line `elf = ...` with the path of an ELF file, or `firmware = ...` with \
-                     the folder of a Cargo package",
-                ));
-            }
-        };
-        Ok(Self {
-            machine: text(fields.require("machine")?)?,
-            emulator: fields.or("emulator", String::from("qemu-system-arm"), text)?,
-            program,
-            picture: fields.or("picture", None, |value| text(value).map(Some))?,
-            format: fields.or("format", Format::F32, format)?,
-            shift: fields.or("shift", 4, |value| value.integer_in(0..=10))?,
-            seconds: fields.or("seconds", 300, |value| value.integer_in(1..=86_400))?,
-            budget: fields.or("budget", BTreeMap::new(), |table| {
-                let entries = table.entries()?.into_iter();
-                entries
-                    .map(|(name, value)| Ok((name.text, value.count()?)))
-                    .collect()
-            })?,
-        })
-    }
-}
-
 /// Names the pictures that show what is broken, as the checks are named and what they run on; with
 /// a number where that makes two names equal.
 fn name_evidence(checks: &mut [Check]) {
@@ -464,85 +367,4 @@ fn name_evidence(checks: &mut [Check]) {
         });
         check.evidence = names.collect();
     }
-}
-
-fn target(value: Value<'_>) -> Result<&'static board::Board, SceneError> {
-    let name = value.word(&BOARDS.map(|board| board.name))?;
-    Ok(board::Board::named(name).unwrap_or(&BOARDS[0]))
-}
-
-fn format(value: Value<'_>) -> Result<Format, SceneError> {
-    let name = value.word(&Format::ALL.map(Format::name))?;
-    Ok(Format::ALL
-        .into_iter()
-        .find(|format| format.name() == name)
-        .unwrap_or(Format::F32))
-}
-
-fn formats(value: Value<'_>) -> Result<Vec<Format>, SceneError> {
-    let items = value.items("`formats = [\"fixed\", \"f32\"]`")?;
-    let formats: Vec<Format> = items.map(format).collect::<Result<_, _>>()?;
-    let twice = (1..formats.len()).any(|last| formats[..last].contains(&formats[last]));
-    if formats.is_empty() || twice {
-        return Err(value.error(
-            "`formats` must name one format or several, none of them twice",
-            "write `formats = [\"f32\"]`, or more",
-        ));
-    }
-    Ok(formats)
-}
-
-fn structure(value: Value<'_>) -> Result<Structure, SceneError> {
-    let name = value.text()?;
-    let named = Structure::ALL
-        .into_iter()
-        .find(|structure| structure.name() == name);
-    named.ok_or_else(|| {
-        let names = || Structure::ALL.into_iter().map(Structure::name);
-        let near = nearest(name, names()).unwrap_or_default();
-        let all: Vec<_> = names().collect();
-        value.error(
-            format!("there is no acceleration structure {name:?}"),
-            format!("did you mean {near:?}? There are {}", all.join(", ")),
-        )
-    })
-}
-
-fn size(value: Value<'_>) -> Result<[u16; 2], SceneError> {
-    let example = "`size = [640, 480]`";
-    let sides: Vec<_> = value.items(example)?.collect();
-    let [width, height] = sides[..] else {
-        return Err(value.mistyped("a width and a height", example));
-    };
-    let side = |value: Value<'_>| Ok(value.integer_in(1..=u16::MAX.into())? as u16);
-    let (width, height) = (side(width)?, side(height)?);
-    if u32::from(width) > 64 * u32::from(height) {
-        return Err(value.error(
-            "the picture is more than 64 times as wide as high",
-            "write a smaller width or a larger height",
-        ));
-    }
-    Ok([width, height])
-}
-
-fn hashes(value: Value<'_>, formats: &[Format]) -> Result<BTreeMap<String, String>, SceneError> {
-    let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
-    let fields = value.fields("hash table", &[&names])?;
-    let held = names
-        .iter()
-        .filter_map(|name| Some((name, fields.get(name)?)));
-    held.map(|(name, value)| {
-        let hash = value.text()?;
-        let digits = hash
-            .bytes()
-            .all(|it| matches!(it, b'0'..=b'9' | b'a'..=b'f'));
-        if hash.len() != 16 || !digits {
-            return Err(value.error(
-                format!("`{hash}` is no hash of a picture: those have 16 hexadecimal digits"),
-                "remove it, and let `gridel check --bless` record the picture's",
-            ));
-        }
-        Ok((String::from(*name), hash.to_owned()))
-    })
-    .collect()
 }

@@ -3,7 +3,7 @@
 
 use super::manifest::Budget;
 use super::report::{Figure, Key, Outcome};
-use super::run::Run;
+use super::run::{Compared, Run};
 use crate::measure::board::{Account, Board, MemoryReport, NotMeasured, Target};
 use crate::table::grouped;
 use gridel_core::{Format, Scene, Structure};
@@ -87,14 +87,12 @@ impl Run<'_> {
             };
             let keys = ["budget", what].map(|name| Key::Name(name.into()));
             let help = help(&report, what, scene);
-            self.held_to(
-                on(),
+            let compared = Compared {
                 what,
-                Figure::Count(found),
-                Some(allowed),
-                keys.into(),
-                Some(help),
-            );
+                found: Figure::Count(found),
+                most: Some(allowed),
+            };
+            self.held_to(on(), compared, keys.into(), Some(help));
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::board::{self, Ran};
 use super::explained::explained;
 use super::image::Image;
-use super::manifest::{Board, Check, Manifest, Reference};
+use super::manifest::{Check, Manifest, Reference};
 use super::report::{Evidence, Figure, Finding, Key, Outcome, Record, Report};
 use crate::blob::{Blob, best_structures, is_blob};
 use crate::compile::{self, Options};
@@ -40,6 +40,13 @@ pub(super) struct Run<'r> {
     warnings: &'r mut Vec<String>,
 }
 
+/// A figure, and the most that is allowed.
+pub(super) struct Compared<'c> {
+    pub(super) what: &'c str,
+    pub(super) found: Figure,
+    pub(super) most: Option<Figure>,
+}
+
 impl Run<'_> {
     /// Everything; an error is one that leaves nothing to measure.
     fn all(&mut self, progress: &dyn Fn()) -> Result<(), String> {
@@ -65,13 +72,12 @@ impl Run<'_> {
             budget.stack_entries.map(Figure::Count),
         );
         self.memory(&scene, blob.bytes());
-        let mut names = check.evidence.iter();
-        for (&format, name) in check.formats.iter().zip(&mut names) {
+        for (&format, name) in check.formats.iter().zip(&check.evidence) {
             self.format(&scene, structure, format, name)?;
             progress();
         }
-        for ((number, board), name) in check.boards.iter().enumerate().zip(names) {
-            self.board(number, board, &blob, &scene, structure, name)?;
+        for number in 0..check.boards.len() {
+            self.board(number, &blob, &scene, structure)?;
             progress();
         }
         Ok(())
@@ -232,7 +238,7 @@ impl Run<'_> {
                 let remedy = if may_be_recorded {
                     "check the path, or let `gridel check --bless` record the picture there"
                 } else {
-                    "write the path of a PNG with 8 bits a channel; `--bless` overwrites no others"
+                    "write the path of a PNG with 8 bits per channel; `--bless` overwrites no others"
                 };
                 let cause = format!("cannot be read: {error}");
                 let error = self.manifest.error(&reference.picture, cause, remedy);
@@ -273,12 +279,12 @@ impl Run<'_> {
     fn board(
         &mut self,
         number: usize,
-        board: &Board,
         blob: &Blob,
         scene: &Scene<'_>,
         structure: Structure,
-        name: &str,
     ) -> Result<(), String> {
+        let check = self.check;
+        let board = &check.boards[number];
         let on = || Some(board.machine.clone());
         let ran = board::run(self.manifest, board, blob);
         let figures = board.budget.iter();
@@ -305,10 +311,15 @@ impl Run<'_> {
                         Key::Name("budget".into()),
                     ];
                     let keys = keys.into_iter().chain([Key::Name(name.clone())]).collect();
-                    self.held_to(on(), name, found, most, keys, None);
+                    let compared = Compared {
+                        what: name,
+                        found,
+                        most,
+                    };
+                    self.held_to(on(), compared, keys, None);
                 }
                 (Some(None), _) => {
-                    let why = format!("the program prints no figure {name:?}");
+                    let why = format!("the program does not print the figure {name:?}");
                     self.push(on(), name, None, most, Outcome::Broken(why));
                 }
                 (None, Some(outcome)) => {
@@ -339,6 +350,7 @@ impl Run<'_> {
                 let size = expected.size;
                 let rendered = Image { size, pixels };
                 let why = "the board's picture is not the host's";
+                let name = &check.evidence[check.formats.len() + number];
                 let evidence = evidence(name, &rendered, Some(expected));
                 (String::from(why), Some(evidence))
             }
@@ -360,7 +372,7 @@ impl Run<'_> {
     fn budget(&mut self, on: Option<String>, what: &str, found: Figure, most: Option<Figure>) {
         if most.is_some() {
             let keys = vec![Key::Name("budget".into()), Key::Name(what.into())];
-            self.held_to(on, what, found, most, keys, None);
+            self.held_to(on, Compared { what, found, most }, keys, None);
         }
     }
 
@@ -368,12 +380,11 @@ impl Run<'_> {
     pub(super) fn held_to(
         &mut self,
         on: Option<String>,
-        what: &str,
-        found: Figure,
-        most: Option<Figure>,
+        compared: Compared<'_>,
         keys: Vec<Key>,
         help: Option<String>,
     ) {
+        let Compared { what, found, most } = compared;
         let within = most.as_ref().is_none_or(|most| found.within(most));
         let record = (!within).then(|| self.value(keys, &found));
         let outcome = if within {
@@ -423,7 +434,7 @@ fn structure(check: &Check, scene: &Scene<'_>) -> Result<Structure, String> {
         None => Ok(best_structures(scene).next().unwrap_or(Structure::List)),
         Some(structure) if scene.holds(structure) => Ok(structure),
         Some(structure) => Err(format!(
-            "{} holds no structure {name}: build it with `--accel {name}`",
+            "{} has no structure {name}: build it with `--accel {name}`",
             check.scene.path.display(),
             name = structure.name()
         )),

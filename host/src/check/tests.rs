@@ -106,7 +106,7 @@ fn mistakes_name_line_cause_and_remedy() {
         (
             "[[check]]\nscene = \"a\"\nhash = { f32 = \"zz\" }",
             3,
-            "`zz` is no hash",
+            "`zz` is not a picture hash",
             "--bless",
         ),
         (
@@ -411,7 +411,10 @@ mod boards {
             whys[0].contains("bytes is 500, and at most 400"),
             "{whys:?}"
         );
-        assert!(whys[2].contains("prints no figure \"lost\""), "{whys:?}");
+        assert!(
+            whys[2].contains("does not print the figure \"lost\""),
+            "{whys:?}"
+        );
         assert!(
             whys[3].contains("has 3 bytes and the host's 576"),
             "{whys:?}"
@@ -436,7 +439,9 @@ mod boards {
         assert!(matches!(&missing.outcome, Outcome::NotRun(why) if why.contains("not installed")));
         fs::write(folder.path("program.elf"), BALL).unwrap();
         let text = first(&board(&toy, budget));
-        assert!(matches!(&text.outcome, Outcome::Broken(why) if why.contains("is no ELF file")));
+        assert!(
+            matches!(&text.outcome, Outcome::Broken(why) if why.contains("is not an ELF file"))
+        );
         fs::write(folder.path("program.elf"), "\x7fELF").unwrap();
         let failed = first(&board(&toy, budget));
         assert!(matches!(&failed.outcome, Outcome::Broken(why) if why.contains("no luck")));

@@ -12,7 +12,7 @@ use super::source::Source;
 use clap::Args;
 use gridel_core::{Format, Scene, Structure};
 use gridel_host::blob::is_blob;
-use gridel_host::compile::{self, Builder, Figures, LeftOut, Report, TableStats};
+use gridel_host::compile::{self, Builder, Figures, KeptNames, LeftOut, Report, TableStats};
 use gridel_host::emit::{self, Emitted};
 use gridel_host::measure::board::Board;
 use gridel_host::measure::board::{Account, MemoryReport};
@@ -70,6 +70,11 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     emit_rust: Option<PathBuf>,
 
+    /// Leave out the names of objects, materials and lights [default: the blob has them, unless it is
+    /// for a board (--target, --ram, --flash, --emit-rust) or exceeds --max-bytes with them]
+    #[arg(long)]
+    strip_names: bool,
+
     /// Print the report as JSON
     #[arg(long)]
     json: bool,
@@ -112,6 +117,9 @@ struct Built<'r> {
     effects: Vec<CalledFor>,
     supplied: &'r [String],
     tables: &'r [TableStats],
+    /// Where the scene has names that the blob is to have.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    names: Option<KeptNames>,
     warnings: &'r [String],
     /// Objects that some formats do not resolve.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
@@ -137,13 +145,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         if folder.exists() && !folder.is_dir() {
             return Err(Failure::usage(
                 format!("{} is not a folder", folder.display()),
-                "give the folder that the module and its blob shall lie in; it need not exist",
+                "give the folder that the module and its blob lie in; it need not exist",
             ));
         }
         refuse_foreign(&folder.join(emit::BLOB), "blob", is_blob)?;
         refuse_foreign(
             &folder.join(emit::MODULE),
-            "module of gridel's",
+            "module of Gridel",
             emit::is_module,
         )?;
     }
@@ -155,6 +163,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         leaf_size: arguments.leaf_size.map_or(0, usize::from),
         builder: arguments.builder.unwrap_or_default(),
         max_bytes: arguments.max_bytes,
+        names: !arguments.strip_names
+            && arguments.target.target().is_none()
+            && arguments.emit_rust.is_none(),
         ..compile::Options::default()
     })?;
     let scene_options = arguments.target.aimed(&arguments.scene_options)?;
@@ -247,7 +258,7 @@ fn refuse_foreign(
     if is_foreign {
         return Err(Failure::usage(
             format!(
-                "{} is there and is no {sort}: it would be lost",
+                "{} exists and is not a {sort}: it would be overwritten",
                 path.display()
             ),
             "write to another name or folder, or move that file away",
@@ -282,6 +293,7 @@ impl<'r> Built<'r> {
             effects: CalledFor::in_report(report),
             supplied: &report.supplied,
             tables: &report.tables,
+            names: report.names,
             warnings,
             unresolved: &[],
             memory: None,
@@ -350,6 +362,16 @@ impl<'r> Built<'r> {
                     counted(entries as usize, "entry"),
                     grouped(longest),
                     counted(bytes as usize, "byte")
+                ),
+            );
+        }
+        if let Some(KeptNames { names, bytes, .. }) = self.names.filter(|kept| kept.names > 0) {
+            line(
+                "names",
+                format!(
+                    "{}, {}; --strip-names leaves them out",
+                    counted(names, "name"),
+                    counted(bytes, "byte")
                 ),
             );
         }

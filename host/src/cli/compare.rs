@@ -161,7 +161,10 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
     let wrong: Vec<_> = rows.filter(|row| row.wrong.is_some()).collect();
     if let Some(first) = wrong.first() {
         return Err(Failure::failed(
-            format!("{} has answers that are not the list's", first.structure),
+            format!(
+                "{} gives answers that differ from brute force",
+                first.structure
+            ),
             "this is a fault of gridel: report it with the scene file",
         ));
     }
@@ -180,7 +183,7 @@ fn text(report: &Report<'_>) -> String {
     let rays = comparison.rays;
     let mut text = format!(
         "{}: {}, {} by {} pixels, {}\n{} primary, {} shadow, {} mirrored and refracted rays; \
-         the list was asked about {}\n\n",
+         {} compared with brute force\n\n",
         report.scene,
         counted(comparison.primitives, "primitive"),
         comparison.size[0],
@@ -192,7 +195,7 @@ fn text(report: &Report<'_>) -> String {
         grouped(comparison.listed),
     );
     let mut makes = Table::new([
-        ("to make and hold", Align::Left),
+        ("building and memory", Align::Left),
         ("SAH cost", Align::Right),
         ("set-up ms", Align::Right),
         ("peak KiB", Align::Right),
@@ -258,7 +261,7 @@ fn tests(title: &str, comparison: &Comparison, of: fn(&Works) -> Option<Work>) -
             figure(|work| work.objects),
             rate.map_or(String::from("-"), |rate| format!("{:.3}", rate / 1e6)),
             match &row.wrong {
-                None => String::from("the list's"),
+                None => String::from("equal"),
                 Some(wrong) => format!("WRONG for {}: {}", counted(wrong.rays, "ray"), wrong.first),
             },
         ]);

@@ -8,8 +8,11 @@ use super::source::Source;
 use clap::{ArgGroup, Args};
 use glam::DVec3;
 use gridel_core::{Settings, Structure};
-use gridel_host::explain::{ExplainError, Shown, Subject, explain};
+use gridel_host::compile::Names;
+use gridel_host::explain::{ExplainError, Fall, Shown, Story, Subject, explain};
 use gridel_host::trace::SceneRay;
+use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Explain the color of a pixel, or the hit of a ray
@@ -65,13 +68,13 @@ pub struct Arguments {
     aim: Aim,
 }
 
-/// Tells a story.
+/// Explains a pixel or a ray.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.ray.is_some()
         && let Some(option) = arguments.picture.of_pixels()
     {
         return Err(Failure::usage(
-            format!("{option} is for pixels, and a ray is explained"),
+            format!("{option} is for pixels, not for --ray"),
             "leave the option out",
         ));
     }
@@ -104,14 +107,52 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let story = explain(&scene, arguments.with.format, structure, settings, subject)
         .map_err(|error| failure(&error))?;
+    let names = source.names(&scene);
     if arguments.json {
+        let objects = named(&story, &names);
+        let story = Named { story, objects };
         return print_json_warned(&story, &source.warnings);
     }
     print(Shown {
         story: &story,
-        names: &source.names,
+        names: &names,
         all_walks: arguments.all_walks,
     })
+}
+
+/// A story, with the names of the objects that it tells of.
+#[derive(Serialize)]
+struct Named {
+    #[serde(flatten)]
+    story: Story,
+    /// By number; those without a name are missing.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    objects: BTreeMap<u32, ObjectNames>,
+}
+
+#[derive(Serialize)]
+struct ObjectNames {
+    name: Option<String>,
+    material: Option<String>,
+}
+
+fn named(story: &Story, names: &Names) -> BTreeMap<u32, ObjectNames> {
+    let rays = story.samples.iter().flat_map(|sample| &sample.rays);
+    let objects = rays.flat_map(|ray| {
+        let blocking = ray.lights.iter().filter_map(|light| match light.fall {
+            Fall::Blocked { object, .. } => Some(object),
+            _ => None,
+        });
+        blocking.chain(ray.hit.as_ref().map(|hit| hit.object))
+    });
+    let named = objects.map(|object| {
+        let name = names.object(object).map(str::to_owned);
+        let material = names.material_of(object).map(str::to_owned);
+        (object, ObjectNames { name, material })
+    });
+    named
+        .filter(|(_, it)| it.name.is_some() || it.material.is_some())
+        .collect()
 }
 
 fn failure(error: &ExplainError) -> Failure {

@@ -8,10 +8,10 @@ use super::source::Source;
 use clap::Args;
 use glam::DVec3;
 use gridel_core::{Format, Kind, Scene, Structure};
-use gridel_host::compile;
+use gridel_host::compile::{self, Names};
 use gridel_host::measure::board::{Account, MemoryReport};
 use gridel_host::measure::{MemoryMap, WorkingMemory, working_memory};
-use gridel_host::table::{Align, Table, grouped, power_of_two};
+use gridel_host::table::{Align, Table, grouped, power_of_two, printable};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -45,6 +45,8 @@ struct Inspection {
     memory_map: MemoryMap,
     limits: Limits,
     contents: Contents,
+    /// Empty where the blob has none.
+    names: NameLists,
     working_memory: Vec<WorkingMemory>,
     effects: Vec<CalledFor>,
     /// Where a board is given.
@@ -67,6 +69,45 @@ struct Limits {
     bounds: [[f64; 3]; 2],
 }
 
+/// The names in a blob, in the order of what they name. An empty one is none.
+#[derive(Serialize)]
+struct NameLists {
+    objects: Vec<String>,
+    materials: Vec<String>,
+    lights: Vec<String>,
+}
+
+impl From<Names> for NameLists {
+    fn from(names: Names) -> Self {
+        let Names {
+            objects,
+            materials,
+            lights,
+            ..
+        } = names;
+        Self {
+            objects,
+            materials,
+            lights,
+        }
+    }
+}
+
+/// Names that the text shows of each list; JSON has all.
+const SHOWN: usize = 8;
+
+/// The first names of a list, each with its number where there is none.
+fn first_names(names: &[String]) -> String {
+    let shown = names.iter().enumerate().take(SHOWN);
+    let shown = shown.map(|(number, name)| match name.as_str() {
+        "" => format!("(number {number})"),
+        name => printable(name),
+    });
+    let rest = names.len().saturating_sub(SHOWN);
+    let more = (rest > 0).then(|| format!("and {} more", grouped(rest)));
+    shown.chain(more).collect::<Vec<_>>().join(", ")
+}
+
 #[derive(Serialize)]
 struct Contents {
     structures: Vec<&'static str>,
@@ -81,7 +122,10 @@ struct Contents {
 
 /// Shows what is in a blob.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let compiling = compile::Options::default();
+    let compiling = compile::Options {
+        names: arguments.target.target().is_none(),
+        ..compile::Options::default()
+    };
     let scene_options = arguments.target.aimed(&arguments.scene_options)?;
     let source = Source::open(&arguments.input, &scene_options, None, compiling)?;
     let scene = source.scene()?;
@@ -91,6 +135,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         memory_map: MemoryMap::of(&scene, source.blob.bytes()),
         limits: limits(&scene),
         contents: contents(&scene),
+        names: Names::of_blob(&scene, source.blob.bytes())
+            .unwrap_or_default()
+            .into(),
         working_memory: working_memory(&scene),
         effects: match &source.report {
             Some(report) => CalledFor::in_report(report),
@@ -193,7 +240,10 @@ impl Inspection {
 
     fn facts(&self) -> Table {
         let Self {
-            limits, contents, ..
+            limits,
+            contents,
+            names,
+            ..
         } = self;
         let mut table = Table::untitled([Align::Left, Align::Left]);
         let mut line = |what: &str, value: String| table.row([what.to_owned(), value]);
@@ -218,6 +268,15 @@ impl Inspection {
         );
         line("materials", contents.materials.to_string());
         line("lights", contents.lights.to_string());
+        for (what, names) in [
+            ("object names", &names.objects),
+            ("material names", &names.materials),
+            ("light names", &names.lights),
+        ] {
+            if names.iter().any(|name| !name.is_empty()) {
+                line(what, first_names(names));
+            }
+        }
         line("stack depth", limits.stack_depth.to_string());
         line("longest leaf", limits.longest_leaf.to_string());
         line(

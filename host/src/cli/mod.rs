@@ -27,6 +27,7 @@ mod explain;
 mod help;
 mod inspect;
 mod merge;
+mod names;
 mod render;
 mod sample;
 #[cfg(feature = "shell")]

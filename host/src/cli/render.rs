@@ -247,7 +247,7 @@ fn job(arguments: &Arguments, source: &Source, scene: &Scene<'_>) -> Result<Job,
         let most = MOST_PIXELS / usize::from(width);
         return Err(Failure::usage(
             format!(
-                "{} pixels are more than the {} that are held at once",
+                "{} pixels exceed the {} that fit in memory at once",
                 grouped(pixels),
                 grouped(MOST_PIXELS)
             ),
@@ -344,7 +344,7 @@ impl Stats {
             table.row([what.to_owned(), grouped(count), a_ray(count)]);
         }
         table.row([
-            String::from("rays a second"),
+            String::from("rays per second"),
             grouped(self.rays_per_second.round()),
             String::new(),
         ]);

@@ -8,12 +8,11 @@ use super::output::warn;
 use super::progress::Progress;
 use gridel_core::{BlobError, Format, Scene, Structure};
 use gridel_host::blob::{self, Blob};
-use gridel_host::compile::{self, CompileError, Compiled};
-use gridel_host::explain::Names;
+use gridel_host::compile::{self, CompileError, Compiled, Names};
 use gridel_host::measure::board::{Fit, MemoryReport};
 use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
 use gridel_host::scene::{self, Imported};
-use gridel_host::table::{counted, grouped, significant};
+use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::Path;
 
 /// A blob, from wherever it came.
@@ -24,8 +23,8 @@ pub struct Source {
     pub report: Option<compile::Report>,
     /// What the importer told, and of what the lattice moves far.
     pub warnings: Vec<String>,
-    /// What a scene file calls its objects.
-    pub names: Names,
+    /// The names of a scene file.
+    names: Option<Names>,
     /// How a scene file was read and compiled.
     made_by: Option<(scene::ImportOptions, compile::Options)>,
 }
@@ -86,7 +85,7 @@ impl Source {
             input,
             report: None,
             warnings: Vec::new(),
-            names: Names::default(),
+            names: None,
             made_by: None,
         })
     }
@@ -125,12 +124,16 @@ impl Source {
             warn(&warning);
             warnings.push(warning);
         }
+        if let Some(warning) = names_changed(&report) {
+            warn(&warning);
+            warnings.push(warning);
+        }
         Ok(Self {
             input,
             blob,
             report: Some(report),
             warnings,
-            names: names(&imported.scene),
+            names: Some(Names::of_scene(&imported.scene)),
             made_by: Some((options.geometry.import.for_import(), compiling)),
         })
     }
@@ -164,9 +167,13 @@ impl Source {
         }
     }
 
-    /// The checked view of the blob.
+    /// The checked view of the blob, whose names are valid as well.
     pub fn scene(&self) -> Result<Scene<'_>, Failure> {
-        self.blob.scene().map_err(|error| {
+        let checked = self.blob.scene().and_then(|scene| {
+            gridel_core::Names::from_bytes(self.blob.bytes())?;
+            Ok(scene)
+        });
+        checked.map_err(|error| {
             let remedy = match (&self.report, error) {
                 (Some(_), _) => "this is a fault of gridel: report it with the scene file",
                 (None, BlobError::Truncated { .. } | BlobError::Checksum { .. }) => {
@@ -179,6 +186,12 @@ impl Source {
             };
             Failure::failed(format!("{}: {error}", self.input.path().display()), remedy)
         })
+    }
+
+    /// The names of a scene file, or those in the blob.
+    pub fn names(&self, scene: &Scene<'_>) -> Names {
+        let in_blob = || Names::of_blob(scene, self.blob.bytes()).unwrap_or_default();
+        self.names.clone().unwrap_or_else(in_blob)
     }
 
     /// The structure asked for, or else the best that the blob holds.
@@ -195,7 +208,7 @@ impl Source {
                 let held: Vec<_> = held.map(Structure::name).collect();
                 Err(Failure::usage(
                     format!(
-                        "{} holds no structure {}, only: {}",
+                        "{} has no structure {}, only: {}",
                         self.input.path().display(),
                         structure.name(),
                         held.join(", ")
@@ -217,7 +230,7 @@ impl Source {
         ] {
             if left_out.count() > 0 {
                 warn(format!(
-                    "{}: {} {why}, left out; `gridel build` names the first",
+                    "{}: {} {why}, left out; `gridel build` lists the first",
                     self.input.path().display(),
                     counted(left_out.count(), "primitive")
                 ));
@@ -239,9 +252,10 @@ impl Source {
             found.retain(is_coarse);
         }
         let file = self.input.path().display();
+        let names = self.names(scene);
         for it in found.iter().take(NAMED) {
-            let name = self.names.objects.get(it.object as usize);
-            let name = name.map_or(String::new(), |name| format!(" `{name}`"));
+            let name = names.object(it.object);
+            let name = name.map_or(String::new(), |name| format!(" `{}`", printable(name)));
             let bounds = it.formats.iter().map(|coarse| {
                 let bound = significant(coarse.bound);
                 format!("{} there ({bound} scene units)", coarse.format)
@@ -280,6 +294,25 @@ fn far_moved(report: &compile::Report, lattice_bits: u8) -> Option<String> {
     ))
 }
 
+/// Says which names the blob lacks or has in part.
+fn names_changed(report: &compile::Report) -> Option<String> {
+    let names = report.names?;
+    if names.left_out {
+        return Some(String::from(
+            "the names are left out, because the blob would exceed `--max-bytes`; raise it to keep them",
+        ));
+    }
+    (names.shortened > 0).then(|| {
+        format!(
+            "{} cut to 255 bytes in the blob; give shorter names",
+            match names.shortened {
+                1 => String::from("1 name is"),
+                many => format!("{} names are", grouped(many)),
+            }
+        )
+    })
+}
+
 /// Reads a scene file, warns of what its importer passed over, and changes what was asked for.
 pub fn import(path: &Path, options: &SceneOptions) -> Result<Imported, Failure> {
     import_from(&Input::open(path)?, options)
@@ -313,12 +346,4 @@ fn import_from(input: &Input, options: &SceneOptions) -> Result<Imported, Failur
     }
     options.view.apply(&mut imported.scene)?;
     Ok(imported)
-}
-
-fn names(scene: &scene::Scene) -> Names {
-    let material = |object: &scene::Object| scene.materials[object.material].name.clone();
-    Names {
-        objects: scene.objects.iter().map(|o| o.name.clone()).collect(),
-        materials: scene.objects.iter().map(material).collect(),
-    }
 }

@@ -3,7 +3,11 @@
 use super::arguments::{self, GeometryOptions, TraceOptions};
 use super::failure::Failure;
 use super::input::{is_standard, standard_input};
-use super::output::{Warned, check_extension, json, print_about, prove, refuse_same, write_file};
+use super::names::{NameTable, hits_by_name};
+use super::output::{
+    Content, Warned, check_extension, json, print_about, prove, refuse_inputs, refuse_same,
+    write_files,
+};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
@@ -14,6 +18,7 @@ use gridel_host::trace::{Query, Rejections, SceneHit, SceneRay, trace, trace_cou
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -62,6 +67,11 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = arguments::threads())]
     threads: usize,
 
+    /// Write the names of objects, materials and lights, and the primitives of each object; with
+    /// --json, count the hits by name too
+    #[arg(long, value_name = "NAMES.json")]
+    names: Option<PathBuf>,
+
     /// Print counts and times as JSON; an extra run, before the timed ones, counts the tests
     #[arg(long)]
     json: bool,
@@ -93,6 +103,9 @@ struct Traced {
     rays_per_second: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     counters: Option<Tests>,
+    /// Where names are written, and hits know their objects.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    hits_by_name: Option<BTreeMap<String, usize>>,
 }
 
 /// A ray that was not answered.
@@ -117,6 +130,25 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     refuse_same(&arguments.rays, &arguments.output)?;
     check_extension(&arguments.output, &["npy"], "hits")?;
     prove(&arguments.output)?;
+    if let Some(path) = &arguments.names {
+        refuse_inputs(
+            [
+                arguments.input.as_path(),
+                arguments.rays.as_path(),
+                arguments.output.as_path(),
+            ],
+            [path],
+            "a file of this command",
+        )?;
+        check_extension(path, &["json"], "names")?;
+        prove(path)?;
+        if is_standard(path) {
+            return Err(Failure::usage(
+                "names cannot go to standard output, where the report goes",
+                "name a file, such as `--names names.json`",
+            ));
+        }
+    }
     if is_standard(&arguments.input) && is_standard(&arguments.rays) {
         return Err(Failure::usage(
             "scene and rays are both to come from standard input",
@@ -172,7 +204,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         })
         .collect();
     drop(progress);
-    write_file(&arguments.output, |out| write_hits(out, &hits))?;
+    let names = source.names(&scene);
+    let write_hits: Content<'_> = &|out| write_hits(out, &hits);
+    match &arguments.names {
+        Some(path) => {
+            let table = json(&NameTable::of(&scene, &names))?;
+            let write_names: Content<'_> = &|out| out.write_all(table.as_bytes());
+            write_files(&[(&arguments.output, write_hits), (path, write_names)])?;
+        }
+        None => write_files(&[(&arguments.output, write_hits)])?,
+    }
 
     let places = (0..).step_by(CHUNK);
     let rejections = places
@@ -203,6 +244,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             boxes: counters.boxes,
             objects: counters.objects,
         }),
+        hits_by_name: (arguments.names.is_some() && !query.any)
+            .then(|| hits_by_name(&hits, &names)),
     };
     let report = match arguments.json {
         true => json(&Warned {
@@ -278,7 +321,7 @@ impl Traced {
         }
         for seconds in &self.seconds {
             text.push_str(&format!(
-                "{seconds:.6} s, {} rays a second\n",
+                "{seconds:.6} s, {} rays per second\n",
                 grouped((self.rays as f64 / seconds.max(f64::MIN_POSITIVE)).round())
             ));
         }

@@ -88,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         0 => Ok(()),
         broken => Err(Failure::failed(
             format!(
-                "{}: promises were broken {} times",
+                "{}: answers broke a promise {} times",
                 input.display(),
                 grouped(broken)
             ),
@@ -99,7 +99,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 fn text(arguments: &Arguments, report: &Report) -> String {
     let mut text = format!(
-        "{}: {} and as many from inside of {}, through {}\n\n",
+        "{}: {}, and as many from inside {}, in {}\n\n",
         arguments.input.display(),
         counted(report.rays as usize, "ray"),
         counted(report.closed_meshes, "closed mesh"),
@@ -125,8 +125,9 @@ fn text(arguments: &Arguments, report: &Report) -> String {
     let _ = writeln!(text, "{table}");
     let _ = writeln!(
         text,
-        "A ray grazes within {:.0} degrees of a surface: there t is off by many steps where the \
-         surface is off by one.\nThe surface is off by no more than {}. t is off by the most for",
+        "A ray grazes a surface within {:.0} degrees of it: an error of one step of the surface is then \
+         an error of many steps of t.\nThe surface is off by at most {} steps. The rays with the \
+         largest errors of t:",
         judge::GRAZING.asin().to_degrees(),
         judge::STEPS,
     );

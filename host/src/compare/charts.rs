@@ -54,8 +54,8 @@ pub fn charts(
         (
             "rates.svg",
             bars(
-                &title("rays a second on one thread"),
-                "rays a second",
+                &title("rays per second on one thread"),
+                "rays per second",
                 &groups,
                 &rates,
             )?,
@@ -63,9 +63,9 @@ pub fn charts(
         (
             "growth-rates.svg",
             curves(
-                &title("primary rays a second on one thread, over parts of the scene"),
+                &title("primary rays per second on one thread, over parts of the scene"),
                 objects,
-                "rays a second",
+                "rays per second",
                 &curve(primary_rate),
             )?,
         ),

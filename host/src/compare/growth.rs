@@ -126,6 +126,7 @@ fn part(scene: &Scene, primitives: &[Part]) -> Scene {
         objects: objects.collect(),
         lights: scene.lights.clone(),
         materials: scene.materials.clone(),
+        light_names: Vec::new(),
         ..*scene
     }
 }

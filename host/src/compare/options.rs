@@ -75,7 +75,7 @@ pub enum CompareError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Rays(#[from] PictureRaysError),
-    #[error("the compiler's own blob is refused: {0}")]
+    #[error("the compiled blob is rejected: {0}")]
     #[diagnostic(help("this is a fault of gridel: report it with the scene file"))]
     Blob(#[from] BlobError),
 }

@@ -47,7 +47,7 @@ pub enum CompileError {
         most: usize,
     },
     #[error(
-        "the {what} lies {distance:.3e} scene units from a scene of {size:.3e}: too far to be told"
+        "the {what} lies {distance:.3e} scene units from a scene of {size:.3e}: too far for the number formats"
     )]
     #[diagnostic(help("move it nearer; a directional light is as good as one this far away"))]
     FarAway {

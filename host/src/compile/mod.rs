@@ -16,6 +16,7 @@ mod framing;
 mod hierarchy;
 mod lattice;
 mod layout;
+mod names;
 mod octree;
 mod options;
 mod pairs;
@@ -35,12 +36,14 @@ pub use candidates::lists::Figures;
 pub use error::CompileError;
 pub use framing::{BACKGROUND, framing};
 pub use lattice::BITS as LATTICE_BITS;
+pub use names::{KeptNames, Names};
 pub use options::{LARGEST_LEAF, Options, Tell};
 pub use primitives::LeftOut;
 pub use structures::{takes_hierarchy, usual_budget};
 pub use wide::Quality;
 
 use crate::scene::{Object, Scene};
+use crate::table::printable;
 use advice::{Size, advice};
 use candidates::target::Targets;
 use context::BuildContext;
@@ -96,6 +99,8 @@ pub struct Report {
     pub setup: Duration,
     /// Structures with tables of candidate lists.
     pub tables: Vec<TableStats>,
+    /// What became of the names; `None` where they are not asked for, or there are none.
+    pub names: Option<KeptNames>,
 }
 
 /// A structure with tables of candidate lists, and what they came to.
@@ -113,6 +118,16 @@ pub struct TableStats {
 /// # Errors
 /// If the scene does not fit a lattice, a count does not fit the format, or the blob is larger than
 /// the options allow.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// let compiled = compile(&imported.scene, &Options::default())?;
+/// assert_eq!(compiled.report.bytes, compiled.blob.bytes().len());
+/// assert!(compiled.report.largest_displacement < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileError> {
     compile_telling(scene, options, &|_, _, _| ())
 }
@@ -174,14 +189,25 @@ pub fn compile_telling(
     let longest_lists = layouts.iter().map(|layout| layout.longest_list);
     let longest_list = longest_lists.max().unwrap_or(0);
     let sizes: Vec<Size> = layouts.iter().map(Size::of).collect();
-    let parts = writer::parts(&context, layouts);
+    let mut parts = writer::parts(&context, layouts);
+    let names = if options.names && !scene.unnamed {
+        parts.add_names(&names::Names::of_scene(scene), options.max_bytes)
+    } else {
+        None
+    };
     // A table may fill what memory there is; all that it was built from makes room for the blob.
     drop((root, order, wide));
     let blob = writer::write(parts)?;
     let bytes = blob.bytes().len();
     if let Some(most) = options.max_bytes.filter(|&most| bytes as u64 > most) {
         let leaves = section::taken(flat.leaves.len() * size_of::<Leaf>());
-        let bytes_with = |other: &Options| Some(compile(scene, other).ok()?.report.bytes);
+        let bytes_with = |other: &Options| {
+            let unnamed = Options {
+                names: false,
+                ..other.clone()
+            };
+            Some(compile(scene, &unnamed).ok()?.report.bytes)
+        };
         let advice = advice(options, &blob, leaves, &sizes, &bytes_with);
         return Err(CompileError::TooLarge {
             bytes: bytes as u64,
@@ -207,6 +233,7 @@ pub fn compile_telling(
         supplied: surroundings.supplied.clone(),
         setup,
         tables,
+        names,
     };
     Ok(Compiled { blob, report })
 }
@@ -239,7 +266,7 @@ fn check(scene: &Scene, options: &Options) -> Result<(), CompileError> {
     let bad = |object: &&Object| !primitives::is_finite(&object.shape);
     if let Some(object) = scene.objects.iter().find(bad) {
         return Err(CompileError::NotFinite {
-            object: object.name.clone(),
+            object: printable(&object.name),
         });
     }
     Ok(())
@@ -322,6 +349,15 @@ impl Hierarchies {
 ///
 /// # Errors
 /// If the scene does not fit a lattice.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// let census = gridel_host::compile::cube_census(&imported.scene, 4)?;
+/// println!("{census:?}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn cube_census(scene: &Scene, gridels: u32) -> Result<CubeCensus, CompileError> {
     let bits = Options::default().lattice_bits;
     let (_, snapped) = snap(scene, primitives::extent(scene), bits)?;

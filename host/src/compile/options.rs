@@ -9,6 +9,19 @@ use gridel_core::format::Leaf;
 pub const LARGEST_LEAF: usize = Leaf::MAX_COUNT as usize;
 
 /// What to put into a blob.
+///
+/// ```
+/// use gridel_core::Structure;
+/// use gridel_host::compile::Options;
+///
+/// let options = Options {
+///     structures: vec![Structure::Flagged],
+///     lattice_bits: 16,
+///     names: true,
+///     ..Options::default()
+/// };
+/// assert_eq!(options.max_bytes, None);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Acceleration structures; the list is always there.
@@ -26,8 +39,10 @@ pub struct Options {
     pub slab_directions: usize,
     /// Divisions of the grid along each axis, 1 to 1024; four cells a primitive without.
     pub grid: Option<[u32; 3]>,
-    /// Refuse a blob that would be larger.
+    /// Refuse a blob that would be larger. Names that make it larger are left out.
     pub max_bytes: Option<u64>,
+    /// Whether the blob has the names of objects, materials and lights.
+    pub names: bool,
     /// Gridels along a side of a cylinder cube's faces, 1 to 64; otherwise as many as the budget
     /// holds.
     pub gridels: Option<u32>,
@@ -47,6 +62,7 @@ impl Default for Options {
             slab_directions: 7,
             grid: None,
             max_bytes: None,
+            names: false,
             gridels: None,
             budget: None,
         }

@@ -9,7 +9,7 @@ use super::lattice::Lattice;
 use super::solids::{self, Snapped, SnappedSphere, disc_reach};
 use super::torus;
 use crate::scene::{Object, Scene, Shape};
-use crate::table::grouped;
+use crate::table::{grouped, printable};
 use glam::{DVec3, IVec3};
 use gridel_core::Kind;
 use gridel_core::format::record::UnitBox;
@@ -284,7 +284,11 @@ impl Primitives {
                     let corners = triangle.map(|vertex| snapped[vertex as usize]);
                     if is_degenerate(corners) {
                         let [a, b, c] = triangle.map(|vertex| vertices[vertex as usize]);
-                        let name = format!("{} ({}, triangle {number})", object.name, object.place);
+                        let name = format!(
+                            "{} ({}, triangle {number})",
+                            printable(&object.name),
+                            object.place
+                        );
                         if (b - a).cross(c - a) == DVec3::ZERO {
                             self.without_area.add(name);
                         } else {
@@ -315,7 +319,7 @@ impl Primitives {
                 }
                 if flattened::is_flattened((vertices, &snapped), triangles) {
                     return Err(CompileError::Flattened {
-                        object: format!("{} ({})", object.name, object.place),
+                        object: format!("{} ({})", printable(&object.name), object.place),
                         step: lattice.step(),
                     });
                 }
@@ -381,7 +385,7 @@ impl Primitives {
         lattice: &Lattice,
         records: impl FnOnce(&mut Self) -> &mut Vec<T>,
     ) {
-        let name = || format!("{} ({})", object.name, object.place);
+        let name = || format!("{} ({})", printable(&object.name), object.place);
         let Some(Snapped {
             record,
             displacement,

@@ -4,6 +4,7 @@ use super::CompileError;
 use super::framing::{BACKGROUND, framing};
 use super::lattice::Lattice;
 use crate::scene::{Camera, Color, Diffuse, Light, Material, Scene, Shape};
+use crate::table::printable;
 use glam::DVec3;
 use gridel_core::Effects;
 use gridel_core::format::limits::FARTHEST;
@@ -83,7 +84,10 @@ impl Surroundings {
             let number = *numbers[object.material].get_or_insert_with(|| {
                 let material = &scene.materials[object.material];
                 let record = material_record(material, lattice);
-                called_for.push((record.effects(), format!("material {}", material.name)));
+                called_for.push((
+                    record.effects(),
+                    format!("material {}", printable(&material.name)),
+                ));
                 materials.push(record);
                 materials.len() as u32 - 1
             });

@@ -4,6 +4,7 @@ use super::CompileError;
 use super::context::BuildContext;
 use super::lattice::Lattice;
 use super::layout::Layout;
+use super::names::{KeptNames, Names};
 use super::pairs::Flat;
 use super::primitives::Primitives;
 use super::section::{Section, indices, section, three_bytes};
@@ -27,6 +28,45 @@ fn counts_up(values: &[u32]) -> bool {
 pub struct Parts {
     header: Header,
     sections: Vec<Section>,
+}
+
+impl Parts {
+    /// Adds names, unless that makes the blob larger than `max_bytes`. Returns what became of them;
+    /// `None` where nothing has a name.
+    pub fn add_names(&mut self, names: &Names, max_bytes: Option<u64>) -> Option<KeptNames> {
+        let lights = self.records(SectionKind::Lights);
+        let (sections, mut kept) = names.sections(lights);
+        if sections.is_empty() {
+            return None;
+        }
+        let (before, count) = (self.bytes(), self.sections.len());
+        self.sections.extend(sections);
+        kept.bytes = self.bytes() - before;
+        if max_bytes.is_some_and(|most| self.bytes() as u64 > most) {
+            self.sections.truncate(count);
+            return Some(KeptNames {
+                left_out: true,
+                ..KeptNames::default()
+            });
+        }
+        self.header.section_count = self.sections.len() as u16;
+        Some(kept)
+    }
+
+    /// Number of records of a section.
+    fn records(&self, kind: SectionKind) -> usize {
+        let section = self.sections.iter().find(|section| section.kind == kind);
+        section.map_or(0, |section| section.bytes.len() / section.stride)
+    }
+
+    /// Length of the blob.
+    fn bytes(&self) -> usize {
+        let table = size_of::<Header>() + self.sections.len() * size_of::<SectionEntry>();
+        let sections = self.sections.iter();
+        sections.fold(table, |end, section| {
+            end.next_multiple_of(ALIGNMENT) + section.bytes.len()
+        })
+    }
 }
 
 /// Makes what goes into a blob.

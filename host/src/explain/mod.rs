@@ -8,8 +8,9 @@ mod story;
 mod text;
 mod walk;
 
+pub use crate::compile::Names;
 pub use story::{Fall, Hit, Lighting, Ray, Sample, Story, Weighted};
-pub use text::{Names, Shown};
+pub use text::Shown;
 pub use walk::{Candidate, Culled, Plane, Side, Step, Tested, Verdict, Walk};
 
 use crate::render::{ALL, OPAQUE, chosen};
@@ -50,6 +51,26 @@ pub enum ExplainError {
 ///
 /// # Errors
 /// If the blob lacks the structure, a setting is out of its range, or the ray is invalid.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// # let blob = compile(&imported.scene, &Options::default())?.blob;
+/// # let scene = blob.scene()?;
+/// use gridel_core::{Format, Settings, Structure};
+/// use gridel_host::explain::{Subject, explain};
+///
+/// let settings = Settings {
+///     samples: 1,
+///     ..Settings::of(&scene)
+/// };
+/// let middle = Subject::Pixel([settings.width / 2, settings.height / 2]);
+/// let story = explain(&scene, Format::F32, Structure::DualSplit, settings, middle)?;
+/// let hit = story.samples[0].rays[0].hit.as_ref().ok_or("no hit")?;
+/// assert_eq!(hit.object, 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn explain(
     scene: &Scene<'_>,
     format: Format,

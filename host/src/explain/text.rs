@@ -2,34 +2,9 @@
 
 use super::story::{Fall, Hit, Lighting, Ray, Sample, Story};
 use super::walk::{Culled, Plane, Side, Step, Tested, Verdict, Walk};
-use crate::table::{counted, significant};
+use crate::compile::Names;
+use crate::table::{counted, printable, significant};
 use std::fmt::{self, Display, Formatter};
-
-/// What the scene file calls its objects and what they are made of; empty for a blob, which keeps no
-/// names.
-#[derive(Clone, Debug, Default)]
-pub struct Names {
-    /// Of each object.
-    pub objects: Vec<String>,
-    /// Of each object's material.
-    pub materials: Vec<String>,
-}
-
-impl Names {
-    fn object(&self, number: u32) -> String {
-        match self.objects.get(number as usize) {
-            Some(name) => format!("{name} (object {number})"),
-            None => format!("object {number}"),
-        }
-    }
-
-    fn material(&self, number: u32) -> String {
-        match self.materials.get(number as usize) {
-            Some(name) => format!(" of {name}"),
-            None => String::new(),
-        }
-    }
-}
 
 /// A story as text.
 pub struct Shown<'s> {
@@ -53,7 +28,7 @@ impl Display for Shown<'_> {
         let [r, g, b] = srgb;
         match pixel.zip(*picture) {
             Some(([x, y], [width, height])) => write!(f, "Pixel {x},{y} of {width} x {height}")?,
-            None => write!(f, "It")?,
+            None => write!(f, "The ray")?,
         }
         // Sixteen bits tell no more places.
         let [red, green, blue] = linear.map(|channel| f64::from(channel) / 65535.0);
@@ -76,16 +51,16 @@ impl Display for Shown<'_> {
         for (number, sample) in samples.iter().enumerate() {
             for (place, ray) in sample.rays.iter().enumerate() {
                 if let Some(walk) = ray.walk.as_ref().filter(|_| place == 0 || self.all_walks) {
-                    writeln!(f, "\nThe way of ray {place} of sample {}", number + 1)?;
+                    writeln!(f, "\nTraversal of ray {place} of sample {}", number + 1)?;
                     self.walk(f, walk)?;
                 }
                 for lighting in ray.lights.iter().filter(|_| self.all_walks) {
                     for walk in &lighting.shadow {
-                        let light = lighting.light;
+                        let light = self.light(lighting.light);
                         let sample = number + 1;
                         writeln!(
                             f,
-                            "\nThe way from ray {place} of sample {sample} to light {light}"
+                            "\nTraversal of the shadow ray from ray {place} of sample {sample} to {light}"
                         )?;
                         self.walk(f, walk)?;
                     }
@@ -97,7 +72,28 @@ impl Display for Shown<'_> {
 }
 
 impl Shown<'_> {
-    /// What most likely answers the question that was asked.
+    fn object(&self, number: u32) -> String {
+        match self.names.object(number) {
+            Some(name) => format!("{} (object {number})", printable(name)),
+            None => format!("object {number}"),
+        }
+    }
+
+    fn material(&self, object: u32) -> String {
+        match self.names.material_of(object) {
+            Some(name) => format!(" of {}", printable(name)),
+            None => String::new(),
+        }
+    }
+
+    fn light(&self, number: u32) -> String {
+        match self.names.light(number) {
+            Some(name) => format!("{} (light {number})", printable(name)),
+            None => format!("light {number}"),
+        }
+    }
+
+    /// Returns the sentences that most likely answer the question.
     fn sentences(&self) -> Vec<String> {
         let mut sentences = Vec::new();
         let rays = || self.story.samples.iter().flat_map(|sample| &sample.rays);
@@ -106,9 +102,9 @@ impl Shown<'_> {
         if background > 0 {
             let all = primary().count();
             sentences.push(if background == all {
-                String::from("Nothing is met: this is the background.")
+                String::from("The ray hits nothing: this is the background.")
             } else {
-                format!("{background} of {all} samples meet nothing and bring the background.")
+                format!("{background} of {all} samples hit nothing and show the background.")
             });
         }
         if let Some(unlit) = primary().find(|ray| {
@@ -117,12 +113,12 @@ impl Shown<'_> {
         }) {
             let reasons: Vec<_> = unlit.lights.iter().map(|l| self.fall(l)).collect();
             sentences.push(format!(
-                "No light shines on what is met first: {}.",
+                "No light reaches the first hit: {}.",
                 reasons.join("; ")
             ));
         }
         if rays().any(|ray| ray.hit.is_some() && ray.lights.is_empty()) {
-            sentences.push(String::from("The scene has no light but the ambient one."));
+            sentences.push(String::from("The scene has only ambient light."));
         }
         let too_deep: Vec<f64> = rays()
             .filter(|ray| ray.too_deep)
@@ -131,8 +127,8 @@ impl Shown<'_> {
         if !too_deep.is_empty() {
             let lost: f64 = too_deep.iter().sum::<f64>() / self.story.samples.len() as f64;
             sentences.push(format!(
-                "{} ended by the ray depth, where black stands for up to {} of white; `--depth` \
-                 raises it.",
+                "{} stopped at the ray depth; black replaces up to {} of white. Raise it with \
+                 `--depth`.",
                 counted_were(too_deep.len(), "ray"),
                 significant(lost)
             ));
@@ -145,7 +141,7 @@ impl Shown<'_> {
         if !dropped.is_empty() {
             let lost: f64 = dropped.iter().sum::<f64>() / self.story.samples.len() as f64;
             sentences.push(format!(
-                "{} left out, too light for the scene's cutoff: {} of white in all.",
+                "{} not traced, because the weight is below the scene's cutoff: {} of white in all.",
                 counted_were(dropped.len(), "ray"),
                 significant(lost)
             ));
@@ -167,7 +163,7 @@ impl Shown<'_> {
         if let Some(walk) = &ray.walk {
             writeln!(
                 f,
-                "{indent}  from {} along {}: {} opened, {} left out, {} tested",
+                "{indent}  from {} along {}: {} visited, {} culled, {} tested",
                 vector(walk.origin, |x| x.to_string()),
                 vector(walk.direction, |x| x.to_string()),
                 counted(walk.opened, "node"),
@@ -177,8 +173,8 @@ impl Shown<'_> {
         }
         match &ray.hit {
             Some(hit) => self.hit(f, &indent, ray, hit)?,
-            None if ray.background => writeln!(f, "{indent}  meets nothing: the background")?,
-            None => writeln!(f, "{indent}  has no direction, and is not traced")?,
+            None if ray.background => writeln!(f, "{indent}  hits nothing: the background")?,
+            None => writeln!(f, "{indent}  is not traced: it has no direction")?,
         }
         ray.children
             .iter()
@@ -189,11 +185,11 @@ impl Shown<'_> {
         let kind = ray.walk.as_ref().and_then(Walk::met).map_or("", |c| c.kind);
         writeln!(
             f,
-            "{indent}  meets the {} of {kind} {}, which is {}{}, at distance {} within {}",
+            "{indent}  hits the {} of {kind} {}, which is {}{}, at distance {} within {}",
             if hit.front { "front" } else { "back" },
             hit.primitive,
-            self.names.object(hit.object),
-            self.names.material(hit.object),
+            self.object(hit.object),
+            self.material(hit.object),
             precise(hit.distance, hit.distance_error),
             bound(hit.distance_error)
         )?;
@@ -207,7 +203,7 @@ impl Shown<'_> {
         if let Some(weight) = ray.absorbed {
             writeln!(
                 f,
-                "{indent}  the glass it came through leaves a weight of {}",
+                "{indent}  absorption in the glass reduces its weight to {}",
                 color(weight)
             )?;
         }
@@ -217,14 +213,14 @@ impl Shown<'_> {
         if let Some(reflected) = ray.reflected {
             writeln!(
                 f,
-                "{indent}  its glass reflects {} and lets the rest through",
+                "{indent}  the glass reflects {} and transmits the rest",
                 significant(reflected)
             )?;
         }
         for dropped in ray.dropped.iter().filter(|d| peak(d.weight) > 0.0) {
             writeln!(
                 f,
-                "{indent}  a {} ray is left out: it would weigh {}",
+                "{indent}  a {} ray of weight {} is not traced",
                 dropped.kind,
                 color(dropped.weight)
             )?;
@@ -232,19 +228,19 @@ impl Shown<'_> {
         if ray.too_deep {
             writeln!(
                 f,
-                "{indent}  it reflects or lets light through, but the ray depth ends here"
+                "{indent}  the reflected and refracted rays exceed the ray depth"
             )?;
         }
         Ok(())
     }
 
-    /// What becomes of a light, as a clause.
+    /// Returns what happens to a light, as a clause.
     fn fall(&self, lighting: &Lighting) -> String {
-        let light = lighting.light;
+        let light = self.light(lighting.light);
         let cosine = significant(lighting.cosine);
         let glass = match lighting.filtered.last() {
             Some(left) => format!(
-                ", through {} of glass that leave {}",
+                ", through {} of glass that transmit {}",
                 counted(lighting.filtered.len(), "surface"),
                 color(*left)
             ),
@@ -252,23 +248,23 @@ impl Shown<'_> {
         };
         match lighting.fall {
             Fall::Lit => format!(
-                "light {light} shines on it at a cosine of {cosine}{glass}: {}",
+                "{light} reaches it with cosine {cosine}{glass}: {}",
                 color(lighting.radiance)
             ),
-            Fall::Behind => format!("light {light} is behind the surface (cosine {cosine})"),
+            Fall::Behind => format!("{light} is behind the surface (cosine {cosine})"),
             Fall::Blocked {
                 kind,
                 primitive,
                 object,
             } => format!(
-                "light {light} is blocked by {kind} {primitive}, which is {}{}{glass}",
-                self.names.object(object),
-                self.names.material(object)
+                "{light} is blocked by {kind} {primitive}, which is {}{}{glass}",
+                self.object(object),
+                self.material(object)
             ),
-            Fall::Faded => format!("light {light} fades away{glass}"),
-            Fall::Here => format!("light {light} lies at this very point, and has no direction"),
+            Fall::Faded => format!("{light} is absorbed{glass}"),
+            Fall::Here => format!("{light} is at this point, so it has no direction"),
             Fall::Unreflected => {
-                format!("light {light} shines on it, and the material reflects none of it")
+                format!("{light} reaches it, but the material reflects none of it")
             }
         }
     }
@@ -276,11 +272,11 @@ impl Shown<'_> {
     fn walk(&self, f: &mut Formatter<'_>, walk: &Walk) -> fmt::Result {
         write!(
             f,
-            "  The ray counts from {} to {}{}.",
+            "  The ray's interval is {} to {}{}.",
             along(walk, walk.interval[0]),
             along(walk, walk.interval[1]),
             if walk.any {
-                ", and any hit will do"
+                "; any hit ends the query"
             } else {
                 ""
             }
@@ -288,7 +284,7 @@ impl Shown<'_> {
         if walk.moved != 0.0 {
             write!(
                 f,
-                " It comes to the scene's box at {}, at distance {}.",
+                " It enters the scene's box at {}, at distance {}.",
                 vector(walk.start, significant),
                 significant(walk.moved)
             )?;
@@ -300,17 +296,17 @@ impl Shown<'_> {
                 Step::Tested(tested) => writeln!(f, "    {}", tested_text(walk, tested))?,
                 Step::GivenUp { place, enters, hit } => writeln!(
                     f,
-                    "  {place} is given up: it begins at {}, behind the hit at {}",
+                    "  {place} is skipped: it begins at {}, behind the hit at {}",
                     along(walk, *enters),
                     along(walk, *hit)
                 )?,
                 Step::Candidate(candidate) => {
                     let crossing = candidate.crossing.map(|[enter, leave]| {
                         if enter == leave {
-                            format!("is met at {}", along(walk, enter))
+                            format!("is hit at {}", along(walk, enter))
                         } else {
                             format!(
-                                "is met from {} to {}",
+                                "is hit from {} to {}",
                                 along(walk, enter),
                                 along(walk, leave)
                             )
@@ -319,9 +315,9 @@ impl Shown<'_> {
                     let crossing = crossing.unwrap_or_else(|| String::from("is missed"));
                     let verdict = match candidate.verdict {
                         Verdict::Missed => "",
-                        Verdict::NotInInterval => ", where the ray does not count",
-                        Verdict::Farther => ", behind the nearest hit",
-                        Verdict::Nearest => ": the nearest hit so far",
+                        Verdict::NotInInterval => ", outside of the ray's interval",
+                        Verdict::Farther => ", behind the closest hit",
+                        Verdict::Nearest => ": the closest hit so far",
                     };
                     let (kind, primitive) = (candidate.kind, candidate.primitive);
                     writeln!(f, "    {kind} {primitive} {crossing}{verdict}")?;
@@ -341,9 +337,9 @@ fn tested_text(walk: &Walk, tested: &Tested) -> String {
     };
     let place = format!("{}{}", tested.place, between(&tested.planes));
     match tested.culled {
-        Some(Culled::Empty) => format!("{place} holds nothing"),
+        Some(Culled::Empty) => format!("{place} is empty"),
         Some(Culled::NotInVolume) => {
-            format!("{place} is left out: the ray is not in it where it counts")
+            format!("{place} is culled: the ray is not in it within its interval")
         }
         None => format!(
             "{place}: the ray is in it from {} to {}",
@@ -351,34 +347,34 @@ fn tested_text(walk: &Walk, tested: &Tested) -> String {
             along(tested.span[1])
         ),
         Some(Culled::Beside { leaves, enters }) => format!(
-            "{place} is left out: past {} the ray comes only to {}",
+            "{place} is culled: the ray leaves at {} before it enters at {}",
             plane(&leaves),
             plane(&enters)
         ),
         Some(Culled::Outside { along: plane }) => format!(
-            "{place} is left out: the ray runs outside of it, along {} = {}",
+            "{place} is culled: the ray is parallel to {} = {}, and outside",
             plane.axis,
             significant(plane.at)
         ),
         Some(Culled::BehindHit { enters, hit }) => format!(
-            "{place} is left out: {} lies behind the hit at {}",
+            "{place} is culled: {} lies behind the hit at {}",
             plane(&enters),
             along(hit)
         ),
         Some(Culled::NotInInterval) => {
-            format!("{place} is left out: the ray does not count there")
+            format!("{place} is culled: it lies outside of the ray's interval")
         }
         Some(Culled::NotInParent {
             plane: crossed,
             around: [enter, leave],
         }) => format!(
-            "{place} is left out: {} is not where the ray is in the node around it, from {} to {}",
+            "{place} is culled: {} is outside of the ray's interval in the parent, {} to {}",
             plane(&crossed),
             along(enter),
             along(leave)
         ),
         Some(Culled::Margin) => {
-            format!("{place} is left out by less than the margin of rounding")
+            format!("{place} is culled by less than the rounding margin")
         }
     }
 }

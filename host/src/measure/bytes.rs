@@ -35,6 +35,20 @@ pub struct Part {
 
 impl MemoryMap {
     /// The map of a blob that `scene` is the checked view of.
+    ///
+    /// ```
+    /// # use gridel_host::compile::{Options, compile};
+    /// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+    /// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+    /// # let blob = compile(&imported.scene, &Options::default())?.blob;
+    /// # let scene = blob.scene()?;
+    /// use gridel_host::measure::MemoryMap;
+    ///
+    /// let map = MemoryMap::of(&scene, blob.bytes());
+    /// let sum: usize = map.parts.iter().map(|part| part.bytes).sum();
+    /// assert_eq!(sum, blob.bytes().len());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn of(scene: &Scene<'_>, blob: &[u8]) -> Self {
         let header = scene.header();
         let primitives = f64::from(header.primitives);
@@ -95,6 +109,18 @@ pub struct WorkingMemory {
 /// The working memory of every format, on machines of 32 bits and on this one.
 ///
 /// For 32 bits an `f64` is taken to be aligned to 8 bytes, as on Arm and RISC-V.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// # let blob = compile(&imported.scene, &Options::default())?.blob;
+/// # let scene = blob.scene()?;
+/// for need in gridel_host::measure::working_memory(&scene) {
+///     println!("{}, {} bits: {} bytes", need.format, need.word_bits, need.workspace);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn working_memory(scene: &Scene<'_>) -> Vec<WorkingMemory> {
     let bits = [4, size_of::<usize>()];
     let words = if bits[0] == bits[1] {

@@ -95,6 +95,14 @@ impl Errors {
 }
 
 /// How display values differ, eight times enlarged, as sRGB pixels: black is the same.
+///
+/// ```
+/// use gridel_host::measure::difference_picture;
+///
+/// let (black, white) = ([[0; 3]], [[65_535; 3]]);
+/// assert_eq!(difference_picture(&black, &black), [0; 3]);
+/// assert_eq!(difference_picture(&black, &white), [255; 3]);
+/// ```
 pub fn difference_picture(reference: &[[u16; 3]], pixels: &[[u16; 3]]) -> Vec<u8> {
     let pairs = reference.iter().flatten().zip(pixels.iter().flatten());
     pairs

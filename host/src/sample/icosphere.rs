@@ -10,6 +10,13 @@ const MOST_LEVELS: u32 = 9;
 
 /// A closed sphere of radius 1 around the origin: an icosahedron whose triangles are cut in four
 /// `levels` times (at most 9), which makes 20 * 4^levels triangles, 20,480 at level 5.
+///
+/// ```
+/// use gridel_host::scene::Shape;
+///
+/// let scene = gridel_host::sample::icosphere(2);
+/// assert!(matches!(&scene.objects[0].shape, Shape::Mesh { .. }));
+/// ```
 pub fn icosphere(levels: u32) -> Scene {
     let (mut vertices, mut triangles) = icosahedron();
     for _ in 0..levels.min(MOST_LEVELS) {

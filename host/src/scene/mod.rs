@@ -52,6 +52,10 @@ importer::formats! {
 }
 
 /// The extensions of all scene formats in words.
+///
+/// ```
+/// assert!(gridel_host::scene::extensions().contains(".toml"));
+/// ```
 pub fn extensions() -> String {
     Importers(IMPORTERS).extensions()
 }
@@ -61,6 +65,13 @@ pub fn extensions() -> String {
 ///
 /// # Errors
 /// If the file cannot be read, its format is unknown, or its content is broken.
+///
+/// ```
+/// use gridel_host::scene::{MoleculeOptions, load};
+///
+/// let error = load("missing.toml".as_ref(), &MoleculeOptions::default()).unwrap_err();
+/// assert!(error.to_string().contains("missing.toml"));
+/// ```
 pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneError> {
     load_with(
         path,
@@ -88,6 +99,17 @@ pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, Scene
 ///
 /// # Errors
 /// As [`load_with`].
+///
+/// ```
+/// use gridel_host::scene::{ImportOptions, Shape, read};
+///
+/// let file = "v 0 0 0\nv 1 0 0\nv 0 1 0\no leaf\nf 1 2 3\n";
+/// let imported = read("leaf.obj".as_ref(), file.into(), &ImportOptions::default())?;
+/// let object = &imported.scene.objects[0];
+/// assert_eq!(object.name, "leaf");
+/// assert!(matches!(&object.shape, Shape::Mesh { triangles, .. } if triangles.len() == 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn read(name: &Path, bytes: Vec<u8>, options: &ImportOptions) -> Result<Imported, SceneError> {
     let access = Access::of(name, options.allow_outside);
     let (importer, input) = Importers(IMPORTERS).input(name, bytes, &options.molecule, &access)?;

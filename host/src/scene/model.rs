@@ -25,12 +25,16 @@ pub struct Scene {
     pub ambient: Color,
     /// Point and directional lights.
     pub lights: Vec<Light>,
+    /// Names of the lights, in their order; empty, or missing at the end, where there is none.
+    pub light_names: Vec<String>,
     /// Surfaces; objects refer to them by index.
     pub materials: Vec<Material>,
     /// Objects in scene-file order; that order is the one in which `trace` counts them.
     pub objects: Vec<Object>,
     /// Defaults for rendering that the scene file states.
     pub render: RenderSettings,
+    /// Whether the format has no names, so that all are made of kinds and numbers; blobs leave them out.
+    pub unnamed: bool,
 }
 
 /// Which axis points up, where a scene has no camera that says so.
@@ -219,9 +223,11 @@ impl Default for Scene {
             display_values: false,
             ambient: [0.0; 3],
             lights: Vec::new(),
+            light_names: Vec::new(),
             materials: Vec::new(),
             objects: Vec::new(),
             render: RenderSettings::default(),
+            unnamed: false,
         }
     }
 }

@@ -34,13 +34,13 @@ impl Promise {
     /// What the promise says, for reports.
     pub const fn text(self) -> &'static str {
         match self {
-            Promise::Structures => "every structure gives the list's answer, bit for bit",
-            Promise::AnyHit => "any hit and nearest hit agree on whether there is one",
-            Promise::Answers => "hits are those of exact arithmetic",
-            Promise::Numbers => "hits are finite, in the interval, with a normal of length 1",
-            Promise::SelfHits => "secondary rays do not meet the surface that they leave",
-            Promise::Shadows => "no shadow is lost that double precision has",
-            Promise::Leaks => "no ray leaves a closed mesh unseen",
+            Promise::Structures => "every structure agrees with brute force, bit for bit",
+            Promise::AnyHit => "any hit and closest hit agree on whether there is a hit",
+            Promise::Answers => "hits agree with exact arithmetic",
+            Promise::Numbers => "hits are finite and in the interval; normals have length 1",
+            Promise::SelfHits => "secondary rays do not hit the surface that they leave",
+            Promise::Shadows => "every shadow of `f64` is there in the other formats",
+            Promise::Leaks => "no ray leaves a closed mesh without a hit",
         }
     }
 }
@@ -128,12 +128,12 @@ pub fn check<N: Number>(
     };
     for other in heard {
         if bits(&other.hit) != bits(&list.hit) {
-            let what = format!("meets {}, the list {}", told(&other.hit), told(&list.hit));
+            let what = format!("hits {}, brute force {}", told(&other.hit), told(&list.hit));
             fault(Promise::Structures, other.structure, what);
         }
         if other.any != other.hit.is_some() {
             let what = format!(
-                "any hit says {}, and the nearest is {}",
+                "any hit says {}, and the closest hit is {}",
                 other.any,
                 told(&other.hit)
             );
@@ -175,12 +175,11 @@ pub fn check<N: Number>(
         outcome.judged = true;
         if let Err(wrong) = judge.check(N::FORMAT, &rounded, answer) {
             let what = match wrong {
-                Wrong::NotThere => format!(
-                    "meets {}, where exact arithmetic does not meet it",
-                    told(&list.hit)
-                ),
+                Wrong::NotThere => {
+                    format!("hits {}, which exact arithmetic misses", told(&list.hit))
+                }
                 Wrong::Missed { primitive, t } => format!(
-                    "meets {}, where exact arithmetic meets primitive {primitive} before, at {:?}",
+                    "hits {}; by exact arithmetic it hits primitive {primitive} before, at {:?}",
                     told(&list.hit),
                     t + rounded.moved
                 ),
@@ -230,7 +229,7 @@ fn numbers<N: Number>(ray: &RoundedRay, hit: &Hit<N>) -> Option<String> {
         Format::F64 => f64::powi(2.0, -50),
     };
     if (norm - 1.0).abs() > ulps {
-        return Some(format!("the normal {normal:?} has the length {norm:?}"));
+        return Some(format!("the normal {normal:?} has length {norm:?}"));
     }
     // Hits count from the ray's own start, which rounds once more.
     let slack = 2.0 * step(N::FORMAT, t.abs().max(ray.moved.abs()));
@@ -288,7 +287,7 @@ pub fn leave<N: Number>(
         let what = match (again, next) {
             // From inside of a solid it is met again, from the inside.
             (Some(again), _) if away || again.front => {
-                format!("meets it again at {:?}", N::far_to_f64(again.t))
+                format!("hits it again at {:?}", N::far_to_f64(again.t))
             }
             (None, None) if !away => String::from("never leaves it"),
             _ => continue,
@@ -342,7 +341,7 @@ pub fn sealed<N: Number, A: Accel>(
                 promise: Promise::Leaks,
                 format: N::FORMAT,
                 structure: A::STRUCTURE,
-                what: format!("leaves the closed mesh of object {object} unseen"),
+                what: format!("leaves the closed mesh of object {object} without a hit"),
             });
         };
         if hit.object == object {

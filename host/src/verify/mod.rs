@@ -126,6 +126,17 @@ pub fn steps(rays: u64) -> u64 {
 
 /// Verifies a scene with so many rays of all sorts, and as many at the vertices and edges of closed
 /// meshes. `progress` is told of every step, from any thread. The same rays are thrown every time.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// # let blob = compile(&imported.scene, &Options::default())?.blob;
+/// # let scene = blob.scene()?;
+/// let report = gridel_host::verify::verify(&scene, 100, &|| ());
+/// assert_eq!(report.broken(), 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn verify(scene: &Scene<'_>, rays: u64, progress: &(dyn Fn() + Sync)) -> Report {
     let judge = Judge::of(scene);
     let targets = Targets::of(scene);

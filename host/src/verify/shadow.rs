@@ -169,8 +169,7 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
             format: N::FORMAT,
             structure: Structure::List,
             what: format!(
-                "has primitive {} in the light of light {number}, from which primitive {} keeps it, {:?} \
-                 units away",
+                "light {number} reaches primitive {}, though primitive {} blocks it {:?} units away",
                 hit.primitive, nearest.primitive, nearest.t
             ),
         })

@@ -81,14 +81,14 @@ fn only_the_same_run_goes_on_in_its_folder() {
     for own in ["page.html", "results.csv", "results.json"] {
         let own = format!("out/{own}");
         folder.write(&own, b"my own");
-        folder.fails(2, &SMALL, &[&own, "would be lost", "another folder"]);
+        folder.fails(2, &SMALL, &[&own, "would be overwritten", "another folder"]);
         assert_eq!(folder.read(&own), b"my own");
         assert!(!folder.path("out/pictures").exists());
         std::fs::remove_file(folder.path(&own)).unwrap();
     }
     folder.done(&SMALL);
     let other = [&SMALL[..3], &["10x8"], &SMALL[4..]].concat();
-    folder.fails(2, &other, &["results.json", "would be lost"]);
+    folder.fails(2, &other, &["results.json", "would be overwritten"]);
     let pictures = || {
         std::fs::read_dir(folder.path("out/pictures"))
             .unwrap()

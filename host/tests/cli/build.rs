@@ -75,6 +75,8 @@ fn structures_are_those_asked_for() {
 #[test]
 fn a_budget_refuses_before_writing() {
     let folder = Folder::with_quick();
+    let accels = ["--accel", "bvh", "--accel", "flagged", "--strip-names"];
+    folder.done(&[&["build", "quick.toml", "-o", "quick.gridel"], &accels[..]].concat());
     let most = folder.read("quick.gridel").len();
     let build = |bytes: &str| {
         let accels = ["--accel", "bvh", "--accel", "flagged", "--max-bytes"];
@@ -274,7 +276,8 @@ fn the_advice_for_a_budget_is_exact() {
     let folder = Folder::with_quick();
     let bytes = |accels: &[&str]| {
         let options: Vec<_> = accels.iter().flat_map(|accel| ["--accel", accel]).collect();
-        folder.done(&[&["build", "quick.toml", "-o", "new.gridel"], &options[..]].concat());
+        let build = ["build", "quick.toml", "-o", "new.gridel", "--strip-names"];
+        folder.done(&[&build, &options[..]].concat());
         folder.read("new.gridel").len()
     };
     let advice = |accels: &[&str]| {
@@ -304,6 +307,7 @@ fn the_advice_for_a_budget_is_exact() {
         "new.gridel",
         "--lattice-bits",
         "16",
+        "--strip-names",
     ]);
     let saved = whole - folder.read("new.gridel").len();
     let expected = format!("`--lattice-bits 16` saves {} bytes", grouped(saved));
@@ -396,10 +400,10 @@ fn nothing_of_the_users_own_is_written_over() {
         "src",
     ];
     for (path, said) in [
-        ("scene.bin", "scene.bin is there and is no blob"),
+        ("scene.bin", "scene.bin exists and is not a blob"),
         (
             "src/scene.rs",
-            "scene.rs is there and is no module of gridel's",
+            "scene.rs exists and is not a module of Gridel",
         ),
     ] {
         std::fs::create_dir_all(folder.path("src")).unwrap();

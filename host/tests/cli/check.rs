@@ -348,9 +348,9 @@ budget = { loops = 1 }
     for word in [
         "nope: check.toml:3: nope.toml cannot be read: ",
         "; write the path of a scene file or of a blob",
-        "quick on m: check.toml:10: quick.toml is no ELF file",
+        "quick on m: check.toml:10: quick.toml is not an ELF file",
         "; write the path of the program",
-        "quick on n: check.toml:15: firmwarex is no folder",
+        "quick on n: check.toml:15: firmwarex is not a folder",
         "; write the path of a Cargo package's folder",
     ] {
         assert!(run.stdout.contains(word), "no {word:?} in {}", run.stdout);

@@ -11,6 +11,7 @@ mod help;
 mod import;
 mod inspect;
 mod merge;
+mod names;
 mod options;
 mod pipe;
 mod render;

@@ -85,7 +85,7 @@ fn parts_of_pictures_that_differ_are_refused() {
     folder.fails(
         1,
         &["merge", "upper.ppm", "-o", "x.ppm"],
-        &["how they were made"],
+        &["how they were rendered"],
     );
 }
 

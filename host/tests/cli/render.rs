@@ -111,7 +111,7 @@ fn stats_count_every_ray() {
     assert_eq!(plain["samples"], 2);
     assert_eq!(plain["rows"], json!([0, 24]));
     let text = folder.done(&[&verb[..], &["--stats", "--heat-map", "heat.png"]].concat());
-    for word in ["a.png: 32 x 24", "heat.png: white is", "rays a second"] {
+    for word in ["a.png: 32 x 24", "heat.png: white is", "rays per second"] {
         assert!(text.contains(word), "{text}");
     }
 }
@@ -187,7 +187,7 @@ fn a_structure_that_the_blob_lacks_is_told() {
         2,
         &["render", "quick.gridel", "-o", "a.png", "--accel", "bvh"],
         &[
-            "holds no structure bvh, only: dual-split, list",
+            "has no structure bvh, only: dual-split, list",
             "--accel bvh",
         ],
     );

@@ -4,6 +4,7 @@ mod claims;
 mod forged;
 mod fuzz;
 mod mutants;
+mod names;
 mod old;
 mod reasons;
 mod vouched;

@@ -11,7 +11,7 @@ use gridel_core::format::{
     BlobError, Child, Effects, Field, Kind, Leaf, Link, Reason, SectionKind,
 };
 use gridel_core::geometry::{cone::Cone, cuboid::Cuboid, disc::Disc};
-use gridel_core::{Prevalidated, Structure};
+use gridel_core::{Names, Prevalidated, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;
 use gridel_tests::fuzz::{Base, sealed, speaks};
@@ -703,6 +703,35 @@ fn candidates() -> Errors {
     errors
 }
 
+fn names() -> Errors {
+    let mut scene = scenes::of([Shape::Sphere {
+        center: DVec3::ZERO,
+        radius: 1.0,
+    }]);
+    scene.objects[0].name = String::from("ö");
+    let options = Options {
+        names: true,
+        ..Options::default()
+    };
+    let blob = compile(&scene, &options).expect("compiles").blob;
+    let mut errors = Errors::of(Base::of(blob.bytes()));
+    let forged = |base: &Base, kind, record, value| {
+        let mut base = base.clone();
+        base.set(kind, record, value);
+        let blob = base.sealed();
+        // Queries do not need names.
+        assert!(blob.scene().is_ok());
+        Names::from_bytes(blob.bytes()).expect_err("a forged name")
+    };
+    let start = forged(&errors.base, SectionKind::NameStarts, 0, 1);
+    let inside = forged(&errors.base, SectionKind::NameStarts, 1, 1);
+    let text = forged(&errors.base, SectionKind::NameText, 1, 0xff);
+    errors.take_field(start, "name 0 of name-starts", Field::NameStart);
+    errors.take_reason(inside, "name 1 of name-starts", Reason::InsideCharacter);
+    errors.take_reason(text, "byte 0 of name-text", Reason::NotUtf8);
+    errors
+}
+
 #[test]
 fn every_field_and_reason_is_named_by_the_error_of_a_forged_blob() {
     let all = [
@@ -716,6 +745,7 @@ fn every_field_and_reason_is_named_by_the_error_of_a_forged_blob() {
         wide_hierarchies(),
         cells(),
         candidates(),
+        names(),
     ];
     let failures: Vec<&String> = all.iter().flat_map(|errors| &errors.failures).collect();
     assert!(failures.is_empty(), "{failures:#?}");

@@ -286,6 +286,7 @@ where
         self.descend::<N, K, C>(node, interval, limit, stack, count, leaf);
     }
 
+    #[expect(clippy::too_many_arguments, reason = "its arguments stay in registers")]
     #[inline(always)]
     fn descend<N: Number, K: PairCulling<N>, C: Observer>(
         &self,

@@ -18,9 +18,9 @@ impl MemoryReport {
             steps.push(match smaller() {
                 // Code is another matter: flagged sides take more of it.
                 Some(smaller) => format!("of the blob itself, {smaller}"),
-                None => {
-                    String::from("the scene file in place of the blob tells what makes it smaller")
-                }
+                None => String::from(
+                    "give the scene file in place of the blob to see what makes it smaller",
+                ),
             });
         }
         steps.join("; ")
@@ -61,7 +61,7 @@ impl MemoryReport {
     pub fn call_stack_advice(&self, scene: &Scene<'_>) -> Vec<String> {
         let effects = scene.effects();
         let effects = (effects != Effects::NONE)
-            .then(|| format!("a scene that does without some of its effects ({effects})"));
+            .then(|| format!("a scene without some of its effects ({effects})"));
         self.small_advice().into_iter().chain(effects).collect()
     }
 
@@ -96,7 +96,7 @@ impl MemoryReport {
         }
         if scene.effects() != Effects::NONE {
             steps.push(format!(
-                "a scene that does without some of its effects ({})",
+                "a scene without some of its effects ({})",
                 scene.effects()
             ));
         }

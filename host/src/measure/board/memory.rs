@@ -81,6 +81,27 @@ impl MemoryReport {
     ///
     /// # Errors
     /// If that is none of [`Self::STRUCTURES`].
+    ///
+    /// ```
+    /// # use gridel_host::compile::{Options, compile};
+    /// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+    /// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+    /// # let blob = compile(&imported.scene, &Options::default())?.blob;
+    /// # let scene = blob.scene()?;
+    /// use gridel_core::Format;
+    /// use gridel_host::measure::board::{Board, Fit, MemoryReport, Target};
+    ///
+    /// let board = Board::named("stm32vldiscovery").ok_or("unknown board")?;
+    /// let target = Target {
+    ///     board,
+    ///     flash: board.flash,
+    ///     ram: board.ram,
+    /// };
+    /// let report = MemoryReport::of(&scene, blob.bytes(), &target, Format::Fixed);
+    /// let report = report.map_err(|_| "not measured")?;
+    /// assert!(matches!(report.fit(), Fit::Fits));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn of(
         scene: &Scene<'_>,
         blob: &[u8],

@@ -277,7 +277,7 @@ impl Importer<'_> {
             self.view.camera(&camera, world, &mut self.scene.render);
         }
         if let Some(light) = node.light() {
-            self.view.light(&light, world);
+            self.view.light(&light, node.name(), world);
         }
         let Some(mesh) = node.mesh() else {
             return Ok(());

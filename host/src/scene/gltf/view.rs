@@ -6,14 +6,15 @@
 use crate::scene::{Camera, Color, Light, RenderSettings, Scene, Shape};
 use glam::{DMat4, DVec3};
 use gltf::camera::Projection;
-use gltf::khr_lights_punctual::Kind;
+use gltf::khr_lights_punctual::{Kind, Light as Punctual};
 
 /// Cameras and lights on their way into a scene.
 #[derive(Default)]
 pub(super) struct View {
     camera: Option<Camera>,
     cameras: usize,
-    lights: Vec<(Light, f64)>,
+    /// Each with its intensity and its name.
+    lights: Vec<(Light, f64, String)>,
     has_spots: bool,
     has_broken: bool,
 }
@@ -54,7 +55,8 @@ impl View {
         });
     }
 
-    pub(super) fn light(&mut self, light: &gltf::khr_lights_punctual::Light<'_>, world: &DMat4) {
+    /// Takes the light of a node, which is named as the node is, or else as the light.
+    pub(super) fn light(&mut self, light: &Punctual<'_>, node: Option<&str>, world: &DMat4) {
         let color = light.color().map(|c| f64::from(c).clamp(0.0, 1.0));
         let intensity = f64::from(light.intensity());
         let made = match light.kind() {
@@ -75,7 +77,8 @@ impl View {
             Light::Point { position, .. } => position.is_finite(),
         };
         if aims && intensity.is_finite() && intensity >= 0.0 {
-            self.lights.push((made, intensity));
+            let name = node.or(light.name()).unwrap_or_default();
+            self.lights.push((made, intensity, name.to_owned()));
         } else {
             self.has_broken = true;
         }
@@ -107,7 +110,7 @@ impl View {
         }
         scene.camera = self.camera;
         let middle = middle(scene);
-        let strength = |(light, intensity): &(Light, f64)| match light {
+        let strength = |(light, intensity, _): &(Light, f64, String)| match light {
             Light::Directional { .. } => *intensity,
             Light::Point { position, .. } => {
                 intensity / position.distance_squared(middle).max(1e-30)
@@ -117,7 +120,7 @@ impl View {
         if strongest == 0.0 {
             return;
         }
-        let exposed = |light: &(Light, f64)| {
+        let exposed = |light: &(Light, f64, String)| {
             let dim = |color: Color| color.map(|channel| channel * strength(light) / strongest);
             match light.0 {
                 Light::Directional { direction, color } => Light::Directional {
@@ -131,6 +134,7 @@ impl View {
             }
         };
         scene.lights = self.lights.iter().map(exposed).collect();
+        scene.light_names = self.lights.into_iter().map(|(.., name)| name).collect();
     }
 }
 

@@ -97,6 +97,7 @@ impl<'a> Importer<'a> {
             source,
             scene: Scene {
                 display_values: true,
+                unnamed: true,
                 ..Scene::default()
             },
             warnings: Warnings::default(),

@@ -41,6 +41,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     let camera = root.or("camera", None, |table| view::camera(table).map(Some))?;
     let render = root.or("render", None, |table| view::render(table).map(Some))?;
     let lights = root.or("light", Vec::new(), view::lights)?;
+    let (lights, light_names) = lights.into_iter().unzip();
     let background = root.or("background", None, |value| value.color().map(Some))?;
     let ambient = root.or("ambient", None, |value| value.color().map(Some))?;
     let mut palette = root.or("material", Palette::default(), Palette::read)?;
@@ -63,6 +64,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         background,
         ambient: ambient.unwrap_or(BLACK),
         lights,
+        light_names,
         materials: palette.into_materials(),
         objects,
         render: render.unwrap_or_default(),
@@ -79,8 +81,10 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         }
         if !lit {
             scene.display_values |= import.display_values && !import.lights.is_empty();
-            for light in &import.lights {
+            for (number, light) in import.lights.iter().enumerate() {
                 scene.lights.push(moved_light(&source, item, light)?);
+                let name = import.light_names.get(number).cloned();
+                scene.light_names.push(name.unwrap_or_default());
             }
         }
         scene.background = scene.background.or(import.background);

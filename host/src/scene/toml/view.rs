@@ -81,16 +81,20 @@ pub(super) fn render(table: Value<'_>) -> Result<RenderSettings, SceneError> {
     })
 }
 
-pub(super) fn lights(tables: Value<'_>) -> Result<Vec<Light>, SceneError> {
+/// Reads lights, each with its name.
+pub(super) fn lights(tables: Value<'_>) -> Result<Vec<(Light, String)>, SceneError> {
     tables
         .items("`[[light]]` above the keys of each")?
         .map(light)
         .collect()
 }
 
-fn light(table: Value<'_>) -> Result<Light, SceneError> {
-    let keys = ["kind", "position", "direction", "color"];
+fn light(table: Value<'_>) -> Result<(Light, String), SceneError> {
+    let keys = ["kind", "name", "position", "direction", "color"];
     let fields = table.fields("light", &[&keys])?;
+    let name = fields.or("name", String::new(), |value| {
+        value.filled().map(str::to_owned)
+    })?;
     let kind = fields.require("kind")?;
     let color = fields.or("color", [1.0; 3], Value::color)?;
     let (light, foreign) = match kind.word(&["point", "directional"])? {
@@ -108,6 +112,6 @@ fn light(table: Value<'_>) -> Result<Light, SceneError> {
             format!("a light of this kind has no `{foreign}`"),
             "remove the key, or change the light's `kind`",
         )),
-        None => Ok(light),
+        None => Ok((light, name)),
     }
 }

@@ -1,0 +1,108 @@
+//! The options of `gridel accuracy`.
+
+use crate::cli::arguments::{self, ImportOptions, scene_help, scene_long_help};
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use gridel_core::Structure;
+use gridel_host::compile::Quality;
+use gridel_host::measure::board as boards;
+use std::path::PathBuf;
+
+/// Show what accuracy costs in time
+///
+/// Changes five settings, each alone and in combinations: number format, lattice bits (10, 12, 16, 20,
+/// 24), samples per pixel (1 to 64), ray depth, and the cutoff below which a secondary ray is not
+/// traced. Builds and renders the scene with every setting, and compares the picture with a reference:
+/// f64, 24 bits, ray depth 16, and the samples of --reference-samples.
+///
+/// Errors, of display values (sRGB) from 0 to 1:
+///   RMSE           root of the mean square difference, over all pixels and channels
+///   largest        largest difference
+///   pixels off     pixels with a channel that differs by more than 1/255
+///   SSIM           mean structural similarity of the grey pictures in windows of 8 by 8; 1 is equal
+///   FLIP           mean difference that an eye sees when pictures alternate; 0 is equal
+///   other objects  rays through the middles of pixels that hit another object, or none
+///   t              error of the distance of the others, in units of the last place of single
+///                  precision: the median and the largest
+///
+/// Costs:
+///   time           milliseconds per frame on one thread: the median of the runs, and their spread
+///   rays, tests    rays per pixel; boxes and primitives tested per ray
+///   bytes          of the blob, and of the workspace on a 32-bit board
+///   instructions   per pixel on boards, estimated from the rays and a recorded picture
+///
+/// A star marks a setting that no other one beats: no other has a smaller error at a cost that is
+/// surely not higher. A cost is higher if every run takes longer than every run of the other setting.
+/// Where runs overlap, rays and tests decide within a number format.
+///
+/// Writes a folder: page.html with plots, sentences and pictures, which loads nothing else;
+/// results.csv; and results.json, which grows with every step. After an interruption, the same command
+/// continues where it stopped.
+#[derive(Args)]
+#[command(after_help = crate::cli::failure::EXIT_CODES, verbatim_doc_comment)]
+pub struct Arguments {
+    #[arg(help = scene_help(), long_help = scene_long_help())]
+    pub scene: PathBuf,
+
+    /// Folder to write into; it is created if it is missing. A run with the same scene and options
+    /// continues there, and no other run is overwritten [default: accuracy-SCENE]
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// Largest RMSE, 0 to 1: find the cheapest setting within it, and print its options of `build`
+    /// and `render`
+    #[arg(long, value_name = "E", value_parser = share)]
+    pub max_error: Option<f64>,
+
+    /// Cost for --max-error: instructions on this board [default: time on this machine]
+    #[arg(long, value_name = "NAME", value_parser = board(), requires = "max_error")]
+    pub board: Option<String>,
+
+    /// Size of the pictures, such as 80x60 [default: that of the scene file, reduced to at most 128
+    /// pixels per side]
+    #[arg(long, value_name = "WxH", value_parser = arguments::size)]
+    pub size: Option<[u16; 2]>,
+
+    /// Number of timed runs per setting
+    #[arg(long, value_name = "N", default_value_t = 3,
+        value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub repeat: u16,
+
+    /// Samples per pixel of the reference, at least twice the most that are measured
+    #[arg(long, value_name = "N", default_value_t = 256,
+        value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub reference_samples: u16,
+
+    /// Acceleration structure; the figures of boards are those of dual-split
+    #[arg(long, value_name = "NAME", value_parser = arguments::structure(),
+        default_value = Structure::DualSplit.name())]
+    pub accel: Structure,
+
+    /// Time to spend on building wide [default: good]
+    #[arg(long, value_name = "NAME")]
+    pub quality: Option<Quality>,
+
+    /// Print the results as JSON
+    #[arg(long)]
+    pub json: bool,
+
+    /// Do not trace secondary rays that change every channel by less than this; 1 is display white
+    /// [default: that of the scene file]
+    #[arg(long, value_name = "X", value_parser = arguments::cutoff, allow_hyphen_values = true,
+        help_heading = "Options for scene files")]
+    pub cutoff: Option<f64>,
+
+    #[command(flatten)]
+    pub import: ImportOptions,
+}
+
+/// Reads an error bound.
+fn share(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok();
+    let value = value.filter(|value| (0.0..=1.0).contains(value));
+    value.ok_or_else(|| String::from("write a number from 0 to 1, such as 0.02"))
+}
+
+fn board() -> impl TypedValueParser<Value = String> {
+    PossibleValuesParser::new(boards::names())
+}

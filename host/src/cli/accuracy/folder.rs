@@ -1,0 +1,106 @@
+//! The folder of results, which an interrupted run continues.
+
+use crate::cli::failure::Failure;
+use crate::cli::output::write_file;
+use gridel_core::Rgb888;
+use gridel_core::render::Pixel;
+use gridel_host::accuracy::{Exhibit, Results};
+use gridel_host::picture::write_png;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Files of the output folder.
+pub const RESULTS: &str = "results.json";
+pub const PAGE: &str = "page.html";
+pub const CSV: &str = "results.csv";
+
+/// The pixels of a picture as a display takes them.
+pub fn encoded(pixels: &[[u16; 3]]) -> Vec<u8> {
+    let pixels = pixels
+        .iter()
+        .flat_map(|&linear| Rgb888::encode(linear, None).0);
+    pixels.collect()
+}
+
+/// What an earlier run measured of the same. Another's results, or files of other sorts, are not replaced.
+pub fn kept(folder: &Path, key: &str) -> Result<Option<Results>, Failure> {
+    let file = folder.join(RESULTS);
+    let foreign = |path: &Path| {
+        Err(Failure::usage(
+            format!(
+                "{} is from a run with another scene or other options: it would be overwritten",
+                path.display()
+            ),
+            "give another folder with `-o`, or remove that one",
+        ))
+    };
+    if !file.exists() {
+        let mut others = [PAGE, CSV].map(|name| folder.join(name)).into_iter();
+        return match others.find(|path| path.exists()) {
+            Some(path) => foreign(&path),
+            None => Ok(None),
+        };
+    }
+    let bytes = std::fs::read(&file).map_err(|error| Failure::reading(&file, &error))?;
+    match serde_json::from_slice::<Results>(&bytes) {
+        Ok(mut results) if results.key == key => {
+            // What has lost its pictures is measured again.
+            results.points.retain(|point| {
+                let difference = format!("{}-difference", point.name);
+                let mut pictures = [&point.name, &difference].into_iter();
+                pictures.all(|name| picture(folder, name).exists())
+            });
+            Ok(Some(results))
+        }
+        _ => foreign(&file),
+    }
+}
+
+/// The path of a picture.
+fn picture(folder: &Path, name: &str) -> PathBuf {
+    let pictures = folder.join("pictures");
+    pictures.join(name).with_added_extension("png")
+}
+
+/// Writes a picture into the folder.
+pub fn write_picture(
+    folder: &Path,
+    size: [u16; 2],
+    name: &str,
+    pixels: &[u8],
+) -> Result<(), Failure> {
+    let path = picture(folder, name);
+    write_file(&path, |out| {
+        write_png(out, size.map(u32::from), pixels, None)
+    })
+}
+
+/// The reference, and the pictures of levers that were turned alone.
+pub fn exhibits(folder: &Path, size: [u16; 2], results: &Results) -> Result<Vec<Exhibit>, Failure> {
+    let read = |name: &str| -> Result<Vec<u8>, Failure> {
+        let path = picture(folder, name);
+        let pixels = || -> io::Result<Vec<u8>> {
+            let file = io::BufReader::new(std::fs::File::open(&path)?);
+            let mut reader = png::Decoder::new(file).read_info()?;
+            let mut pixels = vec![0; 3 * usize::from(size[0]) * usize::from(size[1])];
+            reader.next_frame(&mut pixels)?;
+            Ok(pixels)
+        };
+        pixels().map_err(|error| Failure::reading(&path, &error))
+    };
+    let mut exhibits = vec![Exhibit {
+        name: String::from("the reference"),
+        picture: encoded(&results.reference.pixels),
+        difference: Vec::new(),
+    }];
+    for (number, point) in results.points.iter().enumerate() {
+        if point.setting.differs(&results.base).len() <= 1 {
+            exhibits.push(Exhibit {
+                name: format!("{} {}", number + 1, point.name),
+                picture: read(&point.name)?,
+                difference: read(&format!("{}-difference", point.name))?,
+            });
+        }
+    }
+    Ok(exhibits)
+}

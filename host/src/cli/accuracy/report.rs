@@ -1,0 +1,133 @@
+//! The results as text and as a table of comma-separated values.
+
+use super::choice::Choice;
+use gridel_host::accuracy::{Point, Results, frontier, sentences};
+use gridel_host::measure::board as boards;
+use gridel_host::table::{Align, Table, counted, grouped, significant};
+use std::fmt::Write;
+use std::path::Path;
+
+/// The results for people.
+pub fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Choice>) -> String {
+    let best = frontier(&results.points);
+    let mut table = Table::new([
+        ("", Align::Left),
+        ("setting", Align::Left),
+        ("ms", Align::Right),
+        ("spread", Align::Right),
+        ("RMSE", Align::Right),
+        ("largest", Align::Right),
+        ("pixels off", Align::Right),
+        ("SSIM", Align::Right),
+        ("FLIP", Align::Right),
+        ("other objects", Align::Right),
+        ("t", Align::Right),
+        ("rays per pixel", Align::Right),
+        ("tests per ray", Align::Right),
+        ("blob", Align::Right),
+        ("RAM", Align::Right),
+    ]);
+    for (point, best) in results.points.iter().zip(best) {
+        let (errors, cost) = (&point.errors, &point.cost);
+        table.row([
+            String::from(if best { "*" } else { "" }),
+            point.name.clone(),
+            format!("{:.2}", 1e3 * cost.time()),
+            cost.spread_text(),
+            format!("{:.5}", errors.rmse),
+            format!("{:.4}", errors.largest),
+            grouped(errors.pixels_off),
+            format!("{:.4}", errors.ssim),
+            format!("{:.4}", errors.flip),
+            grouped(errors.other_objects),
+            format!("{:.1}, {:.0}", errors.t_ulps[0], errors.t_ulps[1]),
+            format!("{:.2}", cost.rays as f64 / cost.pixels.max(1) as f64),
+            format!("{:.1}", cost.tests as f64 / cost.rays.max(1) as f64),
+            grouped(cost.blob_bytes),
+            grouped(cost.working_bytes),
+        ]);
+    }
+    let mut text = format!(
+        "{}, {} x {} pixels; * no other setting has a smaller error at a cost that is surely not higher\n{table}\n",
+        counted(results.points.len(), "setting"),
+        size[0],
+        size[1]
+    );
+    // Writing to a string cannot fail.
+    for sentence in sentences(&results.base, &results.points) {
+        let _ = writeln!(text, "{sentence}");
+    }
+    let _ = writeln!(
+        text,
+        "\n{}: plots and pictures",
+        folder.join("page.html").display()
+    );
+    if let Some(choice) = choice {
+        let _ = writeln!(
+            text,
+            "\nThe cheapest within the bound is {}, with an RMSE of {}{}:\n  {}\n  {}",
+            choice.name,
+            significant(choice.rmse),
+            choice.noise.as_deref().unwrap_or_default(),
+            choice.build,
+            choice.render
+        );
+    }
+    text
+}
+
+/// The results for spreadsheets.
+pub fn csv(points: &[Point]) -> String {
+    let mut csv = String::from(
+        "name,format,lattice_bits,samples,depth,cutoff,rmse,largest,pixels_off,ssim,flip,\
+         other_objects,t_ulps_median,t_ulps_largest,seconds,spread,rays,tests,pixels,blob_bytes,\
+         working_bytes",
+    );
+    for board in boards::core_names() {
+        let _ = write!(csv, ",{board}_least,{board}_most");
+    }
+    csv.push('\n');
+    for point in points {
+        let Point {
+            name,
+            setting,
+            errors,
+            cost,
+        } = point;
+        let _ = write!(
+            csv,
+            "{name},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
+            setting.format.name(),
+            setting.lattice_bits,
+            setting.samples,
+            setting.depth,
+            setting.cutoff,
+            errors.rmse,
+            errors.largest,
+            errors.pixels_off,
+            errors.ssim,
+            errors.flip,
+            errors.other_objects,
+            errors.t_ulps[0],
+            errors.t_ulps[1],
+            cost.time(),
+            cost.spread()
+                .map_or(String::new(), |spread| spread.to_string()),
+            cost.rays,
+            cost.tests,
+            cost.pixels,
+            cost.blob_bytes,
+            cost.working_bytes
+        );
+        for board in boards::core_names() {
+            match point.instructions(board) {
+                Some([least, most]) => {
+                    let _ = write!(csv, ",{least:.0},{most:.0}");
+                }
+                None => csv.push_str(",,"),
+            }
+        }
+        csv.push('\n');
+    }
+    csv
+}

@@ -1,0 +1,82 @@
+//! Names beside traced rays: what an object's number in the hits stands for.
+
+use gridel_core::Scene;
+use gridel_host::compile::Names;
+use gridel_host::trace::SceneHit;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// What the numbers of objects and primitives stand for; the file of `trace --names`.
+#[derive(Serialize)]
+pub struct NameTable {
+    objects: Vec<ObjectRow>,
+    /// `None` for those without a name.
+    materials: Vec<Option<String>>,
+    lights: Vec<Option<String>>,
+}
+
+#[derive(Serialize)]
+struct ObjectRow {
+    object: u32,
+    name: Option<String>,
+    first_primitive: u32,
+    /// Number of primitives, those that collapsed on the lattice included.
+    primitives: u32,
+    /// `None` in a scene without materials.
+    material: Option<u32>,
+    material_name: Option<String>,
+}
+
+impl NameTable {
+    /// The table of a scene.
+    pub fn of(scene: &Scene<'_>, names: &Names) -> Self {
+        let header = scene.header();
+        let mut counts = vec![0; header.objects as usize];
+        for primitive in 0..header.primitives {
+            counts[scene.object(primitive) as usize] += 1;
+        }
+        let owned = |name: Option<&str>| name.map(str::to_owned);
+        let mut first_primitive = 0;
+        let row = |(object, primitives): (u32, u32)| {
+            let first = first_primitive;
+            first_primitive += primitives;
+            ObjectRow {
+                object,
+                name: owned(names.object(object)),
+                first_primitive: first,
+                primitives,
+                material: scene
+                    .material(object)
+                    .map(|_| scene.material_number(object)),
+                material_name: owned(names.material_of(object)),
+            }
+        };
+        let given = |name: Option<&String>| name.filter(|name| !name.is_empty()).cloned();
+        let materials = 0..scene.materials().len();
+        let lights = 0..scene.lights().len();
+        Self {
+            objects: (0..).zip(counts).map(row).collect(),
+            materials: materials
+                .map(|number| given(names.materials.get(number)))
+                .collect(),
+            lights: lights
+                .map(|number| given(names.lights.get(number)))
+                .collect(),
+        }
+    }
+}
+
+/// Counts hits by the names of objects; one without a name is called by its number.
+pub fn hits_by_name(hits: &[SceneHit], names: &Names) -> BTreeMap<String, usize> {
+    let mut by_object: BTreeMap<u32, usize> = BTreeMap::new();
+    for hit in hits.iter().filter(|hit| hit.primitive != u32::MAX) {
+        *by_object.entry(hit.object).or_default() += 1;
+    }
+    let mut by_name = BTreeMap::new();
+    for (object, count) in by_object {
+        let name = names.object(object);
+        let name = name.map_or_else(|| format!("object {object}"), str::to_owned);
+        *by_name.entry(name).or_default() += count;
+    }
+    by_name
+}
