@@ -23,7 +23,7 @@ macro_rules! shapes {
                 /// A capped cylinder, cone or frustum.
                 Cone = 4, "cone", [cones: cone::Cone], [Cones = 12, "cones"];
                 /// A torus.
-                Torus = 5, "torus", [tori: torus::Torus], [Tori = 62, "tori"];
+                Torus = 5, "torus", [tori: torus::Torus], [Tori = 60, "tori"];
             }
         }
     };

@@ -166,9 +166,9 @@ macro_rules! sections {
             Radii = 59, "radii", "radius" of "wide";
             /// For each object, then each material, then each light, where its name begins in the text;
             /// then the length of the text (1 to 4 bytes). Absent where nothing has a name.
-            NameStarts = 60, "name-starts", "name" of "name-starts";
+            NameStarts = 61, "name-starts", "name" of "name-starts";
             /// The names, UTF-8, one behind the other.
-            NameText = 61, "name-text", "byte" of "name-text";
+            NameText = 62, "name-text", "byte" of "name-text";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

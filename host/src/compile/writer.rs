@@ -39,11 +39,14 @@ impl Parts {
         if sections.is_empty() {
             return None;
         }
-        let (before, count) = (self.bytes(), self.sections.len());
+        let before = self.bytes();
         self.sections.extend(sections);
+        self.sections.sort_by_key(|section| section.kind);
         kept.bytes = self.bytes() - before;
         if max_bytes.is_some_and(|most| self.bytes() as u64 > most) {
-            self.sections.truncate(count);
+            let names = [SectionKind::NameStarts, SectionKind::NameText];
+            self.sections
+                .retain(|section| !names.contains(&section.kind));
             return Some(KeptNames {
                 left_out: true,
                 ..KeptNames::default()
