@@ -2,10 +2,11 @@
 
 use crate::bounds::{length_step, normal_step, ratio_step, ulp_of_one};
 use crate::cases::shape_of;
+use crate::exact::Line;
 use crate::exact::{Real, dot, norm, vector};
 use crate::query::{UnitRay, closest, point_of};
 use crate::scenes;
-use crate::solid::{Line, Normal, Solid};
+use crate::solid::{Normal, Solid};
 use glam::DVec3;
 use gridel_core::{Hit, List, NoCount, Number, Scene};
 use gridel_host::blob::Blob;

@@ -50,18 +50,28 @@ pub fn blob_with_gridels(scene: &Scene, lattice_bits: u8, gridels: u32) -> Blob 
 
 /// A blob with every structure, and tables as small as they can be.
 pub fn compact_blob(scene: &Scene, lattice_bits: u8) -> Blob {
-    blob_with_tables(scene, lattice_bits, 1, 4096)
+    let options = compact_options(lattice_bits);
+    compile(scene, &options).expect("compiles").blob
 }
 
 fn blob_with_tables(scene: &Scene, lattice_bits: u8, gridels: u32, budget: u64) -> Blob {
-    let options = Options {
+    let options = all_structures(lattice_bits, gridels, budget);
+    compile(scene, &options).expect("compiles").blob
+}
+
+/// Options for all structures, with the smallest tables.
+pub fn compact_options(lattice_bits: u8) -> Options {
+    all_structures(lattice_bits, 1, 4096)
+}
+
+fn all_structures(lattice_bits: u8, gridels: u32, budget: u64) -> Options {
+    Options {
         structures: Structure::ALL.to_vec(),
         lattice_bits,
         gridels: Some(gridels),
         budget: Some(budget),
         ..Options::default()
-    };
-    compile(scene, &options).expect("compiles").blob
+    }
 }
 
 /// Reads a scene file, with its own folder as base.

@@ -17,11 +17,11 @@ use gridel_host::trace::{Frame, Query, Rejection, SceneHit, SceneRay, trace};
 use gridel_host::verify::judge::{Crossings, Judge, step};
 use gridel_tests::effort::part_of;
 use gridel_tests::every_format;
+use gridel_tests::exact::Line;
 use gridel_tests::exact::{Real, Vector, along, minus, scaled, vector};
 use gridel_tests::query::{HitBits, closest, held, through};
 use gridel_tests::random::Random;
 use gridel_tests::scenes;
-use gridel_tests::solid::Line;
 
 /// The farthest coordinate that is answered, in units.
 const LIMIT: f64 = (FARTHEST >> 13) as f64;

@@ -16,7 +16,7 @@ pub(super) fn reads(checks: &mut Checks<'_>) {
     };
     for kind in Kind::ALL {
         checks.equal(
-            format_args!("number of {}s", kind.name()),
+            format_args!("number of primitives of kind {}", kind.name()),
             scene.count(kind),
             1,
         );

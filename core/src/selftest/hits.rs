@@ -21,7 +21,21 @@ const ENDLESS: [f64; 2] = [0.0, f64::INFINITY];
 /// The cone falls by 40 units over a radius of 20: its normal is (2, 1) / sqrt(5).
 const CONE: [f64; 3] = [0.894_427_190_999_915_9, 0.447_213_595_499_957_9, 0.0];
 
-const RAYS: [Expected; 13] = [
+const RAYS: [Expected; 15] = [
+    Expected {
+        what: "torus from its middle",
+        origin: [0.0, -80.0, 0.0],
+        direction: [1.0, 0.0, 0.0],
+        interval: ENDLESS,
+        hit: Some((5, 25.0, [-1.0, 0.0, 0.0], true)),
+    },
+    Expected {
+        what: "torus from within its tube",
+        origin: [0.0, -80.0, -30.0],
+        direction: [0.0, 2.0, 0.0],
+        interval: ENDLESS,
+        hit: Some((5, 5.0, [0.0, 1.0, 0.0], false)),
+    },
     Expected {
         what: "triangle from its front",
         origin: [-40.0, -5.0, 200.0],

@@ -5,15 +5,15 @@ use crate::format::record::{
     VERSION, Vertex16, View,
 };
 use crate::format::{Aligned, SectionKind, checksum};
-use crate::geometry::{cone::Cone, cuboid::Cuboid, disc::Disc};
+use crate::geometry::{cone::Cone, cuboid::Cuboid, disc::Disc, torus::Torus};
 use crate::{Effects, Structure};
 use bytemuck::{NoUninit, Zeroable, bytes_of};
 use core::mem::size_of;
 
 /// Sections of the blob.
-const SECTIONS: usize = 10;
+const SECTIONS: usize = 11;
 /// Room for the blob.
-const ROOM: usize = 1280;
+const ROOM: usize = 1344;
 /// The ratio 1.
 const ONE: i32 = 1 << 30;
 
@@ -28,7 +28,7 @@ impl TinyBlob {
     /// Pictures are this large.
     pub(super) const SIZE: [u16; 2] = [16, 12];
 
-    /// Five objects, each one primitive: triangle, sphere, box, disc and cone. Lengths in units:
+    /// Six objects, each one primitive: triangle, sphere, box, disc, cone and torus. Lengths in units:
     ///
     /// | object | where |
     /// |---|---|
@@ -37,6 +37,7 @@ impl TinyBlob {
     /// | 2 box | (-90, -90, -50) to (90, -70, 50) |
     /// | 3 disc | centre (-40, 60, 20), radius 20, facing up |
     /// | 4 cone | base (40, -60, 20) of radius 20, apex (40, -20, 20) |
+    /// | 5 torus | centre (0, -80, 0), axis upward, radii 30 and 5: within the box, where no picture shows it |
     pub(crate) fn new() -> Self {
         let fine = |units: i32| units << 8;
         let point = |p: [i32; 3]| p.map(fine);
@@ -62,6 +63,13 @@ impl TinyBlob {
             apex_radius: 0,
             bounds: UnitBox([[20, 60], [-60, -20], [0, 40]]),
         };
+        let torus = Torus {
+            center: point([0, -80, 0]),
+            axis: [0, 1, 0],
+            major_radius: fine(30),
+            minor_radius: fine(5),
+            bounds: UnitBox([[-35, 35], [-85, -75], [-35, 35]]),
+        };
 
         let start = size_of::<Header>() + SECTIONS * size_of::<SectionEntry>();
         let mut blob = Self {
@@ -72,13 +80,14 @@ impl TinyBlob {
         blob.section(SectionKind::View, &[view()]);
         blob.section(SectionKind::Lights, &lights());
         blob.section(SectionKind::Materials, &materials());
-        blob.section(SectionKind::ObjectMaterial, &[0_u8, 1, 0, 2, 0]);
+        blob.section(SectionKind::ObjectMaterial, &[0_u8, 1, 0, 2, 0, 0]);
         blob.section(SectionKind::Vertices, &vertices);
         blob.section(SectionKind::Triangles, &[[0_u16, 1, 2]]);
         blob.section(SectionKind::Spheres, &[sphere]);
         blob.section(SectionKind::Boxes, &[cuboid]);
         blob.section(SectionKind::Discs, &[disc]);
         blob.section(SectionKind::Cones, &[cone]);
+        blob.section(SectionKind::Tori, &[torus]);
         blob.seal(Header {
             magic: MAGIC,
             endianness: ENDIANNESS,
@@ -87,8 +96,8 @@ impl TinyBlob {
             blob_bytes: blob.length as u32,
             structures: Structure::List.bit(),
             effects: Effects::ALL.0,
-            primitives: 5,
-            objects: 5,
+            primitives: 6,
+            objects: 6,
             lattice_bits: 16,
             storage_bits: 16,
             bounds: UnitBox([[-90, 90], [-90, 90], [-50, 50]]),

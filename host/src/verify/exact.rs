@@ -164,3 +164,23 @@ pub fn unit(v: &Vector) -> Vector {
         scaled(v, &(Real::of(1.0) / length))
     }
 }
+
+/// A line: where t is 0, and what t is multiplied with.
+#[derive(Clone, Debug)]
+pub struct Line {
+    pub origin: Vector,
+    pub slope: Vector,
+}
+
+impl Line {
+    pub fn new(origin: [f64; 3], slope: [f64; 3]) -> Self {
+        Self {
+            origin: vector(origin),
+            slope: vector(slope),
+        }
+    }
+
+    pub fn at(&self, t: &Real) -> Vector {
+        along(&self.origin, t, &self.slope)
+    }
+}

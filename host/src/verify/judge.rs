@@ -1,8 +1,9 @@
 //! What is right, by arithmetic that owes nothing to the kernels: which primitive a ray meets first,
 //! within what a number format may be off by.
 
+use super::exact::Line;
 use super::exact::Real;
-use super::solid::{Line, Solid};
+use super::solid::Solid;
 use gridel_core::format::record::UnitBox;
 use gridel_core::geometry::Geometry;
 use gridel_core::{Format, Kind, Number, Ray, Scene};

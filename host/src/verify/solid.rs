@@ -4,7 +4,7 @@
 //! an answer is off by no more than a length if some shape that differs by no more than that length
 //! gives it. So a ray that barely touches is judged as fairly as one that strikes head on.
 
-use super::exact::{Real, Vector, along, cross, dot, minus, norm, scaled, unit, vector};
+use super::exact::{Line, Real, Vector, along, cross, dot, minus, norm, scaled, unit, vector};
 use super::torus::Torus;
 
 /// A shape in units, all of its numbers on the lattice.
@@ -36,26 +36,6 @@ pub enum Solid {
         minor_radius: f64,
     },
     Triangle([[f64; 3]; 3]),
-}
-
-/// A line: where t is 0, and what t is multiplied with.
-#[derive(Clone, Debug)]
-pub struct Line {
-    pub origin: Vector,
-    pub slope: Vector,
-}
-
-impl Line {
-    pub fn new(origin: [f64; 3], slope: [f64; 3]) -> Self {
-        Self {
-            origin: vector(origin),
-            slope: vector(slope),
-        }
-    }
-
-    pub fn at(&self, t: &Real) -> Vector {
-        along(&self.origin, t, &self.slope)
-    }
 }
 
 /// A normal, and what an error of it is proportional to.

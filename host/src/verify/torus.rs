@@ -1,7 +1,6 @@
 //! Where a line crosses a torus, by the real roots of the textbook's quartic in arithmetic of 320 bits.
 
-use super::exact::{Real, Vector, along, dot, minus, norm, unit, vector};
-use super::solid::Line;
+use super::exact::{Line, Real, Vector, along, dot, minus, norm, unit, vector};
 use std::cmp::Ordering;
 
 /// Bits to which roots are found, of the interval that holds them.

@@ -13,6 +13,7 @@ use glam::DVec3;
 use gridel_core::format::BlobError;
 use gridel_core::{Format, Hit, List, NoCount, Number, Scene, Settings};
 use gridel_host::blob::Blob;
+use gridel_host::compile::{Options, compile};
 use gridel_host::render::{Job, render};
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Shape};
 use gridel_tests::effort::step;
@@ -39,6 +40,13 @@ fn small_scene() -> gridel_host::scene::Scene {
         .objects
         .remove(0),
     );
+    let torus = Shape::Torus {
+        center: DVec3::new(0.5, 0.4, 0.3),
+        axis: DVec3::new(1.0, 2.0, 0.0),
+        major_radius: 0.3,
+        minor_radius: 0.1,
+    };
+    scene.objects.push(scenes::of([torus]).objects.remove(0));
     scene.materials.push(Material {
         name: String::from("everything"),
         diffuse: Diffuse::Checker {
@@ -73,9 +81,13 @@ fn small_scene() -> gridel_host::scene::Scene {
 }
 
 fn small_blob(lattice_bits: u8) -> Vec<u8> {
-    scenes::compact_blob(&small_scene(), lattice_bits)
-        .bytes()
-        .to_vec()
+    let options = scenes::compact_options(lattice_bits);
+    let options = Options {
+        names: true,
+        ..options
+    };
+    let blob = compile(&small_scene(), &options).expect("compiles").blob;
+    blob.bytes().to_vec()
 }
 
 /// Uses a scene that was accepted: all structures that loading proves agree, the others come to an

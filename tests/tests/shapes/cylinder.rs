@@ -6,11 +6,12 @@ use gridel_core::{List, NoCount, Number};
 use gridel_tests::cases::{Case, lattice, slope};
 use gridel_tests::effort::part_of;
 use gridel_tests::every_format;
+use gridel_tests::exact::Line;
 use gridel_tests::exact::Real;
 use gridel_tests::judge::blob_of;
 use gridel_tests::query::{UnitRay, closest};
 use gridel_tests::random::Random;
-use gridel_tests::solid::{Line, Solid};
+use gridel_tests::solid::Solid;
 
 /// A cylinder between lattice points; the second is moved if they are one.
 pub fn cylinder(base: DVec3, apex: DVec3, radius: f64) -> Solid {
