@@ -32,8 +32,9 @@ pub(in crate::accel) trait Tree: Copy {
     /// The first (0) or the second (1) child of a node that has children.
     fn child(self, number: u32, side: u32) -> Node;
 
-    /// The volumes of the children, given their parent's.
-    fn volumes(self, number: u32, parent: &Self::Volume) -> [Self::Volume; 2];
+    /// Turns the volume of a node that has children into that of one of them, in place: boards copy
+    /// volumes by a call.
+    fn narrow(self, number: u32, side: u32, volume: &mut Self::Volume);
 
     /// Whether a child's volume lies in its parent's, where a walk relies on that.
     fn nests(self, _child: &Self::Volume, _parent: &Self::Volume) -> bool {
@@ -70,45 +71,58 @@ pub(in crate::accel) fn check_tree<T: Tree>(
     let mut path: Vec<u32, MAX_LEVELS> = Vec::new();
     let (mut node, mut volume) = (tree.root(), *root);
     loop {
-        let number = node.number();
-        let Some(leaf) = tree.leaf(node) else {
-            let children = tree.volumes(number, &volume);
-            for (child, reason) in children
-                .iter()
-                .zip([Reason::LeftOutside, Reason::RightOutside])
-            {
-                if !tree.nests(child, &volume) {
-                    return Err(Location::Record(T::SECTION, number as usize).invalid(reason));
+        match tree.leaf(node) {
+            None => {
+                // The depth was proved to fit.
+                let _ = path.push(node.number() << 1);
+            }
+            Some(leaf) => {
+                let leaf = space.leaf(leaf);
+                if !leaf.is_some_and(|leaf| tree.holds(space, leaf, node, &volume, &path)) {
+                    return Err(outside::<T>(node, &path));
+                }
+                while path.last().is_some_and(|step| step & 1 == 1) {
+                    path.pop();
+                }
+                let Some((step, above)) = path.split_last_mut() else {
+                    return Ok(depth);
+                };
+                *step |= 1;
+                volume = *root;
+                for &mut step in above {
+                    tree.narrow(step >> 1, step & 1, &mut volume);
                 }
             }
-            // The depth was proved to fit.
-            let _ = path.push(number << 1);
-            (node, volume) = (tree.child(number, 0), children[0]);
-            continue;
-        };
-        let leaf = space.leaf(leaf);
-        if !leaf.is_some_and(|leaf| tree.holds(space, leaf, node, &volume, &path)) {
-            // Leaves of pairs have no record of their own.
-            let parent = path.last().map(|step| step >> 1);
-            let record = if node.is_leaf() { parent } else { Some(number) };
-            let location = match record {
-                Some(record) => Location::Record(T::SECTION, record as usize),
-                None => Location::Section(T::SECTION),
-            };
-            return Err(location.invalid(T::OUTSIDE));
         }
-        while path.last().is_some_and(|step| step & 1 == 1) {
-            path.pop();
-        }
-        let Some(step) = path.last_mut() else {
+        // Down to the child that the way leads to.
+        let Some(&step) = path.last() else {
             return Ok(depth);
         };
-        *step |= 1;
-        node = tree.child(*step >> 1, 1);
-        volume = *root;
-        for &step in &path {
-            let [first, second] = tree.volumes(step >> 1, &volume);
-            volume = if step & 1 == 0 { first } else { second };
+        let (number, side) = (step >> 1, step & 1);
+        let parent = volume;
+        tree.narrow(number, side, &mut volume);
+        if !tree.nests(&volume, &parent) {
+            let reason = [Reason::LeftOutside, Reason::RightOutside][side as usize];
+            return Err(Location::Record(T::SECTION, number as usize).invalid(reason));
         }
+        node = tree.child(number, side);
     }
+}
+
+/// The error of a leaf with a primitive outside of its volume.
+#[cold]
+#[inline(never)]
+fn outside<T: Tree>(node: Node, path: &Path) -> BlobError {
+    // Leaves of pairs have no record of their own.
+    let parent = path.last().map(|step| step >> 1);
+    let record = if node.is_leaf() {
+        parent
+    } else {
+        Some(node.number())
+    };
+    let location = match record {
+        Some(record) => Location::Record(T::SECTION, record as usize),
+        None => Location::Section(T::SECTION),
+    };
+    location.invalid(T::OUTSIDE)
 }

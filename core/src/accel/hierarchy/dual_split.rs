@@ -374,24 +374,27 @@ impl Tree for Views<'_> {
         Node::pair(self.way(number).number().wrapping_add(side))
     }
 
-    #[inline(never)]
-    fn volumes(self, number: u32, parent: &UnitBox) -> [UnitBox; 2] {
-        let mut region = *parent;
+    #[inline(always)]
+    fn narrow(self, number: u32, side: u32, region: &mut UnitBox) {
         let Some(record) = self.0.get(number as usize) else {
-            return [region; 2];
+            return;
         };
-        carve(&mut region, record);
-        let (mut below, mut above) = (region, region);
-        let axis = NodeWord(record.way).split();
-        if let (Some(below), Some(above)) = (below.0.get_mut(axis), above.0.get_mut(axis)) {
-            below[1] = below[1].min((record.split >> 16) as i16);
-            above[0] = above[0].max(record.split as i16);
+        carve(region, record);
+        if let Some(sides) = region.0.get_mut(NodeWord(record.way).split()) {
+            if side == 0 {
+                sides[1] = sides[1].min((record.split >> 16) as i16);
+            } else {
+                sides[0] = sides[0].max(record.split as i16);
+            }
         }
-        [below, above]
     }
 
+    #[inline(always)]
     fn holds(self, space: &Space<'_>, leaf: Leaf, node: Node, parent: &UnitBox, _: &Path) -> bool {
-        let [region, _] = self.volumes(node.number(), parent);
+        let mut region = *parent;
+        if let Some(record) = self.0.get(node.number() as usize) {
+            carve(&mut region, record);
+        }
         space.shapes.leaf_inside(leaf, &region)
     }
 }

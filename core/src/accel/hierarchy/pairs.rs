@@ -154,9 +154,10 @@ impl<A: PairArray> Tree for A {
         pair.map_or(Node::leaf(u32::MAX), |pair| pair.child(number, side))
     }
 
-    fn volumes(self, number: u32, parent: &Self::Volume) -> [Self::Volume; 2] {
-        let pair = self.pair(number as usize);
-        pair.map_or([*parent; 2], |pair| self.volumes(pair, parent))
+    fn narrow(self, number: u32, side: u32, volume: &mut Self::Volume) {
+        if let Some(pair) = self.pair(number as usize) {
+            *volume = self.volumes(pair, volume)[(side & 1) as usize];
+        }
     }
 
     fn nests(self, child: &Self::Volume, parent: &Self::Volume) -> bool {
