@@ -73,7 +73,7 @@ fn tori(
         let rays = rays.collect();
         Case { class, solid, rays }
     };
-    (0..part_of(40, 2000)).map(case).collect()
+    (0..part_of(12, 400)).map(case).collect()
 }
 
 fn any(random: &mut Random) -> f64 {
@@ -195,7 +195,7 @@ fn tori_at_the_ends_of_the_lattice() {
         };
         let axis = DVec3::from_array(axis).normalize();
         let reach = major_radius + minor_radius;
-        let rays = (0..part_of(60, 2000)).map(|_| {
+        let rays = (0..part_of(20, 400)).map(|_| {
             let outward = axis.cross(direction(&mut random)).normalize();
             let tube = direction(&mut random) * minor_radius * random.unit();
             let place = outward * major_radius + tube;
