@@ -36,9 +36,10 @@ pub(in crate::accel) trait Tree: Copy {
     /// volumes by a call.
     fn narrow(self, number: u32, side: u32, volume: &mut Self::Volume);
 
-    /// Whether a child's volume lies in its parent's, where a walk relies on that.
-    fn nests(self, _child: &Self::Volume, _parent: &Self::Volume) -> bool {
-        true
+    /// Proves that the volumes of both children lie in their parent's, where a walk relies on that.
+    #[inline(always)]
+    fn nests(self, _number: u32, _parent: &Self::Volume) -> Result<(), Reason> {
+        Ok(())
     }
 
     /// Whether the volumes that lead to the leaf that a node is hold its primitives.
@@ -73,8 +74,12 @@ pub(in crate::accel) fn check_tree<T: Tree>(
     loop {
         match tree.leaf(node) {
             None => {
+                let number = node.number();
+                if let Err(reason) = tree.nests(number, &volume) {
+                    return Err(Location::Record(T::SECTION, number as usize).invalid(reason));
+                }
                 // The depth was proved to fit.
-                let _ = path.push(node.number() << 1);
+                let _ = path.push(number << 1);
             }
             Some(leaf) => {
                 let leaf = space.leaf(leaf);
@@ -99,12 +104,7 @@ pub(in crate::accel) fn check_tree<T: Tree>(
             return Ok(depth);
         };
         let (number, side) = (step >> 1, step & 1);
-        let parent = volume;
         tree.narrow(number, side, &mut volume);
-        if !tree.nests(&volume, &parent) {
-            let reason = [Reason::LeftOutside, Reason::RightOutside][side as usize];
-            return Err(Location::Record(T::SECTION, number as usize).invalid(reason));
-        }
         node = tree.child(number, side);
     }
 }

@@ -10,7 +10,7 @@ use crate::accel::space::Space;
 use crate::accel::stack::{Entry, StackView};
 use crate::format::link::Node;
 use crate::format::record::UnitBox;
-use crate::format::{BlobError, Leaf, SectionKind, Sections};
+use crate::format::{BlobError, Leaf, Reason, SectionKind, Sections};
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, NodeId, Sides};
 
@@ -101,7 +101,7 @@ pub(in crate::accel) trait PairArray: Copy {
     /// The volumes of a pair's children, given the pair's own.
     fn volumes(self, pair: Self::Pair, parent: &Self::Volume) -> [Self::Volume; 2];
 
-    /// See [`Tree::nests`].
+    /// Whether a child's volume lies in its parent's, where a walk relies on that.
     fn nests(self, _child: &Self::Volume, _parent: &Self::Volume) -> bool {
         true
     }
@@ -160,8 +160,20 @@ impl<A: PairArray> Tree for A {
         }
     }
 
-    fn nests(self, child: &Self::Volume, parent: &Self::Volume) -> bool {
-        PairArray::nests(self, child, parent)
+    fn nests(self, number: u32, parent: &Self::Volume) -> Result<(), Reason> {
+        let Some(pair) = self.pair(number as usize) else {
+            return Ok(());
+        };
+        let children = self.volumes(pair, parent);
+        for (child, reason) in children
+            .iter()
+            .zip([Reason::LeftOutside, Reason::RightOutside])
+        {
+            if !PairArray::nests(self, child, parent) {
+                return Err(reason);
+            }
+        }
+        Ok(())
     }
 
     fn holds(
