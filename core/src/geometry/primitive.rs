@@ -21,6 +21,8 @@ pub(crate) trait Primitive: Pod {
     const CLAMPS: bool = true;
     /// Whether the shape has no inside: its front is the side to which its normal points.
     const FLAT: bool = false;
+    /// Whether a normal that lies on the wrong side of the ray is made level with it by the caller.
+    const LEVELED: bool = true;
 
     /// The box on the box lattice.
     fn bounds(&self) -> UnitBox;

@@ -59,6 +59,15 @@ macro_rules! registry {
             }
         }
 
+        /// Whether the normal of a shape is made level with the ray where it lies on the wrong side of it.
+        #[inline(always)]
+        const fn is_leveled(kind: Kind) -> bool {
+            match kind {
+                Kind::Triangle | Kind::Sphere => true,
+                $(Kind::$kind => super::$module::$record::LEVELED,)*
+            }
+        }
+
         impl<'a> Shapes<'a> {
             /// Finds the records of a blob, or says which code for them this build lacks.
             pub(crate) fn read(sections: &Sections<'a>, header: &Header) -> Result<Self, BlobError> {
@@ -347,7 +356,7 @@ impl Shapes<'_> {
         } else {
             part & LEAVING == 0
         };
-        if front != against {
+        if front != against && is_leveled(place.kind()) {
             surface.normal = surface.level_with(ray);
         }
         Some((surface, front))

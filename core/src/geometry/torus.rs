@@ -118,6 +118,8 @@ impl Torus {
 impl Primitive for Torus {
     const NEEDS_NORM: bool = true;
     const TESTS_BOX: bool = true;
+    // In a pit, where the way along the axis alone leads out, the normal stays.
+    const LEVELED: bool = false;
 
     #[inline(always)]
     fn bounds(&self) -> UnitBox {
@@ -177,12 +179,17 @@ impl Primitive for Torus {
         // That of the rounded point, which thin rings far from the lattice's middle turn away from.
         let Place { outward, away, .. } = self.place(&frame, point);
         let normal = frame.vector(away[1], outward.map(|x| away[0] * x));
-        Surface {
+        let mut surface = Surface {
             normal: N::normalize(normal).0,
             point,
             error,
             is_exact: false,
+        };
+        let against = N::dot(surface.normal, ray.slope) < N::Wide::default();
+        if against == (part & LEAVING != 0) {
+            surface.normal = surface.level_with(ray);
         }
+        surface
     }
 
     /// A point `depth` beneath a point of the surface, or on the circle where the tube is thinner.

@@ -88,7 +88,8 @@ impl<'a> Prevalidated<'a> {
         while index < sections {
             let entry = size_of::<Header>() + index * size_of::<SectionEntry>();
             let kind = proved!(half(blob, entry + offset_of!(SectionEntry, kind)));
-            if kind > SectionKind::DualNodes as u16 {
+            // What lies between is that of other structures.
+            if kind > SectionKind::DualNodes as u16 && kind <= SectionKind::Radii as u16 {
                 return Err(Location::Table(index).invalid(Reason::NotPrevalidated));
             }
             let levels = proved!(levels(blob, entry, kind));

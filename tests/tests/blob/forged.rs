@@ -5,7 +5,7 @@ use glam::DVec3;
 use gridel_core::format::cluster::Pack24;
 use gridel_core::format::record::{DualNode, FlaggedPair, Header, Pair, SectionEntry, WideNode};
 use gridel_core::format::{Link, NodeWord, SectionKind};
-use gridel_core::{Number, Scene, Structure};
+use gridel_core::{Names, Number, Scene, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;
 use gridel_tests::fuzz::{sealed, speaks};
@@ -154,7 +154,9 @@ fn forged_sections_are_refused() {
             let mut changed = bytes.clone();
             changed[place..place + 16].copy_from_slice(bytemuck::bytes_of(&forged));
             let blob = sealed(&changed);
-            let error = blob.scene().err();
+            // Names are read, and proved, apart from the scene.
+            let names = || Names::from_bytes(blob.bytes()).err();
+            let error = blob.scene().err().or_else(names);
             assert!(error.is_some(), "{kind:?}: {forged:?}");
             error.iter().for_each(speaks);
         }

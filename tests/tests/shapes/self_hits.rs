@@ -35,8 +35,7 @@ fn next_hit<N: Number>(scene: &Scene<'_>, from: [f64; 3], way: DVec3) -> Option<
     closest::<N, List>(scene, &ray.expect("a ray"), &mut NoCount)
 }
 
-/// Whether a ray that left a torus comes back into it, exactly: beyond the error bound, or in the pit of one that
-/// meets its axis, whose walls are as near as one likes.
+/// Whether a ray that starts well outside of a solid comes into it again, exactly.
 fn enters_elsewhere<N: Number>(
     solid: &Solid,
     (from, way): ([f64; 3], DVec3),
@@ -47,8 +46,8 @@ fn enters_elsewhere<N: Number>(
     let line = Line::new(from, (way / way.abs().max_element()).to_array());
     let (grown, begin) = (0.5 * error, Real::of(0.0));
     let crossings = Crossings::new(solid, &line, grown);
-    let in_pit = matches!(solid, Solid::Torus { major_radius, minor_radius, .. } if minor_radius >= major_radius);
-    (in_pit || t > error) && crossings.may_be_met_at(&Real::of(t), &begin)
+    let apart = solid.excesses(from).into_iter().fold(f64::MIN, f64::max);
+    apart > 0.5 * error && crossings.may_be_met_at(&Real::of(t), &begin)
 }
 
 /// How many rays left a solid, went on inside of it, and could not because it is too thin.
