@@ -77,24 +77,25 @@ macro_rules! registry {
                 let sole = holds(SectionKind::Strips) && !triangles
                     || holds(SectionKind::Packs) && !spheres;
                 let wide_indices = triangles && !triangle::is_narrow(sections);
-                let parts = [
-                    (sole && cfg!(not(feature = "wide")), "wide"),
-                    (triangles && !Kind::Triangle.is_available(), Kind::Triangle.name()),
-                    (spheres && !Kind::Sphere.is_available(), Kind::Sphere.name()),
-                    $((holds(SectionKind::$section) && !Kind::$kind.is_available(), $name),)*
-                    (!short && !WIDE_LATTICE, "wide-lattice"),
-                    (wide_indices && !WIDE_INDICES, "wide-indices"),
-                ];
-                for (is_missing, missing) in parts {
-                    if is_missing {
-                        return Err(BlobError::MissingPart { missing });
-                    }
-                }
+                let lacks = |is_held: bool, is_available: bool, missing| match is_held && !is_available {
+                    true => Err(BlobError::MissingPart { missing }),
+                    false => Ok(()),
+                };
+                lacks(sole, cfg!(feature = "wide"), "wide")?;
+                lacks(triangles, Kind::Triangle.is_available(), Kind::Triangle.name())?;
+                lacks(spheres, Kind::Sphere.is_available(), Kind::Sphere.name())?;
+                $(lacks(holds(SectionKind::$section), Kind::$kind.is_available(), $name)?;)*
+                lacks(!short, WIDE_LATTICE, "wide-lattice")?;
+                lacks(wide_indices, WIDE_INDICES, "wide-indices")?;
                 Ok(Self {
                     vertices: Vertices::read(sections, short)?,
                     triangles: Triangles::read(sections)?,
                     spheres: Spheres::read(sections, short)?,
-                    $($field: sections.records(SectionKind::$section)?,)*
+                    $($field: if Kind::$kind.is_available() {
+                        sections.records(SectionKind::$section)?
+                    } else {
+                        &[]
+                    },)*
                     #[cfg(feature = "wide")]
                     clusters: Clusters::read(sections, short)?,
                 })

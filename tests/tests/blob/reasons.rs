@@ -10,7 +10,7 @@ use gridel_core::format::record::{
 use gridel_core::format::{
     BlobError, Child, Effects, Field, Kind, Leaf, Link, Reason, SectionKind,
 };
-use gridel_core::geometry::{cone::Cone, cuboid::Cuboid, disc::Disc};
+use gridel_core::geometry::{cone::Cone, cuboid::Cuboid, disc::Disc, torus::Torus};
 use gridel_core::{Names, Prevalidated, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;
@@ -346,6 +346,20 @@ fn primitives() -> Errors {
             it.change(SectionKind::Cones, 0, forge)
         });
     }
+    let tori: [(Field, &dyn Fn(&mut Torus)); 4] = [
+        (Field::Center, &|it| it.center[0] = i32::MAX),
+        (Field::Axis, &|it| it.axis[1] = (1 << 24) + 1),
+        (Field::Radius, &|it| it.minor_radius = 0),
+        (Field::Radius, &|it| it.major_radius = -1),
+    ];
+    for (field, forge) in tori {
+        errors.field("torus 0", field, |it| {
+            it.change(SectionKind::Tori, 0, forge)
+        });
+    }
+    errors.reason("torus 0", Reason::ZeroAxis, |it| {
+        it.change(SectionKind::Tori, 0, |it: &mut Torus| it.axis = [0; 3])
+    });
     errors.reason("cone 0", Reason::ZeroAxis, |it| {
         it.change(SectionKind::Cones, 0, |it: &mut Cone| it.apex = it.base)
     });

@@ -35,19 +35,29 @@ fn next_hit<N: Number>(scene: &Scene<'_>, from: [f64; 3], way: DVec3) -> Option<
     closest::<N, List>(scene, &ray.expect("a ray"), &mut NoCount)
 }
 
-/// Whether a ray that starts well outside of a solid comes into it again, exactly.
+/// Whether a ray that starts well outside of a torus comes into it again, exactly. What starts in the pit of one that
+/// meets its axis is as near to the pit's wall as that is narrow: there it need only start outside.
 fn enters_elsewhere<N: Number>(
     solid: &Solid,
     (from, way): ([f64; 3], DVec3),
-    again: &Hit<N>,
+    (hit, again): (&Hit<N>, &Hit<N>),
 ) -> bool {
+    let least = match *solid {
+        Solid::Torus {
+            major_radius,
+            minor_radius,
+            ..
+        } if minor_radius < major_radius => 0.5,
+        Solid::Torus { .. } => 0.0,
+        _ => return false,
+    };
     let t = N::far_to_f64(again.t);
     let error = again.error.length_to_f64();
     let line = Line::new(from, (way / way.abs().max_element()).to_array());
     let (grown, begin) = (0.5 * error, Real::of(0.0));
     let crossings = Crossings::new(solid, &line, grown);
     let apart = solid.excesses(from).into_iter().fold(f64::MIN, f64::max);
-    apart > 0.5 * error && crossings.may_be_met_at(&Real::of(t), &begin)
+    apart > least * hit.error.length_to_f64() && crossings.may_be_met_at(&Real::of(t), &begin)
 }
 
 /// How many rays left a solid, went on inside of it, and could not because it is too thin.
@@ -91,11 +101,9 @@ impl Left {
                 };
                 if outside {
                     self.away += 1;
-                    // A torus is not convex: what leaves it can enter it elsewhere.
+                    // A torus is not convex.
                     let is_elsewhere = |again: &Hit<N>| {
-                        matches!(solid, Solid::Torus { .. })
-                            && again.front
-                            && enters_elsewhere::<N>(solid, (from, way), again)
+                        again.front && enters_elsewhere::<N>(solid, (from, way), (&hit, again))
                     };
                     assert!(again.as_ref().is_none_or(is_elsewhere), "{}", about());
                 } else {
