@@ -70,7 +70,7 @@ pub const NORMAL: [Bound; 8] = [
     ),
     bound(
         "torus",
-        32.0,
+        8.0,
         "times coordinate over the minor radius, or over the distance from the axis",
     ),
 ];
