@@ -325,7 +325,7 @@ impl Solid {
             Solid::Torus { minor_radius, .. } => {
                 let normal = |torus: Torus| Normal {
                     exact: torus.normal(&p),
-                    condition: 1.0 + self.extent() / minor_radius.min(torus.from_axis(&p)),
+                    condition: 1.0 + self.extent() / minor_radius.min(torus.distance_from_axis(&p)),
                     size: f64::INFINITY,
                 };
                 self.torus().map(normal).into_iter().collect()

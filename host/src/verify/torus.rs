@@ -47,7 +47,7 @@ impl Torus {
     }
 
     /// How far a point is from the axis.
-    pub fn from_axis(&self, point: &Vector) -> f64 {
+    pub fn distance_from_axis(&self, point: &Vector) -> f64 {
         let (_, outward) = self.parts(point);
         norm(&outward).to_f64().max(f64::MIN_POSITIVE)
     }

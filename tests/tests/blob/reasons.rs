@@ -17,6 +17,9 @@ use gridel_host::scene::Shape;
 use gridel_tests::fuzz::{Base, sealed, speaks};
 use gridel_tests::scenes;
 
+/// A field of a record, and what puts it out of its range.
+type Forgery<'f, R> = (Field, &'f dyn Fn(&mut R));
+
 /// The errors that forged blobs were rejected with.
 struct Errors {
     base: Base,
@@ -233,7 +236,7 @@ fn surroundings() -> Errors {
     let mut errors = everything();
     let far = (1 << 50) + 1;
     let view = "section view";
-    let fields: [(Field, &dyn Fn(&mut View)); 12] = [
+    let fields: [Forgery<View>; 12] = [
         (Field::Eye, &|it| it.eye[1] = far),
         (Field::Eye, &|it| it.eye[1] = -far),
         (Field::CameraVector, &|it| it.up[2] = i32::MAX),
@@ -250,7 +253,7 @@ fn surroundings() -> Errors {
     for (field, forge) in fields {
         errors.field(view, field, |it| it.change(SectionKind::View, 0, forge));
     }
-    let lights: [(Field, &dyn Fn(&mut Light)); 3] = [
+    let lights: [Forgery<Light>; 3] = [
         (Field::Kind, &|it| it.directional = 2),
         (Field::Color, &|it| it.color[2] = -1),
         (Field::PositionOrDirection, &|it| it.vector[0] = far),
@@ -264,7 +267,7 @@ fn surroundings() -> Errors {
         it.change(SectionKind::Lights, 1, |it: &mut Light| it.vector = [0; 3])
     });
     let above = (1 << 30) + 1;
-    let materials: [(Field, &dyn Fn(&mut Material)); 9] = [
+    let materials: [Forgery<Material>; 9] = [
         (Field::Diffuse, &|it| it.diffuse[0] = above),
         (Field::Odd, &|it| it.odd[1] = -1),
         (Field::Highlight, &|it| it.highlight[2] = above),
@@ -318,7 +321,7 @@ fn primitives() -> Errors {
             std::mem::swap(&mut it.lowest[1], &mut it.highest[1])
         })
     });
-    let discs: [(Field, &dyn Fn(&mut Disc)); 3] = [
+    let discs: [Forgery<Disc>; 3] = [
         (Field::Center, &|it| it.center[0] = far),
         (Field::Normal, &|it| it.normal[0] = far + 1),
         (Field::Radius, &|it| it.radius = 0),
@@ -336,7 +339,7 @@ fn primitives() -> Errors {
             it.bounds.0[0][0] = i16::MIN
         })
     });
-    let cones: [(Field, &dyn Fn(&mut Cone)); 3] = [
+    let cones: [Forgery<Cone>; 3] = [
         (Field::BaseCenter, &|it| it.base[0] = far),
         (Field::ApexCenter, &|it| it.apex[0] = far),
         (Field::Radius, &|it| it.base_radius = -1),
@@ -346,7 +349,7 @@ fn primitives() -> Errors {
             it.change(SectionKind::Cones, 0, forge)
         });
     }
-    let tori: [(Field, &dyn Fn(&mut Torus)); 4] = [
+    let tori: [Forgery<Torus>; 4] = [
         (Field::Center, &|it| it.center[0] = i32::MAX),
         (Field::Axis, &|it| it.axis[1] = (1 << 24) + 1),
         (Field::Radius, &|it| it.minor_radius = 0),
@@ -377,7 +380,7 @@ fn primitives() -> Errors {
     errors.field("slot 0", Field::Primitive, |it| {
         it.set(SectionKind::Order, 0, u32::MAX)
     });
-    let leaves: [(Field, &dyn Fn(&mut u32)); 3] = [
+    let leaves: [Forgery<u32>; 3] = [
         (Field::Kind, &|it| *it |= 7 << 29),
         (Field::Primitives, &|it| *it &= !(31 << 24)),
         (Field::FirstSlot, &|it| *it += 1),
@@ -479,7 +482,7 @@ fn deep_hierarchy() -> Errors {
     let pairs = (0..LEAVES - 1).map(|number| Pair {
         children: match number {
             number if number + 2 < LEAVES => [LEAF | number, number + 1],
-            number => [LEAF | number, LEAF | number + 1],
+            number => [LEAF | number, LEAF | (number + 1)],
         },
         ..pair
     });
@@ -684,7 +687,7 @@ fn candidates() -> Errors {
     errors.field("point 0 of apex", Field::Window, |it| {
         point(it, &|it| it.windows[3] = 0xfff0)
     });
-    let directions: [(Field, &dyn Fn(&mut ApexDirection)); 3] = [
+    let directions: [Forgery<ApexDirection>; 3] = [
         (Field::Plane, &|it| it.plane = i32::MIN),
         (Field::MajorAxis, &|it| it.major = 3),
         (Field::Window, &|it| it.window = 0xffff),
@@ -694,7 +697,7 @@ fn candidates() -> Errors {
             it.change(SectionKind::ApexDirections, 0, forge)
         });
     }
-    let windows: [(Field, &dyn Fn(&mut ApexWindow)); 2] = [
+    let windows: [Forgery<ApexWindow>; 2] = [
         (Field::FirstCell, &|it| it.first_cell = 1),
         (Field::SideCells, &|it| it.cells[1] = 0),
     ];
