@@ -90,11 +90,8 @@ pub fn render(
 
 /// Sets of effects that the ray loop is compiled for; a scene gets the first that has all of its.
 const SHADOWED: u32 = Effects::SHADOW.0;
-/// Without glass a shadow ray stops at any hit, which is less work.
-pub(crate) const OPAQUE: u32 = Effects::ALL
-    .without(Effects::GLASS)
-    .without(Effects::ABSORPTION)
-    .0;
+/// Without what filters light a shadow ray stops at any hit, which is less work.
+pub(crate) const OPAQUE: u32 = Effects::ALL.without(Effects::FILTERING).0;
 pub(crate) const ALL: u32 = Effects::ALL.0;
 
 fn with_format<N: Number>(

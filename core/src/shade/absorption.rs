@@ -18,6 +18,7 @@ impl Effect for Absorption {
     type State<N: Number> = ();
 
     const EFFECT: Effects = Effects::ABSORPTION;
+    const FILTERS: bool = true;
 
     #[inline(always)]
     fn is_called_by_material(material: &Material) -> bool {

@@ -62,7 +62,7 @@ macro_rules! places {
             /// Whether it needs the direction of a ray with length 1.
             const NEEDS_DIRECTION: bool = false;
 
-            /// Whether it may let light through surfaces.
+            /// Whether it acts on light that comes through surfaces.
             const FILTERS: bool = false;
 
             /// Whether a material calls for it.
@@ -95,7 +95,7 @@ macro_rules! places {
             const CASTING: u32;
             /// The effects that need a direction with length 1.
             const DIRECTED: u32;
-            /// The effects that may let light through surfaces.
+            /// The effects that act on light that comes through surfaces.
             const FILTERING: u32;
 
             /// The effects that a material calls for.

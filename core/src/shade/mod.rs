@@ -21,7 +21,8 @@ pub(crate) mod light;
 mod material;
 pub(crate) mod surface;
 
-use crate::format::effects::effects;
+use crate::format::effects::{Effects, effects};
+use effect::EffectList;
 
 pub(crate) use color::Color;
 
@@ -42,6 +43,11 @@ macro_rules! list {
 }
 
 effects!(list);
+
+impl Effects {
+    /// The effects that act on light that comes through surfaces. Without them a shadow ray stops at any hit.
+    pub const FILTERING: Effects = Effects(<EffectsThen<()> as EffectList>::FILTERING);
+}
 
 /// The list that the ray loop calls.
 #[cfg(not(test))]

@@ -24,6 +24,7 @@ use crate::compile::{self, Builder, CompileError, Compiled, compile};
 use crate::measure::board_memory;
 use crate::measure::rays::{self, Amount, Question, Questions};
 use crate::picture_rays::PictureRays;
+use crate::render::OPAQUE;
 use crate::scene;
 use gridel_core::{Effects, Fixed, Format, Number, Scene, Settings, Structure};
 use options::Contender;
@@ -86,14 +87,14 @@ fn compare_in<N: Number>(
         .iter()
         .map(|&kind| list_scene.count(kind))
         .sum();
-    let glass = list_scene.effects().contains(Effects::GLASS);
+    let is_opaque = Effects(OPAQUE).contains(list_scene.effects());
     let questions = Questions {
         rays: &picture_rays,
         // Through glass a shadow ray asks for what it meets first.
-        shadow: if glass {
-            Question::Closest
-        } else {
+        shadow: if is_opaque {
             Question::Any
+        } else {
+            Question::Closest
         },
     };
 
