@@ -8,6 +8,7 @@ use glam::DVec3;
 use gridel_host::blob::Blob;
 use gridel_host::compile::{CompileError, Options, compile};
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Place, Scene, Shape};
+use gridel_host::shape::{Cuboid, Sphere};
 use std::error::Error;
 
 /// A red ball on a grey floor.
@@ -23,14 +24,14 @@ pub fn scene() -> Scene {
         shape,
         place: Place::default(),
     };
-    let floor = Shape::Box {
+    let floor = Shape::Box(Cuboid {
         min: DVec3::new(-4.0, -0.5, -4.0),
         max: DVec3::new(4.0, 0.0, 4.0),
-    };
-    let ball = Shape::Sphere {
+    });
+    let ball = Shape::Sphere(Sphere {
         center: DVec3::Y,
         radius: 1.0,
-    };
+    });
     Scene {
         camera: Some(Camera {
             eye: DVec3::new(0.0, 3.0, 8.0),

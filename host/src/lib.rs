@@ -18,6 +18,7 @@
 //! | measure what accuracy costs in time | [`accuracy`] |
 //! | hold a scene to what is promised | [`verify`] |
 //! | draw charts and heat maps | [`report`] |
+//! | know a shape, on the lattice and exactly | [`shape`] |
 //! | print tables | [`table`] |
 //! | find objects that a number format cannot resolve | [`resolution`] |
 //! | write a file whole or not at all | [`output`] |
@@ -62,6 +63,7 @@ pub mod report;
 pub mod resolution;
 pub mod sample;
 pub mod scene;
+pub mod shape;
 pub mod simd;
 pub mod table;
 pub mod trace;

@@ -5,8 +5,8 @@
 //! [`Hit::error`](gridel_core::Hit::error)); so an object whose smallest feature is less than that is not told
 //! apart with certainty from the surface that it touches.
 
+use crate::shape::{Solid, Surface};
 use glam::DVec3;
-use gridel_core::geometry::{Geometry, torus::Torus};
 use gridel_core::{Format, Kind, Scene};
 use serde::Serialize;
 
@@ -48,26 +48,13 @@ impl Extent {
         highest: DVec3::NEG_INFINITY,
     };
 
-    fn of(geometry: &Geometry) -> Self {
-        let around = |center: DVec3, reach: f64| Self {
-            lowest: center - reach,
-            highest: center + reach,
+    fn of(solid: &Solid) -> Self {
+        let around = |(center, radius): (DVec3, f64)| Self {
+            lowest: center - radius,
+            highest: center + radius,
         };
-        match geometry {
-            Geometry::Triangle(corners) => {
-                let points = corners.map(|corner| around(units(corner), 0.0));
-                points.into_iter().fold(Self::EMPTY, Self::with)
-            }
-            Geometry::Sphere { center, radius } => around(units(*center), length(*radius)),
-            Geometry::Box(cuboid) => Self {
-                lowest: units(cuboid.lowest),
-                highest: units(cuboid.highest),
-            },
-            Geometry::Disc(disc) => around(units(disc.center), length(disc.radius)),
-            Geometry::Cone(cone) => around(units(cone.base), length(cone.base_radius))
-                .with(around(units(cone.apex), length(cone.apex_radius))),
-            Geometry::Torus(torus) => around(units(torus.center), torus_reach(torus)),
-        }
+        let [first, last] = solid.ends().map(around);
+        first.with(last)
     }
 
     fn with(self, other: Self) -> Self {
@@ -88,38 +75,6 @@ impl Extent {
     }
 }
 
-fn length(steps: i32) -> f64 {
-    f64::from(steps) / 256.0
-}
-
-fn torus_reach(torus: &Torus) -> f64 {
-    length(torus.major_radius + torus.minor_radius)
-}
-
-fn units(steps: [i32; 3]) -> DVec3 {
-    DVec3::from_array(steps.map(length))
-}
-
-/// The smallest feature of a primitive, in units; of a triangle, none of its own.
-fn feature(geometry: &Geometry) -> Option<f64> {
-    Some(match geometry {
-        Geometry::Triangle(_) => return None,
-        Geometry::Sphere { radius, .. } => 2.0 * length(*radius),
-        Geometry::Box(cuboid) => {
-            let sides = units(cuboid.highest) - units(cuboid.lowest);
-            // A flat box is as a sheet is.
-            let sides = sides.to_array().into_iter().filter(|&side| side > 0.0);
-            sides.fold(f64::INFINITY, f64::min)
-        }
-        Geometry::Disc(disc) => 2.0 * length(disc.radius),
-        Geometry::Cone(cone) => {
-            let height = units(cone.base).distance(units(cone.apex));
-            height.min(2.0 * length(cone.base_radius.max(cone.apex_radius)))
-        }
-        Geometry::Torus(torus) => 2.0 * length(torus.minor_radius),
-    })
-}
-
 /// What a format's numbers are apart at a place, in units.
 fn step(format: Format, magnitude: f64) -> f64 {
     match format {
@@ -130,7 +85,7 @@ fn step(format: Format, magnitude: f64) -> f64 {
 }
 
 /// The error bound of a primitive's surface next to a place, as the table of `Hit::error` has it.
-fn bound(format: Format, geometry: &Geometry, place: DVec3) -> f64 {
+fn bound(format: Format, solid: &Solid, place: DVec3) -> f64 {
     let u = 0.5 * step(format, 1.0);
     let plane = |normal: DVec3, through: DVec3| {
         let normal = normal.normalize_or_zero();
@@ -150,24 +105,14 @@ fn bound(format: Format, geometry: &Geometry, place: DVec3) -> f64 {
         Format::Fixed => 8.0 * step(format, 1.0),
         _ => u * (20.0 * size + 4.0 * place.abs().max_element()),
     };
-    match geometry {
-        Geometry::Triangle(corners) => {
-            let [a, b, c] = corners.map(units);
-            plane((b - a).cross(c - a), a)
-        }
-        Geometry::Sphere { radius, .. } => curved(length(*radius)),
-        Geometry::Box(_) => 0.0,
-        Geometry::Disc(disc) => plane(
-            DVec3::from_array(disc.normal.map(f64::from)),
-            units(disc.center),
-        ),
-        Geometry::Cone(_) | Geometry::Torus(_) => {
-            let largest = Extent::of(geometry).magnitude();
-            match format {
-                Format::Fixed => 8.0 * step(format, 1.0),
-                _ => 16.0 * u * largest,
-            }
-        }
+    match solid.surface() {
+        Surface::Box => 0.0,
+        Surface::Plane { normal, point } => plane(normal, point),
+        Surface::Sphere { radius, .. } => curved(radius),
+        Surface::Curved => match format {
+            Format::Fixed => 8.0 * step(format, 1.0),
+            _ => 16.0 * u * Extent::of(solid).magnitude(),
+        },
     }
 }
 
@@ -192,14 +137,15 @@ pub fn unresolved(scene: &Scene<'_>) -> Vec<Unresolved> {
             let Some(geometry) = scene.geometry(kind, slot) else {
                 continue;
             };
-            let extent = Extent::of(&geometry);
+            let solid = Solid::of(geometry);
+            let extent = Extent::of(&solid);
             let object = scene.object(scene.primitive(kind, slot as u32)) as usize;
             if objects.len() <= object {
                 objects.resize(object + 1, (Extent::EMPTY, None));
             }
             let (whole, smallest) = &mut objects[object];
             *whole = whole.with(extent);
-            *smallest = match (*smallest, feature(&geometry)) {
+            *smallest = match (*smallest, solid.feature()) {
                 (Some(a), Some(b)) => Some(a.min(b)),
                 (a, b) => a.or(b),
             };
@@ -207,11 +153,11 @@ pub fn unresolved(scene: &Scene<'_>) -> Vec<Unresolved> {
                 .into_iter()
                 .flat_map(|format| {
                     let ends = [extent.lowest, extent.highest];
-                    ends.map(|place| bound(format, &geometry, place))
+                    ends.map(|place| bound(format, &solid, place))
                 })
                 .fold(0.0, f64::max);
             if most > 0.0 {
-                surfaces.push((most, extent, geometry));
+                surfaces.push((most, extent, solid));
             }
         }
     }
@@ -237,8 +183,8 @@ pub fn unresolved(scene: &Scene<'_>) -> Vec<Unresolved> {
             let place = 0.5 * (whole.lowest + whole.highest);
             let worst = |format| {
                 near.iter()
-                    .map(|(_, extent, geometry)| {
-                        bound(format, geometry, place.clamp(extent.lowest, extent.highest))
+                    .map(|(_, extent, solid)| {
+                        bound(format, solid, place.clamp(extent.lowest, extent.highest))
                     })
                     .fold(step(format, whole.magnitude()), f64::max)
             };

@@ -4,10 +4,12 @@
 //! `u` is 2^-24 in `f32` and 2^-53 in `f64`, where errors are counted in `u` times the largest
 //! magnitude among the coordinates of ray, hit and shape and the hit's distance; in `fixed` they
 //! are counted in sub-steps, 2^-13 of a unit. An answer is off by a length if it is right for a shape
-//! that is larger or smaller by that length (see [`crate::solid`]).
+//! that is larger or smaller by that length (see [`gridel_host::shape::Geometric`]).
 
-use crate::solid::Normal;
+use crate::shapes::{self, Named};
 use gridel_core::{Format, Number};
+use gridel_host::shape::Normal;
+use std::sync::LazyLock;
 
 /// Allowed errors of one shape.
 #[derive(Clone, Copy, Debug)]
@@ -20,73 +22,27 @@ pub struct Bound {
 }
 
 /// Allowed errors of t, and of whether there is a hit.
-pub const CROSSING: [Bound; 8] = [
-    bound("sphere", 8.0, "judged at the point closest to the centre"),
-    bound("triangle", 8.0, "exact edge tests; t from the plane"),
-    bound("box", 8.0, "one difference and one quotient an axis"),
-    bound("disc", 8.0, "t from the plane, then the distance"),
-    bound("cylinder", 8.0, "the quadric is judged at its vertex"),
-    bound(
-        "cone",
-        8.0,
-        "and once more near the root where the solid is thin",
-    ),
-    bound(
-        "frustum",
-        8.0,
-        "and once more near the root where the solid is thin",
-    ),
-    bound(
-        "torus",
-        8.0,
-        "Newton's steps from ends of pieces of one curvature",
-    ),
-];
+pub static CROSSING: LazyLock<Vec<Bound>> = LazyLock::new(|| table(|named| named.crossing));
 
 /// Allowed errors of normals: components off by `u` times the condition, in `fixed` by 2^-28.
-pub const NORMAL: [Bound; 8] = [
-    bound("sphere", 8.0, "the hit's point less the centre, normalised"),
-    bound(
-        "triangle",
-        8.0,
-        "in integers, exact but for one normalisation",
-    ),
-    bound("box", 0.0, "exact"),
-    bound("disc", 8.0, "its own, normalised"),
-    bound(
-        "cylinder",
-        8.0,
-        "times coordinate over radius: the hit's point is rounded",
-    ),
-    bound(
-        "cone",
-        8.0,
-        "times coordinate over the radius at the hit: likewise",
-    ),
-    bound(
-        "frustum",
-        8.0,
-        "times coordinate over the radius at the hit: likewise",
-    ),
-    bound(
-        "torus",
-        8.0,
-        "times coordinate over the minor radius, or over the distance from the axis",
-    ),
-];
+pub static NORMAL: LazyLock<Vec<Bound>> = LazyLock::new(|| table(|named| named.normal));
+
+fn table(bound: impl Fn(&Named) -> (f64, &'static str)) -> Vec<Bound> {
+    let bounds = shapes::names().map(|named| {
+        let (k, reason) = bound(named);
+        Bound {
+            shape: named.name,
+            fixed: k,
+            f32: k,
+            f64: k,
+            reason,
+        }
+    });
+    bounds.collect()
+}
 
 /// By how many units of last place a normal's length may differ from 1.
 pub const NORMAL_LENGTH: f64 = 4.0;
-
-const fn bound(shape: &'static str, k: f64, reason: &'static str) -> Bound {
-    Bound {
-        shape,
-        fixed: k,
-        f32: k,
-        f64: k,
-        reason,
-    }
-}
 
 /// The bound of a table for a shape and number format.
 pub fn allowed<N: Number>(table: &[Bound], shape: &str) -> f64 {

@@ -1,27 +1,28 @@
 //! Judges one answer about one shape by arithmetic of 320 bits.
 
 use crate::bounds::{length_step, normal_step, ratio_step, ulp_of_one};
-use crate::cases::shape_of;
 use crate::exact::Line;
 use crate::exact::{Real, dot, norm, vector};
 use crate::query::{UnitRay, closest, point_of};
 use crate::scenes;
-use crate::solid::{Normal, Solid};
 use glam::DVec3;
 use gridel_core::{Hit, List, NoCount, Number, Scene};
 use gridel_host::blob::Blob;
 use gridel_host::scene::Shape;
+use gridel_host::shape::{Normal, Solid, Sphere};
 use gridel_host::verify::judge::Crossings;
 
 /// A blob of shapes whose lattice is known: one unit is one scene unit, and its zero is the
 /// scene's. Two specks at the ends of the lattice see to that; they come last.
 pub fn blob_of<'s>(solids: impl IntoIterator<Item = &'s Solid>) -> Blob {
-    let speck = |corner: f64| Shape::Sphere {
-        center: DVec3::splat(corner),
-        radius: 1.0 / 256.0,
+    let speck = |corner: f64| {
+        Shape::Sphere(Sphere {
+            center: DVec3::splat(corner),
+            radius: 1.0 / 256.0,
+        })
     };
     let specks = [speck(-32_764.0), speck(32_764.0)];
-    let shapes = solids.into_iter().map(shape_of).chain(specks);
+    let shapes = solids.into_iter().cloned().map(Shape::from).chain(specks);
     let blob = scenes::blob(&scenes::of(shapes), 24);
     let scene = blob.scene().expect("a scene");
     let header = scene.header();
@@ -110,8 +111,8 @@ pub fn verdict<N: Number>(
         let apart = |k: usize| (&face.exact[k] - Real::of(normal[k])).to_f64().abs();
         apart(0).max(apart(1)).max(apart(2)) / normal_step::<N>(face)
     };
-    let pit = solid.pit_normals(point, hit.error.length_to_f64());
-    let faces = pit.unwrap_or_else(|| solid.normals(point));
+    let within = solid.normals_within(point, hit.error.length_to_f64());
+    let faces = within.unwrap_or_else(|| solid.normals(point));
     let off = faces.into_iter().map(|face| {
         let off = apart(&face);
         // Where the point's rounding turned the normal to the wrong side of the ray, the hit's is
@@ -130,7 +131,7 @@ pub fn verdict<N: Number>(
     verdict.normal = off.fold(towards, f64::min);
     let length: f64 = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
     verdict.length = (length - 1.0).abs() / ulp_of_one::<N>();
-    verdict.point = solid.excesses(point)[0].abs() / hit.error.length_to_f64();
+    verdict.point = solid.excess(point).abs() / hit.error.length_to_f64();
     // Entering or leaving is told apart where a solid smaller by the bound is met, too.
     let t = Real::of(N::far_to_f64(hit.t));
     let smaller = solid.spans(&line, &Real::of(-8.0 * step));
@@ -139,7 +140,7 @@ pub fn verdict<N: Number>(
     if let (false, Some((enter, leave))) = (solid.is_flat(), ahead) {
         verdict.wrong_side = if hit.front {
             t > enter
-        } else if matches!(solid, Solid::Torus { .. }) {
+        } else if !solid.is_convex() {
             // A ray that starts next to the surface may leave it and come to another part.
             let around = solid.spans(&line, &Real::of(8.0 * step));
             let around = around.iter().find(|it| it.0 <= t && t <= it.1);
@@ -189,12 +190,14 @@ pub fn lattice_soup(seed: u64, count: usize) -> gridel_host::scene::Scene {
     let solids = (0..count).map(|number| {
         let shape = number % crate::cases::SHAPES.len();
         let case = crate::cases::cases(seed * 1000 + number as u64, shape, 1, 0);
-        shape_of(&case[0].solid)
+        Shape::from(case[0].solid.clone())
     });
     // Specks hold the lattice's place and step, as in `blob_of`.
-    let speck = |corner: f64| Shape::Sphere {
-        center: DVec3::splat(corner),
-        radius: 1.0 / 256.0,
+    let speck = |corner: f64| {
+        Shape::Sphere(Sphere {
+            center: DVec3::splat(corner),
+            radius: 1.0 / 256.0,
+        })
     };
     scenes::of(solids.chain([speck(-32_764.0), speck(32_764.0)]))
 }

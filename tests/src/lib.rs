@@ -10,8 +10,10 @@ pub mod judge;
 pub mod moved;
 pub mod query;
 pub mod scenes;
+pub mod shapes;
 
-pub use gridel_host::verify::{exact, random, rays, solid};
+pub use gridel_host::shape::{exact, random};
+pub use gridel_host::verify::rays;
 
 /// Calls a function that is generic over the number format for each of them.
 #[macro_export]

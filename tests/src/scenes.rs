@@ -6,6 +6,7 @@ use gridel_core::Structure;
 use gridel_host::blob::Blob;
 use gridel_host::compile::{CompileError, Options, compile};
 use gridel_host::scene::{Camera, Material, MoleculeOptions, Object, Place, Scene, Shape, load};
+use gridel_host::shape::{Cone, Cuboid, Disc, Sphere};
 use std::path::{Path, PathBuf};
 
 /// A scene of shapes of one plain material.
@@ -132,7 +133,7 @@ pub fn from_its_corner(mut scene: Scene) -> Scene {
         .objects
         .iter()
         .filter_map(|object| match object.shape {
-            Shape::Sphere { center, radius } => Some((center - radius, center + radius)),
+            Shape::Sphere(Sphere { center, radius }) => Some((center - radius, center + radius)),
             _ => None,
         });
     let nowhere = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -166,27 +167,27 @@ pub fn shape(random: &mut Random, kind: usize, place: DVec3, size: f64) -> Shape
             vertices: (0..3).map(|_| place + point(random, size)).collect(),
             triangles: vec![[0, 1, 2]],
         },
-        2 => Shape::Sphere {
+        2 => Shape::Sphere(Sphere {
             center: place,
             radius: length(random),
-        },
-        3 => Shape::Box {
+        }),
+        3 => Shape::Box(Cuboid {
             min: place,
             max: place + point(random, size).abs(),
-        },
-        4 => Shape::Disc {
+        }),
+        4 => Shape::Disc(Disc {
             center: place,
             normal: DVec3::from_array(random.direction()),
             radius: length(random),
-        },
+        }),
         _ => {
             let radius = length(random);
-            Shape::Cone {
+            Shape::Cone(Cone {
                 base: place,
                 base_radius: radius,
                 apex: place + DVec3::from_array(random.direction()) * size,
                 apex_radius: [radius, 0.0, length(random)][kind - 5],
-            }
+            })
         }
     }
 }

@@ -7,6 +7,7 @@ use gridel_core::format::record::UnitBox;
 use gridel_core::{Kind, NoCount, Number, Ray, Scene, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;
+use gridel_host::shape::{Cone, Cuboid, Disc, Sphere};
 use gridel_tests::cases::slope;
 use gridel_tests::effort::{part_of, third_of};
 use gridel_tests::exact_box::{ExactRay, SLOPE_BITS};
@@ -340,10 +341,10 @@ fn any_number_of_the_same_primitive() {
         }
     }
     for count in [0, 1, 2, 3, 31, 32, 255, 256, 257, third_of(4096)] {
-        let sphere = Shape::Sphere {
+        let sphere = Shape::Sphere(Sphere {
             center: DVec3::new(1.0, 2.0, 3.0),
             radius: 2.0,
-        };
+        });
         let blob = scenes::blob(&scenes::of((0..count).map(|_| sphere.clone())), 24);
         let scene = blob.scene().expect("a scene");
         assert_eq!(scene.count(Kind::Sphere), count);
@@ -361,35 +362,35 @@ fn numbers_that_are_none_are_refused() {
             v
         };
         [
-            Shape::Sphere {
+            Shape::Sphere(Sphere {
                 center: v(0),
                 radius: 1.0,
-            },
-            Shape::Sphere {
+            }),
+            Shape::Sphere(Sphere {
                 center: DVec3::ONE,
                 radius: bad,
-            },
-            Shape::Box {
+            }),
+            Shape::Box(Cuboid {
                 min: DVec3::ZERO,
                 max: v(1),
-            },
-            Shape::Disc {
+            }),
+            Shape::Disc(Disc {
                 center: DVec3::ONE,
                 normal: v(2),
                 radius: 1.0,
-            },
-            Shape::Cone {
+            }),
+            Shape::Cone(Cone {
                 base: DVec3::ZERO,
                 apex: v(0),
                 base_radius: 1.0,
                 apex_radius: 0.0,
-            },
-            Shape::Cone {
+            }),
+            Shape::Cone(Cone {
                 base: DVec3::ZERO,
                 apex: DVec3::ONE,
                 base_radius: 1.0,
                 apex_radius: bad,
-            },
+            }),
             Shape::Mesh {
                 vertices: vec![DVec3::ZERO, DVec3::X, v(1)],
                 triangles: vec![[0, 1, 2]],

@@ -11,6 +11,7 @@ use gridel_core::{Fixed, Number, Ray, Structure};
 use gridel_host::compile::{CompileError, CubeCensus, Options, compile, cube_census};
 use gridel_host::sample::{DIAMOND_2_800, DIAMOND_27_000, diamond};
 use gridel_host::scene::{Scene, Shape};
+use gridel_host::shape::Cuboid;
 use gridel_host::table::{Align, Table, grouped};
 use gridel_host::trace::UnitRay;
 use gridel_tests::every_format;
@@ -254,15 +255,19 @@ fn c4_origins_inside_and_on_faces() {
 fn c5_flat_and_thin_scenes() {
     let grid = |x: u32, z: u32| DVec3::new(f64::from(x), 0.0, f64::from(z));
     let tiles = |height: f64| {
-        let tile = move |number: u32| Shape::Box {
-            min: grid(number % 8, number / 8),
-            max: grid(number % 8 + 1, number / 8 + 1) + DVec3::Y * height,
+        let tile = move |number: u32| {
+            Shape::Box(Cuboid {
+                min: grid(number % 8, number / 8),
+                max: grid(number % 8 + 1, number / 8 + 1) + DVec3::Y * height,
+            })
         };
         scenes::of((0..64).map(tile))
     };
-    let line = scenes::of((0..64).map(|x| Shape::Box {
-        min: grid(x, 0),
-        max: grid(x + 1, 0),
+    let line = scenes::of((0..64).map(|x| {
+        Shape::Box(Cuboid {
+            min: grid(x, 0),
+            max: grid(x + 1, 0),
+        })
     }));
     for (name, scene) in [("flat", tiles(0.0)), ("thin", tiles(1e-4)), ("line", line)] {
         compare(name, &scene, 3, |scene| {
@@ -278,10 +283,10 @@ fn c6_rays_in_the_sides_of_the_scene() {
     let mut corner = || DVec3::from_array([0; 3].map(|_| random.below(5) as f64));
     let boxes = (0..40).map(|_| {
         let (a, b) = (corner(), corner());
-        Shape::Box {
+        Shape::Box(Cuboid {
             min: a.min(b),
             max: a.max(b),
-        }
+        })
     });
     compare("sides", &scenes::of(boxes), 4, |scene| {
         let mut random = Random(10);

@@ -6,6 +6,7 @@ use gridel_host::explain::{
 };
 use gridel_host::render::{Job, render};
 use gridel_host::scene::{Color, Light, Object, Place, Shape};
+use gridel_host::shape::{Cuboid, Sphere};
 use gridel_host::trace::{Frame, Query, SceneHit, SceneRay, trace};
 use gridel_tests::scenes;
 use std::collections::HashMap;
@@ -148,18 +149,20 @@ fn a_rays_hit_is_the_one_that_is_traced() {
 /// What stands in a light's way is named, and what is culled says why.
 #[test]
 fn reasons_are_true() {
-    let ball = |x: f64, y: f64| Shape::Sphere {
-        center: glam::DVec3::new(x, y, 0.0),
-        radius: 1.0,
+    let ball = |x: f64, y: f64| {
+        Shape::Sphere(Sphere {
+            center: glam::DVec3::new(x, y, 0.0),
+            radius: 1.0,
+        })
     };
     let mut scene = scenes::of([ball(0.0, 0.0), ball(0.0, 5.0), ball(9.0, 9.0)]);
     scene.objects.push(Object {
         name: String::from("floor"),
         material: 0,
-        shape: Shape::Box {
+        shape: Shape::Box(Cuboid {
             min: glam::DVec3::new(-20.0, -3.0, -20.0),
             max: glam::DVec3::new(20.0, -2.0, 20.0),
-        },
+        }),
         place: Place::default(),
     });
     scene.lights = vec![
@@ -360,10 +363,10 @@ fn what_is_told_is_what_is_done() {
 /// A light that has no direction, because it lies where the ray to it would start, is told of, too.
 #[test]
 fn a_light_at_the_point_itself_is_told() {
-    let mut scene = scenes::of([Shape::Box {
+    let mut scene = scenes::of([Shape::Box(Cuboid {
         min: glam::DVec3::splat(-1.0),
         max: glam::DVec3::ONE,
-    }]);
+    })]);
     let ray = SceneRay {
         origin: glam::DVec3::new(0.0, 5.0, 0.0),
         direction: -glam::DVec3::Y,

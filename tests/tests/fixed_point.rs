@@ -9,6 +9,8 @@ use gridel_core::format::record::UnitBox;
 use gridel_core::{Fixed, Kind, List, NoCount, Scene, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;
+use gridel_host::shape::Solid;
+use gridel_host::shape::{Cone, Cuboid, Disc, Sphere};
 use gridel_tests::cases::{SHAPES, cases};
 use gridel_tests::effort::part_of;
 use gridel_tests::exact::{Real, cross, dot, minus, norm, unit, vector};
@@ -16,7 +18,7 @@ use gridel_tests::judge::blob_of;
 use gridel_tests::query::{UnitRay, closest, held, through};
 use gridel_tests::random::Random;
 use gridel_tests::scenes;
-use gridel_tests::solid::Solid;
+use gridel_tests::shapes::reach;
 
 /// The largest coordinate of a scene, in units.
 const END: f64 = 32_764.0;
@@ -32,7 +34,7 @@ fn no_number_wraps_at_the_corners_of_the_lattice() {
     for _ in 0..part_of(3000, 100_000) {
         let (a, b, c) = (place(&mut random), place(&mut random), place(&mut random));
         let solids = if (b - a).cross(c - a) != DVec3::ZERO {
-            vec![Solid::Triangle([a, b, c].map(|v| v.to_array()))]
+            vec![Solid::Triangle([a, b, c])]
         } else {
             corner_solid(&mut random, a, b)
         };
@@ -61,70 +63,29 @@ fn no_number_wraps_at_the_corners_of_the_lattice() {
 /// A solid as large as the lattice between two of its places.
 fn corner_solid(random: &mut Random, a: DVec3, b: DVec3) -> Vec<Solid> {
     if a == b {
-        return vec![Solid::Sphere {
-            center: [0.0; 3],
+        return vec![Solid::Sphere(Sphere {
+            center: [0.0; 3].into(),
             radius: END,
-        }];
+        })];
     }
     match random.below(3) {
-        0 => vec![Solid::Box {
-            lowest: a.min(b).to_array(),
-            highest: a.max(b).to_array(),
-        }],
-        1 => vec![Solid::Disc {
-            center: ((a + b) * 0.25).to_array(),
-            normal: DVec3::AXES[random.below(3)].to_array(),
+        0 => vec![Solid::Box(Cuboid {
+            min: a.min(b),
+            max: a.max(b),
+        })],
+        1 => vec![Solid::Disc(Disc {
+            center: ((a + b) * 0.25),
+            normal: DVec3::AXES[random.below(3)],
             radius: 16_000.0,
-        }],
+        })],
         _ => {
             let (a, b) = (a * 0.5, b * 0.5);
-            vec![Solid::Cone {
-                base: a.to_array(),
-                apex: b.to_array(),
+            vec![Solid::Cone(Cone {
+                base: a,
+                apex: b,
                 base_radius: 16_000.0,
                 apex_radius: [0.0, 16_000.0, 8000.0][random.below(3)],
-            }]
-        }
-    }
-}
-
-/// How far a solid reaches along a direction, exactly.
-fn reach(solid: &Solid, axis: usize, sign: f64) -> Real {
-    let end = |place: f64, radius: f64| Real::of(sign * place) + Real::of(radius);
-    // A disc of a radius reaches as far as its plane is tilted against the axis.
-    let rim = |place: f64, normal: &[Real; 3], radius: f64| {
-        let tilt = Real::of(1.0) - &normal[axis] * &normal[axis];
-        Real::of(sign * place) + Real::of(radius) * tilt.sqrt()
-    };
-    match solid {
-        Solid::Sphere { center, radius } => end(center[axis], *radius),
-        Solid::Box { lowest, highest } => end(if sign < 0.0 { lowest } else { highest }[axis], 0.0),
-        Solid::Triangle(corners) => {
-            let [a, b, c] = corners.map(|corner| end(corner[axis], 0.0));
-            a.max(b).max(c)
-        }
-        Solid::Disc {
-            center,
-            normal,
-            radius,
-        } => rim(center[axis], &unit(&vector(*normal)), *radius),
-        Solid::Torus {
-            center,
-            axis: way,
-            major_radius,
-            minor_radius,
-        } => {
-            let circle = rim(center[axis], &unit(&vector(*way)), *major_radius);
-            circle + Real::of(*minor_radius)
-        }
-        Solid::Cone {
-            base,
-            apex,
-            base_radius,
-            apex_radius,
-        } => {
-            let up = unit(&minus(&vector(*apex), &vector(*base)));
-            rim(base[axis], &up, *base_radius).max(rim(apex[axis], &up, *apex_radius))
+            })]
         }
     }
 }
@@ -178,7 +139,7 @@ fn grazing_rays_do_not_hit_too_early() {
         if norm(&normal).is_zero() {
             continue;
         }
-        let blob = blob_of([&Solid::Triangle(corners)]);
+        let blob = blob_of([&Solid::Triangle(corners.map(DVec3::from_array))]);
         let scene = blob.scene().expect("a scene");
         for _ in 0..50 {
             // From just above the plane to somewhere in it.
@@ -224,9 +185,11 @@ fn grazing_rays_do_not_hit_too_early() {
 #[test]
 fn far_rays_meet_what_they_are_aimed_at() {
     let mut random = Random(73);
-    let ball = |radius: f64| Solid::Sphere {
-        center: [100.0, -200.0, 300.0],
-        radius,
+    let ball = |radius: f64| {
+        Solid::Sphere(Sphere {
+            center: [100.0, -200.0, 300.0].into(),
+            radius,
+        })
     };
     // A direction keeps 30 fraction bits: over 2^17 units from the scene's edge, a sub-step or two.
     let blob = blob_of([&ball(1.0 / 256.0)]);
@@ -250,10 +213,10 @@ fn the_lattice_fits_the_scene() {
     for _ in 0..200 {
         let size = random.magnitude(1e-200, 1e200);
         let place = DVec3::from_array(random.direction()) * size * random.magnitude(1e-3, 1e3);
-        let scene = scenes::of([Shape::Box {
+        let scene = scenes::of([Shape::Box(Cuboid {
             min: place,
             max: place + DVec3::splat(size),
-        }]);
+        })]);
         let options = Options {
             structures: vec![Structure::List],
             ..Options::default()

@@ -9,6 +9,7 @@ use gridel_core::{Counters, Grid, Number, Scene, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{CompileError, Options, compile};
 use gridel_host::scene::{self, Shape};
+use gridel_host::shape::{Cone, Cuboid, Disc, Sphere};
 use gridel_tests::query::{HitBits, UnitRay, closest, through};
 use gridel_tests::random::Random;
 use gridel_tests::{every_format, scenes};
@@ -26,21 +27,21 @@ fn blob(scene: &scene::Scene, divisions: [u32; 3]) -> Blob {
 
 /// A sphere in the middle of every cell of a cube of 8, and at every third corner, about `middle`.
 fn lattice(middle: DVec3, flat: bool) -> scene::Scene {
-    let mut shapes = vec![Shape::Box {
+    let mut shapes = vec![Shape::Box(Cuboid {
         min: middle - 4.0,
         max: middle - 3.999,
-    }];
-    shapes.push(Shape::Box {
+    })];
+    shapes.push(Shape::Box(Cuboid {
         min: middle + 3.999,
         max: middle + 4.0,
-    });
+    }));
     let layers = if flat { 1 } else { CELLS };
     for z in 0..layers {
         for y in 0..CELLS {
             for x in 0..CELLS {
                 let cell = DVec3::new(x.into(), y.into(), z.into());
                 let place = middle + cell - 3.5;
-                let sphere = |center, radius| Shape::Sphere { center, radius };
+                let sphere = |center, radius| Shape::Sphere(Sphere { center, radius });
                 shapes.push(sphere(
                     place,
                     0.2 + 0.02 * f64::from((x + 3 * y + 5 * z) % 7),
@@ -52,10 +53,12 @@ fn lattice(middle: DVec3, flat: bool) -> scene::Scene {
         }
     }
     if flat {
-        let disc = |x: u32, y: u32| Shape::Disc {
-            center: middle + DVec3::new(f64::from(x) - 3.5, f64::from(y) - 3.5, 0.0),
-            normal: DVec3::Z,
-            radius: 0.3,
+        let disc = |x: u32, y: u32| {
+            Shape::Disc(Disc {
+                center: middle + DVec3::new(f64::from(x) - 3.5, f64::from(y) - 3.5, 0.0),
+                normal: DVec3::Z,
+                radius: 0.3,
+            })
         };
         shapes = (0..CELLS)
             .flat_map(|x| (0..CELLS).map(move |y| disc(x, y)))
@@ -222,9 +225,11 @@ fn one_cell_and_uneven_cells() {
 /// A walk ends after at most as many cells as there are planes, however fine the grid.
 #[test]
 fn walks_are_as_long_as_the_grid_is_wide() {
-    let scene = scenes::of([0.0, 1.0].map(|z| Shape::Box {
-        min: DVec3::new(0.0, 0.0, z),
-        max: DVec3::new(1.0, 1.0, z),
+    let scene = scenes::of([0.0, 1.0].map(|z| {
+        Shape::Box(Cuboid {
+            min: DVec3::new(0.0, 0.0, z),
+            max: DVec3::new(1.0, 1.0, z),
+        })
     }));
     let blob = blob(&scene, [1024, 1024, 2]);
     let scene = blob.scene().expect("a scene");
@@ -253,12 +258,12 @@ fn long_things_are_hit_where_they_are() {
     let mut point = |size: f64| DVec3::from_array([0; 3].map(|_| size * random.signed()));
     let shapes = (0..60).map(|_| {
         let base = point(4.0);
-        Shape::Cone {
+        Shape::Cone(Cone {
             base,
             base_radius: 0.05,
             apex: -base + point(0.5),
             apex_radius: 0.05,
-        }
+        })
     });
     let scene = scenes::of(shapes.collect::<Vec<_>>());
     for divisions in [[3; 3], [24; 3]] {
@@ -275,14 +280,14 @@ fn mirrors_do_not_matter() {
         mirror[axis] = -1.0;
         let objects = scene.objects.iter().map(|object| {
             let shape = match &object.shape {
-                Shape::Sphere { center, radius } => Shape::Sphere {
+                Shape::Sphere(Sphere { center, radius }) => Shape::Sphere(Sphere {
                     center: *center * mirror,
                     radius: *radius,
-                },
-                Shape::Box { min, max } => Shape::Box {
+                }),
+                Shape::Box(Cuboid { min, max }) => Shape::Box(Cuboid {
                     min: (*min * mirror).min(*max * mirror),
                     max: (*min * mirror).max(*max * mirror),
-                },
+                }),
                 shape => shape.clone(),
             };
             scene::Object {
@@ -324,9 +329,11 @@ fn mirrors_do_not_matter() {
 /// there are fewer.
 #[test]
 fn memory_is_bounded() {
-    let big = |_| Shape::Sphere {
-        center: DVec3::ZERO,
-        radius: 1.0,
+    let big = |_| {
+        Shape::Sphere(Sphere {
+            center: DVec3::ZERO,
+            radius: 1.0,
+        })
     };
     let options = |grid| Options {
         structures: vec![Structure::Grid],

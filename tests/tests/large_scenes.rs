@@ -9,6 +9,7 @@ use gridel_host::compile::{Compiled, Options, compile};
 use gridel_host::render::{Job, render};
 use gridel_host::resolution::unresolved;
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Scene, Shape};
+use gridel_host::shape::{Cuboid, Disc, Sphere};
 use gridel_host::verify::{Promise, verify};
 use gridel_tests::scenes;
 
@@ -72,20 +73,22 @@ impl Ground {
             ],
             triangles: vec![[0, 1, 2], [0, 2, 3]],
         };
-        let disc = |normal| Shape::Disc {
-            center: DVec3::ZERO,
-            normal,
-            radius: extent,
+        let disc = |normal| {
+            Shape::Disc(Disc {
+                center: DVec3::ZERO,
+                normal,
+                radius: extent,
+            })
         };
         match self {
-            Ground::Slab => Shape::Box {
+            Ground::Slab => Shape::Box(Cuboid {
                 min: DVec3::new(-extent, -1.0, -extent),
                 max: DVec3::new(extent, 0.0, extent),
-            },
-            Ground::Cube => Shape::Box {
+            }),
+            Ground::Cube => Shape::Box(Cuboid {
                 min: corner(-1.0, -1.0, -1.0),
                 max: corner(1.0, 0.0, 1.0),
-            },
+            }),
             Ground::Triangles => quad(0.0),
             Ground::Disc => disc(DVec3::Y),
             Ground::TiltedTriangles => quad(TILT),
@@ -96,10 +99,10 @@ impl Ground {
 
 /// A box of 0.6 on a ground, in the light of a sun.
 fn box_on(ground: Ground, extent: f64) -> Scene {
-    let small = Shape::Box {
+    let small = Shape::Box(Cuboid {
         min: DVec3::new(-0.3, 0.0, -0.3),
         max: DVec3::new(0.3, 0.6, 0.3),
-    };
+    });
     let mut scene = scenes::of([ground.shape(extent), small]);
     scene.ambient = [0.2; 3];
     scene.lights = vec![Light::Directional {
@@ -144,10 +147,10 @@ fn a_box_on_a_large_ground_keeps_its_shadow() {
 
 /// A ball of glass that lies on a ground of chequers.
 fn ball_on(ground: Ground, extent: f64, shift: DVec3) -> Scene {
-    let ball = Shape::Sphere {
+    let ball = Shape::Sphere(Sphere {
         center: DVec3::new(0.0, 0.75, 0.0) + shift,
         radius: 0.75,
-    };
+    });
     let mut scene = scenes::of([ground.shape(extent), ball]);
     scene.materials = vec![
         Material {
@@ -211,10 +214,10 @@ fn a_glass_ball_differs_by_no_more_than_a_step_of_the_lattice() {
 /// A box of 0.6 on the top of a ball so large that single precision does not know where that is.
 fn box_on_a_ball() -> Scene {
     let mut scene = box_on(Ground::Slab, 1e6);
-    scene.objects[0].shape = Shape::Sphere {
+    scene.objects[0].shape = Shape::Sphere(Sphere {
         center: DVec3::new(0.0, -1e6, 0.0),
         radius: 1e6,
-    };
+    });
     scene
 }
 

@@ -22,7 +22,7 @@ const CORE: Layers = Layers {
 const HOST: Layers = Layers {
     sources: "../host/src",
     order: &[
-        "output simd table blob picture_rays",
+        "output simd table blob picture_rays shape",
         "scene sample compile",
         "render trace npy picture merge resolution report",
         "measure emit",

@@ -4,6 +4,7 @@ use glam::DVec3;
 use gridel_core::Structure;
 use gridel_host::compile::{Compiled, Options, compile};
 use gridel_host::scene::{Scene, Shape};
+use gridel_host::shape::Sphere;
 use gridel_tests::scenes;
 use peak_alloc::PeakAlloc;
 
@@ -47,9 +48,11 @@ fn builders_keep_to_their_budgets() {
         }
     }
     // Every primitive in every cell: without a bound these would take gigabytes.
-    let everywhere = |_| Shape::Sphere {
-        center: DVec3::ZERO,
-        radius: 1.0,
+    let everywhere = |_| {
+        Shape::Sphere(Sphere {
+            center: DVec3::ZERO,
+            radius: 1.0,
+        })
     };
     let crowd = scenes::of((0..20_000).map(everywhere));
     let (base, _) = peak(&crowd, Structure::List, None);

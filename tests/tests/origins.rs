@@ -13,6 +13,7 @@ use gridel_core::{
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::{Camera, Light, Scene as SceneFile, Shape};
+use gridel_host::shape::Sphere;
 use gridel_host::trace::{Frame, Query, Rejection, SceneHit, SceneRay, trace};
 use gridel_host::verify::judge::{Crossings, Judge, step};
 use gridel_tests::effort::part_of;
@@ -29,7 +30,7 @@ const LIMIT: f64 = (FARTHEST >> 13) as f64;
 /// A ball of radius 1, in a blob with every structure.
 fn ball(center: DVec3) -> Blob {
     let radius = 1.0;
-    scenes::compact_blob(&scenes::of([Shape::Sphere { center, radius }]), 16)
+    scenes::compact_blob(&scenes::of([Shape::Sphere(Sphere { center, radius })]), 16)
 }
 
 /// Every structure's answers to a ray in scene units, in every format; all must be the same.
@@ -189,7 +190,7 @@ fn directions_of_every_length_are_answered_or_leave_the_range_of_t() {
 #[test]
 fn t_with_too_few_digits_is_rejected() {
     let (center, radius) = (DVec3::ZERO, 1e-200);
-    let blob = scenes::compact_blob(&scenes::of([Shape::Sphere { center, radius }]), 16);
+    let blob = scenes::compact_blob(&scenes::of([Shape::Sphere(Sphere { center, radius })]), 16);
     let scene = blob.scene().expect("a scene");
     for (length, why) in [
         (1e-200, None),
@@ -492,7 +493,7 @@ fn origins_beyond_the_limit_are_rejected() {
 /// fills the picture with it.
 fn picture<N: Number>(away: f64) -> Result<Vec<[u16; 3]>, RenderError> {
     let (center, radius) = (DVec3::ZERO, 1.0);
-    let mut scene = scenes::of([Shape::Sphere { center, radius }]);
+    let mut scene = scenes::of([Shape::Sphere(Sphere { center, radius })]);
     let direction = DVec3::new(-0.3, -0.8, -0.6);
     scene.lights = vec![Light::Directional {
         direction,

@@ -14,6 +14,7 @@ use gridel_host::blob::Blob;
 use gridel_host::check::{self, Manifest};
 use gridel_host::render::{Job, Picture, render};
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Scene as SceneFile, Shape};
+use gridel_host::shape::{Cuboid, Sphere};
 use gridel_tests::{every_format, scenes};
 
 fn small(scene: &Scene<'_>) -> Settings {
@@ -121,14 +122,14 @@ fn formats_agree() {
 
 /// A floor and a ball of one material, under a light that casts shadows or does not.
 fn ball_on_floor(material: Material, shadows: bool) -> Blob {
-    let ball = Shape::Sphere {
+    let ball = Shape::Sphere(Sphere {
         center: DVec3::new(0.0, 1.0, 0.0),
         radius: 1.0,
-    };
-    let floor = Shape::Box {
+    });
+    let floor = Shape::Box(Cuboid {
         min: DVec3::new(-4.0, -0.5, -4.0),
         max: DVec3::new(4.0, 0.0, 4.0),
-    };
+    });
     let mut scene = scenes::of([ball, floor]);
     scene.materials = vec![material];
     scene.lights = vec![Light::Point {
@@ -335,10 +336,10 @@ fn unused_effects_change_no_byte() {
 
 /// A clear glass ball in white surroundings, which fills the picture.
 fn furnace() -> SceneFile {
-    let mut scene = scenes::of([Shape::Sphere {
+    let mut scene = scenes::of([Shape::Sphere(Sphere {
         center: DVec3::new(0.3, -0.2, 0.1),
         radius: 1.0,
-    }]);
+    })]);
     scene.materials = vec![Material {
         diffuse: Diffuse::Plain([0.0; 3]),
         transmit: [1.0; 3],
@@ -383,10 +384,10 @@ fn depth_only_adds_light() {
     let mut scene = furnace();
     scene.materials[0].absorption = [0.05, 0.1, 0.2];
     scene.objects.extend(
-        scenes::of([Shape::Box {
+        scenes::of([Shape::Box(Cuboid {
             min: DVec3::new(-3.0, -3.0, -5.0),
             max: DVec3::new(3.0, 3.0, -4.0),
-        }])
+        })])
         .objects,
     );
     let blob = scenes::blob(&scene, 24);

@@ -6,12 +6,13 @@ use glam::DVec3;
 use gridel_core::{Flagged, Format, Hit, List, NoCount, Number, Scene, Settings, Structure};
 use gridel_host::render::{Job, render};
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Shape};
+use gridel_host::shape::Solid;
+use gridel_host::shape::{Cone, Cuboid, Disc, Sphere, Torus};
 use gridel_tests::cases::{SHAPES, cases};
 use gridel_tests::effort::part_of;
 use gridel_tests::judge::blob_of;
 use gridel_tests::query::{UnitRay, closest, depart, point_of};
 use gridel_tests::random::Random;
-use gridel_tests::solid::Solid;
 use gridel_tests::{every_format, scenes};
 use rayon::prelude::*;
 
@@ -142,17 +143,18 @@ fn outside_only(rays: Vec<([f64; 3], [f64; 3])>) -> Vec<([f64; 3], [f64; 3])> {
 /// The least of a solid's extents.
 fn thickness(solid: &Solid) -> f64 {
     match solid {
-        Solid::Sphere { radius, .. } => *radius,
-        Solid::Box { lowest, highest } => (vector(*highest) - vector(*lowest)).min_element(),
-        Solid::Cone {
+        Solid::Sphere(Sphere { radius, .. }) => *radius,
+        Solid::Box(Cuboid {
+            min: lowest,
+            max: highest,
+        }) => (*highest - *lowest).min_element(),
+        Solid::Cone(Cone {
             base,
             apex,
             base_radius,
             apex_radius,
-        } => vector(*base)
-            .distance(vector(*apex))
-            .min(base_radius.max(*apex_radius)),
-        Solid::Torus { minor_radius, .. } => *minor_radius,
+        }) => base.distance(*apex).min(base_radius.max(*apex_radius)),
+        Solid::Torus(Torus { minor_radius, .. }) => *minor_radius,
         _ => 0.0,
     }
 }
@@ -168,15 +170,15 @@ fn shadows_reach_up_to_the_contact() {
             let floor = (random.signed() * 10_000.0).round();
             let place = DVec3::new(random.signed() * 9000.0, floor, random.signed() * 9000.0);
             let place = place.round();
-            let ball = Solid::Sphere {
-                center: (place + DVec3::Y * radius).to_array(),
+            let ball = Solid::Sphere(Sphere {
+                center: (place + DVec3::Y * radius),
                 radius,
-            };
-            let floor = Solid::Disc {
-                center: place.to_array(),
-                normal: DVec3::Y.to_array(),
+            });
+            let floor = Solid::Disc(Disc {
+                center: place,
+                normal: DVec3::Y,
                 radius: radius * 2.0,
-            };
+            });
             let blob = blob_of([&ball, &floor]);
             let scene = blob.scene().expect("a scene");
             for _ in 0..100 {
@@ -225,11 +227,11 @@ fn shadows_reach_up_to_the_contact() {
 fn lights_near_a_surface_shine_on_it() {
     for format in Format::ALL {
         for height in [0.02, 0.1, 1.0, 1e3, 1e6] {
-            let floor = Shape::Disc {
+            let floor = Shape::Disc(Disc {
                 center: DVec3::ZERO,
                 normal: DVec3::Y,
                 radius: 100.0,
-            };
+            });
             let mut file = scenes::of([floor]);
             file.materials = vec![Material {
                 diffuse: Diffuse::Plain([0.8; 3]),

@@ -8,6 +8,7 @@ use glam::DVec3;
 use gridel_core::Number;
 use gridel_host::blob::Blob;
 use gridel_host::scene::{Scene, Shape};
+use gridel_host::shape::{Cuboid, Disc, Sphere};
 use gridel_tests::agreement::{Tally, compare};
 use gridel_tests::effort::{step, third_of};
 use gridel_tests::every_format;
@@ -96,9 +97,11 @@ fn real_scenes(amount: Amount) {
 
 /// Scenes that a builder or a walk could stumble over.
 fn degenerate_scenes() -> Vec<(&'static str, Scene)> {
-    let sphere = |x: f64, radius: f64| Shape::Sphere {
-        center: DVec3::new(x, 0.25, -0.5),
-        radius,
+    let sphere = |x: f64, radius: f64| {
+        Shape::Sphere(Sphere {
+            center: DVec3::new(x, 0.25, -0.5),
+            radius,
+        })
     };
     let once = scenes::soup(5, 24, 0.6);
     let mut twice = once.clone();
@@ -121,15 +124,15 @@ fn degenerate_scenes() -> Vec<(&'static str, Scene)> {
         vertices,
         triangles,
     };
-    let disc = Shape::Disc {
+    let disc = Shape::Disc(Disc {
         center: grid(4, 4),
         normal: DVec3::Y,
         radius: 3.0,
-    };
-    let slab = Shape::Box {
+    });
+    let slab = Shape::Box(Cuboid {
         min: grid(1, 1),
         max: grid(6, 2),
-    };
+    });
     let mut line = scenes::of((0..200).map(|place| sphere(f64::from(place), 0.5)));
     line.objects
         .extend(scenes::of([sphere(0.0, 1e-5), sphere(199.0, 1e-4)]).objects);
@@ -145,10 +148,10 @@ fn degenerate_scenes() -> Vec<(&'static str, Scene)> {
         ("spheres in a row", line),
         (
             "a point of a box",
-            scenes::of([Shape::Box {
+            scenes::of([Shape::Box(Cuboid {
                 min: DVec3::ONE,
                 max: DVec3::ONE,
-            }]),
+            })]),
         ),
     ]
 }

@@ -7,14 +7,15 @@ use gridel_core::format::Leaf;
 use gridel_core::{Accel, Flagged, Hit, Kind, List, Number, Observer, Ray, Scene, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::scene::Shape;
+use gridel_host::shape::Solid;
+use gridel_host::shape::random::Random;
+use gridel_host::shape::{Cone, Cuboid};
 use gridel_host::verify::judge::{Answer, GRAZING, Judge, RoundedRay, STEPS};
-use gridel_host::verify::random::Random;
 use gridel_host::verify::{
     ClosedMesh, Heard, Promise, RAYS, Targets, UnitRay, ask, ask_all, check, leave, sealed, verify,
 };
 use gridel_tests::effort::{part_of, third_of};
 use gridel_tests::scenes;
-use gridel_tests::solid::Solid;
 
 fn mesh(subdivisions: usize) -> Blob {
     let (vertices, triangles) = scenes::icosphere(subdivisions);
@@ -115,10 +116,10 @@ fn closed_meshes_that_touch_do_not_leak() {
 }
 
 fn cuboid(min: [f64; 3], max: [f64; 3]) -> Shape {
-    Shape::Box {
+    Shape::Box(Cuboid {
         min: min.into(),
         max: max.into(),
-    }
+    })
 }
 
 /// A ray that starts inside of several solids leaves them where they end, be it at one place or at
@@ -139,7 +140,11 @@ fn what_a_ray_leaves_is_judged_as_fairly_as_what_it_enters() {
         let (mut shared, mut caught) = (0, 0);
         // The middle of the first box, in units.
         let bounds = judge.solid(0).cloned();
-        let Some(Solid::Box { lowest, highest }) = bounds else {
+        let Some(Solid::Box(Cuboid {
+            min: lowest,
+            max: highest,
+        })) = bounds
+        else {
             panic!("a box");
         };
         let middle = [0, 1, 2].map(|k| 0.5 * (lowest[k] + highest[k]));
@@ -181,12 +186,12 @@ fn what_a_ray_leaves_is_judged_as_fairly_as_what_it_enters() {
 
 #[test]
 fn a_ray_that_is_nearly_parallel_to_a_cylinder_meets_its_cap() {
-    let cylinder = Shape::Cone {
+    let cylinder = Shape::Cone(Cone {
         base: glam::DVec3::ZERO,
         base_radius: 1.0,
         apex: glam::DVec3::Y,
         apex_radius: 1.0,
-    };
+    });
     let blob = scenes::blob(&scenes::of([cylinder]), 24);
     let scene = blob.scene().expect("a scene");
     fn meets<N: Number>(scene: &Scene<'_>) {

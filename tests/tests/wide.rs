@@ -5,6 +5,7 @@ use gridel_core::{Kind, List, NoCount, Number, SimdLevel, Structure, Wide};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, Quality, compile};
 use gridel_host::scene::{Scene, Shape};
+use gridel_host::shape::Sphere;
 use gridel_host::trace::{Frame, Query, SceneHit, trace};
 use gridel_tests::query::{HitBits, any, closest};
 use gridel_tests::random::Random;
@@ -180,9 +181,11 @@ fn packs_hold_any_radii() {
         (203, 203),
     ] {
         let mut random = Random(15 + count);
-        let scene = scenes::of((0..count).map(|number| Shape::Sphere {
-            center: DVec3::from_array([0; 3].map(|_| random.signed())),
-            radius: 0.05 + 0.2 * ((number % different) as f64 / different as f64),
+        let scene = scenes::of((0..count).map(|number| {
+            Shape::Sphere(Sphere {
+                center: DVec3::from_array([0; 3].map(|_| random.signed())),
+                radius: 0.05 + 0.2 * ((number % different) as f64 / different as f64),
+            })
         }));
         for bits in [24, 16] {
             let (ordinary, own) = (

@@ -6,6 +6,8 @@
 /// Hands the table of shapes to a macro. Triangles and spheres have several forms of records, for few bits and
 /// many, alone and in clusters. Every other shape has one record: its line says kind, number in the blob,
 /// name in tables and Cargo feature, slice of records, module of `geometry` and record, section.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! shapes {
     ($macro:ident) => {
         $macro! {

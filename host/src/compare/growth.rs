@@ -66,27 +66,21 @@ type Part = (usize, usize);
 fn by_distance(scene: &Scene) -> Vec<Part> {
     let mut places: Vec<(Part, DVec3)> = Vec::new();
     for (number, object) in scene.objects.iter().enumerate() {
-        let place = match &object.shape {
-            Shape::Mesh {
-                vertices,
-                triangles,
-            } => {
-                places.extend(triangles.iter().enumerate().map(|(index, corners)| {
-                    let corners = corners.map(|corner| vertices[corner as usize]);
-                    (
-                        (number, index),
-                        (corners[0] + corners[1] + corners[2]) / 3.0,
-                    )
-                }));
-                continue;
-            }
-            Shape::Sphere { center, .. }
-            | Shape::Disc { center, .. }
-            | Shape::Torus { center, .. } => *center,
-            Shape::Box { min, max } => min.midpoint(*max),
-            Shape::Cone { base, apex, .. } => base.midpoint(*apex),
-        };
-        places.push(((number, 0), place));
+        if let Shape::Mesh {
+            vertices,
+            triangles,
+        } = &object.shape
+        {
+            places.extend(triangles.iter().enumerate().map(|(index, corners)| {
+                let corners = corners.map(|corner| vertices[corner as usize]);
+                (
+                    (number, index),
+                    (corners[0] + corners[1] + corners[2]) / 3.0,
+                )
+            }));
+        }
+        let middle = object.shape.middle();
+        places.extend(middle.map(|place| ((number, 0), place)));
     }
     let (low, high) = places.iter().fold(
         (DVec3::INFINITY, DVec3::NEG_INFINITY),
@@ -134,6 +128,7 @@ fn part(scene: &Scene, primitives: &[Part]) -> Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shape::Sphere;
 
     #[test]
     fn sizes_end_with_the_whole() {
@@ -154,7 +149,7 @@ mod tests {
         let some = part(&whole, &nearest[..40]);
         assert_eq!(some.objects.len(), 40);
         let center = |object: &Object| match object.shape {
-            Shape::Sphere { center, .. } => center.length(),
+            Shape::Sphere(Sphere { center, .. }) => center.length(),
             _ => panic!("a diamond is made of spheres"),
         };
         let farthest = some.objects.iter().map(center).fold(0.0, f64::max);

@@ -107,6 +107,7 @@ mod tests {
     use crate::compile::{Options, compile};
     use crate::picture_rays::PictureRays;
     use crate::scene;
+    use crate::shape::{Cuboid, Sphere};
     use glam::DVec3;
     use gridel_core::Settings;
 
@@ -117,19 +118,19 @@ mod tests {
             .map(|(radius, x)| scene::Object {
                 name: String::from("sphere"),
                 material: 0,
-                shape: scene::Shape::Sphere {
+                shape: scene::Shape::Sphere(Sphere {
                     center: DVec3::new(x, 0.0, 0.0),
                     radius,
-                },
+                }),
                 place: scene::Place::default(),
             });
         let wall = scene::Object {
             name: String::from("wall"),
             material: 0,
-            shape: scene::Shape::Box {
+            shape: scene::Shape::Box(Cuboid {
                 min: DVec3::new(-2.0, -2.0, -3.0),
                 max: DVec3::new(2.0, 2.0, -2.5),
-            },
+            }),
             place: scene::Place::default(),
         };
         let scene = scene::Scene {

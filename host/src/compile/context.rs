@@ -2,7 +2,6 @@
 
 use super::candidates::target::Targets;
 use super::hierarchy::{Node, Primitive};
-use super::lattice::Lattice;
 use super::options::{Options, Tell};
 use super::pairs::Flat;
 use super::primitives::Primitives;
@@ -10,6 +9,7 @@ use super::surroundings::Surroundings;
 use super::volumes::Tree;
 use super::wide::Wide;
 use crate::scene::Scene;
+use crate::shape::Lattice;
 use gridel_core::format::record::UnitBox;
 
 /// What structures are built from.

@@ -56,13 +56,14 @@ pub fn framing(scene: &Scene, fov_degrees: Option<f64>) -> Camera {
 mod tests {
     use super::*;
     use crate::scene::{Material, Object, Place, Shape, Up};
+    use crate::shape::Cuboid;
 
     fn scene(min: [f64; 3], max: [f64; 3], up: Up) -> Scene {
         let [min, max] = [min, max].map(DVec3::from_array);
         let object = Object {
             name: String::from("box"),
             material: 0,
-            shape: Shape::Box { min, max },
+            shape: Shape::Box(Cuboid { min, max }),
             place: Place::default(),
         };
         Scene {

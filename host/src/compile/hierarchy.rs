@@ -8,6 +8,7 @@
 //! would not do otherwise, a node is cut in two halves of equal count. So the depth never exceeds
 //! [`MAX_LEVELS`], and time is `O(n log n)` a level at the most.
 
+use crate::shape::test_cost;
 use gridel_core::Kind;
 use gridel_core::format::Leaf;
 use gridel_core::format::limits::MAX_LEVELS;
@@ -23,15 +24,9 @@ pub struct Primitive {
 }
 
 impl Primitive {
-    /// What its test costs, a triangle's being 1: about what boards pay, with and without floats.
-    /// Where tests are dear, leaves are small.
+    /// What its test costs, a triangle's being 1. Where tests are dear, leaves are small.
     pub const fn test_cost(&self) -> f64 {
-        match self.kind {
-            Kind::Triangle | Kind::Sphere => 1.0,
-            Kind::Box | Kind::Disc => 2.0,
-            Kind::Cone => 6.0,
-            Kind::Torus => 12.0,
-        }
+        test_cost(self.kind)
     }
 
     /// Twice the box's centre.

@@ -6,8 +6,6 @@ mod candidates;
 mod cells;
 mod context;
 mod cuts;
-mod direction;
-mod displacement;
 mod dual_split;
 mod error;
 mod estimate;
@@ -21,11 +19,10 @@ mod octree;
 mod options;
 mod pairs;
 mod primitives;
+mod records;
 mod section;
-mod solids;
 mod structures;
 mod surroundings;
-mod torus;
 mod volumes;
 mod wide;
 mod writer;
@@ -43,6 +40,7 @@ pub use structures::{takes_hierarchy, usual_budget};
 pub use wide::Quality;
 
 use crate::scene::{Object, Scene};
+use crate::shape::Lattice;
 use crate::table::printable;
 use advice::{Size, advice};
 use candidates::target::Targets;
@@ -52,7 +50,6 @@ use gridel_core::Structure;
 use gridel_core::format::Leaf;
 use gridel_core::format::record::{Gridels, UnitBox};
 use hierarchy::{Node, Primitive, Splits};
-use lattice::Lattice;
 use pairs::Flat;
 use primitives::Primitives;
 use std::time::{Duration, Instant};
@@ -263,7 +260,7 @@ fn check(scene: &Scene, options: &Options) -> Result<(), CompileError> {
             bits: options.lattice_bits,
         });
     }
-    let bad = |object: &&Object| !primitives::is_finite(&object.shape);
+    let bad = |object: &&Object| !object.shape.is_finite();
     if let Some(object) = scene.objects.iter().find(bad) {
         return Err(CompileError::NotFinite {
             object: printable(&object.name),

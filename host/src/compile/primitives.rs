@@ -2,18 +2,16 @@
 
 use super::CompileError;
 use super::cuts::{self, Sliver};
-use super::displacement;
 use super::flattened::{self, is_degenerate};
 use super::hierarchy::Primitive;
-use super::lattice::Lattice;
-use super::solids::{self, Snapped, SnappedSphere, disc_reach};
-use super::torus;
-use crate::scene::{Object, Scene, Shape};
+use super::records::{Added, Records};
+use crate::scene::{Object, Scene};
+use crate::shape::{Lattice, Shape, Solid, displacement};
 use crate::table::{grouped, printable};
 use glam::{DVec3, IVec3};
 use gridel_core::Kind;
 use gridel_core::format::record::UnitBox;
-use gridel_core::geometry::{cone::Cone, cuboid::Cuboid, disc::Disc, torus::Torus};
+use gridel_core::geometry::Geometry;
 use serde::{Serialize, Serializer};
 use std::collections::HashMap;
 
@@ -30,11 +28,7 @@ pub struct Primitives {
     /// Distinct vertices of all meshes, in 1/256 unit.
     pub vertices: Vec<[i32; 3]>,
     pub triangles: Vec<[u32; 3]>,
-    pub spheres: Vec<SnappedSphere>,
-    pub boxes: Vec<Cuboid>,
-    pub discs: Vec<Disc>,
-    pub cones: Vec<Cone>,
-    pub tori: Vec<Torus>,
+    pub records: Records,
     /// For each kind, the numbers of its primitives in scene-file order.
     pub numbers: [Vec<u32>; Kind::ALL.len()],
     /// Primitives in the scene file, the collapsed ones included.
@@ -95,87 +89,15 @@ impl Serialize for LeftOut {
 
 /// The box of everything in a scene; a point for an empty one.
 pub fn extent(scene: &Scene) -> (DVec3, DVec3) {
-    let mut lowest = DVec3::INFINITY;
-    let mut highest = DVec3::NEG_INFINITY;
-    let mut add = |low: DVec3, high: DVec3| {
-        lowest = lowest.min(low);
-        highest = highest.max(high);
-    };
-    for object in &scene.objects {
-        match &object.shape {
-            Shape::Sphere { center, radius } => add(*center - *radius, *center + *radius),
-            Shape::Mesh { vertices, .. } => vertices.iter().for_each(|&vertex| add(vertex, vertex)),
-            Shape::Box { min, max } => add(*min, *max),
-            Shape::Disc {
-                center,
-                normal,
-                radius,
-            } => {
-                let reach = disc_reach(*normal) * *radius;
-                add(*center - reach, *center + reach);
-            }
-            Shape::Cone {
-                base,
-                base_radius,
-                apex,
-                apex_radius,
-            } => {
-                let reach = disc_reach(*apex - *base);
-                for (center, radius) in [(base, base_radius), (apex, apex_radius)] {
-                    add(*center - reach * *radius, *center + reach * *radius);
-                }
-            }
-            Shape::Torus {
-                center,
-                axis,
-                major_radius,
-                minor_radius,
-            } => {
-                let reach = torus::reach(*axis, [*major_radius, *minor_radius]);
-                add(*center - reach, *center + reach);
-            }
-        }
-    }
+    let nowhere = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    let boxes = scene.objects.iter().map(|object| object.shape.bounds());
+    let [lowest, highest] = boxes.fold(nowhere, |[low, high], [lowest, highest]| {
+        [low.min(lowest), high.max(highest)]
+    });
     if lowest.x > highest.x {
         (DVec3::ZERO, DVec3::ZERO)
     } else {
         (lowest, highest)
-    }
-}
-
-/// Whether all numbers of a shape are finite.
-pub fn is_finite(shape: &Shape) -> bool {
-    match shape {
-        Shape::Sphere { center, radius } => center.is_finite() && radius.is_finite(),
-        Shape::Mesh { vertices, .. } => vertices.iter().all(|vertex| vertex.is_finite()),
-        Shape::Box { min, max } => min.is_finite() && max.is_finite(),
-        Shape::Disc {
-            center,
-            normal,
-            radius,
-        } => center.is_finite() && normal.is_finite() && radius.is_finite(),
-        Shape::Cone {
-            base,
-            base_radius,
-            apex,
-            apex_radius,
-        } => {
-            base.is_finite()
-                && apex.is_finite()
-                && base_radius.is_finite()
-                && apex_radius.is_finite()
-        }
-        Shape::Torus {
-            center,
-            axis,
-            major_radius,
-            minor_radius,
-        } => {
-            center.is_finite()
-                && axis.is_finite()
-                && major_radius.is_finite()
-                && minor_radius.is_finite()
-        }
     }
 }
 
@@ -241,20 +163,21 @@ impl Primitives {
             let highest = corners[0].max(corners[1]).max(corners[2]);
             UnitBox::around(lowest.into(), highest.into())
         };
-        let sphere = |i: usize| {
-            let SnappedSphere { center, radius } = self.spheres[i];
-            UnitBox::around(center.map(|x| x - radius), center.map(|x| x + radius))
-        };
-        let cuboid = |i: usize| UnitBox::around(self.boxes[i].lowest, self.boxes[i].highest);
-        [
-            of(Kind::Triangle, self.triangles.len(), &triangle),
-            of(Kind::Sphere, self.spheres.len(), &sphere),
-            of(Kind::Box, self.boxes.len(), &cuboid),
-            of(Kind::Disc, self.discs.len(), &|i| self.discs[i].bounds),
-            of(Kind::Cone, self.cones.len(), &|i| self.cones[i].bounds),
-            of(Kind::Torus, self.tori.len(), &|i| self.tori[i].bounds),
-        ]
-        .concat()
+        let triangles = of(Kind::Triangle, self.triangles.len(), &triangle);
+        let others = Kind::ALL.into_iter().flat_map(|kind| {
+            of(kind, self.records.count(kind), &|i| {
+                self.records.bounds(kind, i)
+            })
+        });
+        triangles.into_iter().chain(others).collect()
+    }
+
+    /// A primitive in units.
+    pub fn solid(&self, kind: Kind, index: usize) -> Solid {
+        self.records.solid(kind, index).unwrap_or_else(|| {
+            let corners = self.triangles[index].map(|vertex| self.vertices[vertex as usize]);
+            Solid::of(Geometry::Triangle(corners))
+        })
     }
 
     /// The groups that a primitive is in, the largest first, as the parts of its object's name say
@@ -300,7 +223,7 @@ impl Primitives {
                         let displacement = triangle
                             .map(|vertex| {
                                 let given = lattice.in_fine(vertices[vertex as usize]);
-                                displacement::point(given, snapped[vertex as usize])
+                                displacement(given, snapped[vertex as usize])
                             })
                             .into_iter()
                             .fold(0.0, f64::max);
@@ -324,47 +247,31 @@ impl Primitives {
                     });
                 }
             }
-            Shape::Sphere { center, radius } => {
-                let sphere = solids::sphere(*center, *radius, lattice);
-                self.add_solid(object, Kind::Sphere, sphere, lattice, |all| {
-                    &mut all.spheres
-                });
-            }
-            Shape::Box { min, max } => {
-                let cuboid = solids::cuboid([*min, *max], lattice);
-                self.add_solid(object, Kind::Box, Some(cuboid), lattice, |all| {
-                    &mut all.boxes
-                });
-            }
-            Shape::Disc {
-                center,
-                normal,
-                radius,
-            } => {
-                let disc = solids::disc(*center, *normal, *radius, lattice);
-                self.add_solid(object, Kind::Disc, disc, lattice, |all| &mut all.discs);
-            }
-            Shape::Cone {
-                base,
-                base_radius,
-                apex,
-                apex_radius,
-            } => {
-                let ends = [(*base, *base_radius), (*apex, *apex_radius)];
-                let cone = solids::cone(ends, lattice);
-                self.add_solid(object, Kind::Cone, cone, lattice, |all| &mut all.cones);
-            }
-            Shape::Torus {
-                center,
-                axis,
-                major_radius,
-                minor_radius,
-            } => {
-                let radii = [*major_radius, *minor_radius];
-                let torus = torus::snapped((*center, *axis), radii, lattice);
-                self.add_solid(object, Kind::Torus, torus, lattice, |all| &mut all.tori);
+            shape => {
+                let name = || format!("{} ({})", printable(&object.name), object.place);
+                let Some(Added {
+                    kind,
+                    displacement,
+                    fits,
+                }) = self.records.add(shape, lattice)
+                else {
+                    self.collapsed.add(name());
+                    self.leave_out();
+                    return self.check_count();
+                };
+                self.needs_room |= !fits;
+                let steps = displacement / lattice.fine_steps();
+                if steps > FAR_MOVED {
+                    self.far_moved
+                        .add(format!("{}: by {steps:.1} steps", name()));
+                }
+                self.keep(kind, displacement);
             }
         }
+        self.check_count()
+    }
+
+    fn check_count(&self) -> Result<(), CompileError> {
         if self.total as usize > MOST {
             let count = self.total as usize;
             return Err(CompileError::TooMany {
@@ -374,35 +281,6 @@ impl Primitives {
             });
         }
         Ok(())
-    }
-
-    /// Adds a sphere, box, disc, cone or torus, or passes over one that the lattice leaves nothing of.
-    fn add_solid<T>(
-        &mut self,
-        object: &Object,
-        kind: Kind,
-        solid: Option<Snapped<T>>,
-        lattice: &Lattice,
-        records: impl FnOnce(&mut Self) -> &mut Vec<T>,
-    ) {
-        let name = || format!("{} ({})", printable(&object.name), object.place);
-        let Some(Snapped {
-            record,
-            displacement,
-            fits,
-        }) = solid
-        else {
-            self.collapsed.add(name());
-            return self.leave_out();
-        };
-        records(self).push(record);
-        self.needs_room |= !fits;
-        let steps = displacement / lattice.fine_steps();
-        if steps > FAR_MOVED {
-            self.far_moved
-                .add(format!("{}: by {steps:.1} steps", name()));
-        }
-        self.keep(kind, displacement);
     }
 
     /// Gives the primitive that was just added its number; its surface was moved by so many 1/256

@@ -2,8 +2,8 @@
 
 use super::CompileError;
 use super::framing::{BACKGROUND, framing};
-use super::lattice::Lattice;
-use crate::scene::{Camera, Color, Diffuse, Light, Material, Scene, Shape};
+use crate::scene::{Camera, Color, Diffuse, Light, Material, Scene};
+use crate::shape::{Lattice, unit};
 use crate::table::printable;
 use glam::DVec3;
 use gridel_core::Effects;
@@ -155,7 +155,7 @@ fn over_a_shoulder(scene: &Scene, camera: &Camera) -> (DVec3, &'static str) {
     let aside = 0.5 * unit(view.cross(up));
     let [left, right] = [aside, -aside].map(|aside| view + aside - 0.7 * up);
     let lit = |direction: DVec3| -> f64 {
-        let faces = scene.objects.iter().flat_map(|object| faces(&object.shape));
+        let faces = scene.objects.iter().flat_map(|object| object.shape.faces());
         let towards = |normal: DVec3| normal * -normal.dot(view).signum();
         faces
             .map(|normal| -towards(normal).dot(direction))
@@ -167,36 +167,6 @@ fn over_a_shoulder(scene: &Scene, camera: &Camera) -> (DVec3, &'static str) {
     } else {
         (left, "left")
     }
-}
-
-/// The normals of what is flat, as long as twice its area.
-fn faces(shape: &Shape) -> Vec<DVec3> {
-    match shape {
-        Shape::Mesh {
-            vertices,
-            triangles,
-        } => {
-            let normal = |corners: &[u32; 3]| {
-                let [a, b, c] = corners.map(|corner| vertices[corner as usize]);
-                (b - a).cross(c - a)
-            };
-            triangles.iter().map(normal).collect()
-        }
-        Shape::Box { min, max } => {
-            let size = *max - *min;
-            let face = |k: usize| 2.0 * size[(k + 1) % 3] * size[(k + 2) % 3] * DVec3::AXES[k];
-            (0..3).flat_map(|k| [face(k), -face(k)]).collect()
-        }
-        Shape::Disc { normal, radius, .. } => {
-            vec![unit(*normal) * (2.0 * std::f64::consts::PI * radius * radius)]
-        }
-        Shape::Sphere { .. } | Shape::Cone { .. } | Shape::Torus { .. } => Vec::new(),
-    }
-}
-
-/// A vector with length 1, however small or large its components are.
-fn unit(v: DVec3) -> DVec3 {
-    (v / v.abs().max_element()).normalize()
 }
 
 /// Vectors of the picture's frame, scaled so that their largest component has 28 bits.

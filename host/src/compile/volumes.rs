@@ -28,7 +28,7 @@ impl<'t> Tree<'t> {
     pub fn new(root: &'t Node, flat: &'t Flat, order: &[Primitive], snapped: &Primitives) -> Self {
         let reach = |primitive: &Primitive| match primitive.kind {
             Kind::Sphere => {
-                let sphere = snapped.spheres[primitive.index as usize];
+                let sphere = snapped.records.spheres[primitive.index as usize];
                 Reach::Sphere(sphere.center, sphere.radius)
             }
             _ => Reach::Box(primitive.bounds),

@@ -2,17 +2,17 @@
 
 use super::CompileError;
 use super::context::BuildContext;
-use super::lattice::Lattice;
 use super::layout::Layout;
 use super::names::{KeptNames, Names};
 use super::pairs::Flat;
 use super::primitives::Primitives;
-use super::section::{Section, indices, section, three_bytes};
+use super::records::in_order;
+use super::section::{Section, indices, section};
 use crate::blob::Blob;
+use crate::shape::Lattice;
 use gridel_core::accel::Entry;
 use gridel_core::format::record::{
-    ALIGNMENT, ENDIANNESS, Header, MAGIC, SectionEntry, Sphere16, Sphere24, VERSION, Vertex16,
-    Vertex24,
+    ALIGNMENT, ENDIANNESS, Header, MAGIC, SectionEntry, VERSION, Vertex16, Vertex24,
 };
 use gridel_core::format::{SectionKind, checksum};
 use gridel_core::{Kind, Structure};
@@ -159,15 +159,11 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
 
 /// The geometry, every kind in the order of its slots.
 fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Section> {
-    fn in_order<T: Copy>(records: &[T], slots: &[u32]) -> Vec<T> {
-        slots.iter().map(|&index| records[index as usize]).collect()
-    }
-    let slots = |kind: Kind| &flat.slots[kind as usize][..];
-    let triangles = in_order(&primitives.triangles, slots(Kind::Triangle));
+    let slots = &flat.slots[Kind::Triangle as usize];
     // Vertices in the order in which the leaves need them.
     let mut number = vec![u32::MAX; primitives.vertices.len()];
     let mut vertices = Vec::with_capacity(primitives.vertices.len());
-    let triangles: Vec<[u32; 3]> = triangles
+    let triangles: Vec<[u32; 3]> = in_order(&primitives.triangles, slots)
         .iter()
         .map(|corners| {
             corners.map(|vertex| {
@@ -180,36 +176,13 @@ fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Sect
             })
         })
         .collect();
-    let spheres = in_order(&primitives.spheres, slots(Kind::Sphere));
-
-    let unit = |x: i32| (x >> 8) as i16;
-    let three_bytes = |x: i32| three_bytes(x as u32);
-    let (vertex_section, sphere_section) = if lattice.bits <= 16 {
+    let vertex_section = if lattice.bits <= 16 {
+        let unit = |x: i32| (x >> 8) as i16;
         let vertices: Vec<_> = vertices.iter().map(|v| Vertex16(v.map(unit))).collect();
-        let spheres: Vec<_> = spheres
-            .iter()
-            .map(|s| Sphere16 {
-                center: Vertex16(s.center.map(unit)),
-                radius: (s.radius >> 8) as u16,
-            })
-            .collect();
-        (
-            section(SectionKind::Vertices, &vertices),
-            section(SectionKind::Spheres, &spheres),
-        )
+        section(SectionKind::Vertices, &vertices)
     } else {
         let vertices: Vec<_> = vertices.iter().map(|&v| Vertex24(v)).collect();
-        let spheres: Vec<_> = spheres
-            .iter()
-            .map(|s| Sphere24 {
-                center: s.center.map(three_bytes),
-                radius: three_bytes(s.radius),
-            })
-            .collect();
-        (
-            section(SectionKind::Vertices, &vertices),
-            section(SectionKind::Spheres, &spheres),
-        )
+        section(SectionKind::Vertices, &vertices)
     };
     let triangle_section = if vertices.len() <= usize::from(u16::MAX) + 1 {
         let narrow: Vec<_> = triangles
@@ -220,27 +193,9 @@ fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Sect
     } else {
         section(SectionKind::Triangles, &triangles)
     };
-    vec![
-        vertex_section,
-        triangle_section,
-        sphere_section,
-        section(
-            SectionKind::Boxes,
-            &in_order(&primitives.boxes, slots(Kind::Box)),
-        ),
-        section(
-            SectionKind::Discs,
-            &in_order(&primitives.discs, slots(Kind::Disc)),
-        ),
-        section(
-            SectionKind::Cones,
-            &in_order(&primitives.cones, slots(Kind::Cone)),
-        ),
-        section(
-            SectionKind::Tori,
-            &in_order(&primitives.tori, slots(Kind::Torus)),
-        ),
-    ]
+    let mut sections = vec![vertex_section, triangle_section];
+    sections.extend(primitives.records.sections(lattice.bits, &flat.slots));
+    sections
 }
 
 /// Puts header, table and sections together. Large sections are in memory twice meanwhile.

@@ -1,6 +1,7 @@
 //! Molecules as PDB.
 
 use crate::scene::{Scene, Shape};
+use crate::shape::Sphere;
 use std::fmt::Write;
 
 /// The highest serial number that its five columns hold.
@@ -28,7 +29,7 @@ pub fn pdb(scene: &Scene) -> Result<String, PdbError> {
         .objects
         .iter()
         .filter_map(|object| match object.shape {
-            Shape::Sphere { center, .. } => Some((object, center)),
+            Shape::Sphere(Sphere { center, .. }) => Some((object, center)),
             _ => None,
         })
         .collect();

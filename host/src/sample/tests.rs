@@ -1,10 +1,11 @@
 use super::*;
 use crate::scene::{self, MoleculeOptions, Shape};
+use crate::shape::Sphere;
 use std::collections::HashMap;
 
 fn centers(scene: &Scene) -> Vec<DVec3> {
     let center = |shape: &Shape| match shape {
-        Shape::Sphere { center, .. } => Some(*center),
+        Shape::Sphere(Sphere { center, .. }) => Some(*center),
         _ => None,
     };
     scene
@@ -164,7 +165,7 @@ fn molecules_come_back_from_pdb() {
 fn what_pdb_does_not_hold() {
     assert_eq!(pdb(&icosphere(0)), Err(PdbError::NoAtoms));
     let mut scene = c60();
-    let Shape::Sphere { center, .. } = &mut scene.objects[7].shape else {
+    let Shape::Sphere(Sphere { center, .. }) = &mut scene.objects[7].shape else {
         panic!("no sphere")
     };
     center.y = 10_000.0;

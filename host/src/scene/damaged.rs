@@ -35,9 +35,8 @@ fn holds_together(scene: &Scene) -> bool {
                         .flatten()
                         .all(|&index| (index as usize) < vertices.len())
             }
-            Shape::Sphere { center, radius } => center.is_finite() && *radius > 0.0,
-            Shape::Cone { base, apex, .. } => base.is_finite() && apex.is_finite() && base != apex,
-            Shape::Box { .. } | Shape::Disc { .. } | Shape::Torus { .. } => false,
+            shape @ (Shape::Sphere(_) | Shape::Cone(_)) => shape.is_finite() && shape.has_extent(),
+            _ => false,
         };
         shape && object.material < scene.materials.len()
     })

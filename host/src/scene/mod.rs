@@ -10,7 +10,6 @@ mod access;
 mod bad;
 #[cfg(test)]
 mod damaged;
-mod direction;
 mod error;
 mod gzip;
 mod importer;
@@ -25,11 +24,10 @@ mod test_scenes;
 mod text;
 mod words;
 
+pub use crate::shape::Shape;
 pub use error::SceneError;
 pub use importer::Importer;
-pub use model::{
-    Camera, Color, Diffuse, Light, Material, Object, RenderSettings, Scene, Shape, Up,
-};
+pub use model::{Camera, Color, Diffuse, Light, Material, Object, RenderSettings, Scene, Up};
 pub use options::{ImportOptions, Imported, MoleculeOptions, MoleculeStyle};
 pub use place::Place;
 pub use size::MOST_INPUT;

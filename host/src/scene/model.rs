@@ -1,7 +1,7 @@
 //! The scene as data.
 
-use super::direction::parallel;
 use super::place::Place;
+use crate::shape::{Shape, parallel};
 use glam::DVec3;
 
 /// A linear RGB colour; components at or above 0, 1.0 being display white.
@@ -125,48 +125,6 @@ pub struct Object {
     pub shape: Shape,
     /// Where the scene file says so, for messages.
     pub place: Place,
-}
-
-/// A shape in world space. Solids are closed; a mesh is whatever its triangles are.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
-    Sphere {
-        center: DVec3,
-        radius: f64,
-    },
-    /// An indexed mesh; every triangle is a primitive. Counter-clockwise is the front.
-    Mesh {
-        vertices: Vec<DVec3>,
-        triangles: Vec<[u32; 3]>,
-    },
-    /// An axis-aligned box (a box that was turned becomes a mesh).
-    Box {
-        min: DVec3,
-        max: DVec3,
-    },
-    /// A flat disc; `normal` has any length above 0.
-    Disc {
-        center: DVec3,
-        normal: DVec3,
-        radius: f64,
-    },
-    /// A solid between two flat caps: a cylinder where the radii are equal, a cone where one is
-    /// 0, a frustum otherwise. NFF's open cones are closed by caps, because the solid is what
-    /// refraction needs.
-    Cone {
-        base: DVec3,
-        base_radius: f64,
-        apex: DVec3,
-        apex_radius: f64,
-    },
-    /// What a disc of the minor radius sweeps along a circle of the major radius around an axis of any
-    /// length above 0.
-    Torus {
-        center: DVec3,
-        axis: DVec3,
-        major_radius: f64,
-        minor_radius: f64,
-    },
 }
 
 /// Rendering defaults; the command line overrides them.

@@ -1,7 +1,7 @@
 //! Puts one ray to every structure in one number format, and holds the answers to the promises.
 
 use super::judge::{Answer, GRAZING, Judge, RoundedRay, STEPS, Wrong, step};
-use super::random::Random;
+use crate::shape::random::Random;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
@@ -277,7 +277,7 @@ pub fn leave<N: Number>(
         let from = depart(scene, hit, outward);
         let away = outward || solid.is_flat();
         // Where a solid is thinner than the bound, there is no inside to start from.
-        if !away && solid.excesses(from)[0] > -0.5 * hit.error.length_to_f64() {
+        if !away && solid.excess(from) > -0.5 * hit.error.length_to_f64() {
             continue;
         }
         let ray = Ray::<N>::from_f64(scene.bounds(), from, direction, 0.0, f64::INFINITY);

@@ -1,11 +1,9 @@
 //! What is right, by arithmetic that owes nothing to the kernels: which primitive a ray meets first,
 //! within what a number format may be off by.
 
-use super::exact::Line;
-use super::exact::Real;
-use super::solid::Solid;
+use crate::shape::Solid;
+use crate::shape::exact::{Line, Real};
 use gridel_core::format::record::UnitBox;
-use gridel_core::geometry::Geometry;
 use gridel_core::{Format, Kind, Number, Ray, Scene};
 
 /// How many rounding steps an answer may be off by: the shape that it is right for may be so much
@@ -105,7 +103,7 @@ impl Judge {
         for kind in Kind::ALL {
             for slot in 0..scene.count(kind) {
                 let bounds = scene.primitive_bounds(kind, slot);
-                let solid = scene.geometry(kind, slot).map(solid);
+                let solid = scene.geometry(kind, slot).map(Solid::of);
                 let primitive = scene.primitive(kind, slot as u32);
                 if let (Some(bounds), Some(solid)) = (bounds, solid) {
                     solids.push((primitive, bounds, solid));
@@ -143,7 +141,7 @@ impl Judge {
         let mut end = Real::of(tmax.min(1e300));
         if let Some(answer) = answer {
             let pieces = || self.pieces(answer.primitive);
-            let extent = pieces().map(Solid::extent).reduce(f64::max);
+            let extent = pieces().map(|solid| solid.extent()).reduce(f64::max);
             let extent = extent.ok_or(Wrong::NotThere)?;
             let off = STEPS * step(format, ray.magnitude(answer.t).max(extent));
             let there = pieces().any(|solid| {
@@ -262,36 +260,4 @@ fn may_meet(ray: &RoundedRay, bounds: &UnitBox) -> bool {
         span = (span.0.max(a.min(b)), span.1.min(a.max(b)));
     }
     span.0 <= span.1
-}
-
-fn solid(geometry: Geometry) -> Solid {
-    let length = |steps: i32| f64::from(steps) / 256.0;
-    match geometry {
-        Geometry::Triangle(corners) => Solid::Triangle(corners.map(|c| c.map(length))),
-        Geometry::Sphere { center, radius } => Solid::Sphere {
-            center: center.map(length),
-            radius: length(radius),
-        },
-        Geometry::Box(cuboid) => Solid::Box {
-            lowest: cuboid.lowest.map(length),
-            highest: cuboid.highest.map(length),
-        },
-        Geometry::Disc(disc) => Solid::Disc {
-            center: disc.center.map(length),
-            normal: disc.normal.map(f64::from),
-            radius: length(disc.radius),
-        },
-        Geometry::Cone(cone) => Solid::Cone {
-            base: cone.base.map(length),
-            apex: cone.apex.map(length),
-            base_radius: length(cone.base_radius),
-            apex_radius: length(cone.apex_radius),
-        },
-        Geometry::Torus(torus) => Solid::Torus {
-            center: torus.center.map(length),
-            axis: torus.axis.map(f64::from),
-            major_radius: length(torus.major_radius),
-            minor_radius: length(torus.minor_radius),
-        },
-    }
 }

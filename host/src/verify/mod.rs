@@ -1,30 +1,26 @@
 //! Throws hard rays at a scene and holds every structure and number format to what is promised.
 //!
 //! `rays.rs` makes the rays, `check.rs` puts one to all structures of a blob and compares, `judge.rs`
-//! decides by 320-bit arithmetic where they disagree, from the textbook's formulas in `solid.rs`.
+//! decides by 320-bit arithmetic where they disagree, from the textbook's formulas of each shape.
 //! Every format is asked with the ray that it can hold, so what is judged is the kernels' arithmetic
 //! and not the rounding of the question.
 
 mod check;
 mod closed;
-pub mod exact;
 pub mod judge;
-pub mod random;
 pub mod rays;
 mod shadow;
-pub mod solid;
-mod torus;
 
 pub use crate::trace::UnitRay;
 pub use check::{Fault, Heard, Outcome, Promise, ask, ask_all, check, depart, leave, sealed};
 pub use closed::ClosedMesh;
 pub use rays::Targets;
 
+use crate::shape::random::Random;
 use crate::trace::{Frame, SceneRay};
 use gridel_core::accel::DynAccel;
 use gridel_core::{Fixed, Format, List, Number, Scene, Structure};
 use judge::Judge;
-use random::Random;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;

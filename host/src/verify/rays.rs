@@ -1,6 +1,6 @@
 //! Rays of every sort that a structure can go wrong on, aimed at one scene.
 
-use super::random::Random;
+use crate::shape::random::Random;
 use crate::trace::UnitRay;
 use gridel_core::format::record::UnitBox;
 use gridel_core::{Kind, Scene};

@@ -2,11 +2,11 @@
 
 use super::check::{Fault, Promise, ask, depart};
 use super::judge::{RoundedRay, step};
-use super::random::Random;
+use crate::shape::Solid;
+use crate::shape::random::Random;
 use crate::trace::UnitRay;
 use glam::DVec3;
 use gridel_core::format::record::Light;
-use gridel_core::geometry::Geometry;
 use gridel_core::{Effects, Format, Hit, Kind, List, Number, Ray, Scene, Structure};
 
 /// A ray at a place that an object keeps a light from: from somewhere above the place, in units. `None`
@@ -25,7 +25,8 @@ pub fn at_a_shadow(scene: &Scene<'_>, random: &mut Random) -> Option<UnitRay> {
         is_here
     })?;
     let primitive = scene.primitive(kind, slot as u32);
-    let from = on(&scene.geometry(kind, slot)?, random);
+    let from =
+        Solid::of(scene.geometry(kind, slot)?).point(DVec3::from_array(random.direction()), random);
     let light = &scene.lights()[random.below(scene.lights().len())];
     let travel = -to_light(light, from)?;
     // What lies behind the object as the light sees it.
@@ -49,45 +50,6 @@ pub fn at_a_shadow(scene: &Scene<'_>, random: &mut Random) -> Option<UnitRay> {
     let away = (place.distance(from) + 1.0 / 256.0) * random.magnitude(0.5, 8.0);
     let eye = place + away * (towards + 0.9 * aside);
     Some(UnitRay::new(eye.to_array(), (place - eye).to_array()))
-}
-
-/// A point of a primitive, in units.
-fn on(geometry: &Geometry, random: &mut Random) -> DVec3 {
-    let units = |steps: [i32; 3]| DVec3::from_array(steps.map(|x| f64::from(x) / 256.0));
-    let length = |steps: i32| f64::from(steps) / 256.0;
-    let direction = DVec3::from_array(random.direction());
-    match geometry {
-        Geometry::Triangle([a, b, c]) => {
-            let (u, v) = (random.unit(), random.unit());
-            let (u, v) = if u + v > 1.0 {
-                (1.0 - u, 1.0 - v)
-            } else {
-                (u, v)
-            };
-            let (a, b, c) = (units(*a), units(*b), units(*c));
-            a + u * (b - a) + v * (c - a)
-        }
-        Geometry::Sphere { center, radius } => units(*center) + length(*radius) * direction,
-        Geometry::Box(cuboid) => {
-            let (low, high) = (units(cuboid.lowest), units(cuboid.highest));
-            let share = DVec3::from_array([0; 3].map(|_| random.unit()));
-            low + share * (high - low)
-        }
-        Geometry::Disc(disc) => {
-            let normal = DVec3::from_array(disc.normal.map(f64::from)).normalize();
-            let across = direction - direction.dot(normal) * normal;
-            units(disc.center) + length(disc.radius) * across
-        }
-        Geometry::Cone(cone) => {
-            let share = random.unit();
-            units(cone.base).lerp(units(cone.apex), share)
-        }
-        Geometry::Torus(torus) => {
-            let axis = DVec3::from_array(torus.axis.map(f64::from)).normalize();
-            let across = direction - direction.dot(axis) * axis;
-            units(torus.center) + length(torus.major_radius) * across
-        }
-    }
 }
 
 /// The way from a point to a light.

@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use gridel_host::scene::{self, MoleculeOptions, Scene, Shape};
+use gridel_host::shape::Sphere;
 use gridel_host::trace::SceneRay;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -135,7 +136,7 @@ impl Workload {
                     let corner = |v: u32| vertices[v as usize].as_vec3();
                     triangles.extend(faces.iter().map(|face| face.map(corner)));
                 }
-                Shape::Sphere { center, radius } => {
+                Shape::Sphere(Sphere { center, radius }) => {
                     spheres.push((center.as_vec3(), *radius as f32));
                 }
                 _ => {}

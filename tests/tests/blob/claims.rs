@@ -9,6 +9,7 @@ use gridel_core::format::record::Header;
 use gridel_core::format::{Effects, SectionKind};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;
+use gridel_host::shape::Sphere;
 use gridel_tests::fuzz::{Base, agree, sealed, some_rays, speaks};
 use gridel_tests::scenes;
 
@@ -35,9 +36,11 @@ fn with_header(bytes: &[u8], header: &Header) -> Vec<u8> {
 /// records, so that a grid or an octree without any cells would list them all.
 #[test]
 fn structures_without_their_sections_are_refused() {
-    let ball = |x: f64| Shape::Sphere {
-        center: DVec3::new(x, 0.0, 0.0),
-        radius: 0.5,
+    let ball = |x: f64| {
+        Shape::Sphere(Sphere {
+            center: DVec3::new(x, 0.0, 0.0),
+            radius: 0.5,
+        })
     };
     let scenes = [scenes::soup(3, 16, 0.4), scenes::of([ball(0.0), ball(2.0)])];
     for scene in &scenes {
@@ -78,9 +81,11 @@ fn effects_that_nothing_calls_for_are_refused() {
 /// other spheres of the pack nobody sees it.
 #[test]
 fn pack_radii_that_wrap_are_refused() {
-    let spheres = (0..16).map(|number| Shape::Sphere {
-        center: DVec3::new(f64::from(number % 4), f64::from(number / 4), 0.0),
-        radius: 0.3 + 0.01 * f64::from(number),
+    let spheres = (0..16).map(|number| {
+        Shape::Sphere(Sphere {
+            center: DVec3::new(f64::from(number % 4), f64::from(number / 4), 0.0),
+            radius: 0.3 + 0.01 * f64::from(number),
+        })
     });
     let bytes = alone(Structure::Wide, &scenes::of(spheres), 16);
     let (_, packs) = section(&bytes, SectionKind::Packs);
@@ -127,10 +132,10 @@ fn strip_vertices_that_wrap_are_refused_or_in_no_triangle() {
 #[test]
 fn homes_of_triangles_without_records_are_refused() {
     let triangles = scenes::sheet(3);
-    let ball = Shape::Sphere {
+    let ball = Shape::Sphere(Sphere {
         center: DVec3::ZERO,
         radius: 1.0,
-    };
+    });
     let scene = scenes::of([triangles, ball]);
     let shared = Options {
         structures: vec![Structure::Wide, Structure::Bvh],

@@ -8,6 +8,7 @@ use gridel_core::format::{Link, NodeWord, SectionKind};
 use gridel_core::{Names, Number, Scene, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;
+use gridel_host::shape::Sphere;
 use gridel_tests::fuzz::{sealed, speaks};
 use gridel_tests::query::{UnitRay, held, through};
 use gridel_tests::scenes;
@@ -259,9 +260,11 @@ fn cycles_and_orphans_are_refused() {
 /// Packs with holes, packs that are not full before the last, and radii that no sphere has.
 #[test]
 fn forged_packs_are_refused() {
-    let spheres = (0..21).map(|number| Shape::Sphere {
-        center: DVec3::new(f64::from(number % 5), f64::from(number / 5), 0.0),
-        radius: 0.3,
+    let spheres = (0..21).map(|number| {
+        Shape::Sphere(Sphere {
+            center: DVec3::new(f64::from(number % 5), f64::from(number / 5), 0.0),
+            radius: 0.3,
+        })
     });
     let options = Options {
         structures: vec![Structure::Wide],

@@ -16,6 +16,7 @@ use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_host::render::{Job, render};
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Shape};
+use gridel_host::shape::Torus;
 use gridel_tests::effort::step;
 use gridel_tests::fuzz::{sealed, speaks};
 use gridel_tests::query::{UnitRay, any, closest, held, through};
@@ -40,12 +41,12 @@ fn small_scene() -> gridel_host::scene::Scene {
         .objects
         .remove(0),
     );
-    let torus = Shape::Torus {
+    let torus = Shape::Torus(Torus {
         center: DVec3::new(0.5, 0.4, 0.3),
         axis: DVec3::new(1.0, 2.0, 0.0),
         major_radius: 0.3,
         minor_radius: 0.1,
-    };
+    });
     scene.objects.push(scenes::of([torus]).objects.remove(0));
     scene.materials.push(Material {
         name: String::from("everything"),

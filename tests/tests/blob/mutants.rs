@@ -12,6 +12,7 @@ use glam::DVec3;
 use gridel_core::Structure;
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::{Scene, Shape};
+use gridel_host::shape::Sphere;
 use gridel_tests::effort::part_of;
 use gridel_tests::fuzz::{Base, Forger, agree, some_rays};
 use gridel_tests::random::Random;
@@ -35,9 +36,11 @@ fn mixed() -> Scene {
 /// More spheres than a pack holds, of radii up to a fifth of the scene.
 fn spheres() -> Scene {
     let mut random = Random(4);
-    let sphere = |number: u32| Shape::Sphere {
-        center: DVec3::new((number % 3).into(), (number / 3).into(), random.unit()),
-        radius: random.magnitude(0.1, 0.9),
+    let sphere = |number: u32| {
+        Shape::Sphere(Sphere {
+            center: DVec3::new((number % 3).into(), (number / 3).into(), random.unit()),
+            radius: random.magnitude(0.1, 0.9),
+        })
     };
     scenes::of((0..11).map(sphere))
 }

@@ -8,6 +8,7 @@ use gridel_core::{Names, Scene};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{self, Options, compile};
 use gridel_host::scene::{Light, Shape};
+use gridel_host::shape::Sphere;
 use gridel_tests::fuzz::{Base, sealed, speaks};
 use gridel_tests::random::Random;
 use gridel_tests::scenes;
@@ -88,10 +89,10 @@ fn scene_where_nothing_has_a_name_has_no_sections_of_names() {
 
 #[test]
 fn name_of_more_than_255_bytes_is_cut_between_characters() {
-    let mut scene = scenes::of([Shape::Sphere {
+    let mut scene = scenes::of([Shape::Sphere(Sphere {
         center: DVec3::ZERO,
         radius: 1.0,
-    }]);
+    })]);
     for (name, kept) in [
         ("a".repeat(255), 255),
         ("a".repeat(256), 255),

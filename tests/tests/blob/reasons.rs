@@ -14,6 +14,7 @@ use gridel_core::geometry::{cone::Cone, cuboid::Cuboid, disc::Disc, torus::Torus
 use gridel_core::{Names, Prevalidated, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;
+use gridel_host::shape::Sphere;
 use gridel_tests::fuzz::{Base, sealed, speaks};
 use gridel_tests::scenes;
 
@@ -125,9 +126,11 @@ fn alone(scene: &gridel_host::scene::Scene, structure: Structure, lattice_bits: 
 }
 
 fn balls(count: u32) -> impl Iterator<Item = Shape> {
-    (0..count).map(|number| Shape::Sphere {
-        center: DVec3::new(f64::from(number % 4), f64::from(number / 4), 0.0),
-        radius: 0.3,
+    (0..count).map(|number| {
+        Shape::Sphere(Sphere {
+            center: DVec3::new(f64::from(number % 4), f64::from(number / 4), 0.0),
+            radius: 0.3,
+        })
     })
 }
 
@@ -721,10 +724,10 @@ fn candidates() -> Errors {
 }
 
 fn names() -> Errors {
-    let mut scene = scenes::of([Shape::Sphere {
+    let mut scene = scenes::of([Shape::Sphere(Sphere {
         center: DVec3::ZERO,
         radius: 1.0,
-    }]);
+    })]);
     scene.objects[0].name = String::from("ö");
     let options = Options {
         names: true,

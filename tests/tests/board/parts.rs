@@ -6,6 +6,7 @@ use glam::DVec3;
 use gridel_core::Structure;
 use gridel_host::compile::Options;
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Place, Scene, Shape};
+use gridel_host::shape::{Cone, Cuboid, Disc, Sphere};
 
 /// The scene that all others add to: a triangle and a diffuse light that throws no shadows.
 pub const BASE: &str = "base";
@@ -17,24 +18,32 @@ type Effects = [(&'static str, fn(&mut Scene)); 6];
 
 /// Beside triangles.
 const SHAPES: Shapes = [
-    ("sphere", || Shape::Sphere {
-        center: DVec3::new(0.0, 0.0, 1.0),
-        radius: 0.8,
+    ("sphere", || {
+        Shape::Sphere(Sphere {
+            center: DVec3::new(0.0, 0.0, 1.0),
+            radius: 0.8,
+        })
     }),
-    ("box", || Shape::Box {
-        min: DVec3::new(-0.7, -0.7, 0.3),
-        max: DVec3::new(0.7, 0.7, 1.7),
+    ("box", || {
+        Shape::Box(Cuboid {
+            min: DVec3::new(-0.7, -0.7, 0.3),
+            max: DVec3::new(0.7, 0.7, 1.7),
+        })
     }),
-    ("disc", || Shape::Disc {
-        center: DVec3::new(0.0, 0.0, 1.0),
-        normal: DVec3::new(0.3, -1.0, 0.4),
-        radius: 0.9,
+    ("disc", || {
+        Shape::Disc(Disc {
+            center: DVec3::new(0.0, 0.0, 1.0),
+            normal: DVec3::new(0.3, -1.0, 0.4),
+            radius: 0.9,
+        })
     }),
-    ("cone", || Shape::Cone {
-        base: DVec3::new(0.0, 0.0, 0.2),
-        base_radius: 0.8,
-        apex: DVec3::new(0.0, 0.0, 1.8),
-        apex_radius: 0.3,
+    ("cone", || {
+        Shape::Cone(Cone {
+            base: DVec3::new(0.0, 0.0, 0.2),
+            base_radius: 0.8,
+            apex: DVec3::new(0.0, 0.0, 1.8),
+            apex_radius: 0.3,
+        })
     }),
 ];
 
@@ -148,10 +157,10 @@ pub fn combination(shapes: &[&str], effects: &[&str]) -> Compiled {
 pub fn sphere_and_triangle() -> Compiled {
     let mut scene = base();
     scene.render.shadows = true;
-    scene.objects.push(object(Shape::Sphere {
+    scene.objects.push(object(Shape::Sphere(Sphere {
         center: DVec3::new(0.0, 0.0, 1.0),
         radius: 0.8,
-    }));
+    })));
     compile("sphere, triangle, shadow", scene)
 }
 
@@ -160,7 +169,7 @@ pub fn outgrown() -> [(&'static str, Compiled); 6] {
     let [mirrors, _] = deeper();
     let mut cuboid = base();
     let (min, max) = (DVec3::splat(-0.7), DVec3::splat(0.7));
-    cuboid.objects.push(object(Shape::Box { min, max }));
+    cuboid.objects.push(object(Shape::Box(Cuboid { min, max })));
     let through = |structure: Structure| {
         let options = Options {
             structures: vec![structure],

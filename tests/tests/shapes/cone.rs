@@ -3,11 +3,12 @@
 use super::{hold, hold_all, of_every_sort};
 use glam::DVec3;
 use gridel_core::Number;
+use gridel_host::shape::Cone;
+use gridel_host::shape::Solid;
 use gridel_tests::cases::{Case, lattice, slope};
 use gridel_tests::effort::part_of;
 use gridel_tests::every_format;
 use gridel_tests::random::Random;
-use gridel_tests::solid::Solid;
 
 fn direction(random: &mut Random) -> DVec3 {
     DVec3::from_array(random.direction())
@@ -27,12 +28,12 @@ fn cone(random: &mut Random) -> (Solid, DVec3, DVec3, f64) {
         apex.y += 1.0;
     }
     let radius = lattice(random.magnitude(0.1, 9000.0));
-    let solid = Solid::Cone {
-        base: base.to_array(),
-        apex: apex.to_array(),
+    let solid = Solid::Cone(Cone {
+        base: base,
+        apex: apex,
         base_radius: radius,
         apex_radius: 0.0,
-    };
+    });
     (solid, base, apex, radius)
 }
 
@@ -179,16 +180,16 @@ fn from_inside_a_cone() {
             (origin, direction(random))
         });
         let roomy = |case: &Case| {
-            let Solid::Cone {
+            let Solid::Cone(Cone {
                 base,
                 apex,
                 base_radius,
                 ..
-            } = &case.solid
+            }) = &case.solid
             else {
                 return false;
             };
-            let (base, apex) = (DVec3::from_array(*base), DVec3::from_array(*apex));
+            let (base, apex) = (*base, *apex);
             *base_radius > 1.0 && base.distance(apex) > 1.0
         };
         let cases: Vec<Case> = cases.into_iter().filter(roomy).collect();
@@ -206,12 +207,12 @@ fn frusta_of_small_integers() {
     let mut random = Random(26);
     let mut cases = vec![Case {
         class: "issue 16",
-        solid: Solid::Cone {
-            base: [-2.0, 1.0, -3.0],
-            apex: [2.0, 1.0, -3.0],
+        solid: Solid::Cone(Cone {
+            base: [-2.0, 1.0, -3.0].into(),
+            apex: [2.0, 1.0, -3.0].into(),
             base_radius: 8.0,
             apex_radius: 4.0,
-        },
+        }),
         rays: vec![([4.0, 7.0, -2.5], [-1.0, -1.0, 0.0])],
     }];
     let half = |random: &mut Random, most: i32| 0.5 * f64::from(random.within(-most, most));
@@ -236,12 +237,12 @@ fn frusta_of_small_integers() {
         cases.push(Case {
             class: "small integers",
             rays: rays.collect(),
-            solid: Solid::Cone {
-                base,
-                apex,
+            solid: Solid::Cone(Cone {
+                base: base.into(),
+                apex: apex.into(),
                 base_radius: radius,
                 apex_radius: other,
-            },
+            }),
         });
     }
     hold_all("small integers", "frustum", &cases);
@@ -252,12 +253,12 @@ fn frusta_of_small_integers() {
 fn literal_cones() {
     let literal =
         |base: [f64; 3], apex: [f64; 3], base_radius: f64, rays: &[([f64; 3], [f64; 3])]| {
-            let solid = Solid::Cone {
-                base,
-                apex,
+            let solid = Solid::Cone(Cone {
+                base: base.into(),
+                apex: apex.into(),
                 base_radius,
                 apex_radius: 0.0,
-            };
+            });
             Case {
                 class: "literal",
                 solid,

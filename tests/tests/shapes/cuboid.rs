@@ -3,11 +3,12 @@
 use super::{hold, of_every_sort};
 use glam::DVec3;
 use gridel_core::Number;
+use gridel_host::shape::Cuboid;
+use gridel_host::shape::Solid;
 use gridel_tests::cases::{Case, lattice, slope};
 use gridel_tests::effort::part_of;
 use gridel_tests::every_format;
 use gridel_tests::random::Random;
-use gridel_tests::solid::Solid;
 
 #[test]
 fn boxes_and_rays_of_every_sort() {
@@ -44,10 +45,10 @@ fn faces_edges_and_corners_belong_to_the_box() {
                 });
                 Case {
                     class: "flat",
-                    solid: Solid::Box {
-                        lowest: low.to_array(),
-                        highest: high.to_array(),
-                    },
+                    solid: Solid::Box(Cuboid {
+                        min: low,
+                        max: high,
+                    }),
                     rays: rays.collect(),
                 }
             })

@@ -3,6 +3,8 @@
 use super::{hold, hold_all, of_every_sort};
 use glam::DVec3;
 use gridel_core::{List, NoCount, Number};
+use gridel_host::shape::Cone;
+use gridel_host::shape::Solid;
 use gridel_tests::cases::{Case, lattice, slope};
 use gridel_tests::effort::part_of;
 use gridel_tests::every_format;
@@ -11,7 +13,6 @@ use gridel_tests::exact::Real;
 use gridel_tests::judge::blob_of;
 use gridel_tests::query::{UnitRay, closest};
 use gridel_tests::random::Random;
-use gridel_tests::solid::Solid;
 
 /// A cylinder between lattice points; the second is moved if they are one.
 pub fn cylinder(base: DVec3, apex: DVec3, radius: f64) -> Solid {
@@ -20,12 +21,12 @@ pub fn cylinder(base: DVec3, apex: DVec3, radius: f64) -> Solid {
         apex.x += 1.0 / 256.0;
     }
     let radius = lattice(radius).max(1.0 / 256.0);
-    Solid::Cone {
-        base: base.to_array(),
-        apex: apex.to_array(),
+    Solid::Cone(Cone {
+        base: base,
+        apex: apex,
         base_radius: radius,
         apex_radius: radius,
-    }
+    })
 }
 
 fn direction(random: &mut Random) -> DVec3 {
@@ -158,7 +159,7 @@ fn solids_are_left_as_often_as_they_are_entered() {
             let apex = base + direction(&mut random) * random.magnitude(100.0, 9000.0);
             let radius = random.magnitude(100.0, 9000.0);
             let mut solid = cylinder(base, apex, radius);
-            if let (1, Solid::Cone { apex_radius, .. }) = (number % 2, &mut solid) {
+            if let (1, Solid::Cone(Cone { apex_radius, .. })) = (number % 2, &mut solid) {
                 *apex_radius = [0.0, lattice(0.5 * radius)][number / 2 % 2];
             }
             let blob = blob_of([&solid]);

@@ -3,11 +3,12 @@
 use super::{hold, of_every_sort};
 use glam::DVec3;
 use gridel_core::Number;
+use gridel_host::shape::Disc;
+use gridel_host::shape::Solid;
 use gridel_tests::cases::{Case, lattice, slope};
 use gridel_tests::effort::part_of;
 use gridel_tests::every_format;
 use gridel_tests::random::Random;
-use gridel_tests::solid::Solid;
 
 #[test]
 fn discs_and_rays_of_every_sort() {
@@ -48,11 +49,11 @@ fn the_rim_belongs_to_the_disc_and_its_plane_does_not() {
                     }
                     Case {
                         class: "rim",
-                        solid: Solid::Disc {
-                            center: center.to_array(),
-                            normal: DVec3::AXES[axis].to_array(),
+                        solid: Solid::Disc(Disc {
+                            center: center,
+                            normal: DVec3::AXES[axis],
                             radius: radius * size,
-                        },
+                        }),
                         rays: vec![(origin.to_array(), slope(way))],
                     }
                 })

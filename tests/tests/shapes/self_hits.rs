@@ -8,6 +8,8 @@
 
 use glam::DVec3;
 use gridel_core::{Fixed, Hit, List, NoCount, Number, Scene};
+use gridel_host::shape::Solid;
+use gridel_host::shape::{Cone, Cuboid, Disc, Sphere, Torus};
 use gridel_host::verify::judge::Crossings;
 use gridel_tests::cases::{SHAPES, cases, lattice};
 use gridel_tests::effort::part_of;
@@ -16,7 +18,6 @@ use gridel_tests::exact::{Line, Real};
 use gridel_tests::judge::blob_of;
 use gridel_tests::query::{UnitRay, closest, depart, point_of};
 use gridel_tests::random::Random;
-use gridel_tests::solid::Solid;
 
 /// A direction into the half space of a normal, often grazing.
 fn outward(random: &mut Random, normal: DVec3) -> DVec3 {
@@ -43,12 +44,12 @@ fn enters_elsewhere<N: Number>(
     (hit, again): (&Hit<N>, &Hit<N>),
 ) -> bool {
     let least = match *solid {
-        Solid::Torus {
+        Solid::Torus(Torus {
             major_radius,
             minor_radius,
             ..
-        } if minor_radius < major_radius => 0.5,
-        Solid::Torus { .. } => 0.0,
+        }) if minor_radius < major_radius => 0.5,
+        Solid::Torus(Torus { .. }) => 0.0,
         _ => return false,
     };
     let t = N::far_to_f64(again.t);
@@ -56,7 +57,7 @@ fn enters_elsewhere<N: Number>(
     let line = Line::new(from, (way / way.abs().max_element()).to_array());
     let (grown, begin) = (0.5 * error, Real::of(0.0));
     let crossings = Crossings::new(solid, &line, grown);
-    let apart = solid.excesses(from).into_iter().fold(f64::MIN, f64::max);
+    let apart = solid.excess(from);
     apart > least * hit.error.length_to_f64() && crossings.may_be_met_at(&Real::of(t), &begin)
 }
 
@@ -88,7 +89,7 @@ impl Left {
                 let way = outward(random, normal);
                 let from = depart(&scene, &hit, side > 0.0);
                 let outside = side > 0.0 || solid.is_flat();
-                if !outside && solid.excesses(from)[0] > -0.5 * hit.error.length_to_f64() {
+                if !outside && solid.excess(from) > -0.5 * hit.error.length_to_f64() {
                     self.thin += 1;
                     continue;
                 }
@@ -150,30 +151,30 @@ fn ground(random: &mut Random, shape: usize) -> (Solid, f64) {
     let mut tilt = || [0.0, lattice(extent * random.magnitude(1e-6, 1e-2))][random.below(2)];
     let (rise, turn) = (tilt(), tilt());
     let solid = match SHAPES[shape] {
-        "sphere" => Solid::Sphere {
-            center: [0.0, height - extent, 0.0],
+        "sphere" => Solid::Sphere(Sphere {
+            center: [0.0, height - extent, 0.0].into(),
             radius: extent,
-        },
-        "box" => Solid::Box {
-            lowest: [-extent, height - 1.0, -extent],
-            highest: [extent, height, extent],
-        },
-        "disc" => Solid::Disc {
-            center: [0.0, height, 0.0],
-            normal: [(-rise * 256.0).round(), (extent * 256.0).round(), 0.0],
+        }),
+        "box" => Solid::Box(Cuboid {
+            min: [-extent, height - 1.0, -extent].into(),
+            max: [extent, height, extent].into(),
+        }),
+        "disc" => Solid::Disc(Disc {
+            center: [0.0, height, 0.0].into(),
+            normal: [(-rise * 256.0).round(), (extent * 256.0).round(), 0.0].into(),
             radius: extent,
-        },
+        }),
         "triangle" => Solid::Triangle([
-            [-extent, height - rise, -extent],
-            [0.0, height + turn, extent],
-            [extent, height + rise, -extent],
+            [-extent, height - rise, -extent].into(),
+            [0.0, height + turn, extent].into(),
+            [extent, height + rise, -extent].into(),
         ]),
-        _ => Solid::Cone {
-            base: [-turn, height - extent, -rise],
-            apex: [0.0, height, 0.0],
+        _ => Solid::Cone(Cone {
+            base: [-turn, height - extent, -rise].into(),
+            apex: [0.0, height, 0.0].into(),
             base_radius: extent,
             apex_radius: lattice(extent * [1.0, 0.5][random.below(2)]),
-        },
+        }),
     };
     (solid, height)
 }
@@ -227,12 +228,12 @@ fn rays_that_leave_a_shape_do_not_meet_it() {
 #[test]
 fn normals_of_needles_neither_lean_nor_turn() {
     fn judge<N: Number>(solid: &Solid, origin: [f64; 3], slope: [f64; 3]) {
-        let Solid::Cone {
+        let Solid::Cone(Cone {
             base,
             apex,
             base_radius,
             apex_radius,
-        } = *solid
+        }) = *solid
         else {
             unreachable!("needles are cones");
         };
@@ -240,7 +241,7 @@ fn normals_of_needles_neither_lean_nor_turn() {
         let scene = blob.scene().expect("a scene");
         let hit = next_hit::<N>(&scene, origin, slope.into()).expect("a hit");
         let normal = DVec3::from_array(hit.normal.map(N::ratio_to_f64));
-        let along = DVec3::from_array(apex) - DVec3::from_array(base);
+        let along = DVec3::from_array(apex.into()) - DVec3::from_array(base.into());
         let taper = (base_radius - apex_radius) / along.length();
         let lean = normal.dot(along.normalize()) - taper / taper.hypot(1.0);
         let mantle = &solid.normals(point_of(&hit))[0];
@@ -250,21 +251,21 @@ fn normals_of_needles_neither_lean_nor_turn() {
         let exact = DVec3::from_array([0, 1, 2].map(|k| mantle.exact[k].to_f64()));
         assert!(normal.dot(exact) > 0.99, "{} {normal}", N::FORMAT.name());
     }
-    let needle = Solid::Cone {
-        base: [-7_134.171_875, -760.988_281_25, 8_139.914_062_5],
-        apex: [9_334.457_031_25, -856.992_187_5, -9_317.890_625],
+    let needle = Solid::Cone(Cone {
+        base: [-7_134.171_875, -760.988_281_25, 8_139.914_062_5].into(),
+        apex: [9_334.457_031_25, -856.992_187_5, -9_317.890_625].into(),
         base_radius: 0.058_593_75,
         apex_radius: 0.0,
-    };
+    });
     let origin = [-5_363.222_656_25, -771.320_312_5, 6_262.582_031_25];
     let slope = [0.400_294_780_731_201_17, -1.0, 0.383_115_768_432_617_2];
     every_format!(judge(&needle, origin, slope));
-    let pin = Solid::Cone {
-        base: [11_404.183_593_75, 2_806.335_937_5, 2_562.867_187_5],
-        apex: [11_404.125, 2_806.257_812_5, 2_562.859_375],
+    let pin = Solid::Cone(Cone {
+        base: [11_404.183_593_75, 2_806.335_937_5, 2_562.867_187_5].into(),
+        apex: [11_404.125, 2_806.257_812_5, 2_562.859_375].into(),
         base_radius: 0.003_906_25,
         apex_radius: 0.003_906_25,
-    };
+    });
     let origin = [11_404.167_968_75, 2_806.308_593_75, 2_541.125];
     // In single precision the pin is thinner than the bound.
     judge::<Fixed>(&pin, origin, [0.0, 0.0, 1.0]);
@@ -280,18 +281,24 @@ fn nested(random: &mut Random, shape: usize, gap: f64) -> (Solid, Solid) {
     let up = DVec3::AXES[axis];
     let both = |make: &dyn Fn(f64) -> Solid| (make(0.0), make(gap));
     match SHAPES[shape] {
-        "sphere" => both(&|gap| Solid::Sphere {
-            center: place.to_array(),
-            radius: size + gap,
+        "sphere" => both(&|gap| {
+            Solid::Sphere(Sphere {
+                center: place,
+                radius: size + gap,
+            })
         }),
-        "box" => both(&|gap| Solid::Box {
-            lowest: (place - size - gap).to_array(),
-            highest: (place + size + gap).to_array(),
+        "box" => both(&|gap| {
+            Solid::Box(Cuboid {
+                min: (place - size - gap),
+                max: (place + size + gap),
+            })
         }),
-        "disc" => both(&|gap| Solid::Disc {
-            center: (place + up * gap).to_array(),
-            normal: up.to_array(),
-            radius: size * if gap > 0.0 { 4.0 } else { 1.0 },
+        "disc" => both(&|gap| {
+            Solid::Disc(Disc {
+                center: (place + up * gap),
+                normal: up,
+                radius: size * if gap > 0.0 { 4.0 } else { 1.0 },
+            })
         }),
         "triangle" => both(&|gap| {
             let size = size * if gap > 0.0 { 4.0 } else { 1.0 };
@@ -302,13 +309,15 @@ fn nested(random: &mut Random, shape: usize, gap: f64) -> (Solid, Solid) {
                 place + u * size,
                 place + v * size,
             ];
-            Solid::Triangle(corners.map(|corner| corner.map(lattice).to_array()))
+            Solid::Triangle(corners.map(|corner| corner.map(lattice)))
         }),
-        _ => both(&|gap| Solid::Cone {
-            base: (place - up * (size + gap)).to_array(),
-            apex: (place + up * (size + gap)).to_array(),
-            base_radius: size + gap,
-            apex_radius: size + gap,
+        _ => both(&|gap| {
+            Solid::Cone(Cone {
+                base: (place - up * (size + gap)),
+                apex: (place + up * (size + gap)),
+                base_radius: size + gap,
+                apex_radius: size + gap,
+            })
         }),
     }
 }
@@ -372,18 +381,9 @@ fn from_between<N: Number>(
     random: &mut Random,
     way: DVec3,
 ) -> Option<Hit<N>> {
-    let middle = match *inner {
-        Solid::Sphere { center, .. } | Solid::Disc { center, .. } | Solid::Torus { center, .. } => {
-            DVec3::from_array(center)
-        }
-        Solid::Box { lowest, highest } => {
-            (DVec3::from_array(lowest) + DVec3::from_array(highest)) * 0.5
-        }
-        Solid::Cone { base, apex, .. } => (DVec3::from_array(base) + DVec3::from_array(apex)) * 0.5,
-        Solid::Triangle([a, b, c]) => {
-            let [a, b, c] = [a, b, c].map(DVec3::from_array);
-            (a + b + c) / 3.0
-        }
+    let middle = match inner {
+        Solid::Triangle([a, b, c]) => (a + b + c) / 3.0,
+        inner => inner.middle(),
     };
     let extent = inner.size() * 0.2;
     let target = middle + DVec3::from_array(random.direction()) * extent;

@@ -3,19 +3,20 @@
 use super::{hold, hold_all, of_every_sort};
 use glam::DVec3;
 use gridel_core::Number;
+use gridel_host::shape::Solid;
+use gridel_host::shape::Sphere;
 use gridel_tests::cases::{Case, lattice, slope};
 use gridel_tests::effort::part_of;
 use gridel_tests::every_format;
 use gridel_tests::random::Random;
-use gridel_tests::solid::Solid;
 
 fn case(class: &'static str, center: DVec3, radius: f64, rays: Vec<(DVec3, DVec3)>) -> Case {
     Case {
         class,
-        solid: Solid::Sphere {
-            center: center.map(lattice).to_array(),
+        solid: Solid::Sphere(Sphere {
+            center: center.map(lattice),
             radius,
-        },
+        }),
         rays: rays
             .into_iter()
             .map(|(origin, way)| (origin.map(lattice).to_array(), slope(way)))

@@ -4,11 +4,12 @@
 use super::{hold, hold_all, of_every_sort};
 use glam::DVec3;
 use gridel_core::Number;
+use gridel_host::shape::Solid;
+use gridel_host::shape::Torus;
 use gridel_tests::cases::{Case, lattice, slope};
 use gridel_tests::effort::part_of;
 use gridel_tests::every_format;
 use gridel_tests::random::Random;
-use gridel_tests::solid::Solid;
 
 /// A torus as a ray is aimed at it.
 struct Target {
@@ -49,12 +50,12 @@ fn tori(
         let major = length(reach);
         let minor = length(major * proportion(random));
         let center = (direction(random) * random.unit() * 8000.0).map(lattice);
-        let solid = Solid::Torus {
-            center: center.to_array(),
-            axis: axis.to_array(),
+        let solid = Solid::Torus(Torus {
+            center: center,
+            axis: axis,
             major_radius: major,
             minor_radius: minor,
-        };
+        });
         let rays = (0..30).map(|_| {
             let axis = axis.normalize();
             let outward = axis.cross(direction(random)).normalize();
@@ -146,7 +147,7 @@ fn from_inside_a_torus() {
                 direction(random),
             )
         });
-        let roomy = |case: &Case| matches!(case.solid, Solid::Torus { minor_radius, .. } if minor_radius > 1.0);
+        let roomy = |case: &Case| matches!(case.solid, Solid::Torus(Torus { minor_radius, .. }) if minor_radius > 1.0);
         let cases: Vec<Case> = cases.into_iter().filter(roomy).collect();
         let worst = hold::<N>("inside tori", "torus", &cases);
         assert_eq!(worst.hits, worst.rays);
@@ -187,12 +188,12 @@ fn tori_at_the_ends_of_the_lattice() {
         ([1.0, -1.0, 1.0], 30_000.0, 8000.0),
     ];
     let cases = tori.map(|(axis, major_radius, minor_radius)| {
-        let solid = Solid::Torus {
-            center: [0.0; 3],
-            axis,
+        let solid = Solid::Torus(Torus {
+            center: [0.0; 3].into(),
+            axis: axis.into(),
             major_radius,
             minor_radius,
-        };
+        });
         let axis = DVec3::from_array(axis).normalize();
         let reach = major_radius + minor_radius;
         let rays = (0..part_of(20, 400)).map(|_| {

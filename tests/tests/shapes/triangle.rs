@@ -4,13 +4,14 @@ use super::{hold_all, of_every_sort};
 use glam::DVec3;
 use gridel_core::{List, NoCount, Number, Scene};
 use gridel_host::scene::Shape;
+use gridel_host::shape::Cuboid;
+use gridel_host::shape::Solid;
 use gridel_tests::cases::{Case, lattice, slope};
 use gridel_tests::effort::part_of;
 use gridel_tests::every_format;
 use gridel_tests::query::{UnitRay, closest};
 use gridel_tests::random::Random;
 use gridel_tests::scenes;
-use gridel_tests::solid::Solid;
 
 fn point(random: &mut Random, size: f64) -> DVec3 {
     DVec3::from_array([0; 3].map(|_| random.signed() * size)).map(lattice)
@@ -57,7 +58,7 @@ fn needles_and_specks() {
             Case {
                 class: "needle",
                 rays: rays.collect(),
-                solid: Solid::Triangle(corners.map(|corner| corner.to_array())),
+                solid: Solid::Triangle(corners),
             }
         })
         .collect();
@@ -104,10 +105,10 @@ fn coplanar_rays_and_triangles_without_area() {
                 vertices: vec![a, b, c],
                 triangles: vec![[0, 1, 2], [0, 0, 1], [2, 2, 2]],
             },
-            Shape::Box {
+            Shape::Box(Cuboid {
                 min: DVec3::splat(32_000.0),
                 max: DVec3::splat(32_700.0),
-            },
+            }),
         ];
         let blob = scenes::blob(&scenes::of(shapes), 24);
         let scene = blob.scene().expect("a scene");

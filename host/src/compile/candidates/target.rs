@@ -4,6 +4,7 @@
 use super::shaft::Shaft;
 use crate::compile::pairs::Flat;
 use crate::compile::primitives::Primitives;
+use crate::shape;
 use glam::DVec3;
 use gridel_core::Kind;
 use gridel_core::format::Leaf;
@@ -208,28 +209,16 @@ impl<'f> Targets<'f> {
 }
 
 fn surface(primitives: &Primitives, kind: Kind, index: usize) -> Surface {
-    let units = |point: [i32; 3]| point.map(|x| f64::from(x) / 256.0);
-    match kind {
-        Kind::Sphere => {
-            let sphere = primitives.spheres[index];
-            let radius = f64::from(sphere.radius) / 256.0 + SURFACE_SPARE;
+    match primitives.solid(kind, index).surface() {
+        shape::Surface::Sphere { center, radius } => {
+            let radius = radius + SURFACE_SPARE;
             Surface::Sphere {
-                center: units(sphere.center),
+                center: center.to_array(),
                 radius2: radius * radius,
             }
         }
-        Kind::Triangle => {
-            let corners = primitives.triangles[index]
-                .map(|v| DVec3::from_array(units(primitives.vertices[v as usize])));
-            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-            flat(normal, corners[0])
-        }
-        Kind::Disc => {
-            let disc = &primitives.discs[index];
-            let normal = DVec3::from_array(disc.normal.map(f64::from));
-            flat(normal, DVec3::from_array(units(disc.center)))
-        }
-        Kind::Box | Kind::Cone | Kind::Torus => Surface::Box,
+        shape::Surface::Plane { normal, point } => flat(normal, point),
+        shape::Surface::Box | shape::Surface::Curved => Surface::Box,
     }
 }
 

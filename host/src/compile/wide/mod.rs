@@ -333,7 +333,7 @@ impl Wide {
         primitives: &Primitives,
     ) -> impl Iterator<Item = ([[i32; 3]; LANES], [i32; LANES])> {
         self.packs.iter().map(|pack| {
-            let spheres = lanes(&pack.spheres).map(|it| primitives.spheres[it as usize]);
+            let spheres = lanes(&pack.spheres).map(|it| primitives.records.spheres[it as usize]);
             let mut radii = spheres.map(|it| it.radius);
             radii[pack.spheres.len()..].fill(0);
             (spheres.map(|it| it.center), radii)

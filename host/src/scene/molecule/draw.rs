@@ -3,6 +3,7 @@
 use super::element::Element;
 use super::parsed::Site;
 use crate::scene::{Diffuse, Material, MoleculeStyle, Object, Place, Shape};
+use crate::shape::{Cone, Sphere};
 use std::collections::HashMap;
 
 /// The size of balls in units of the van der Waals radius, and the radius of sticks in
@@ -49,12 +50,12 @@ pub(crate) fn draw(
                 sticks.push(Object {
                     name: format!("{} to {}", balls[near].name, balls[far].name),
                     material: of_ball[near],
-                    shape: Shape::Cone {
+                    shape: Shape::Cone(Cone {
                         base,
                         base_radius: STICK,
                         apex,
                         apex_radius: STICK,
-                    },
+                    }),
                     place: balls[near].place.clone(),
                 });
             }
@@ -66,10 +67,10 @@ pub(crate) fn draw(
         .map(|(ball, material)| Object {
             name: ball.name,
             material,
-            shape: Shape::Sphere {
+            shape: Shape::Sphere(Sphere {
                 center: ball.site.position,
                 radius: scale * ball.site.element.van_der_waals(),
-            },
+            }),
             place: ball.place,
         })
         .collect();

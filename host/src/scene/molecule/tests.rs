@@ -2,6 +2,7 @@ mod real;
 
 use super::*;
 use crate::scene::{ImportOptions, MoleculeOptions, Shape};
+use crate::shape::{Cone, Sphere};
 use glam::DVec3;
 use std::path::Path;
 
@@ -60,10 +61,10 @@ fn pdb_columns() {
     assert_eq!(iron.place.line, 4);
     assert_eq!(
         iron.shape,
-        Shape::Sphere {
+        Shape::Sphere(Sphere {
             center: DVec3::new(-1.0, 20.0, -300.0),
             radius: 2.44
-        }
+        })
     );
     assert!(imported.scene.camera.is_none() && imported.scene.lights.is_empty());
 }
@@ -81,7 +82,7 @@ fn alternate_locations() {
         )
     };
     let carbon = |altloc| match with(altloc).unwrap().scene.objects[1].shape {
-        Shape::Sphere { center, .. } => center.x,
+        Shape::Sphere(Sphere { center, .. }) => center.x,
         _ => f64::NAN,
     };
     assert_eq!(
@@ -118,7 +119,7 @@ fn models() {
         .unwrap()
         .scene;
         assert_eq!(scene.objects.len(), 1);
-        let Shape::Sphere { center, .. } = scene.objects[0].shape else {
+        let Shape::Sphere(Sphere { center, .. }) = scene.objects[0].shape else {
             panic!()
         };
         assert_eq!(center.x, model as f64);
@@ -215,12 +216,12 @@ fn bonds_are_stated_or_perceived() {
         ]
     );
     assert_eq!(symbols(&imported)[3..], ["N", "C", "N", "Fe"]);
-    let Shape::Cone {
+    let Shape::Cone(Cone {
         base,
         apex,
         base_radius,
         apex_radius,
-    } = imported.scene.objects[4].shape
+    }) = imported.scene.objects[4].shape
     else {
         panic!()
     };
@@ -255,7 +256,7 @@ fn mmcif_atoms() {
     let imported = cif(ATOM_SITE).unwrap();
     assert_eq!(names(&imported), ["X/A 001/C1'", "Y/HEM 7A/FE"]);
     assert_eq!(symbols(&imported), ["C", "Fe"]);
-    let Shape::Sphere { center, .. } = imported.scene.objects[1].shape else {
+    let Shape::Sphere(Sphere { center, .. }) = imported.scene.objects[1].shape else {
         panic!()
     };
     assert_eq!(center, DVec3::new(-1.25, 0.0, 0.5));
@@ -337,7 +338,7 @@ fn frames_that_end_alone_separates_are_models() {
         };
         let imported = read("t.pdb", &text, &options).unwrap();
         assert_eq!(imported.scene.objects.len(), 1);
-        let Shape::Sphere { center, .. } = imported.scene.objects[0].shape else {
+        let Shape::Sphere(Sphere { center, .. }) = imported.scene.objects[0].shape else {
             panic!()
         };
         assert_eq!(center.x, model as f64);

@@ -1,5 +1,6 @@
 //! The objects of an NFF file.
 
+use crate::shape::{Cone, Sphere};
 use super::Importer;
 use super::reader::{Line, Lines};
 use crate::scene::polygon::{self, MAX_CONCAVE};
@@ -20,10 +21,10 @@ impl<'a> Importer<'a> {
         self.add(
             "sphere",
             line,
-            Shape::Sphere {
+            Shape::Sphere(Sphere {
                 center: DVec3::new(x, y, z),
                 radius: radius.abs(),
-            },
+            }),
         );
         Ok(())
     }
@@ -86,12 +87,12 @@ impl<'a> Importer<'a> {
         self.add(
             "cone",
             line,
-            Shape::Cone {
+            Shape::Cone(Cone {
                 base,
                 base_radius,
                 apex,
                 apex_radius,
-            },
+            }),
         );
         Ok(())
     }
@@ -194,8 +195,8 @@ impl<'a> Importer<'a> {
         });
         self.material = Some(material);
         let count = match shape {
-            Shape::Sphere { .. } => &mut self.counts[0],
-            Shape::Cone { .. } => &mut self.counts[1],
+            Shape::Sphere(Sphere { .. }) => &mut self.counts[0],
+            Shape::Cone(Cone { .. }) => &mut self.counts[1],
             _ => &mut self.counts[2],
         };
         *count += 1;

@@ -1,3 +1,4 @@
+use crate::shape::{Cone, Sphere};
 use super::*;
 use crate::scene::test_scenes::{self, load};
 use crate::scene::{Imported, Shape};
@@ -76,10 +77,10 @@ fn everything_the_format_has() {
     );
     assert_eq!(
         scene.objects[0].shape,
-        Shape::Sphere {
+        Shape::Sphere(Sphere {
             center: DVec3::new(1.0, 2.0, 3.0),
             radius: 4.0
-        }
+        })
     );
 }
 
@@ -198,8 +199,8 @@ fn counts(scene: &Scene) -> BTreeMap<char, usize> {
     let mut counts = BTreeMap::from([('l', scene.lights.len())]);
     for object in &scene.objects {
         let kind = match object.shape {
-            Shape::Sphere { .. } => 's',
-            Shape::Cone { .. } => 'c',
+            Shape::Sphere(Sphere { .. }) => 's',
+            Shape::Cone(Cone { .. }) => 'c',
             _ => 'p',
         };
         *counts.entry(kind).or_default() += 1;

@@ -8,7 +8,7 @@ use super::source::Source;
 use super::value::{Fields, Value};
 use super::{shape, transform};
 use crate::scene::importer::stem;
-use crate::scene::{MoleculeOptions, MoleculeStyle, Scene, SceneError};
+use crate::scene::{MoleculeOptions, MoleculeStyle, Scene, SceneError, Shape};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::rc::Rc;
@@ -16,10 +16,8 @@ use std::rc::Rc;
 /// The keys of every object.
 const KEYS: &[&str] = &["kind", "name", "material"];
 
-const KINDS: &[&str] = &[
-    "sphere", "box", "disc", "cylinder", "cone", "frustum", "torus", "triangle", "mesh", "group",
-    "instance", "import",
-];
+/// The kinds of objects beside those that [`Shape`] has.
+const KINDS: [&str; 5] = ["triangle", "mesh", "group", "instance", "import"];
 
 /// Reads objects, and the files that they import.
 pub(super) struct Reader<'r> {
@@ -80,7 +78,8 @@ impl Reader<'_> {
 
     fn item(&mut self, table: Value<'_>, number: usize) -> Result<Item, SceneError> {
         // The kind decides which keys there are, so it is read before they are checked.
-        let kind = table.member("object", "kind")?.word(KINDS)?;
+        let kinds: Vec<_> = Shape::kinds().map(|(kind, _)| *kind).chain(KINDS).collect();
+        let kind = table.member("object", "kind")?.word(&kinds)?;
         let keys: &[&str] = match kind {
             "group" => &["object"],
             "instance" => &["group"],

@@ -4,7 +4,6 @@ use super::census::{self, MAX_PRIMITIVES};
 use super::material::Palette;
 use super::item::{Content, Group, Item};
 use super::source::Source;
-use super::transform;
 use crate::scene::size::Size;
 use crate::scene::{Object, SceneError, Shape};
 use glam::DAffine3;
@@ -120,7 +119,7 @@ impl<'p> Placer<'p> {
         name: &str,
         shape: &Shape,
     ) -> Result<Shape, SceneError> {
-        let shape = transform::apply(transform, shape).map_err(|misfit| {
+        let shape = shape.transformed(transform).map_err(|misfit| {
             let cause = format!("the object {name:?} {}", misfit.cause);
             self.source.error(&item.span, cause, misfit.remedy)
         })?;

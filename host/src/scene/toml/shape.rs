@@ -3,6 +3,7 @@
 use super::value::{Fields, Value};
 use crate::scene::polygon::{self, MAX_CONCAVE};
 use crate::scene::{SceneError, Shape};
+use crate::shape::Keys;
 use glam::DVec3;
 
 /// The most vertices that a face may have; that they differ is checked in quadratic time.
@@ -12,94 +13,42 @@ const _: () = assert!(MAX_CORNERS <= MAX_CONCAVE);
 /// The keys of a kind of shape, apart from those of every object.
 pub(super) fn keys(kind: &str) -> &'static [&'static str] {
     match kind {
-        "sphere" => &["center", "radius"],
-        "box" => &["min", "max"],
-        "disc" => &["center", "normal", "radius"],
-        "cylinder" => &["base", "top", "radius"],
-        "cone" => &["base", "apex", "radius"],
-        "frustum" => &["base", "top", "base_radius", "top_radius"],
-        "torus" => &["center", "axis", "major_radius", "minor_radius"],
         "triangle" => &["vertices"],
-        _ => &["vertices", "faces"],
+        "mesh" => &["vertices", "faces"],
+        _ => Shape::kinds().find(|(name, _)| *name == kind).map_or(&[], |(_, keys)| keys),
     }
 }
 
 pub(super) fn read(kind: &str, fields: &Fields<'_>) -> Result<Shape, SceneError> {
-    let vector = |key| fields.require(key)?.vector();
-    let radius = |key| fields.require(key)?.positive();
-    let shape = match kind {
-        "sphere" => Shape::Sphere {
-            center: vector("center")?,
-            radius: radius("radius")?,
-        },
-        "box" => return cuboid(fields),
-        "disc" => Shape::Disc {
-            center: vector("center")?,
-            normal: fields.require("normal")?.direction()?,
-            radius: radius("radius")?,
-        },
-        "cylinder" => {
-            let radius = radius("radius")?;
-            return cone(fields, "top", radius, radius);
-        }
-        "cone" => return cone(fields, "apex", radius("radius")?, 0.0),
-        "frustum" => return cone(fields, "top", radius("base_radius")?, radius("top_radius")?),
-        "torus" => Shape::Torus {
-            center: vector("center")?,
-            axis: fields.require("axis")?.direction()?,
-            major_radius: radius("major_radius")?,
-            minor_radius: radius("minor_radius")?,
-        },
-        "triangle" => return triangle(fields),
-        _ => return mesh(fields),
-    };
-    Ok(shape)
+    match kind {
+        "triangle" => triangle(fields),
+        _ => Shape::read(kind, fields).unwrap_or_else(|| mesh(fields)),
+    }
 }
 
-/// A box; it may be flat, but not a line or a point, which would have no surface.
-fn cuboid(fields: &Fields<'_>) -> Result<Shape, SceneError> {
-    let (low, high) = (fields.require("min")?, fields.require("max")?);
-    let (min, max) = (low.vector()?, high.vector()?);
-    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-        if min[axis] > max[axis] {
-            return Err(low.error(
-                format!(
-                    "the box is empty: on {name} `min` is {} and `max` is {}",
-                    min[axis], max[axis]
-                ),
-                "write the smaller number of each axis into `min`",
-            ));
-        }
-    }
-    if min.cmpeq(max).bitmask().count_ones() > 1 {
-        return Err(high.error(
-            "the box has no surface: `min` and `max` are equal on more than one axis",
-            "give the box an extent on at least two axes",
-        ));
-    }
-    Ok(Shape::Box { min, max })
-}
+impl Keys for Fields<'_> {
+    type Error = SceneError;
 
-fn cone(
-    fields: &Fields<'_>,
-    end: &'static str,
-    base_radius: f64,
-    apex_radius: f64,
-) -> Result<Shape, SceneError> {
-    let end_value = fields.require(end)?;
-    let (base, apex) = (fields.require("base")?.vector()?, end_value.vector()?);
-    if base == apex {
-        return Err(end_value.error(
-            format!("`base` and `{end}` are the same point"),
-            "move them apart, or use a disc",
-        ));
+    fn require(&self, key: &'static str) -> Result<(), SceneError> {
+        self.require(key).map(|_| ())
     }
-    Ok(Shape::Cone {
-        base,
-        base_radius,
-        apex,
-        apex_radius,
-    })
+
+    fn point(&self, key: &'static str) -> Result<DVec3, SceneError> {
+        self.require(key)?.vector()
+    }
+
+    fn direction(&self, key: &'static str) -> Result<DVec3, SceneError> {
+        self.require(key)?.direction()
+    }
+
+    fn length(&self, key: &'static str) -> Result<f64, SceneError> {
+        self.require(key)?.positive()
+    }
+
+    fn error(&self, key: &'static str, cause: String, remedy: &str) -> SceneError {
+        let value = self.require(key);
+        value.map_or_else(|missing| missing, |value| value.error(cause, remedy))
+    }
 }
 
 fn triangle(fields: &Fields<'_>) -> Result<Shape, SceneError> {

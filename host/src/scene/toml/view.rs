@@ -1,7 +1,7 @@
 //! The tables that say how a scene is seen: `[camera]`, `[render]` and `[[light]]`.
 
 use super::value::Value;
-use crate::scene::direction::parallel;
+use crate::shape::parallel;
 use crate::scene::{Camera, Light, RenderSettings, SceneError};
 use glam::DVec3;
 

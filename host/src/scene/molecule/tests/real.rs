@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::scene::{load, test_scenes};
+use crate::shape::Sphere;
 use std::collections::BTreeMap;
 
 /// Elements as the facts have them, such as `C202 N55`.
@@ -49,7 +50,7 @@ fn real_molecules_have_the_atoms_that_gemmi_finds() {
         assert_eq!(elements(&imported), expected.collect(), "{name}");
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for object in &imported.scene.objects {
-            let Shape::Sphere { center, .. } = object.shape else {
+            let Shape::Sphere(Sphere { center, .. }) = object.shape else {
                 panic!("{} is no atom", object.name)
             };
             (low, high) = (low.min(center), high.max(center));

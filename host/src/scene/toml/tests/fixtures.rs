@@ -1,6 +1,6 @@
 //! The scene files of the project hold what their comments promise.
 
-use crate::scene::{Diffuse, Light, MoleculeOptions, Object, Scene, Shape};
+use crate::scene::{Diffuse, Light, MoleculeOptions, Object, Scene};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -13,29 +13,8 @@ fn fixture(name: &str) -> Scene {
     imported.scene
 }
 
-/// What a person would call the shape.
-fn kind(object: &Object) -> &'static str {
-    match &object.shape {
-        Shape::Sphere { .. } => "sphere",
-        Shape::Mesh { triangles, .. } if triangles.len() == 1 => "triangle",
-        Shape::Mesh { .. } => "mesh",
-        Shape::Box { .. } => "box",
-        Shape::Disc { .. } => "disc",
-        Shape::Torus { .. } => "torus",
-        Shape::Cone {
-            base_radius,
-            apex_radius,
-            ..
-        } => match apex_radius {
-            0.0 => "cone",
-            radius if radius == base_radius => "cylinder",
-            _ => "frustum",
-        },
-    }
-}
-
 fn kinds(scene: &Scene) -> BTreeSet<&'static str> {
-    scene.objects.iter().map(kind).collect()
+    scene.objects.iter().map(|object| object.shape.kind()).collect()
 }
 
 #[test]
@@ -76,7 +55,7 @@ fn the_room_has_five_walls_two_blocks_and_two_balls() {
         scene
             .objects
             .iter()
-            .filter(|object| kind(object) == wanted)
+            .filter(|object| object.shape.kind() == wanted)
             .count()
     };
     assert_eq!((count("box"), count("mesh"), count("sphere")), (5, 2, 2));

@@ -1,5 +1,6 @@
 //! Scenes made of several files.
 
+use crate::shape::Sphere;
 use super::{load_in, material_of, named};
 use crate::scene::{Light, Shape};
 use glam::DVec3;
@@ -53,10 +54,10 @@ fn an_import_brings_objects_and_lends_the_view() {
     )
     .unwrap()
     .scene;
-    let shape = Shape::Sphere {
+    let shape = Shape::Sphere(Sphere {
         center: DVec3::new(2.0, 2.0, 0.0),
         radius: 2.0,
-    };
+    });
     let object = named(&scene, "ball/ball");
     assert_eq!(object.shape, shape);
     assert!(object.place.file.ends_with("parts/ball.toml") && object.place.line == 13);

@@ -1,5 +1,6 @@
 //! What valid files come to.
 
+use crate::shape::{Cone, Cuboid, Sphere};
 use super::{example, load, material_of, named, scene};
 use crate::scene::{Diffuse, Light, Material, RenderSettings, Scene, Shape};
 use glam::DVec3;
@@ -125,26 +126,26 @@ fn every_shape_is_read() {
         ]"#,
     );
     let radii = |index: usize| match scene.objects[index].shape {
-        Shape::Cone {
+        Shape::Cone(Cone {
             base_radius,
             apex_radius,
             ..
-        } => (base_radius, apex_radius),
+        }) => (base_radius, apex_radius),
         _ => panic!("no cone"),
     };
     assert_eq!(
         [radii(3), radii(4), radii(5)],
         [(0.5, 0.5), (0.5, 0.0), (0.5, 0.25)]
     );
-    let sphere = Shape::Sphere {
+    let sphere = Shape::Sphere(Sphere {
         center: DVec3::new(1.0, 2.0, 3.0),
         radius: 4.0,
-    };
+    });
     assert_eq!(scene.objects[0].shape, sphere);
-    let flat = Shape::Box {
+    let flat = Shape::Box(Cuboid {
         min: DVec3::ZERO,
         max: DVec3::new(1.0, 0.0, 1.0),
-    };
+    });
     assert_eq!(scene.objects[1].shape, flat);
     assert!(
         matches!(&scene.objects[6].shape, Shape::Mesh { triangles, .. } if *triangles == [[0, 1, 2]])
@@ -239,15 +240,15 @@ name = "big"
 "#,
     );
     assert_eq!(scene.objects.len(), 4);
-    let far = Shape::Sphere {
+    let far = Shape::Sphere(Sphere {
         center: DVec3::new(2.0, 10.0, 0.0),
         radius: 1.0,
-    };
+    });
     assert_eq!(named(&scene, "big/b/sphere 1").shape, far);
-    let near = Shape::Sphere {
+    let near = Shape::Sphere(Sphere {
         center: DVec3::new(-1.0, 0.0, 0.0),
         radius: 0.5,
-    };
+    });
     assert_eq!(named(&scene, "instance 1/a/sphere 1").shape, near);
 }
 

@@ -1,5 +1,6 @@
 //! What transforms make of shapes.
 
+use crate::shape::{Cone, Cuboid, Disc, Sphere};
 use super::{assert_near, named, refusal, scene, volume};
 use crate::scene::{Scene, Shape};
 use glam::DVec3;
@@ -36,10 +37,10 @@ fn scale_comes_before_rotation_before_translation() {
     // (1, 0, 0) scales to (2, 0, 0), turns to (0, 0, -2) and moves to (0, 0, 3).
     assert_eq!(
         shape,
-        Shape::Sphere {
+        Shape::Sphere(Sphere {
             center: DVec3::new(0.0, 0.0, 3.0),
             radius: 2.0
-        }
+        })
     );
 }
 
@@ -52,10 +53,10 @@ fn angles_apply_about_x_then_y_then_z() {
     // y goes to z about x, z to x about y, x to y about z.
     assert_eq!(
         shape,
-        Shape::Sphere {
+        Shape::Sphere(Sphere {
             center: DVec3::Y,
             radius: 1.0
-        }
+        })
     );
 }
 
@@ -66,7 +67,7 @@ fn an_axis_of_any_length_turns_counter_clockwise() {
             &format!("{SPHERE}, rotate = {{ axis = {axis}, degrees = 30 }}"),
             &[],
         );
-        let Shape::Sphere { center, radius } = shape else {
+        let Shape::Sphere(Sphere { center, radius }) = shape else {
             panic!()
         };
         assert_near(center, DVec3::new(30_f64.to_radians().cos(), 0.5, 0.0));
@@ -76,7 +77,7 @@ fn an_axis_of_any_length_turns_counter_clockwise() {
         &format!("{SPHERE}, rotate = {{ axis = [1, 1, 1], degrees = 120 }}"),
         &[],
     );
-    let Shape::Sphere { center, .. } = diagonal else {
+    let Shape::Sphere(Sphere { center, .. }) = diagonal else {
         panic!()
     };
     assert_near(center, DVec3::Y);
@@ -90,10 +91,10 @@ fn groups_apply_from_the_inside_out() {
     );
     assert_eq!(
         shape,
-        Shape::Sphere {
+        Shape::Sphere(Sphere {
             center: DVec3::new(10.0, 3.0, 0.0),
             radius: 3.0
-        }
+        })
     );
 }
 
@@ -102,22 +103,22 @@ fn a_box_stays_a_box_under_quarter_turns_mirrors_and_uneven_scales() {
     let turned = only(BOX, &["rotate = [90, 0, 0]"]);
     assert_eq!(
         turned,
-        Shape::Box {
+        Shape::Box(Cuboid {
             min: DVec3::new(0.0, -3.0, 0.0),
             max: DVec3::new(1.0, 0.0, 2.0)
-        }
+        })
     );
     let mirrored = only(BOX, &["scale = [-1, 2, 1]"]);
     assert_eq!(
         mirrored,
-        Shape::Box {
+        Shape::Box(Cuboid {
             min: DVec3::new(-1.0, 0.0, 0.0),
             max: DVec3::new(0.0, 4.0, 3.0)
-        }
+        })
     );
     // Two halves of a quarter turn leave rounding errors behind.
     let halves = only(BOX, &["rotate = [0, 45, 0]", "rotate = [0, 45, 0]"]);
-    let Shape::Box { min, max } = halves else {
+    let Shape::Box(Cuboid { min, max }) = halves else {
         panic!("{halves:?}")
     };
     assert_near(min, DVec3::new(0.0, 0.0, -1.0));
@@ -197,21 +198,21 @@ fn a_mesh_keeps_its_fronts_outside_in_every_mirror() {
 
 #[test]
 fn discs_and_cones_follow_a_mirror() {
-    let Shape::Disc { center, normal, .. } = only(DISC, &["scale = [-1, 1, 1]"]) else {
+    let Shape::Disc(Disc { center, normal, .. }) = only(DISC, &["scale = [-1, 1, 1]"]) else {
         panic!()
     };
     assert_eq!((center, normal), (DVec3::NEG_X, DVec3::NEG_X));
-    let Shape::Disc { normal, radius, .. } = only(DISC, &["rotate = [0, 0, 90], scale = 3"]) else {
+    let Shape::Disc(Disc { normal, radius, .. }) = only(DISC, &["rotate = [0, 0, 90], scale = 3"]) else {
         panic!()
     };
     assert_eq!((normal, radius), (DVec3::Y, 3.0));
     let cone = only(CONE, &["scale = -2"]);
-    let expected = Shape::Cone {
+    let expected = Shape::Cone(Cone {
         base: DVec3::ZERO,
         base_radius: 1.0,
         apex: DVec3::new(0.0, -2.0, 0.0),
         apex_radius: 0.0,
-    };
+    });
     assert_eq!(cone, expected);
 }
 
@@ -220,10 +221,10 @@ fn uneven_scales_that_cancel_out_are_even() {
     let shape = only(SPHERE, &["scale = [4, 2, 1]", "scale = [0.5, 1, 2]"]);
     assert_eq!(
         shape,
-        Shape::Sphere {
+        Shape::Sphere(Sphere {
             center: DVec3::new(2.0, 0.0, 0.0),
             radius: 2.0
-        }
+        })
     );
 }
 
@@ -267,9 +268,9 @@ fn what_rounds_to_nothing_or_to_infinity_is_refused() {
 fn a_shape_without_a_transform_keeps_its_numbers() {
     let text =
         r#"object = [{ kind = "sphere", center = [0.1, -7.3, 1e10], radius = 0.3, name = "s" }]"#;
-    let expected = Shape::Sphere {
+    let expected = Shape::Sphere(Sphere {
         center: DVec3::new(0.1, -7.3, 1e10),
         radius: 0.3,
-    };
+    });
     assert_eq!(named(&scene(text), "s").shape, expected);
 }

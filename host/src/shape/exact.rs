@@ -126,8 +126,8 @@ impl Neg for Real {
 }
 
 /// A vector of finite floats, exactly.
-pub fn vector(v: [f64; 3]) -> Vector {
-    v.map(Real::of)
+pub fn vector(v: impl Into<[f64; 3]>) -> Vector {
+    v.into().map(Real::of)
 }
 
 pub fn dot(a: &Vector, b: &Vector) -> Real {

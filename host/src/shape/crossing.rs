@@ -1,0 +1,70 @@
+//! Where a line crosses planes, layers and quadrics, by textbook formulas in arithmetic as good as exact.
+
+use super::exact::{Line, Real, Vector, dot, minus, norm};
+
+/// Where a line enters and leaves.
+pub type Span = Option<(Real, Real)>;
+
+/// Beyond everything.
+pub fn far() -> Real {
+    Real::of(1e300)
+}
+
+pub fn overlap(a: Span, b: Span) -> Span {
+    let ((a, b), (c, d)) = (a?, b?);
+    let (enter, leave) = (a.max(c), b.min(d));
+    (enter <= leave).then_some((enter, leave))
+}
+
+/// Where `-half <= y + t rise <= half`.
+pub fn slab(y: &Real, rise: &Real, half: &Real) -> Span {
+    if rise.is_zero() {
+        return (y.abs() <= *half).then(|| (-far(), far()));
+    }
+    let (a, b) = ((-half - y) / rise, (half - y) / rise);
+    (!half.is_negative()).then(|| if a <= b { (a, b) } else { (b, a) })
+}
+
+/// Roots of `a t^2 + 2 b t + c` in order, `a` not zero.
+pub fn roots(a: &Real, b: &Real, c: &Real) -> Span {
+    // Where a is negative, the line is steeper than a cone's mantle and meets both of its nappes,
+    // perhaps at the tip.
+    let square = b * b - a * c;
+    if square.is_negative() && a.is_positive() {
+        return None;
+    }
+    let root = square.sqrt();
+    let (first, second) = ((-b - &root) / a, (root - b) / a);
+    Some(if first <= second {
+        (first, second)
+    } else {
+        (second, first)
+    })
+}
+
+/// Where a line crosses a plane, and the cosine between them times the slope's length.
+pub fn plane_crossing(line: &Line, normal: &Vector, point: &Vector) -> Option<(Real, Real)> {
+    let tilt = dot(normal, &line.slope);
+    if tilt.is_zero() {
+        return None;
+    }
+    Some((dot(normal, &minus(point, &line.origin)) / &tilt, tilt.abs()))
+}
+
+/// The span of a flat shape on a line along its plane: none, or with a thickness perhaps anywhere.
+pub fn within_plane(line: &Line, normal: &Vector, point: &Vector, grow: &Real) -> Span {
+    let apart = dot(normal, &minus(point, &line.origin)).abs();
+    (grow.is_positive() && apart <= *grow).then(|| (-far(), far()))
+}
+
+/// The span of a flat shape with a thickness. `inside` is how far inside its rim it is crossed; the
+/// rim's place is as uncertain as the plane's, times the tangent of the angle of incidence.
+pub fn flat_span(t: Real, inside: Real, tilt: &Real, line: &Line, grow: &Real) -> Span {
+    let across = norm(&line.slope) / tilt;
+    let rim = grow * (Real::of(1.0) + across);
+    if (inside + rim).is_negative() {
+        return None;
+    }
+    let thickness = grow.clone().max(Real::of(0.0)) / tilt;
+    Some((&t - &thickness, t + thickness))
+}

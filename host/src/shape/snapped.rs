@@ -1,0 +1,61 @@
+//! Shapes on the lattice, and their boxes.
+
+use glam::DVec3;
+use gridel_core::format::record::UnitBox;
+
+/// More than the arithmetic of displacements is off, relative.
+pub const ROUNDED_UP: f64 = 1.0 + 1e-12;
+
+/// A shape on the lattice.
+#[derive(Clone, Copy, Debug)]
+pub struct Snapped<T> {
+    pub record: T,
+    /// How far apart the given and the snapped surface are at most, in 1/256 unit.
+    pub displacement: f64,
+    /// Whether its box lies in the range of box coordinates.
+    pub fits: bool,
+}
+
+pub fn real(point: [i32; 3]) -> DVec3 {
+    DVec3::from_array(point.map(f64::from))
+}
+
+pub fn integers(point: DVec3) -> [i32; 3] {
+    point.to_array().map(|x| x as i32)
+}
+
+/// A point in 1/256 unit, in units.
+pub fn units(fine: [i32; 3]) -> DVec3 {
+    real(fine) / 256.0
+}
+
+/// How far a unit disc with a normal reaches along each axis.
+pub fn disc_reach(normal: DVec3) -> DVec3 {
+    let normal = (normal / normal.abs().max_element()).normalize();
+    (DVec3::ONE - normal * normal)
+        .max(DVec3::ZERO)
+        .map(f64::sqrt)
+}
+
+/// The box around points with a reach along each axis, rounded outward by more than the reach can
+/// be off, and whether it lies in the range of box coordinates.
+pub fn around(points: &[([i32; 3], DVec3)]) -> (UnitBox, bool) {
+    const MOST: f64 = (i16::MAX as i32 * 256) as f64;
+    let ends = points.iter().map(|&(center, reach)| {
+        let slack = reach * 1e-9;
+        (
+            (real(center) - reach - slack).floor(),
+            (real(center) + reach + slack).ceil(),
+        )
+    });
+    let (lowest, highest) = ends
+        .reduce(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)))
+        .unwrap_or_default();
+    let fits = lowest.abs().max(highest.abs()).max_element() <= MOST;
+    (UnitBox::around(integers(lowest), integers(highest)), fits)
+}
+
+/// How far a point is moved at most.
+pub fn displacement(given: DVec3, snapped: [i32; 3]) -> f64 {
+    given.distance(real(snapped)) * ROUNDED_UP
+}
