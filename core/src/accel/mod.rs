@@ -36,7 +36,6 @@ mod single;
 pub(crate) mod space;
 pub(crate) mod stack;
 pub(crate) mod traverse;
-#[cfg(feature = "wide")]
 pub mod wide;
 
 pub use candidates::apex::Apex;
@@ -60,5 +59,4 @@ pub use registry::{Accel, StructureViews, StructureVisitor};
 pub use space::Space;
 pub use stack::{Entry, Stack, StackView};
 pub use traverse::Traverse;
-#[cfg(feature = "wide")]
 pub use wide::Wide;

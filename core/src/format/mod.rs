@@ -4,7 +4,6 @@
 //! every byte.
 
 pub(crate) mod checksum;
-#[cfg(feature = "wide")]
 pub mod cluster;
 pub(crate) mod effects;
 mod error;
@@ -30,7 +29,6 @@ pub use index::Indices;
 pub use kind::Kind;
 pub use leaf::Leaf;
 pub use link::Link;
-#[cfg(feature = "wide")]
 pub use node::Child;
 pub use node::{ClassNode, NodeWord, OctreeNode};
 pub use reason::{Field, Reason};

@@ -314,7 +314,6 @@ pub struct ApexWindow {
 }
 
 /// A node of the eight-wide hierarchy: 128 bytes.
-#[cfg(feature = "wide")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct WideNode {
@@ -325,7 +324,6 @@ pub struct WideNode {
     pub children: [u32; 8],
 }
 
-#[cfg(feature = "wide")]
 impl WideNode {
     /// The box of a missing child: no ray meets it, because it is inside out by more than the
     /// margins of culling.

@@ -8,10 +8,8 @@ pub(crate) enum PrimitiveId {
     /// Among the records of its kind.
     Slot(Kind, u32),
     /// In a strip, at a place of it.
-    #[cfg(feature = "wide")]
     Strip(u32, u8),
     /// In a pack, in a lane of it.
-    #[cfg(feature = "wide")]
     Pack(u32, u8),
 }
 
@@ -20,9 +18,7 @@ impl PrimitiveId {
     pub(crate) fn kind(self) -> Kind {
         match self {
             PrimitiveId::Slot(kind, _) => kind,
-            #[cfg(feature = "wide")]
             PrimitiveId::Strip(..) => Kind::Triangle,
-            #[cfg(feature = "wide")]
             PrimitiveId::Pack(..) => Kind::Sphere,
         }
     }

@@ -162,7 +162,7 @@ impl Traverse for Wide {
 fn level<N: Number>(space: &Space<'_>) -> SimdLevel {
     match N::FORMAT {
         Format::Fixed => SimdLevel::Portable,
-        _ => space.simd,
+        _ => space.simd(),
     }
 }
 
