@@ -26,12 +26,6 @@ pub mod list;
 pub(crate) mod number;
 mod records;
 mod registry;
-#[cfg(any(
-    feature = "wide",
-    target_arch = "x86_64",
-    target_arch = "aarch64",
-    all(target_arch = "wasm32", target_feature = "simd128")
-))]
 mod single;
 pub(crate) mod space;
 pub(crate) mod stack;
