@@ -7,7 +7,7 @@ pub(crate) const SMALL: bool = cfg!(feature = "small");
 pub(crate) const WIDE: bool = cfg!(feature = "wide");
 
 /// What only builds with [`WIDE`] hold; of no size in others.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct InWide<T>([T; WIDE as usize]);
 
 impl<T> InWide<T> {

@@ -256,15 +256,15 @@ impl<'a> Shapes<'a> {
             let found = match kind {
                 Kind::Triangle => {
                     let found = self.clusters().find_triangle(index);
-                    found.map(|(strip, place)| PrimitiveId::Strip(strip, place as u8))
+                    found.map(|(strip, place)| PrimitiveId::in_cluster(kind, strip, place))
                 }
                 // All packs but the last are full.
-                Kind::Sphere => Some(PrimitiveId::Pack(slot >> 3, (slot & 7) as u8)),
+                Kind::Sphere => Some(PrimitiveId::in_cluster(kind, slot >> 3, slot & 7)),
                 _ => None,
             };
-            return found.unwrap_or(PrimitiveId::Slot(kind, slot));
+            return found.unwrap_or(PrimitiveId::in_slot(kind, slot));
         }
-        PrimitiveId::Slot(kind, slot)
+        PrimitiveId::in_slot(kind, slot)
     }
 
     /// The slot of a primitive among those of all kinds that have records of their own.
@@ -301,11 +301,10 @@ impl<'a> Shapes<'a> {
 
     /// The corners of a triangle in 1/256 unit, given by its slot.
     pub(crate) fn triangle(&self, slot: usize) -> Option<[[i32; 3]; 3]> {
-        match self.place(Kind::Triangle, slot as u32) {
-            PrimitiveId::Strip(strip, place) => {
-                self.clusters().strips.triangle(strip, place.into())
-            }
-            _ => self.indexed_triangle(slot),
+        let id = self.place(Kind::Triangle, slot as u32);
+        match id.lane() {
+            Some(place) => self.clusters().strips.triangle(id.number, place),
+            None => self.indexed_triangle(slot),
         }
     }
 
@@ -317,9 +316,10 @@ impl<'a> Shapes<'a> {
 
     /// The box of a sphere.
     fn sphere_bounds(&self, index: usize) -> Option<UnitBox> {
-        let (center, radius) = match self.place(Kind::Sphere, index as u32) {
-            PrimitiveId::Pack(pack, lane) => self.clusters().packs.sphere(pack, lane.into())?,
-            _ => self.spheres.get(index)?,
+        let id = self.place(Kind::Sphere, index as u32);
+        let (center, radius) = match id.lane() {
+            Some(lane) => self.clusters().packs.sphere(id.number, lane)?,
+            None => self.spheres.get(index)?,
         };
         Some(sphere::bounds(center, radius))
     }
@@ -342,25 +342,23 @@ impl<'a> Shapes<'a> {
         ray: &Ray<N>,
         point: [N; 3],
     ) -> Option<(Surface<N>, bool)> {
-        let mut surface = match place {
-            PrimitiveId::Strip(strip, place) => {
-                triangle::surface(self.clusters().strips.triangle(strip, place.into())?, point)
+        let mut surface = match (place.lane(), place.kind) {
+            (None, kind) => self.surface_in_slot(kind, place.number as usize, ray, part, point)?,
+            (Some(lane), Kind::Triangle) => {
+                triangle::surface(self.clusters().strips.triangle(place.number, lane)?, point)
             }
-            PrimitiveId::Pack(pack, lane) => {
-                let (center, radius) = self.clusters().packs.sphere(pack, lane.into())?;
+            (Some(lane), _) => {
+                let (center, radius) = self.clusters().packs.sphere(place.number, lane)?;
                 sphere::surface(center, radius, point)
-            }
-            PrimitiveId::Slot(kind, slot) => {
-                self.surface_in_slot(kind, slot as usize, ray, part, point)?
             }
         };
         let against = N::dot(surface.normal, ray.slope) < N::Wide::default();
-        let front = if is_flat(place.kind()) {
+        let front = if is_flat(place.kind) {
             against
         } else {
             part & LEAVING == 0
         };
-        if front != against && is_leveled(place.kind()) {
+        if front != against && is_leveled(place.kind) {
             surface.normal = surface.level_with(ray);
         }
         Some((surface, front))

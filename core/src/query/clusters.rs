@@ -32,12 +32,12 @@ impl<N: Number, K: Culling<N>> Search<'_, '_, N, K> {
     fn observe_missed<C: Observer>(
         &self,
         missed: u32,
-        place: impl Fn(u8) -> PrimitiveId,
+        id: impl Fn(u32) -> PrimitiveId,
         count: &mut C,
     ) {
         if C::ENABLED {
             for lane in (0..8).filter(|&lane| missed >> lane & 1 != 0) {
-                self.observe(place(lane), None, count);
+                self.observe(id(lane), None, count);
             }
         }
     }
@@ -51,11 +51,12 @@ impl<N: Number, K: Culling<N>> Search<'_, '_, N, K> {
         count.objects(strip.members().count());
         let mut met = self.strip_met(strip);
         let missed = strip.members().places() & !met;
-        self.observe_missed(missed, |place| PrimitiveId::Strip(number, place), count);
+        let id = |place| PrimitiveId::in_cluster(Kind::Triangle, number, place);
+        self.observe_missed(missed, id, count);
         while met != 0 {
             let place = met.trailing_zeros();
             met &= met - 1;
-            self.triangle_in_strip(strip, PrimitiveId::Strip(number, place as u8), count);
+            self.triangle_in_strip(strip, id(place), count);
         }
     }
 
@@ -84,8 +85,8 @@ impl<N: Number, K: Culling<N>> Search<'_, '_, N, K> {
         place: PrimitiveId,
         count: &mut C,
     ) {
-        if let PrimitiveId::Strip(_, number) = place
-            && let Some(corners) = strip.triangle(number.into())
+        if let Some(lane) = place.lane()
+            && let Some(corners) = strip.triangle(lane)
         {
             self.triangle(corners, place, count);
         }
@@ -100,7 +101,7 @@ impl<N: Number, K: Culling<N>> Search<'_, '_, N, K> {
         count: &mut C,
     ) {
         let Some(pack) = pack else { return };
-        let place = |lane: u32| PrimitiveId::Pack(number, lane as u8);
+        let place = |lane| PrimitiveId::in_cluster(Kind::Sphere, number, lane);
         count.objects(pack.lanes().count_ones());
         if N::FORMAT != Format::F32 {
             for lane in 0..LANES as u32 {
@@ -114,7 +115,7 @@ impl<N: Number, K: Culling<N>> Search<'_, '_, N, K> {
             (self.ray, self.recip_norm2, pack, (), ()),
         ));
         let missed = pack.lanes() & !met.lanes;
-        self.observe_missed(missed, |lane| place(lane.into()), count);
+        self.observe_missed(missed, place, count);
         let mut lanes = met.lanes;
         while lanes != 0 {
             let lane = lanes.trailing_zeros();

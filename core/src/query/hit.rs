@@ -52,7 +52,7 @@ impl<N: Number> Found<N> {
             error: surface.error,
             is_exact: surface.is_exact,
             place: Leaf {
-                kind: best.place.kind(),
+                kind: best.place.kind,
                 first: scene.key(best.place).2,
                 count: 1,
             }

@@ -104,7 +104,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     ) {
         if C::ENABLED {
             count.event(Event::Candidate {
-                kind: place.kind(),
+                kind: place.kind,
                 primitive: self.scene.primitive_at(place),
                 crossing: crossing.map(|c| [c.enter.0, c.leave.0].map(N::length_to_f64)),
                 nearest: self.best.is_some_and(|best| best.place == place),
@@ -210,7 +210,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     ) {
         for (index, record) in numbered(leaf, records) {
             let crossing = cross(self, record);
-            let place = PrimitiveId::Slot(leaf.kind, index);
+            let place = PrimitiveId::in_slot(leaf.kind, index);
             if let Some(crossing) = crossing {
                 consider(self, crossing, record, place);
             }
@@ -279,7 +279,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             if projection.meets::<MAJOR, V>(a, b, c) {
                 self.triangle_in_slot(vertices, record, index, count);
             } else {
-                self.observe(PrimitiveId::Slot(Kind::Triangle, index), None, count);
+                self.observe(PrimitiveId::in_slot(Kind::Triangle, index), None, count);
             }
         }
     }
@@ -299,7 +299,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         let corners = (vertices.get(a), vertices.get(b), vertices.get(c));
         if let (Some(a), Some(b), Some(c)) = corners {
             let corners = [a, b, c].map(Vertex::position);
-            self.triangle(corners, PrimitiveId::Slot(Kind::Triangle, index), count);
+            self.triangle(corners, PrimitiveId::in_slot(Kind::Triangle, index), count);
         }
     }
 

@@ -210,21 +210,17 @@ impl<'a> Scene<'a> {
     #[cfg_attr(feature = "wide", inline(always))]
     #[cfg_attr(not(feature = "wide"), inline)]
     pub(crate) fn key(&self, place: PrimitiveId) -> (u32, u8, u32) {
-        match place {
-            PrimitiveId::Slot(kind, slot) => (self.in_slot(kind, slot), kind as u8, slot),
-            PrimitiveId::Strip(strip, place) => {
-                let members = self.space.shapes.clusters().strips.members(strip);
-                let member = members.map_or(0, |members| members.member(place.into()));
-                self.member(Kind::Triangle, member, 0)
-            }
-            PrimitiveId::Pack(pack, lane) => {
-                let number = pack << 3 | u32::from(lane);
-                self.member(
-                    Kind::Sphere,
-                    number,
-                    self.space.shapes.clusters().triangles(),
-                )
-            }
+        let PrimitiveId { kind, number, .. } = place;
+        let Some(lane) = place.lane() else {
+            return (self.in_slot(kind, number), kind as u8, number);
+        };
+        let clusters = self.space.shapes.clusters();
+        if kind == Kind::Triangle {
+            let members = clusters.strips.members(number);
+            let member = members.map_or(0, |members| members.member(lane));
+            self.member(kind, member, 0)
+        } else {
+            self.member(kind, number << 3 | lane, clusters.triangles())
         }
     }
 
