@@ -78,7 +78,7 @@ impl core::error::Error for RayError {}
 
 /// How far rays are moved that run up or down one axis, from a coordinate on it: to the plane in which the scene's
 /// box begins, or towards it for hits behind the point.
-#[cfg_attr(not(feature = "small"), inline(always))]
+#[inline]
 fn way_to_box<N: Arithmetic>(
     bounds: &UnitBox,
     origin: N::Wide,
@@ -156,7 +156,7 @@ fn near_start<N: Arithmetic>(origin: [N; 3], moved: N, slope: [N; 3]) -> [N; 3] 
 
 /// Where a ray starts that is moved from an origin anywhere, how far that is, and whether it lies within
 /// [`REACH`]: else it meets nothing. `EXACT` says that slopes and lengths are not rounded.
-#[cfg_attr(not(feature = "small"), inline(always))]
+#[inline]
 fn far_start<N: Arithmetic, const EXACT: bool>(
     bounds: &UnitBox,
     origin: [N::Wide; 3],
@@ -385,7 +385,6 @@ impl<N: Arithmetic> Ray<N> {
     /// farther than [`FARTHEST`] along an axis, or `tmin > tmax`: see the limits of [`Ray`].
     // Hosts have the room; through memory a ray would cost as much again.
     #[cfg_attr(feature = "wide", inline(always))]
-    #[cfg_attr(not(feature = "wide"), inline)]
     pub fn new(
         bounds: &UnitBox,
         origin: [N::Wide; 3],
@@ -419,7 +418,6 @@ impl<N: Arithmetic> Ray<N> {
     /// A ray from a place in the scene, as hits give places, with all `t` up to `tmax` but 0, where it
     /// meets what it starts on. `None` if the direction is zero.
     #[cfg_attr(feature = "wide", inline(always))]
-    #[cfg_attr(not(feature = "wide"), inline)]
     pub(crate) fn from_inside(
         bounds: &UnitBox,
         origin: [N; 3],
@@ -549,7 +547,7 @@ impl<N: Arithmetic> Ray<N> {
     }
 
     /// The point at a parameter that is counted inside the kernels.
-    #[cfg_attr(not(feature = "small"), inline(always))]
+    #[inline]
     pub(crate) fn at(&self, t: N) -> [N; 3] {
         let along = |axis: usize| self.origin[axis] + t * self.slope[axis];
         [along(0), along(1), along(2)]

@@ -16,11 +16,6 @@ pub(crate) mod cull_axis;
 #[cfg(feature = "all-structures")]
 mod dynamic;
 pub mod hierarchy;
-#[cfg(any(
-    target_arch = "x86_64",
-    target_arch = "aarch64",
-    all(target_arch = "wasm32", target_feature = "simd128")
-))]
 mod lanes;
 pub mod list;
 pub(crate) mod number;

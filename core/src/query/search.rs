@@ -5,7 +5,8 @@ use crate::accel::cull::Culling;
 use crate::accel::{Accel, Number};
 use crate::format::kind::shapes;
 use crate::format::limits::{WIDE_INDICES, WIDE_LATTICE};
-use crate::format::record::{Corners, Sphere, UnitBox, Vertex};
+use crate::format::record::UnitBox;
+use crate::format::width::{Corners, Sphere, Vertex};
 use crate::format::{Kind, Leaf};
 use crate::geometry::primitive::Primitive;
 use crate::geometry::sphere::{self, Spheres};
@@ -66,7 +67,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     }
 
     /// The same of a primitive whose crossing may have been rounded out of its box.
-    #[cfg_attr(not(feature = "small"), inline(always))]
+    #[inline]
     #[cfg_attr(feature = "small", inline(never))]
     fn consider_in_box(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: PrimitiveId) {
         if let Some(hit) = accept_in_box(self.ray, self.cull, crossing, bounds, self.tmax) {
