@@ -35,7 +35,7 @@ pub trait Culling<N: CullArithmetic>: Copy + core::fmt::Debug + Default + Send +
     fn new(ray: &Ray<N>) -> Self;
     /// The integer form, whose intervals hits are clamped to.
     fn exact(&self, ray: &Ray<N>) -> Cull;
-    /// What stands for a place on the ray in this form, in units, as events tell it.
+    /// What stands for a place on the ray in this form, in units, as events report it.
     fn units(place: i32) -> f64;
     /// Whether t is certain to stay as it is, or below 0 where it is below 0, when it is clamped to
     /// the integer form's interval of a box; where that is cheaper to see than to set up that form.
@@ -190,7 +190,7 @@ impl Cull {
         f64::from(step) / 2.0
     }
 
-    /// From where to where in units, as events tell it.
+    /// From where to where in units, as events report it.
     pub(crate) fn span(interval: Interval) -> [f64; 2] {
         [interval.near, interval.far].map(Self::units_of)
     }

@@ -11,7 +11,7 @@ use crate::format::leaf::Leaf;
 pub struct NodeWord(pub u32);
 
 impl NodeWord {
-    /// Number of nodes or leaves that can be told apart.
+    /// Number of distinct nodes or leaves.
     pub const NODES: u32 = 1 << 24;
     /// The axis of a split or carve that there is not.
     pub const NONE: u32 = 3;

@@ -27,7 +27,7 @@ impl<N: Number, K: Culling<N>> Search<'_, '_, N, K> {
         }
     }
 
-    /// Tells of those primitives of a cluster that lanes rejected.
+    /// Reports the primitives of a cluster that lanes rejected.
     #[inline(always)]
     fn observe_missed<C: Observer>(
         &self,
@@ -123,7 +123,7 @@ impl<N: Number, K: Culling<N>> Search<'_, '_, N, K> {
             let crossing = met.crossing(self.recip_norm2, lane as usize);
             self.consider(crossing, place(lane));
             self.observe(place(lane), Some(&crossing), count);
-            // Lanes have tested the others, too, so all of them are told.
+            // Lanes have tested the others, too, so observers get all of them.
             if ANY && !C::ENABLED && self.best.is_some() {
                 return;
             }

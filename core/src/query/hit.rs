@@ -158,7 +158,7 @@ impl<N: Number> Hit<N> {
         }
     }
 
-    /// The hit as events tell it.
+    /// The hit as an event.
     pub(super) fn met(&self) -> Met {
         Met {
             t: N::far_to_f64(self.t),

@@ -95,7 +95,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         self.best = Some(Candidate { t, place, part });
     }
 
-    /// Tells of a primitive that was just tested, and considered if it was met.
+    /// Reports a primitive after its test, and after it was considered if it was met.
     #[inline(always)]
     pub(super) fn observe<C: Observer>(
         &self,

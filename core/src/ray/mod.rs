@@ -212,7 +212,7 @@ impl<N: Arithmetic> Ray<N> {
         [self.tmin, self.tmax]
     }
 
-    /// A query along this ray, as events tell it.
+    /// A query along this ray, as events report it.
     pub(crate) fn query(&self, any: bool) -> Event {
         Event::Query {
             origin: self.origin.map(N::length_to_f64),
