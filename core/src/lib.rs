@@ -66,7 +66,6 @@ pub mod scene;
 #[cfg(any(test, feature = "selftest"))]
 pub mod selftest;
 pub mod shade;
-#[cfg(feature = "wide")]
 mod simd;
 mod target;
 
@@ -83,7 +82,6 @@ pub use accel::Octree;
 pub use accel::RayClasses;
 pub use accel::Slabs;
 pub use accel::Spheres;
-#[cfg(feature = "wide")]
 pub use accel::Wide;
 pub use accel::{Accel, List, Number, Stack, StackView, StructureVisitor};
 pub use format::{Aligned, BlobError, Effects, Kind, Requirements, Structure};
@@ -94,5 +92,4 @@ pub use query::{Found, Hit, any_hit, closest_hit, closest_primitive};
 pub use ray::{Pencil, Ray, RayError};
 pub use render::{Renderer, Rgb565, Rgb888, Settings, Workspace};
 pub use scene::{Names, Prevalidated, Scene};
-#[cfg(feature = "wide")]
 pub use simd::SimdLevel;

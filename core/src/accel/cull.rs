@@ -35,7 +35,7 @@ pub trait Culling<N: CullArithmetic>: Copy + core::fmt::Debug + Default + Send +
     fn new(ray: &Ray<N>) -> Self;
     /// The integer form, whose intervals hits are clamped to.
     fn exact(&self, ray: &Ray<N>) -> Cull;
-    /// What stands for a place on the ray in this form, in units, as events tell it.
+    /// What stands for a place on the ray in this form, in units, as events report it.
     fn units(place: i32) -> f64;
     /// Whether t is certain to stay as it is, or below 0 where it is below 0, when it is clamped to
     /// the integer form's interval of a box; where that is cheaper to see than to set up that form.
@@ -72,7 +72,7 @@ pub struct Cull {
 
 impl<N: CullArithmetic> Culling<N> for Cull {
     /// Costs three divisions and some fifty operations.
-    #[cfg_attr(not(feature = "small"), inline(always))]
+    #[inline]
     fn new(ray: &Ray<N>) -> Self {
         let axis = |k: usize| N::cull_axis(ray.slope[k], ray.origin[k]);
         Self {
@@ -133,7 +133,7 @@ impl<N: CullArithmetic> PairCulling<N> for Cull {
 pub struct Deferred;
 
 impl<N: CullArithmetic> Culling<N> for Deferred {
-    #[cfg_attr(not(feature = "small"), inline(always))]
+    #[inline]
     fn new(_: &Ray<N>) -> Self {
         Self
     }
@@ -190,7 +190,7 @@ impl Cull {
         f64::from(step) / 2.0
     }
 
-    /// From where to where in units, as events tell it.
+    /// From where to where in units, as events report it.
     pub(crate) fn span(interval: Interval) -> [f64; 2] {
         [interval.near, interval.far].map(Self::units_of)
     }
@@ -227,7 +227,7 @@ impl Cull {
     }
 
     /// The interval of a box, the ray's own aside.
-    #[cfg_attr(not(feature = "small"), inline(always))]
+    #[inline]
     pub(crate) fn interval(&self, bounds: &UnitBox) -> Interval {
         let axis = |k: usize| self.axes[k].between(plane_word(bounds.0[k]));
         axis(0).and(axis(1)).and(axis(2))

@@ -9,6 +9,7 @@ use crate::accel::traverse::Traverse;
 use crate::format::{BlobError, Kind, Leaf, SectionKind, Sections, Structure};
 use crate::observe::count::Observer;
 use crate::ray::Ray;
+use crate::target::WIDE;
 
 /// Tests every primitive; needs no stack.
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +18,7 @@ pub enum List {}
 impl Traverse for List {
     const STRUCTURE: Structure = Structure::List;
     type Views<'a> = Views<'a>;
-    const HAS_CLUSTERS: bool = cfg!(feature = "wide");
+    const HAS_CLUSTERS: bool = WIDE;
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Observer>(
@@ -44,7 +45,6 @@ impl Traverse for List {
                 }
                 first += size;
             }
-            #[cfg(feature = "wide")]
             for cluster in 0..space.shapes.sole_clusters(kind) as u32 {
                 let cluster = Leaf {
                     kind,

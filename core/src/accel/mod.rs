@@ -16,27 +16,15 @@ pub(crate) mod cull_axis;
 #[cfg(feature = "all-structures")]
 mod dynamic;
 pub mod hierarchy;
-#[cfg(any(
-    target_arch = "x86_64",
-    target_arch = "aarch64",
-    all(target_arch = "wasm32", target_feature = "simd128")
-))]
 mod lanes;
 pub mod list;
 pub(crate) mod number;
 mod records;
 mod registry;
-#[cfg(any(
-    feature = "wide",
-    target_arch = "x86_64",
-    target_arch = "aarch64",
-    all(target_arch = "wasm32", target_feature = "simd128")
-))]
 mod single;
 pub(crate) mod space;
 pub(crate) mod stack;
 pub(crate) mod traverse;
-#[cfg(feature = "wide")]
 pub mod wide;
 
 pub use candidates::apex::Apex;
@@ -60,5 +48,4 @@ pub use registry::{Accel, StructureViews, StructureVisitor};
 pub use space::Space;
 pub use stack::{Entry, Stack, StackView};
 pub use traverse::Traverse;
-#[cfg(feature = "wide")]
 pub use wide::Wide;

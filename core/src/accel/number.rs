@@ -2,7 +2,6 @@
 
 use crate::accel::cull::{Cull, PairCulling};
 use crate::accel::cull_axis::CullArithmetic;
-#[cfg(feature = "wide")]
 use crate::accel::wide::cull::{WideCulling, WideLanes};
 use crate::geometry::Project;
 use crate::number::Fixed;
@@ -15,25 +14,21 @@ pub trait Number: Project + CullArithmetic {
     /// How rays of this format cull boxes on this machine.
     type Cull: PairCulling<Self>;
     /// How rays of this format cull eight boxes at once.
-    #[cfg(feature = "wide")]
     type WideCull: WideCulling<Self>;
 }
 
 impl Number for Fixed {
     type Cull = Cull;
-    #[cfg(feature = "wide")]
     type WideCull = Cull;
 }
 
 impl Number for f32 {
     type Cull = FloatCulling;
-    #[cfg(feature = "wide")]
     type WideCull = WideLanes;
 }
 
 impl Number for f64 {
     type Cull = FloatCulling;
-    #[cfg(feature = "wide")]
     type WideCull = WideLanes;
 }
 

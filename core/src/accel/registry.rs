@@ -70,7 +70,6 @@ macro_rules! registry {
             }
 
             /// Proves that primitives have records of their own where a structure leads to these.
-            #[cfg(feature = "wide")]
             fn check_records(space: &Space<'a>) -> Result<(), BlobError> {
                 let clusters = Structure::List.bit() | Structure::Wide.bit();
                 if space.header.structures & !clusters == 0 {
@@ -85,7 +84,6 @@ macro_rules! registry {
                 -> Result<(usize, bool), BlobError>
             {
                 let (mut depth, mut proved) = (0, 0);
-                #[cfg(feature = "wide")]
                 Self::check_records(space)?;
                 $(
                     #[cfg($feature)]

@@ -3,8 +3,8 @@
 use crate::format::record::{Header, UnitBox};
 use crate::format::{BlobError, Leaf, Structure};
 use crate::geometry::Shapes;
-#[cfg(feature = "wide")]
 use crate::simd::SimdLevel;
+use crate::target::InWide;
 
 /// The space that structures divide: the scene's box, its primitives, and the leaves that hierarchies share.
 #[derive(Clone, Copy, Debug)]
@@ -16,8 +16,7 @@ pub struct Space<'a> {
     #[cfg(feature = "all-structures")]
     pub(crate) chosen: Structure,
     /// The instructions that [`Wide`](crate::Wide) uses.
-    #[cfg(feature = "wide")]
-    pub(crate) simd: SimdLevel,
+    pub(crate) simd: InWide<SimdLevel>,
 }
 
 impl<'a> Space<'a> {
@@ -30,6 +29,12 @@ impl<'a> Space<'a> {
     /// Whether the blob holds a structure.
     pub(crate) fn holds(&self, structure: Structure) -> bool {
         self.header.structures & structure.bit() != 0
+    }
+
+    /// The instructions that [`Wide`](crate::Wide) uses.
+    #[inline(always)]
+    pub(crate) fn simd(&self) -> SimdLevel {
+        self.simd.get().copied().unwrap_or_default()
     }
 
     /// A leaf by its number.

@@ -13,7 +13,8 @@
 //! bits for each: its number in a window of [`RADII`] among those of the section of that name. Where
 //! the section is one window, all packs share it; else the one of pack `p` begins at `8 p`.
 
-use crate::format::record::{Vertex, Vertex16, Vertex24};
+use crate::format::record::{Vertex16, Vertex24};
+use crate::format::width::Vertex;
 use crate::simd::Simd;
 use bytemuck::{Pod, Zeroable};
 use core::array;

@@ -4,7 +4,6 @@
 //! every byte.
 
 pub(crate) mod checksum;
-#[cfg(feature = "wide")]
 pub mod cluster;
 pub(crate) mod effects;
 mod error;
@@ -21,6 +20,7 @@ mod requirements;
 mod section;
 pub(crate) mod sections;
 pub(crate) mod structure;
+pub mod width;
 pub(crate) mod word;
 
 pub use checksum::{Aligned, checksum};
@@ -30,7 +30,6 @@ pub use index::Indices;
 pub use kind::Kind;
 pub use leaf::Leaf;
 pub use link::Link;
-#[cfg(feature = "wide")]
 pub use node::Child;
 pub use node::{ClassNode, NodeWord, OctreeNode};
 pub use reason::{Field, Reason};

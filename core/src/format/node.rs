@@ -1,6 +1,5 @@
 //! The words of nodes: what a node is, and where its children lie.
 
-#[cfg(feature = "wide")]
 use crate::format::leaf::Leaf;
 
 /// What a node is: the last word of its record.
@@ -12,7 +11,7 @@ use crate::format::leaf::Leaf;
 pub struct NodeWord(pub u32);
 
 impl NodeWord {
-    /// Number of nodes or leaves that can be told apart.
+    /// Number of distinct nodes or leaves.
     pub const NODES: u32 = 1 << 24;
     /// The axis of a split or carve that there is not.
     pub const NONE: u32 = 3;
@@ -129,7 +128,6 @@ impl OctreeNode {
     }
 }
 
-#[cfg(feature = "wide")]
 /// What a child of a node is: one word.
 ///
 /// Bits 29 to 31 are 7 for a node, whose number is in bits 0 to 23. Any other word is a [`Leaf`];
@@ -138,7 +136,6 @@ impl OctreeNode {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Child(pub u32);
 
-#[cfg(feature = "wide")]
 impl Child {
     /// In the lanes behind a node's last child.
     pub const NONE: Self = Self(u32::MAX);

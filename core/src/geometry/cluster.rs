@@ -122,6 +122,14 @@ pub(crate) struct Clusters<'a> {
 }
 
 impl<'a> Clusters<'a> {
+    /// No clusters: those of builds without code for them.
+    pub(crate) const NONE: Self = Self {
+        strips: Strips::S16(&[]),
+        packs: Packs::P16(&[]),
+        members: Indices::Absent,
+        homes: &[],
+    };
+
     pub(crate) fn read(sections: &Sections<'a>, short: bool) -> Result<Self, BlobError> {
         Ok(Self {
             strips: if short {

@@ -4,23 +4,19 @@
 //! leaves the primitive, behind the origin too. What of that is a hit is decided once for
 //! all of them, in `accept`.
 
-#[cfg(feature = "wide")]
 pub(crate) mod cluster;
 mod crossing;
 mod flat;
-#[cfg(feature = "wide")]
 pub(crate) mod pack;
 pub(crate) mod primitive;
 mod primitive_id;
 pub(crate) mod project;
 mod shapes;
 pub(crate) mod sphere;
-#[cfg(feature = "wide")]
 pub(crate) mod strip;
 mod surface;
 pub(crate) mod triangle;
 
-#[cfg(feature = "wide")]
 pub(crate) use cluster::{Clusters, Packs, Packs24, Strips};
 pub(crate) use crossing::{Crossing, LEAVING, Part, accept, cross_plane};
 pub(crate) use primitive_id::PrimitiveId;

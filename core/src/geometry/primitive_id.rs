@@ -1,29 +1,37 @@
 //! Where a blob keeps a primitive.
 
 use crate::format::Kind;
+use crate::target::InWide;
 
 /// Where a blob keeps a primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum PrimitiveId {
-    /// Among the records of its kind.
-    Slot(Kind, u32),
-    /// In a strip, at a place of it.
-    #[cfg(feature = "wide")]
-    Strip(u32, u8),
-    /// In a pack, in a lane of it.
-    #[cfg(feature = "wide")]
-    Pack(u32, u8),
+pub(crate) struct PrimitiveId {
+    /// The kind of the primitive.
+    pub(crate) kind: Kind,
+    /// The slot among the records of its kind, or the cluster.
+    pub(crate) number: u32,
+    /// The lane of a cluster.
+    lane: InWide<Option<u8>>,
 }
 
 impl PrimitiveId {
-    /// The kind of the primitive.
-    pub(crate) fn kind(self) -> Kind {
-        match self {
-            PrimitiveId::Slot(kind, _) => kind,
-            #[cfg(feature = "wide")]
-            PrimitiveId::Strip(..) => Kind::Triangle,
-            #[cfg(feature = "wide")]
-            PrimitiveId::Pack(..) => Kind::Sphere,
-        }
+    /// Among the records of its kind.
+    #[inline(always)]
+    pub(crate) fn in_slot(kind: Kind, number: u32) -> Self {
+        let lane = InWide::new(|| None);
+        Self { kind, number, lane }
+    }
+
+    /// In a lane of a strip, whose place it is, or of a pack.
+    #[inline(always)]
+    pub(crate) fn in_cluster(kind: Kind, number: u32, lane: u32) -> Self {
+        let lane = InWide::new(|| Some(lane as u8));
+        Self { kind, number, lane }
+    }
+
+    /// The lane, if the primitive lies in a cluster.
+    #[inline(always)]
+    pub(crate) fn lane(self) -> Option<u32> {
+        self.lane.get().copied().flatten().map(u32::from)
     }
 }

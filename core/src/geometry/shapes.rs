@@ -5,7 +5,6 @@ use crate::format::limits::{WIDE_INDICES, WIDE_LATTICE};
 use crate::format::range::{At, at_most};
 use crate::format::record::{Header, UnitBox};
 use crate::format::{BlobError, Field, Kind, Leaf, SectionKind, Sections};
-#[cfg(feature = "wide")]
 use crate::geometry::Clusters;
 use crate::geometry::primitive::{InScene, Primitive, beneath};
 use crate::geometry::sphere::{self, Spheres};
@@ -13,6 +12,7 @@ use crate::geometry::triangle::{self, Triangles, Vertices};
 use crate::geometry::{LEAVING, Part, PrimitiveId, Surface};
 use crate::number::Arithmetic;
 use crate::ray::Ray;
+use crate::target::{InWide, WIDE};
 
 macro_rules! registry {
     (
@@ -30,8 +30,7 @@ macro_rules! registry {
             pub(crate) spheres: Spheres<'a>,
             $(pub(crate) $field: &'a [super::$module::$record],)*
             /// Where there are both, the same triangles and spheres lie in clusters as in the arrays above.
-            #[cfg(feature = "wide")]
-            pub(crate) clusters: Clusters<'a>,
+            clusters: InWide<Clusters<'a>>,
         }
 
         /// A primitive of any kind, in 1/256 unit.
@@ -81,12 +80,16 @@ macro_rules! registry {
                     true => Err(BlobError::MissingPart { missing }),
                     false => Ok(()),
                 };
-                lacks(sole, cfg!(feature = "wide"), "wide")?;
+                lacks(sole, WIDE, "wide")?;
                 lacks(triangles, Kind::Triangle.is_available(), Kind::Triangle.name())?;
                 lacks(spheres, Kind::Sphere.is_available(), Kind::Sphere.name())?;
                 $(lacks(holds(SectionKind::$section), Kind::$kind.is_available(), $name)?;)*
                 lacks(!short, WIDE_LATTICE, "wide-lattice")?;
                 lacks(wide_indices, WIDE_INDICES, "wide-indices")?;
+                let clusters = match WIDE {
+                    true => Clusters::read(sections, short)?,
+                    false => Clusters::NONE,
+                };
                 Ok(Self {
                     vertices: Vertices::read(sections, short)?,
                     triangles: Triangles::read(sections)?,
@@ -96,8 +99,7 @@ macro_rules! registry {
                     } else {
                         &[]
                     },)*
-                    #[cfg(feature = "wide")]
-                    clusters: Clusters::read(sections, short)?,
+                    clusters: InWide::new(|| clusters),
                 })
             }
 
@@ -212,15 +214,20 @@ fn validate<T: Primitive>(
         record.validate(InScene { at, bounds })
     })
 }
-impl Shapes<'_> {
+impl<'a> Shapes<'a> {
+    /// The clusters.
+    #[inline(always)]
+    pub(crate) fn clusters(&self) -> &Clusters<'a> {
+        self.clusters.get().unwrap_or(&Clusters::NONE)
+    }
+
     /// Number of primitives of a kind.
     pub(crate) fn count(&self, kind: Kind) -> usize {
         let records = self.records(kind);
-        #[cfg(feature = "wide")]
-        if records == 0 {
+        if WIDE && records == 0 {
             return match kind {
-                Kind::Triangle => self.clusters.triangles(),
-                Kind::Sphere => self.clusters.spheres(),
+                Kind::Triangle => self.clusters().triangles(),
+                Kind::Sphere => self.clusters().spheres(),
                 _ => 0,
             };
         }
@@ -233,11 +240,10 @@ impl Shapes<'_> {
     }
 
     /// Number of clusters of a kind whose primitives lie nowhere else.
-    #[cfg(feature = "wide")]
     pub(crate) fn sole_clusters(&self, kind: Kind) -> usize {
         match kind {
-            Kind::Triangle if self.triangles.len() == 0 => self.clusters.strips.len(),
-            Kind::Sphere if self.spheres.len() == 0 => self.clusters.packs.len(),
+            Kind::Triangle if self.triangles.len() == 0 => self.clusters().strips.len(),
+            Kind::Sphere if self.spheres.len() == 0 => self.clusters().packs.len(),
             _ => 0,
         }
     }
@@ -245,21 +251,20 @@ impl Shapes<'_> {
     /// Where the primitive of a slot lies: triangles and spheres that have no records of their own
     /// are counted in the order of the clusters.
     pub(crate) fn place(&self, kind: Kind, slot: u32) -> PrimitiveId {
-        #[cfg(feature = "wide")]
-        if self.records(kind) == 0 {
+        if WIDE && self.records(kind) == 0 {
             let index = slot as usize;
             let found = match kind {
                 Kind::Triangle => {
-                    let found = self.clusters.find_triangle(index);
-                    found.map(|(strip, place)| PrimitiveId::Strip(strip, place as u8))
+                    let found = self.clusters().find_triangle(index);
+                    found.map(|(strip, place)| PrimitiveId::in_cluster(kind, strip, place))
                 }
                 // All packs but the last are full.
-                Kind::Sphere => Some(PrimitiveId::Pack(slot >> 3, (slot & 7) as u8)),
+                Kind::Sphere => Some(PrimitiveId::in_cluster(kind, slot >> 3, slot & 7)),
                 _ => None,
             };
-            return found.unwrap_or(PrimitiveId::Slot(kind, slot));
+            return found.unwrap_or(PrimitiveId::in_slot(kind, slot));
         }
-        PrimitiveId::Slot(kind, slot)
+        PrimitiveId::in_slot(kind, slot)
     }
 
     /// The slot of a primitive among those of all kinds that have records of their own.
@@ -296,10 +301,10 @@ impl Shapes<'_> {
 
     /// The corners of a triangle in 1/256 unit, given by its slot.
     pub(crate) fn triangle(&self, slot: usize) -> Option<[[i32; 3]; 3]> {
-        match self.place(Kind::Triangle, slot as u32) {
-            #[cfg(feature = "wide")]
-            PrimitiveId::Strip(strip, place) => self.clusters.strips.triangle(strip, place.into()),
-            _ => self.indexed_triangle(slot),
+        let id = self.place(Kind::Triangle, slot as u32);
+        match id.lane() {
+            Some(place) => self.clusters().strips.triangle(id.number, place),
+            None => self.indexed_triangle(slot),
         }
     }
 
@@ -311,10 +316,10 @@ impl Shapes<'_> {
 
     /// The box of a sphere.
     fn sphere_bounds(&self, index: usize) -> Option<UnitBox> {
-        let (center, radius) = match self.place(Kind::Sphere, index as u32) {
-            #[cfg(feature = "wide")]
-            PrimitiveId::Pack(pack, lane) => self.clusters.packs.sphere(pack, lane.into())?,
-            _ => self.spheres.get(index)?,
+        let id = self.place(Kind::Sphere, index as u32);
+        let (center, radius) = match id.lane() {
+            Some(lane) => self.clusters().packs.sphere(id.number, lane)?,
+            None => self.spheres.get(index)?,
         };
         Some(sphere::bounds(center, radius))
     }
@@ -337,27 +342,23 @@ impl Shapes<'_> {
         ray: &Ray<N>,
         point: [N; 3],
     ) -> Option<(Surface<N>, bool)> {
-        let mut surface = match place {
-            #[cfg(feature = "wide")]
-            PrimitiveId::Strip(strip, place) => {
-                triangle::surface(self.clusters.strips.triangle(strip, place.into())?, point)
+        let mut surface = match (place.lane(), place.kind) {
+            (None, kind) => self.surface_in_slot(kind, place.number as usize, ray, part, point)?,
+            (Some(lane), Kind::Triangle) => {
+                triangle::surface(self.clusters().strips.triangle(place.number, lane)?, point)
             }
-            #[cfg(feature = "wide")]
-            PrimitiveId::Pack(pack, lane) => {
-                let (center, radius) = self.clusters.packs.sphere(pack, lane.into())?;
+            (Some(lane), _) => {
+                let (center, radius) = self.clusters().packs.sphere(place.number, lane)?;
                 sphere::surface(center, radius, point)
-            }
-            PrimitiveId::Slot(kind, slot) => {
-                self.surface_in_slot(kind, slot as usize, ray, part, point)?
             }
         };
         let against = N::dot(surface.normal, ray.slope) < N::Wide::default();
-        let front = if is_flat(place.kind()) {
+        let front = if is_flat(place.kind) {
             against
         } else {
             part & LEAVING == 0
         };
-        if front != against && is_leveled(place.kind()) {
+        if front != against && is_leveled(place.kind) {
             surface.normal = surface.level_with(ray);
         }
         Some((surface, front))

@@ -16,7 +16,8 @@
 
 use crate::format::limits::WIDE_LATTICE;
 use crate::format::range::At;
-use crate::format::record::{Sphere, Sphere16, Sphere24, UnitBox};
+use crate::format::record::{Sphere16, Sphere24, UnitBox};
+use crate::format::width::Sphere;
 use crate::format::{BlobError, Field, SectionKind, Sections};
 use crate::geometry::primitive::{InScene, MAX_RADIUS};
 use crate::geometry::{Crossing, Surface};

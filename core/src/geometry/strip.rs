@@ -6,7 +6,7 @@
 //! to one ray in some ten thousand.
 //!
 //! **Behind.** A ray that leaves a surface meets that surface's triangle again, just behind its start.
-//! Lanes see that, too, and spare the triangle the exact test. With depths `d` along the major axis,
+//! Lanes see that, too, and then the triangle needs no exact test. With depths `d` along the major axis,
 //! the test's t is the quotient of two determinants, of the three vertices and of their projections:
 //! `d0 (x1 y2 - x2 y1) + d1 (x2 y0 - x0 y2) + d2 (x0 y1 - x1 y0)` and the sum of the brackets, with
 //! the sign of the ray's direction. Let `m` be the largest magnitude of the `x`, `y` and `d`, and `e`

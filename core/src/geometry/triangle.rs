@@ -11,7 +11,8 @@
 use crate::axis::pick;
 use crate::format::limits::{WIDE_INDICES, WIDE_LATTICE};
 use crate::format::range::At;
-use crate::format::record::{Corners, UnitBox, Vertex, Vertex16, Vertex24};
+use crate::format::record::{UnitBox, Vertex16, Vertex24};
+use crate::format::width::{Corners, Vertex};
 use crate::format::{BlobError, Field, Kind, SectionKind, Sections};
 use crate::geometry::Project;
 use crate::geometry::primitive::InScene;
@@ -162,7 +163,7 @@ impl<N: Project> Projection<N> {
     /// seen edge on.
     ///
     /// Cost: 9 loads and some 30 multiplications and additions.
-    #[cfg_attr(not(feature = "small"), inline(always))]
+    #[inline]
     pub(crate) fn meets<const MAJOR: usize, V: Vertex>(&self, a: &V, b: &V, c: &V) -> bool {
         let seen = |vertex: &V, role: usize| {
             let coordinate = vertex.steps(axis::<MAJOR>(self.major, role));
@@ -216,7 +217,7 @@ pub(crate) fn cross<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> Option<
 }
 
 /// The normal, of any length: exact but for one rounding a component.
-#[cfg_attr(not(feature = "small"), inline(always))]
+#[inline]
 fn normal<N: Arithmetic>([a, b, c]: [[i32; 3]; 3]) -> [N; 3] {
     let edge = |from: [i32; 3], to: [i32; 3]| {
         let axis = |k: usize| to[k].wrapping_sub(from[k]);

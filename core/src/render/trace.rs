@@ -10,7 +10,7 @@
 //! What goes on inside of a solid starts beneath all of its faces (see [`Hit::inside`]).
 //!
 //! Everything is compiled for a set of effects: what is not in it costs neither code nor time. The loop
-//! names no effect; it calls their list at the places that `shade` tells of.
+//! names no effect; it calls their list at the places that `shade` lists.
 
 use crate::accel::stack::{Stack, StackView};
 use crate::accel::{Accel, Number};
@@ -130,7 +130,7 @@ impl Loop<'_, '_> {
             }
             None => (camera().ok(), Color::WHITE, RayKind::Primary),
         };
-        // A direction that cannot be told brings nothing.
+        // A sample without a direction adds no light.
         if C::ENABLED {
             tracing.count.event(Event::Taken {
                 kind,

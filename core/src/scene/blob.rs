@@ -4,8 +4,8 @@ use crate::accel::{Space, StructureViews};
 use crate::format::record::{Header, Light, Material, UnitBox, View};
 use crate::format::{Effects, Indices, Kind, Structure};
 use crate::geometry::{Geometry, PrimitiveId};
-#[cfg(feature = "wide")]
 use crate::simd::SimdLevel;
+use crate::target::InWide;
 
 /// A checked view of a blob: a few hundred bytes that borrow from it.
 ///
@@ -144,17 +144,15 @@ impl<'a> Scene<'a> {
 
     /// The scene with queries through [`Wide`](crate::Wide) at a level of instructions; at first they
     /// are portable.
-    #[cfg(feature = "wide")]
     pub fn with_simd(self, simd: SimdLevel) -> Self {
         let mut scene = self;
-        scene.space.simd = simd;
+        scene.space.simd = InWide::new(|| simd);
         scene
     }
 
     /// The instructions that queries through [`Wide`](crate::Wide) use.
-    #[cfg(feature = "wide")]
     pub fn simd(&self) -> SimdLevel {
-        self.space.simd
+        self.space.simd()
     }
 
     /// Number of primitives of a kind.
@@ -202,7 +200,6 @@ impl<'a> Scene<'a> {
 
     /// The number, in scene-file order, of a primitive that lies somewhere.
     #[cfg_attr(feature = "wide", inline(always))]
-    #[cfg_attr(not(feature = "wide"), inline)]
     pub(crate) fn primitive_at(&self, place: PrimitiveId) -> u32 {
         self.key(place).0
     }
@@ -210,30 +207,26 @@ impl<'a> Scene<'a> {
     /// What decides between hits at the same t: the primitive's number, and between pieces of one
     /// primitive, kind and slot; so answers do not depend on the structure either.
     #[cfg_attr(feature = "wide", inline(always))]
-    #[cfg_attr(not(feature = "wide"), inline)]
     pub(crate) fn key(&self, place: PrimitiveId) -> (u32, u8, u32) {
-        match place {
-            PrimitiveId::Slot(kind, slot) => (self.in_slot(kind, slot), kind as u8, slot),
-            #[cfg(feature = "wide")]
-            PrimitiveId::Strip(strip, place) => {
-                let members = self.space.shapes.clusters.strips.members(strip);
-                let member = members.map_or(0, |members| members.member(place.into()));
-                self.member(Kind::Triangle, member, 0)
-            }
-            #[cfg(feature = "wide")]
-            PrimitiveId::Pack(pack, lane) => {
-                let number = pack << 3 | u32::from(lane);
-                self.member(Kind::Sphere, number, self.space.shapes.clusters.triangles())
-            }
+        let PrimitiveId { kind, number, .. } = place;
+        let Some(lane) = place.lane() else {
+            return (self.in_slot(kind, number), kind as u8, number);
+        };
+        let clusters = self.space.shapes.clusters();
+        if kind == Kind::Triangle {
+            let members = clusters.strips.members(number);
+            let member = members.map_or(0, |members| members.member(lane));
+            self.member(kind, member, 0)
+        } else {
+            self.member(kind, number << 3 | lane, clusters.triangles())
         }
     }
 
     /// The key of a member of a cluster, by its number among those of its kind and the number of
     /// members before them.
-    #[cfg(feature = "wide")]
     #[inline(always)]
     fn member(&self, kind: Kind, number: u32, before: usize) -> (u32, u8, u32) {
-        let clusters = &self.space.shapes.clusters;
+        let clusters = self.space.shapes.clusters();
         let member = clusters.members.get(before + number as usize).unwrap_or(0);
         if clusters.homes.is_empty() {
             (member, kind as u8, number)

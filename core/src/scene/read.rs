@@ -13,8 +13,8 @@ use crate::format::{
 };
 use crate::geometry::Shapes;
 use crate::scene::Scene;
-#[cfg(feature = "wide")]
 use crate::simd::SimdLevel;
+use crate::target::InWide;
 use core::mem::size_of;
 
 /// Largest magnitude of a far coordinate, so that sums and products with ratios stay in 64 bits.
@@ -72,8 +72,7 @@ pub(crate) fn scene<'a>(
             leaves: sections.records(SectionKind::Leaves)?,
             #[cfg(feature = "all-structures")]
             chosen: Structure::fastest(header.structures),
-            #[cfg(feature = "wide")]
-            simd: SimdLevel::Portable,
+            simd: InWide::new(SimdLevel::default),
         },
         structures: StructureViews::read(sections)?,
         view,

@@ -29,13 +29,13 @@ impl<N: Number> Color<N> {
     }
 
     /// Channel by channel; one of the two holds ratios.
-    #[cfg_attr(not(feature = "small"), inline(always))]
+    #[inline]
     pub(crate) fn times(self, ratios: Self) -> Self {
         self.zip(ratios, |a, b| a * b)
     }
 
     /// All channels by one ratio.
-    #[cfg_attr(not(feature = "small"), inline(always))]
+    #[inline]
     pub(crate) fn scaled(self, ratio: N) -> Self {
         Self(self.0.map(|channel| channel * ratio))
     }
@@ -58,12 +58,12 @@ impl<N: Number> Color<N> {
         Self(self.0.map(|channel| channel.max(N::ZERO).min(white)))
     }
 
-    /// Radiance, as events tell it.
+    /// Radiance, as events report it.
     pub(crate) fn to_f64(self) -> [f64; 3] {
         self.0.map(N::radiance_to_f64)
     }
 
-    /// Ratios, as events tell them.
+    /// Ratios, as events report them.
     pub(crate) fn ratios_to_f64(self) -> [f64; 3] {
         self.0.map(N::ratio_to_f64)
     }

@@ -28,9 +28,9 @@ pub enum SimdLevel {
     Avx2(Avx2),
 }
 
+#[cfg(feature = "avx2")]
 impl SimdLevel {
     /// The fastest level of this processor.
-    #[cfg(feature = "avx2")]
     pub fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
         if let Some(avx2) = Avx2::detect() {
@@ -40,12 +40,13 @@ impl SimdLevel {
     }
 
     /// All levels of this processor, the portable one first.
-    #[cfg(feature = "avx2")]
     pub fn available() -> impl Iterator<Item = Self> {
         let best = Some(Self::detect()).filter(|best| *best != Self::Portable);
         core::iter::once(Self::Portable).chain(best)
     }
+}
 
+impl SimdLevel {
     /// The name that command lines and tables use.
     pub const fn name(self) -> &'static str {
         match self {

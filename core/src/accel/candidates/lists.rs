@@ -24,7 +24,7 @@ pub(in crate::accel) struct ListSections {
     pub(in crate::accel) keys: Option<SectionKind>,
 }
 
-/// Counts a cell whose list a ray goes through, and tells of it.
+/// Counts and reports a cell whose list a ray goes through.
 #[inline(always)]
 pub(in crate::accel) fn look_up<C: Observer>(cell: u32, count: &mut C) {
     count.cells(1);

@@ -69,7 +69,7 @@ impl Place {
         [0, 1, 2].map(|axis| [self.first(axis), self.first(axis) + size - 1])
     }
 
-    /// Its planes, as events tell them.
+    /// Its planes, as events report them.
     fn planes(self, divisions: &[Divisions; 3]) -> Sides {
         let size = 1 << self.level();
         [0, 1, 2].map(|axis: usize| {
@@ -204,7 +204,7 @@ impl Traverse for Octree {
     }
 }
 
-/// A node as events tell it.
+/// A node as events report it.
 fn node_id(number: u32) -> event::NodeId {
     event::NodeId {
         what: "node",

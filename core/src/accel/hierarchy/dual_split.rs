@@ -144,7 +144,7 @@ impl Traverse for DualSplit {
     }
 }
 
-/// A node as events tell it.
+/// A node as events report it.
 fn place(number: u32) -> NodeId {
     NodeId {
         what: "node",
@@ -152,7 +152,7 @@ fn place(number: u32) -> NodeId {
     }
 }
 
-/// Counts planes that were tested for a node, and tells of them.
+/// Counts and reports planes that were tested for a node.
 #[inline(always)]
 fn tested<C: Observer>(count: &mut C, planes: u32, event: impl FnOnce() -> Event) {
     count.planes(planes);

@@ -40,7 +40,7 @@ pub(in crate::accel) trait PairRecord: Copy {
         [Sides::default(); 2]
     }
 
-    /// The test of a child, as events tell it.
+    /// The test of a child, as events report it.
     fn tested(&self, number: u32, side: u32, span: [f64; 2]) -> Event {
         Event::Tested {
             place: self.child(number, side).id(),
@@ -243,7 +243,7 @@ pub(in crate::accel) struct Walk<'w, 'a, A, R, F> {
     pub(in crate::accel) narrow: F,
 }
 
-/// From where to where in units, as events tell it.
+/// From where to where in units, as events report it.
 fn span<N: Number, K: Culling<N>>(interval: Interval) -> [f64; 2] {
     [interval.near, interval.far].map(K::units)
 }

@@ -1,4 +1,4 @@
-//! Bounding spheres, called balls here to tell them from primitives.
+//! Bounding spheres, called balls here, because spheres are primitives.
 //!
 //! A ball is met where the ray passes its centre no farther than its radius. Its interval is taken
 //! from the point of the ray that is nearest to the centre, a radius back and forth: a little longer

@@ -40,7 +40,7 @@ fn follows(
 
 /// Proves that members ascend from cluster to cluster, and that there are as many as primitives.
 fn check_members(space: &Space<'_>) -> Result<(), BlobError> {
-    let clusters = &space.shapes.clusters;
+    let clusters = space.shapes.clusters();
     let mut next = 0;
     for strip in 0..clusters.strips.len() {
         let section = SectionKind::Strips;
@@ -163,7 +163,7 @@ pub(crate) fn check_records(space: &Space<'_>) -> Result<(), BlobError> {
 /// Proves breadth-first order.
 fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
     let section = SectionKind::WideNodes;
-    let Clusters { strips, packs, .. } = &space.shapes.clusters;
+    let Clusters { strips, packs, .. } = space.shapes.clusters();
     let (mut next_node, mut next_strip, mut next_pack) = (1, 0, 0);
     // A pack that is not full comes last, wherever the hierarchy leads to it.
     let full = (0..packs.len()).rposition(|pack| packs.lanes(pack as u32).count_ones() == 8);
@@ -171,7 +171,7 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
     let mut next_sparse = full_packs;
     let mut others = [0; Kind::ALL.len()];
     // Where other structures share the slots, these are in the order of theirs.
-    let own_order = space.shapes.clusters.homes.is_empty();
+    let own_order = space.shapes.clusters().homes.is_empty();
     for (index, node) in nodes.iter().enumerate() {
         let mut ended = false;
         for lane in 0..LANES {
@@ -257,7 +257,7 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
 /// every slot has a home that leads back to it, and there are as many homes as places.
 fn check_homes(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
     let section = SectionKind::Homes;
-    let (shapes, clusters) = (&space.shapes, &space.shapes.clusters);
+    let (shapes, clusters) = (&space.shapes, space.shapes.clusters());
     let homes = clusters.homes;
     if homes.is_empty() {
         // Then the clusters' are the only triangles and spheres.
@@ -322,7 +322,7 @@ fn check_homes(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
 /// Proves that boxes hold what is below them, and returns the most entries that a walk has waiting.
 fn check_boxes(nodes: &[WideNode], space: &Space<'_>) -> Result<usize, BlobError> {
     let section = SectionKind::WideNodes;
-    let clusters = &space.shapes.clusters;
+    let clusters = space.shapes.clusters();
     let mut deepest = 0;
     if nodes.is_empty() {
         return Ok(0);

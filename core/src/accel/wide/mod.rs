@@ -162,7 +162,7 @@ impl Traverse for Wide {
 fn level<N: Number>(space: &Space<'_>) -> SimdLevel {
     match N::FORMAT {
         Format::Fixed => SimdLevel::Portable,
-        _ => space.simd,
+        _ => space.simd(),
     }
 }
 
@@ -316,7 +316,7 @@ fn children(node: &WideNode) -> impl Iterator<Item = usize> + '_ {
     (0..LANES).filter(|&lane| node.child(lane) != Child::NONE)
 }
 
-/// Tells of the tests of a node's children.
+/// Reports the tests of a node's children.
 fn observe_tested<N: Number, C: Observer>(
     node: &WideNode,
     cull: &N::WideCull,

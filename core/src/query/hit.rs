@@ -1,0 +1,173 @@
+//! What a query answers: which primitive a ray meets, where, and how its surface lies there.
+
+use crate::accel::Number;
+use crate::format::Leaf;
+use crate::observe::event::Met;
+use crate::query::search::Candidate;
+use crate::ray::Ray;
+use crate::scene::Scene;
+
+/// Which primitive a ray meets first, and where: all of a hit but its surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found<N: Number> {
+    /// Where on the ray: a length in units along the ray's major axis (see [`Ray`]).
+    pub t: N::Wide,
+    /// The primitive, counted in scene-file order over all objects.
+    pub primitive: u32,
+    pub(super) best: Candidate<N>,
+}
+
+impl<N: Number> Found<N> {
+    /// The whole hit: the point and how the surface lies there. `scene` and `ray` are those of the
+    /// query.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_primitive};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut stack = Stack::<32>::new();
+    /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+    /// let found = closest_primitive::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
+    /// let hit = found.and_then(|found| found.hit(&scene, &down)).expect("a ball");
+    /// assert_eq!(hit.primitive, 9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[cfg_attr(feature = "wide", inline(always))]
+    pub fn hit(&self, scene: &Scene<'_>, ray: &Ray<N>) -> Option<Hit<N>> {
+        let best = self.best;
+        let point = ray.at(best.t);
+        let (surface, front) = scene
+            .space
+            .shapes
+            .surface(best.place, best.part, ray, point)?;
+        Some(Hit {
+            t: self.t,
+            point: surface.point,
+            normal: surface.normal,
+            front,
+            object: scene.object(self.primitive),
+            primitive: self.primitive,
+            error: surface.error,
+            is_exact: surface.is_exact,
+            place: Leaf {
+                kind: best.place.kind,
+                first: scene.key(best.place).2,
+                count: 1,
+            }
+            .to_word(),
+        })
+    }
+}
+
+/// What a ray met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit<N: Number> {
+    /// Where on the ray: a length in units along the ray's major axis (see [`Ray`]).
+    pub t: N::Wide,
+    /// The point of the surface next to where `t` lies on the ray, in units.
+    pub point: [N; 3],
+    /// The geometric normal, of length 1: outward from solids, to the side from which a triangle's
+    /// corners run counter-clockwise, along a disc's own.
+    pub normal: [N; 3],
+    /// Whether the ray came from the side to which the normal points; of a solid, whether it enters.
+    pub front: bool,
+    /// The object, counted in scene-file order.
+    pub object: u32,
+    /// The primitive, counted in scene-file order over all objects.
+    pub primitive: u32,
+    /// The surface lies within this length of `point`, measured along the normal, and a ray that starts so
+    /// far away does not meet it again. With `u` = 2^-24 in `f32` and 2^-53 in `f64`, and `p` the point:
+    ///
+    /// | surface | bound | in `fixed` |
+    /// |---|---|---|
+    /// | face of a box; triangle or disc at right angles to an axis | the step from the coordinate on that axis, which is the surface's own, to the next number | 1 sub-step |
+    /// | other triangle or disc, of normal `n`, with `r` from `p` to its first corner or centre | `16 u sum(abs(n r)) + 4 u sum(abs(n p))` | 4 sub-steps and `2^-28 sum(abs(r))` |
+    /// | sphere of radius `r` | `20 u r + 4 u sum(abs(n p))` | 8 sub-steps |
+    /// | cylinder, cone, frustum | `16 u` of the largest coordinate of the solid, the point and the ray's start | 8 sub-steps |
+    /// | torus | `16 u` of the largest coordinate of the solid; on the axis, where `r` is at least `R`, the way along it to where the surface is that far away | likewise, of 8 sub-steps |
+    ///
+    /// No other object and no extent of the scene counts.
+    pub error: N,
+    /// Whether `point` lies on the surface exactly.
+    is_exact: bool,
+    /// The primitive by kind and slot, as a leaf's word, whichever structure found it.
+    place: u32,
+}
+
+impl<N: Number> Hit<N> {
+    /// Where a ray starts that goes on from here on the normal's side, so that it does not meet
+    /// what it leaves: beside the surface by the hit's error bound.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_hit};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut stack = Stack::<32>::new();
+    /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+    /// let hit = closest_hit::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
+    /// let hit = hit.expect("a ball");
+    /// assert!(hit.outside()[1] > hit.point[1]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn outside(&self) -> [N; 3] {
+        let axis = |k: usize| self.point[k] + self.error * self.normal[k];
+        [axis(0), axis(1), axis(2)]
+    }
+
+    /// Where a ray starts that goes on from here on the other side, `scene` being the one that was
+    /// asked. Of a solid that is beneath *all* of its faces by their error bounds, so that the ray
+    /// leaves the solid again; where the solid is thinner, halfway between them.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_hit};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut stack = Stack::<32>::new();
+    /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+    /// let hit = closest_hit::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
+    /// let hit = hit.expect("a ball");
+    /// assert!(hit.inside(&scene)[1] < hit.point[1]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn inside(&self, scene: &Scene<'_>) -> [N; 3] {
+        let surface = [self.point, self.normal];
+        match Leaf::from_word(self.place) {
+            Some(Leaf { kind, first, .. }) => {
+                scene
+                    .space
+                    .shapes
+                    .inside(kind, first as usize, surface, self.error)
+            }
+            None => self.point,
+        }
+    }
+
+    /// Where a ray starts on the normal's side that leads away from the surface and has a t above 0: without
+    /// any step where the point lies on the surface exactly.
+    pub(crate) fn beside(&self) -> [N; 3] {
+        if self.is_exact {
+            self.point
+        } else {
+            self.outside()
+        }
+    }
+
+    /// The hit as an event.
+    pub(super) fn met(&self) -> Met {
+        Met {
+            t: N::far_to_f64(self.t),
+            point: self.point.map(N::length_to_f64),
+            normal: self.normal.map(N::ratio_to_f64),
+            front: self.front,
+            object: self.object,
+            primitive: self.primitive,
+            error: self.error.length_to_f64(),
+        }
+    }
+}

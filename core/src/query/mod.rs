@@ -1,0 +1,179 @@
+//! Queries: what does a ray meet first, does it meet anything at all?
+//!
+//! `search` tests the primitives to which a structure leads, `clusters` those in leaves of eight, and `hit`
+//! is what comes of it.
+
+mod clusters;
+mod hit;
+mod search;
+
+pub use hit::{Found, Hit};
+
+use crate::accel::cull::Culling;
+use crate::accel::stack::StackView;
+use crate::accel::{Accel, Number};
+use crate::observe::count::Observer;
+use crate::observe::event::Event;
+use crate::ray::Ray;
+use crate::scene::Scene;
+use search::Search;
+
+/// The primitive that a ray meets first in its interval, found through the structure `A`.
+///
+/// Of hits at the same t the one that comes first in the scene file counts, so the answer is the
+/// same whatever the structure. The stack must be as deep as the blob says.
+///
+/// ```
+/// # static BLOB: &[u8] =
+/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+/// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_primitive};
+///
+/// let scene = Scene::from_bytes(BLOB)?;
+/// let mut stack = Stack::<32>::new();
+/// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+/// let found = closest_primitive::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
+/// let found = found.expect("a ball");
+/// assert_eq!(scene.object(found.primitive), 9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+// Hosts have the room; a ray that goes through memory is waited for.
+#[cfg_attr(feature = "wide", inline(always))]
+pub fn closest_primitive<N: Number, A: Accel, C: Observer>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    stack: &mut StackView,
+    count: &mut C,
+) -> Option<Found<N>> {
+    search::<N, A, C, false>(scene, ray, stack, count, false)
+}
+
+/// The nearest primitive on a ray, or with `any` the first that is found.
+// For boards the compiler chooses by itself: less stack, and fewer instructions.
+#[cfg_attr(all(feature = "wide", not(feature = "small")), inline(always))]
+#[cfg_attr(feature = "small", inline(never))]
+fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    stack: &mut StackView,
+    count: &mut C,
+    any: bool,
+) -> Option<Found<N>> {
+    // Known when the code is compiled, unless one copy of it is to serve both.
+    let any = if A::ONE_COPY { any } else { ANY };
+    let views = A::views(&scene.structures);
+    let cull = A::Cull::<N>::new(ray);
+    let mut search = Search::new(scene, ray, &cull);
+    if C::ENABLED {
+        count.event(ray.query(any));
+    }
+    if ANY {
+        A::walk_any(
+            &scene.space,
+            views,
+            ray,
+            &cull,
+            stack,
+            count,
+            |leaf, count| {
+                search.leaf::<A, C, ANY>(leaf, count);
+                search.best.is_some()
+            },
+        );
+    } else if A::ONE_COPY {
+        A::walk(
+            &scene.space,
+            views,
+            ray,
+            &cull,
+            stack,
+            count,
+            |leaf, count| {
+                search.leaf::<A, C, ANY>(leaf, count);
+                (!any || search.best.is_none()).then_some(search.tmax)
+            },
+        );
+    } else {
+        A::walk(
+            &scene.space,
+            views,
+            ray,
+            &cull,
+            stack,
+            count,
+            |leaf, count| {
+                search.leaf::<A, C, ANY>(leaf, count);
+                Some(search.tmax)
+            },
+        );
+    }
+    let best = search.best?;
+    Some(Found {
+        t: best.t.widen() + ray.moved,
+        primitive: scene.primitive_at(best.place),
+        best,
+    })
+}
+
+/// The first hit of a ray in its interval: [`closest_primitive`] with its surface.
+///
+/// ```
+/// # static BLOB: &[u8] =
+/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+/// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_hit};
+///
+/// let scene = Scene::from_bytes(BLOB)?;
+/// let mut stack = Stack::<32>::new();
+/// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+/// let hit = closest_hit::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
+/// let hit = hit.expect("a ball");
+/// assert!(hit.front && hit.normal[1] > 0.0);
+/// assert_eq!(hit.object, 9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn closest_hit<N: Number, A: Accel, C: Observer>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    stack: &mut StackView,
+    count: &mut C,
+) -> Option<Hit<N>> {
+    let found = closest_primitive::<N, A, C>(scene, ray, stack, count);
+    let hit = found.and_then(|found| found.hit(scene, ray));
+    if C::ENABLED {
+        count.event(Event::Nearest(hit.map(|hit| hit.met())));
+    }
+    hit
+}
+
+/// Whether a ray meets anything in its interval: whether [`closest_hit`] would find something.
+///
+/// ```
+/// # static BLOB: &[u8] =
+/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+/// use gridel_core::{Counters, DualSplit, Ray, Scene, Stack, any_hit};
+///
+/// let scene = Scene::from_bytes(BLOB)?;
+/// let (mut stack, mut counters) = (Stack::<32>::new(), Counters::default());
+/// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+/// assert!(any_hit::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut counters));
+/// assert!(counters.objects > 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+// As above.
+#[cfg_attr(feature = "wide", inline(always))]
+pub fn any_hit<N: Number, A: Accel, C: Observer>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    stack: &mut StackView,
+    count: &mut C,
+) -> bool {
+    let found = if A::ONE_COPY {
+        search::<N, A, C, false>(scene, ray, stack, count, true)
+    } else {
+        search::<N, A, C, true>(scene, ray, stack, count, true)
+    };
+    let any = found.is_some();
+    if C::ENABLED {
+        count.event(Event::Any(any));
+    }
+    any
+}

@@ -1,0 +1,338 @@
+//! The search for hits: the primitives of one leaf after the other are tested, and the best hit is kept.
+
+use crate::accel::clamp::accept_in_box;
+use crate::accel::cull::Culling;
+use crate::accel::{Accel, Number};
+use crate::format::kind::shapes;
+use crate::format::limits::{WIDE_INDICES, WIDE_LATTICE};
+use crate::format::record::UnitBox;
+use crate::format::width::{Corners, Sphere, Vertex};
+use crate::format::{Kind, Leaf};
+use crate::geometry::primitive::Primitive;
+use crate::geometry::sphere::{self, Spheres};
+use crate::geometry::strip::StripRay;
+use crate::geometry::triangle::{self, Triangles, Vertices};
+use crate::geometry::{Crossing, Part, PrimitiveId, accept};
+use crate::observe::count::Observer;
+use crate::observe::event::Event;
+use crate::ray::Ray;
+use crate::scene::Scene;
+use crate::target::{InWide, SMALL};
+
+/// The best hit so far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Candidate<N> {
+    pub(super) t: N,
+    pub(super) place: PrimitiveId,
+    pub(super) part: Part,
+}
+
+/// The search for hits, one leaf at a time.
+pub(super) struct Search<'s, 'a, N: Number, K> {
+    pub(super) scene: &'s Scene<'a>,
+    pub(super) ray: &'s Ray<N>,
+    cull: &'s K,
+    pub(super) recip_norm2: N,
+    /// The ray as strips are tested with it.
+    pub(super) strip_ray: InWide<StripRay<N>>,
+    /// No hit beyond this counts.
+    pub(super) tmax: N,
+    pub(super) best: Option<Candidate<N>>,
+}
+
+impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
+    #[inline(always)]
+    pub(super) fn new(scene: &'s Scene<'a>, ray: &'s Ray<N>, cull: &'s K) -> Self {
+        Self {
+            scene,
+            ray,
+            cull,
+            recip_norm2: if scene.needs_norm {
+                N::recip_norm2(ray.slope)
+            } else {
+                N::ZERO
+            },
+            strip_ray: InWide::new(|| StripRay::new(ray, &scene.space.shapes.clusters().strips)),
+            tmax: ray.tmax,
+            best: None,
+        }
+    }
+
+    /// Considers a crossing; it is committed if it beats the best hit: a smaller t, or the same t of an earlier primitive.
+    #[inline(always)]
+    pub(super) fn consider(&mut self, crossing: Crossing<N>, place: PrimitiveId) {
+        if let Some(hit) = accept(self.ray, crossing, self.tmax) {
+            self.commit(hit, place);
+        }
+    }
+
+    /// The same of a primitive whose crossing may have been rounded out of its box.
+    #[inline]
+    #[cfg_attr(feature = "small", inline(never))]
+    fn consider_in_box(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: PrimitiveId) {
+        if let Some(hit) = accept_in_box(self.ray, self.cull, crossing, bounds, self.tmax) {
+            self.commit(hit, place);
+        }
+    }
+
+    /// The same, out of line, because few of the primitives that are tested come this far.
+    #[cfg_attr(not(feature = "small"), inline(never))]
+    fn consider_out_of_line(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: PrimitiveId) {
+        self.consider_in_box(crossing, bounds, place);
+    }
+
+    /// Commits a hit in the interval that is left, unless an earlier primitive is met at the same t.
+    // Out of line on hosts, where many places come here and few rays.
+    #[cfg_attr(feature = "wide", inline(never))]
+    #[cfg_attr(not(feature = "wide"), inline(always))]
+    fn commit(&mut self, (t, part): (N, Part), place: PrimitiveId) {
+        // No hit lies beyond the best one, so this one is nearer, or as near.
+        let tie = self.best.filter(|best| t >= best.t);
+        if tie.is_some_and(|best| self.scene.key(best.place) <= self.scene.key(place)) {
+            return;
+        }
+        self.tmax = t;
+        self.best = Some(Candidate { t, place, part });
+    }
+
+    /// Reports a primitive after its test, and after it was considered if it was met.
+    #[inline(always)]
+    pub(super) fn observe<C: Observer>(
+        &self,
+        place: PrimitiveId,
+        crossing: Option<&Crossing<N>>,
+        count: &mut C,
+    ) {
+        if C::ENABLED {
+            count.event(Event::Candidate {
+                kind: place.kind,
+                primitive: self.scene.primitive_at(place),
+                crossing: crossing.map(|c| [c.enter.0, c.leave.0].map(N::length_to_f64)),
+                nearest: self.best.is_some_and(|best| best.place == place),
+            });
+        }
+    }
+
+    /// Tests the primitives of a leaf, or, where `ANY` hit will do, of a pack only until one is hit.
+    #[inline(always)]
+    pub(super) fn leaf<A: Accel, C: Observer, const ANY: bool>(
+        &mut self,
+        leaf: Leaf,
+        count: &mut C,
+    ) {
+        if A::HAS_CLUSTERS && leaf.count == 0 {
+            return self.cluster::<_, ANY>(leaf, count);
+        }
+        count.objects(leaf.count);
+        self.slots(leaf, count);
+    }
+
+    /// Tests the primitives of a range of slots.
+    #[inline(always)]
+    fn slots<C: Observer>(&mut self, leaf: Leaf, count: &mut C) {
+        let slots = leaf.slots();
+        let shapes = &self.scene.space.shapes;
+        macro_rules! by_kind {
+            (
+                forms { $($form:tt)* }
+                records { $(
+                    $(#[doc = $doc:literal])* $kind:ident = $number:literal, $name:literal,
+                    [$field:ident: $module:ident::$record:ident], $section:tt;
+                )* }
+            ) => {
+                match leaf.kind {
+                    // Code that was left out, and that no blob here leads to.
+                    kind if !kind.is_available() => (),
+                    Kind::Triangle => self.indexed_triangles(leaf, count),
+                    Kind::Sphere => match shapes.spheres {
+                        Spheres::S16(spheres) => self.spheres(spheres.get(slots), leaf, count),
+                        Spheres::S24(_) if !WIDE_LATTICE => (),
+                        Spheres::S24(spheres) => self.spheres(spheres.get(slots), leaf, count),
+                    },
+                    $(Kind::$kind => self.records(shapes.$field.get(slots), leaf, count),)*
+                }
+            };
+        }
+        shapes!(by_kind);
+    }
+
+    /// Tests the triangles of a range of slots.
+    #[inline(always)]
+    fn indexed_triangles<C: Observer>(&mut self, leaf: Leaf, count: &mut C) {
+        let slots = leaf.slots();
+        let shapes = &self.scene.space.shapes;
+        match (&shapes.vertices, &shapes.triangles) {
+            (Vertices::V16(v), Triangles::U16(t)) => self.triangles(v, t.get(slots), leaf, count),
+            (_, Triangles::U32(_)) if !WIDE_INDICES => (),
+            (Vertices::V24(_), _) if !WIDE_LATTICE => (),
+            (Vertices::V16(v), Triangles::U32(t)) => self.triangles(v, t.get(slots), leaf, count),
+            (Vertices::V24(v), Triangles::U16(t)) => self.triangles(v, t.get(slots), leaf, count),
+            (Vertices::V24(v), Triangles::U32(t)) => self.triangles(v, t.get(slots), leaf, count),
+        }
+    }
+
+    /// Tests the records of a shape.
+    #[inline(always)]
+    fn records<T: Primitive, C: Observer>(
+        &mut self,
+        records: Option<&[T]>,
+        leaf: Leaf,
+        count: &mut C,
+    ) {
+        self.solids(
+            records,
+            leaf,
+            count,
+            |search, record| {
+                if T::TESTS_BOX && K::misses(search.ray, search.tmax, &record.bounds()) {
+                    return None;
+                }
+                record.cross(search.ray, search.recip_norm2)
+            },
+            |search, crossing, record, place| {
+                if T::CLAMPS {
+                    search.consider_out_of_line(crossing, record.bounds(), place);
+                } else {
+                    search.consider(crossing, place);
+                }
+            },
+        );
+    }
+
+    /// Tests records one after the other, and takes those that are met.
+    #[inline(always)]
+    fn solids<T, C: Observer>(
+        &mut self,
+        records: Option<&[T]>,
+        leaf: Leaf,
+        count: &mut C,
+        cross: impl Fn(&Self, &T) -> Option<Crossing<N>>,
+        consider: impl Fn(&mut Self, Crossing<N>, &T, PrimitiveId),
+    ) {
+        for (index, record) in numbered(leaf, records) {
+            let crossing = cross(self, record);
+            let place = PrimitiveId::in_slot(leaf.kind, index);
+            if let Some(crossing) = crossing {
+                consider(self, crossing, record, place);
+            }
+            self.observe(place, crossing.as_ref(), count);
+        }
+    }
+
+    #[inline(always)]
+    fn spheres<S: Sphere, C: Observer>(
+        &mut self,
+        spheres: Option<&[S]>,
+        leaf: Leaf,
+        count: &mut C,
+    ) {
+        let cross = |search: &Self, record: &S| {
+            let (center, radius) = record.lattice();
+            sphere::cross(search.ray, search.recip_norm2, center, radius)
+        };
+        let consider = |search: &mut Self, crossing, _: &S, place| search.consider(crossing, place);
+        self.solids(spheres, leaf, count, cross, consider);
+    }
+
+    /// Chooses the copy of the triangle test for the ray's major axis, where there is one for each.
+    #[inline(always)]
+    fn triangles<V: Vertex, I: Corners, C: Observer>(
+        &mut self,
+        vertices: &&[V],
+        triangles: Option<&[I]>,
+        leaf: Leaf,
+        count: &mut C,
+    ) {
+        let Some(triangles) = triangles else { return };
+        let end = leaf.first.wrapping_add(leaf.count);
+        match self.ray.major {
+            _ if SMALL => {
+                self.triangles_along::<{ triangle::ANY }, V, I, C>(vertices, triangles, end, count)
+            }
+            0 => self.triangles_along::<0, V, I, C>(vertices, triangles, end, count),
+            1 => self.triangles_along::<1, V, I, C>(vertices, triangles, end, count),
+            _ => self.triangles_along::<2, V, I, C>(vertices, triangles, end, count),
+        }
+    }
+
+    /// Tests the triangles of the slots before `end`.
+    ///
+    /// A slot is counted only where it is asked for, and the vertices lie where they are borrowed
+    /// from: what is handed on and kept is little.
+    // Apart from the walk both keep more of what they need in the few registers of small cores.
+    #[cfg_attr(not(feature = "wide"), inline(never))]
+    fn triangles_along<const MAJOR: usize, V: Vertex, I: Corners, C: Observer>(
+        &mut self,
+        vertices: &&[V],
+        mut triangles: &[I],
+        end: u32,
+        count: &mut C,
+    ) {
+        let projection = triangle::Projection::of::<MAJOR, V>(self.ray);
+        while let [record, rest @ ..] = triangles {
+            let index = end.wrapping_sub(triangles.len() as u32);
+            triangles = rest;
+            let [a, b, c] = record.corners();
+            let corners = (vertices.get(a), vertices.get(b), vertices.get(c));
+            let (Some(a), Some(b), Some(c)) = corners else {
+                continue;
+            };
+            if projection.meets::<MAJOR, V>(a, b, c) {
+                self.triangle_in_slot(vertices, record, index, count);
+            } else {
+                self.observe(PrimitiveId::in_slot(Kind::Triangle, index), None, count);
+            }
+        }
+    }
+
+    /// Takes a triangle of its own record that the ray meets somewhere on its line.
+    ///
+    /// Its corners are read again: handed on, they would take up memory for those that are not met.
+    #[inline(never)]
+    fn triangle_in_slot<V: Vertex, I: Corners, C: Observer>(
+        &mut self,
+        vertices: &&[V],
+        record: &I,
+        index: u32,
+        count: &mut C,
+    ) {
+        let [a, b, c] = record.corners();
+        let corners = (vertices.get(a), vertices.get(b), vertices.get(c));
+        if let (Some(a), Some(b), Some(c)) = corners {
+            let corners = [a, b, c].map(Vertex::position);
+            self.triangle(corners, PrimitiveId::in_slot(Kind::Triangle, index), count);
+        }
+    }
+
+    /// Takes a triangle that the ray meets somewhere on its line.
+    #[inline(always)]
+    pub(super) fn triangle<C: Observer>(
+        &mut self,
+        corners: [[i32; 3]; 3],
+        place: PrimitiveId,
+        count: &mut C,
+    ) {
+        let crossing = triangle::cross(self.ray, corners);
+        if let Some((t, steeply)) = crossing {
+            let crossing = Crossing::flat(t);
+            if steeply {
+                self.consider(crossing, place);
+            } else {
+                self.consider_in_box(crossing, triangle::bounds(corners), place);
+            }
+        }
+        let crossing = crossing.map(|(t, _)| Crossing::flat(t));
+        self.observe(place, crossing.as_ref(), count);
+    }
+}
+
+/// The records of a leaf's slots, with the slots.
+#[inline(always)]
+fn numbered<T>(leaf: Leaf, records: Option<&[T]>) -> impl Iterator<Item = (u32, &T)> {
+    let mut next = leaf.first;
+    records.unwrap_or_default().iter().map(move |record| {
+        let slot = next;
+        next = slot.wrapping_add(1);
+        (slot, record)
+    })
+}

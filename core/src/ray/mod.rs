@@ -1,0 +1,235 @@
+//! Rays, in the one form that every kernel uses.
+
+mod error;
+mod pencil;
+mod start;
+
+pub use error::RayError;
+pub use pencil::Pencil;
+
+use crate::axis::pick;
+use crate::format::record::UnitBox;
+use crate::number::Arithmetic;
+use crate::observe::event::Event;
+use start::{
+    check_interval, check_origin, end_after, far_start, interval, is_near, near_start, way_to_box,
+};
+
+/// A half-line with an interval, ready to be traced through one scene.
+///
+/// A ray is parametrised along the *major axis* of its direction, the one with the largest
+/// component: `point = origin + t * slope`, where the slope of the major axis is 1 or -1 and the
+/// others lie between. `t` is therefore a length in units (see [`Number`](crate::Number)), never
+/// overflows, and needs no normalised direction. For a direction `d` of any length, the parameter
+/// in multiples of `d` is `t / |d[major]|`.
+///
+/// An origin before the scene's box is moved along the ray to the plane in which the box begins,
+/// and `t` is counted from there inside the kernels; [`Hit::t`](crate::Hit) is counted from the
+/// origin that was given.
+///
+/// # Limits
+/// - **Origin:** each coordinate is at most 2^37 units ([`FARTHEST`]), or the ray is rejected with
+///   [`RayError::Distance`]. A scene's box is at most 2^16 units wide, so rays from 2^20 times its width
+///   are answered. The origin is moved in twice the format's precision, by the direction as it is given
+///   and not by its rounded slopes: from any distance the ray starts where it comes to the box, within two
+///   roundings of the largest coordinate there (in `f32`: of the largest coordinate of a scene, 2^15
+///   units).
+/// - **Direction:** any finite length but 0, down to the smallest denormal number and up to the largest
+///   finite one.
+/// - **`tmin`, `tmax`:** anything but NaN; infinite ones are endless.
+/// - **`t` of a hit** is rounded to the format: in `f32` it is off by up to 2^-24 of itself, in `f64` by
+///   2^-53, and in `fixed` by a sub-step, 2^-13 of a unit. [`Hit::point`](crate::Hit::point) is not taken
+///   from it, and is as good as that of a ray from near by.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray<N: Arithmetic> {
+    pub(crate) origin: [N; 3],
+    pub(crate) slope: [N; 3],
+    pub(crate) major: usize,
+    /// How far the origin was moved.
+    pub(crate) moved: N::Wide,
+    pub(crate) tmin: N,
+    pub(crate) tmax: N,
+}
+
+impl<N: Arithmetic> Ray<N> {
+    /// A ray through a scene whose box is `bounds` (see [`Scene::bounds`](crate::Scene::bounds)).
+    ///
+    /// Origin and interval are lengths in units; the direction is of any length but 0. Hits are
+    /// reported for `tmin <= t <= tmax`, in lengths along the major axis; `tmin` may be negative.
+    ///
+    /// # Errors
+    /// If the direction is zero, or anything is NaN, or the origin or direction infinite, or the origin
+    /// farther than [`FARTHEST`] along an axis, or `tmin > tmax`: see the limits of [`Ray`].
+    // Hosts have the room; through memory a ray would cost as much again.
+    #[cfg_attr(feature = "wide", inline(always))]
+    pub fn new(
+        bounds: &UnitBox,
+        origin: [N::Wide; 3],
+        direction: [N::Wide; 3],
+        tmin: N::Wide,
+        tmax: N::Wide,
+    ) -> Result<Self, RayError> {
+        let (slope, major) = N::slopes(direction).ok_or(RayError::Direction)?;
+        check_interval(tmin, tmax)?;
+        let forward = pick(slope, major) > N::ZERO;
+        let moved = way_to_box::<N>(bounds, pick(origin, major), (major, forward), tmin);
+        let single = (origin.map(N::narrow), N::narrow(moved));
+        let (start, moved, within) = if is_near(single.0, major, single.1) {
+            (near_start(single.0, single.1, slope), moved, true)
+        } else {
+            let [x, y, z] = origin;
+            check_origin::<N>(x, y, z)?;
+            far_start::<N, false>(bounds, origin, direction, (slope, major), moved)
+        };
+        let [tmin, tmax] = interval(tmin, tmax, moved);
+        Ok(Self {
+            origin: start,
+            slope,
+            major,
+            moved,
+            tmin,
+            tmax: if within { tmax } else { -N::ONE },
+        })
+    }
+
+    /// A ray from a place in the scene, as hits give places, with all `t` up to `tmax` but 0, where it
+    /// meets what it starts on. `None` if the direction is zero.
+    #[cfg_attr(feature = "wide", inline(always))]
+    pub(crate) fn from_inside(
+        bounds: &UnitBox,
+        origin: [N; 3],
+        direction: [N::Wide; 3],
+        tmax: N::Wide,
+    ) -> Option<Self> {
+        let (slope, major) = N::slopes(direction)?;
+        let forward = pick(slope, major) > N::ZERO;
+        // A place beside the box at most: always near.
+        let from = pick(origin, major).widen();
+        let zero = N::Wide::default();
+        let moved = way_to_box::<N>(bounds, from, (major, forward), zero);
+        Some(Self {
+            origin: near_start(origin, N::narrow(moved), slope),
+            slope,
+            major,
+            moved,
+            tmin: if moved > zero {
+                N::ZERO
+            } else {
+                N::step_beside(N::ZERO)
+            },
+            tmax: end_after(tmax, moved),
+        })
+    }
+
+    /// A ray given in double precision, rounded to this format only after its origin was moved to
+    /// the scene: what hosts use, and tests.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{Fixed, Ray, RayError, Scene};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let ray = Ray::<Fixed>::from_f64(scene.bounds(), [0.0; 3], [0.0, 0.0, -2.0], 0.0, 1e9)?;
+    /// assert_eq!(ray.major_axis(), 2);
+    /// let zero = Ray::<Fixed>::from_f64(scene.bounds(), [0.0; 3], [0.0; 3], 0.0, 1e9);
+    /// assert_eq!(zero.err(), Some(RayError::Direction));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Ray::new`].
+    #[cfg_attr(feature = "wide", inline(always))]
+    pub fn from_f64(
+        bounds: &UnitBox,
+        origin: [f64; 3],
+        direction: [f64; 3],
+        tmin: f64,
+        tmax: f64,
+    ) -> Result<Self, RayError> {
+        let exact = Ray::<f64>::new(bounds, origin, direction, tmin, tmax)?;
+        Ok(Self {
+            origin: exact.origin.map(|x| N::flush_tiny(N::length_from_f64(x))),
+            slope: exact.slope.map(N::ratio_from_f64),
+            major: exact.major,
+            moved: N::far_from_f64(exact.moved),
+            tmin: N::length_from_f64(exact.tmin),
+            tmax: N::length_from_f64(exact.tmax),
+        })
+    }
+
+    /// The axis along which `t` is measured: 0, 1 or 2.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// let ray = gridel_core::Ray::<f32>::from_f64(scene.bounds(), [0.0; 3], [1.0, 5.0, 1.0], 0.0, 1.0)?;
+    /// assert_eq!(ray.major_axis(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn major_axis(&self) -> usize {
+        self.major
+    }
+
+    /// The direction, scaled so that its major component is 1 or -1.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// let ray = gridel_core::Ray::<f32>::from_f64(scene.bounds(), [0.0; 3], [1.0, 2.0, -4.0], 0.0, 1.0)?;
+    /// assert_eq!(ray.slope(), [0.25, 0.5, -1.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn slope(&self) -> [N; 3] {
+        self.slope
+    }
+
+    /// Where the ray starts inside of the kernels, in units: its own origin, or where it comes to the
+    /// scene's box.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// // From far away a ray starts where it comes to the scene's box.
+    /// let ray = gridel_core::Ray::<f64>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+    /// assert_eq!(ray.start()[1] + ray.moved(), 1e6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn start(&self) -> [N; 3] {
+        self.origin
+    }
+
+    /// The t of [`start`](Self::start), as the caller counts it.
+    pub fn moved(&self) -> N::Wide {
+        self.moved
+    }
+
+    /// The interval that counts, from [`start`](Self::start).
+    pub fn interval(&self) -> [N; 2] {
+        [self.tmin, self.tmax]
+    }
+
+    /// A query along this ray, as events report it.
+    pub(crate) fn query(&self, any: bool) -> Event {
+        Event::Query {
+            origin: self.origin.map(N::length_to_f64),
+            slope: self.slope.map(N::ratio_to_f64),
+            moved: N::far_to_f64(self.moved),
+            interval: [self.tmin, self.tmax].map(N::length_to_f64),
+            any,
+        }
+    }
+
+    /// The point at a parameter that is counted inside the kernels.
+    #[inline]
+    pub(crate) fn at(&self, t: N) -> [N; 3] {
+        let along = |axis: usize| self.origin[axis] + t * self.slope[axis];
+        [along(0), along(1), along(2)]
+    }
+}
+
+#[cfg(test)]
+mod tests;
