@@ -173,9 +173,9 @@ fn atom<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::Sphere;
     use crate::scene::test_scenes::{self, load};
     use crate::scene::{ImportOptions, MoleculeOptions, MoleculeStyle, Shape, read};
+    use crate::shape::Sphere;
     use std::path::Path;
 
     fn read_with(text: &str, molecule: MoleculeOptions) -> Result<Imported, SceneError> {
@@ -209,7 +209,10 @@ mod tests {
         assert_eq!(symbols(&imported), "O H H");
         let oxygen = &imported.scene.objects[0];
         assert_eq!((oxygen.name.as_str(), oxygen.place.line), ("O", 3));
-        assert!(matches!(oxygen.shape, Shape::Sphere(Sphere { radius: 1.52, .. })));
+        assert!(matches!(
+            oxygen.shape,
+            Shape::Sphere(Sphere { radius: 1.52, .. })
+        ));
         let sticks = read_with(
             IMPORTER.example,
             MoleculeOptions {
