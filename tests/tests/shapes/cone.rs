@@ -29,8 +29,8 @@ fn cone(random: &mut Random) -> (Solid, DVec3, DVec3, f64) {
     }
     let radius = lattice(random.magnitude(0.1, 9000.0));
     let solid = Solid::Cone(Cone {
-        base: base,
-        apex: apex,
+        base,
+        apex,
         base_radius: radius,
         apex_radius: 0.0,
     });

@@ -22,8 +22,8 @@ pub fn cylinder(base: DVec3, apex: DVec3, radius: f64) -> Solid {
     }
     let radius = lattice(radius).max(1.0 / 256.0);
     Solid::Cone(Cone {
-        base: base,
-        apex: apex,
+        base,
+        apex,
         base_radius: radius,
         apex_radius: radius,
     })

@@ -50,7 +50,7 @@ fn the_rim_belongs_to_the_disc_and_its_plane_does_not() {
                     Case {
                         class: "rim",
                         solid: Solid::Disc(Disc {
-                            center: center,
+                            center,
                             normal: DVec3::AXES[axis],
                             radius: radius * size,
                         }),

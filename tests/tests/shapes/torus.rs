@@ -51,8 +51,8 @@ fn tori(
         let minor = length(major * proportion(random));
         let center = (direction(random) * random.unit() * 8000.0).map(lattice);
         let solid = Solid::Torus(Torus {
-            center: center,
-            axis: axis,
+            center,
+            axis,
             major_radius: major,
             minor_radius: minor,
         });
