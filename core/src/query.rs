@@ -7,7 +7,7 @@ use crate::accel::{Accel, Number};
 #[cfg(feature = "wide")]
 use crate::format::cluster::{LANES, Pack, Strip};
 use crate::format::kind::shapes;
-use crate::format::limits::{WIDE_INDICES, WIDE_LATTICE};
+use crate::format::limits::{UNBOUNDED, WIDE_INDICES, WIDE_LATTICE};
 use crate::format::record::{Corners, Sphere, UnitBox, Vertex};
 use crate::format::{Kind, Leaf};
 use crate::geometry::primitive::Primitive;
@@ -27,6 +27,8 @@ use crate::scene::Scene;
 #[cfg(feature = "wide")]
 use crate::simd::{Portable, Simd, SimdLevel, with_simd};
 use crate::target::SMALL;
+
+mod unbounded;
 
 /// What a ray met.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -326,6 +328,8 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                         Spheres::S24(_) if !WIDE_LATTICE => (),
                         Spheres::S24(spheres) => self.spheres(spheres.get(slots), leaf, count),
                     },
+                    // No structure leads to them.
+                    kind if !kind.is_bounded() => (),
                     $(Kind::$kind => self.records(shapes.$field.get(slots), leaf, count),)*
                 }
             };
@@ -568,7 +572,22 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
     if C::ENABLED {
         count.event(ray.query(any));
     }
-    if ANY {
+    let far = if UNBOUNDED && scene.has_unbounded {
+        unbounded::nearest(scene, ray, count)
+    } else {
+        None
+    };
+    let shorter;
+    if let Some((t, place)) = far {
+        shorter = ray.until(t);
+        (search.ray, search.tmax) = (&shorter, shorter.tmax);
+        let (t, part) = (shorter.tmax, 0);
+        search.best = Some(Candidate { t, place, part });
+    }
+    let ray = if UNBOUNDED { search.ray } else { ray };
+    if any && far.is_some() {
+        // One is enough.
+    } else if ANY {
         A::walk_any(
             &scene.space,
             views,
@@ -609,8 +628,12 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
         );
     }
     let best = search.best?;
+    let t = match far {
+        Some((t, place)) if place == best.place => t,
+        _ => best.t.widen() + ray.moved,
+    };
     Some(Found {
-        t: best.t.widen() + ray.moved,
+        t,
         primitive: scene.primitive_at(best.place),
         best,
     })
@@ -720,6 +743,12 @@ impl<N: Number> Hit<N> {
         } else {
             self.outside()
         }
+    }
+
+    /// Whether the primitive lies in no structure, and the hit perhaps far from the scene's box.
+    #[inline(always)]
+    pub(crate) fn is_unbounded(&self) -> bool {
+        UNBOUNDED && Leaf::from_word(self.place).is_some_and(|leaf| !leaf.kind.is_bounded())
     }
 
     /// The hit as events tell it.

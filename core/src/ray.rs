@@ -8,6 +8,10 @@ use crate::observe::event::Event;
 use crate::target::SMALL;
 use core::cmp::Ordering;
 use core::fmt;
+pub(crate) use unmoved::Unmoved;
+use unmoved::{FarPlace, Place, rounded, unmoved};
+
+mod unmoved;
 
 /// A half-line with an interval, ready to be traced through one scene.
 ///
@@ -43,6 +47,7 @@ pub struct Ray<N: Arithmetic> {
     pub(crate) moved: N::Wide,
     pub(crate) tmin: N,
     pub(crate) tmax: N,
+    pub(crate) unmoved: Unmoved<N>,
 }
 
 /// Why something is not a ray.
@@ -345,25 +350,30 @@ impl<N: Arithmetic> Pencil<N> {
         far: impl Fn(&UnitBox, &[N::Wide; 3], N::Wide) -> ([N; 3], N::Wide, bool),
     ) -> Ray<N> {
         let forward = pick(slope, major) > N::ZERO;
-        let (origin, moved, within) = match &self.0 {
+        let zero = N::Wide::default();
+        let (start, moved, within) = match &self.0 {
             Origin::Near { origin, moved } => {
                 let [down, up] = pick(*moved, major);
                 let moved = if forward { up } else { down };
                 (near_start(*origin, moved, slope), moved.widen(), true)
             }
             Origin::Far { origin, bounds } => {
-                let zero = N::Wide::default();
                 let moved = way_to_box::<N>(bounds, pick(*origin, major), (major, forward), zero);
                 far(bounds, origin, moved)
             }
         };
+        let origin = || match &self.0 {
+            Origin::Near { origin, .. } => origin.map(N::widen),
+            Origin::Far { origin, .. } => *origin,
+        };
         Ray {
-            origin,
+            origin: start,
             slope,
             major,
             moved,
             tmin: N::ZERO,
             tmax: if within { N::FAR } else { -N::ONE },
+            unmoved: unmoved(origin, [zero, N::far(i64::MAX)], within),
         }
     }
 }
@@ -371,7 +381,7 @@ impl<N: Arithmetic> Pencil<N> {
 /// A length beyond every scene, however far from it a ray begins.
 #[cfg(test)]
 fn endless<N: Arithmetic>() -> N::Wide {
-    N::far(1 << 60)
+    N::far(i64::MAX)
 }
 
 impl<N: Arithmetic> Ray<N> {
@@ -405,6 +415,7 @@ impl<N: Arithmetic> Ray<N> {
             check_origin::<N>(x, y, z)?;
             far_start::<N, false>(bounds, origin, direction, (slope, major), moved)
         };
+        let unmoved = unmoved(|| origin, [tmin, tmax], within);
         let [tmin, tmax] = interval(tmin, tmax, moved);
         Ok(Self {
             origin: start,
@@ -413,6 +424,7 @@ impl<N: Arithmetic> Ray<N> {
             moved,
             tmin,
             tmax: if within { tmax } else { -N::ONE },
+            unmoved,
         })
     }
 
@@ -432,18 +444,30 @@ impl<N: Arithmetic> Ray<N> {
         let from = pick(origin, major).widen();
         let zero = N::Wide::default();
         let moved = way_to_box::<N>(bounds, from, (major, forward), zero);
+        let beside = N::step_beside(N::ZERO);
         Some(Self {
+            unmoved: unmoved(|| origin.map(N::widen), [beside.widen(), tmax], true),
             origin: near_start(origin, N::narrow(moved), slope),
             slope,
             major,
             moved,
-            tmin: if moved > zero {
-                N::ZERO
-            } else {
-                N::step_beside(N::ZERO)
-            },
+            tmin: if moved > zero { N::ZERO } else { beside },
             tmax: end_after(tmax, moved),
         })
+    }
+
+    /// [`from_inside`](Self::from_inside) of a place that can lie far outside of the scene's box, on a shape without
+    /// bounds.
+    #[cold]
+    pub(crate) fn from_anywhere(
+        bounds: &UnitBox,
+        origin: [N; 3],
+        direction: [N::Wide; 3],
+        tmax: Option<N::Wide>,
+    ) -> Option<Self> {
+        let beside = N::step_beside(N::ZERO).widen();
+        let tmax = tmax.unwrap_or(N::far(i64::MAX));
+        Self::new(bounds, origin.map(N::widen), direction, beside, tmax).ok()
     }
 
     /// A ray given in double precision, rounded to this format only after its origin was moved to
@@ -480,6 +504,7 @@ impl<N: Arithmetic> Ray<N> {
             moved: N::far_from_f64(exact.moved),
             tmin: N::length_from_f64(exact.tmin),
             tmax: N::length_from_f64(exact.tmax),
+            unmoved: rounded(exact.unmoved, N::far_from_f64),
         })
     }
 
@@ -537,6 +562,38 @@ impl<N: Arithmetic> Ray<N> {
         [self.tmin, self.tmax]
     }
 
+    /// The interval as the caller gave it, counted from the origin: it can begin before [`start`](Self::start). It counts
+    /// for shapes without bounds, and is empty in builds without them.
+    pub fn unmoved_interval(&self) -> [N::Wide; 2] {
+        let none = [N::far(1), N::Wide::default()];
+        self.unmoved.first().map_or(none, |ray| ray.interval)
+    }
+
+    /// A place on the ray, and its t as the caller counts it: the ray's [`start`](Self::start), or its origin where
+    /// it passes the scene so far away that it has no start.
+    pub fn base(&self) -> ([N::Wide; 3], N::Wide) {
+        let start = self.start_place();
+        self.unmoved.first().map_or(start, |ray| ray.base(start))
+    }
+
+    fn start_place(&self) -> Place<N> {
+        (self.origin.map(N::widen), self.moved)
+    }
+
+    /// Where the ray crosses a surface without bounds, given how far from a place on the ray that is.
+    pub(crate) fn meet_far(
+        &self,
+        cross: impl Fn([N::Wide; 3]) -> Option<N::Wide>,
+    ) -> Option<FarPlace<N>> {
+        self.unmoved.first()?.meet(self.start_place(), cross)
+    }
+
+    /// The place at a `t` that is counted from the origin, which can lie anywhere.
+    pub(crate) fn far_place(&self, t: N::Wide) -> Option<[N::Wide; 3]> {
+        let place = self.unmoved.first()?.place(self.start_place(), t);
+        Some(place.coordinates(self.slope))
+    }
+
     /// A query along this ray, as events tell it.
     pub(crate) fn query(&self, any: bool) -> Event {
         Event::Query {
@@ -546,6 +603,15 @@ impl<N: Arithmetic> Ray<N> {
             interval: [self.tmin, self.tmax].map(N::length_to_f64),
             any,
         }
+    }
+
+    /// The ray with an interval that ends at a t, which the caller counts, where that is less; the end as it is
+    /// counted inside of the kernels.
+    pub(crate) fn until(&self, t: N::Wide) -> Self {
+        let tmax = self
+            .tmax
+            .min(end_after::<N>(t, self.moved).min(N::FAR.half()));
+        Self { tmax, ..*self }
     }
 
     /// The point at a parameter that is counted inside the kernels.
