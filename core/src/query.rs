@@ -53,6 +53,7 @@ pub struct Hit<N: Number> {
     /// |---|---|---|
     /// | face of a box; triangle or disc at right angles to an axis | the step from the coordinate on that axis, which is the surface's own, to the next number | 1 sub-step |
     /// | other triangle or disc, of normal `n`, with `r` from `p` to its first corner or centre | `16 u sum(abs(n r)) + 4 u sum(abs(n p))` | 4 sub-steps and `2^-28 sum(abs(r))` |
+    /// | plane | as of a disc, with `r` from `p` to its point | as of a disc, or four times that where `r` is longer than 2^17 units |
     /// | sphere of radius `r` | `20 u r + 4 u sum(abs(n p))` | 8 sub-steps |
     /// | cylinder, cone, frustum | `16 u` of the largest coordinate of the solid, the point and the ray's start | 8 sub-steps |
     /// | torus | `16 u` of the largest coordinate of the solid; on the axis, where `r` is at least `R`, the way along it to where the surface is that far away | likewise, of 8 sub-steps |
