@@ -49,6 +49,13 @@ impl Extent {
     };
 
     fn of(solid: &Solid) -> Self {
+        if !solid.is_bounded() {
+            // It is near whatever lies in the box of a scene.
+            return Self {
+                lowest: DVec3::splat(f64::from(i16::MIN)),
+                highest: DVec3::splat(f64::from(i16::MAX)),
+            };
+        }
         let around = |(center, radius): (DVec3, f64)| Self {
             lowest: center - radius,
             highest: center + radius,

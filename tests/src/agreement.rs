@@ -6,6 +6,7 @@ use gridel_core::accel::cull::Cull;
 use gridel_core::accel::hierarchy::bvh;
 use gridel_core::accel::{Space, StructureViews, Traverse};
 use gridel_core::format::Leaf;
+use gridel_core::format::limits::FARTHEST;
 use gridel_core::{
     Accel, Bvh, Counters, Flagged, List, NoCount, Number, Observer, Ray, Scene, StackView,
     Structure,
@@ -71,6 +72,10 @@ pub fn compare<N: Number>(
         if random.one_in(10) {
             let direction = random.direction();
             let secondary = UnitRay::new(from, direction);
+            // On a shape without bounds, farther away than rays may begin.
+            if from.iter().any(|x| x.abs() > (FARTHEST >> 13) as f64) {
+                continue;
+            }
             compare_one::<N>(name, scene, &secondary, list_rays, &mut tally);
         }
     }

@@ -6,6 +6,7 @@ pub use crate::shapes::lattice;
 use crate::random::Random;
 use crate::shapes::{self, Room, lattice_point, own_direction, place};
 use glam::DVec3;
+use gridel_core::Kind;
 use gridel_host::shape::Solid;
 use std::sync::LazyLock;
 
@@ -20,6 +21,17 @@ pub struct Case {
 /// Names of shapes, in the order of their numbers here.
 pub static SHAPES: LazyLock<Vec<&str>> =
     LazyLock::new(|| shapes::names().map(|named| named.name).collect());
+
+/// The numbers of those that have a box.
+pub static BOUNDED: LazyLock<Vec<usize>> = LazyLock::new(|| {
+    let is_bounded = |name: &str| {
+        let mut kinds = Kind::ALL.into_iter();
+        kinds.all(|kind| kind.name() != name || kind.is_bounded())
+    };
+    (0..SHAPES.len())
+        .filter(|&shape| is_bounded(SHAPES[shape]))
+        .collect()
+});
 
 /// How large, and how far from the scene's middle: units.
 const SIZES: [(&str, f64, f64); 5] = [

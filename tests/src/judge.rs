@@ -185,10 +185,11 @@ impl Worst {
     }
 }
 
-/// Shapes of every kind whose numbers lie on the lattice, around the scene's zero.
+/// Shapes of every kind with a box whose numbers lie on the lattice, around the scene's zero.
 pub fn lattice_soup(seed: u64, count: usize) -> gridel_host::scene::Scene {
     let solids = (0..count).map(|number| {
-        let shape = number % crate::cases::SHAPES.len();
+        let bounded = &*crate::cases::BOUNDED;
+        let shape = bounded[number % bounded.len()];
         let case = crate::cases::cases(seed * 1000 + number as u64, shape, 1, 0);
         Shape::from(case[0].solid.clone())
     });

@@ -9,7 +9,7 @@ use gridel_host::compile::{Compiled, Options, compile};
 use gridel_host::render::{Job, render};
 use gridel_host::resolution::unresolved;
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Scene, Shape};
-use gridel_host::shape::{Cuboid, Disc, Sphere};
+use gridel_host::shape::{Cuboid, Disc, Plane, Sphere};
 use gridel_host::verify::{Promise, verify};
 use gridel_tests::scenes;
 
@@ -48,18 +48,22 @@ enum Ground {
     Disc,
     TiltedTriangles,
     TiltedDisc,
+    Plane,
+    TiltedPlane,
 }
 
 const TILT: f64 = 1e-3;
 
 impl Ground {
-    const ALL: [Ground; 6] = [
+    const ALL: [Ground; 8] = [
         Ground::Slab,
         Ground::Cube,
         Ground::Triangles,
         Ground::Disc,
         Ground::TiltedTriangles,
         Ground::TiltedDisc,
+        Ground::Plane,
+        Ground::TiltedPlane,
     ];
 
     fn shape(self, extent: f64) -> Shape {
@@ -93,6 +97,14 @@ impl Ground {
             Ground::Disc => disc(DVec3::Y),
             Ground::TiltedTriangles => quad(TILT),
             Ground::TiltedDisc => disc(DVec3::new(-TILT, 1.0, 0.0)),
+            Ground::Plane => Shape::Plane(Plane {
+                point: corner(0.5, 0.0, 0.0),
+                normal: DVec3::Y,
+            }),
+            Ground::TiltedPlane => Shape::Plane(Plane {
+                point: DVec3::ZERO,
+                normal: DVec3::new(-TILT, 1.0, 0.0),
+            }),
         }
     }
 }
@@ -208,6 +220,38 @@ fn a_glass_ball_differs_by_no_more_than_a_step_of_the_lattice() {
             let most = moved.into_iter().max().expect("three");
             assert!(f32 <= most && fixed <= most, "{ground:?} {extent:e}");
         }
+    }
+}
+
+/// Mirrors, glass, chequers and shadows: on a plane as on a ground so large that its edge is a pixel away from the
+/// horizon.
+#[test]
+fn a_plane_looks_like_a_large_ground() {
+    let size = [320, 240];
+    for mirror in [0.0, 0.5] {
+        let scene = |ground: Ground| {
+            let mut scene = ball_on(ground, 1e4, DVec3::ZERO);
+            scene.materials[0].mirror = [mirror; 3];
+            blob(&scene)
+        };
+        let (plane, tilted) = (scene(Ground::Plane), scene(Ground::TiltedPlane));
+        let right = picture(&plane, Format::F64, size);
+        let slab = differing(&picture(&scene(Ground::Cube), Format::F64, size), &right);
+        let off = |blob: &Blob, format| {
+            differing(
+                &picture(blob, format, size),
+                &picture(blob, Format::F64, size),
+            )
+        };
+        let level = [Format::F32, Format::Fixed].map(|format| off(&plane, format));
+        let tilted = [Format::F32, Format::Fixed].map(|format| off(&tilted, format));
+        eprintln!("mirror {mirror}: slab {slab}, level {level:?}, tilted {tilted:?}");
+        // Chequers near the horizon are smaller than pixels.
+        assert!(slab <= 400, "{slab}");
+        assert!(
+            level.iter().chain(&tilted).all(|&it| it <= 400),
+            "{level:?} {tilted:?}"
+        );
     }
 }
 

@@ -30,7 +30,7 @@ impl Traverse for List {
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        for kind in Kind::ALL {
+        for kind in Kind::ALL.into_iter().filter(|kind| kind.is_bounded()) {
             let mut first = 0;
             let end = space.shapes.records(kind) as u32;
             while first < end {

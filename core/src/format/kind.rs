@@ -26,6 +26,8 @@ macro_rules! shapes {
                 Cone = 4, "cone", [cones: cone::Cone], [Cones = 12, "cones"];
                 /// A torus.
                 Torus = 5, "torus", [tori: torus::Torus], [Tori = 60, "tori"];
+                /// An infinite plane.
+                Plane = 6, "plane", [planes: plane::Plane], [Planes = 63, "planes"];
             }
         }
     };

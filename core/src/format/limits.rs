@@ -24,6 +24,14 @@ pub const fn work_depth(depth: u8) -> usize {
 /// Eyes and lights of a blob are no farther away.
 pub const FARTHEST: i64 = 1 << 50;
 
+/// Shapes without bounds are met at less than 2^49 units from a ray's origin, or from where it comes to the scene's box,
+/// with 13 fraction bits.
+pub const FARTHEST_HIT: i64 = 1 << 62;
+
+/// How far from the lattice's middle the point of a shape without bounds is on each axis, in 1/256 unit: 2^17 units.
+/// So some point of it is a length in every format, with as much to spare.
+pub const FARTHEST_POINT: i64 = 1 << 25;
+
 /// Whether this build holds the code for scenes whose colours are display values.
 pub(crate) const DISPLAY_VALUES: bool = cfg!(feature = "display-values");
 
@@ -32,3 +40,6 @@ pub(crate) const WIDE_LATTICE: bool = cfg!(feature = "wide-lattice");
 
 /// Whether this build holds the code for vertex indices of more than 16 bits.
 pub(crate) const WIDE_INDICES: bool = cfg!(feature = "wide-indices");
+
+/// Whether this build holds the code for shapes without bounds.
+pub(crate) const UNBOUNDED: bool = cfg!(feature = "unbounded");

@@ -82,6 +82,7 @@ texts! {
         Vertex => "vertex",
         Radius => "radius",
         Center => "centre",
+        Point => "point",
         Normal => "normal",
         Axis => "axis",
         BaseCenter => "centre of the base",

@@ -23,8 +23,10 @@ pub(crate) trait Primitive: Pod {
     const FLAT: bool = false;
     /// Whether a normal that lies on the wrong side of the ray is made level with it by the caller.
     const LEVELED: bool = true;
+    /// Whether the shape has a box. One without is in no structure: every query tests it first.
+    const BOUNDED: bool = true;
 
-    /// The box on the box lattice.
+    /// The box on the box lattice; that of all points where the shape has none.
     fn bounds(&self) -> UnitBox;
 
     /// Where the line of a ray enters and leaves the shape, behind the origin too. `recip_norm2` is
@@ -32,6 +34,12 @@ pub(crate) trait Primitive: Pod {
     ///
     /// A shape that a line can enter more than once chooses the first interval that ends at or after the ray's `tmin`.
     fn cross<N: Arithmetic>(&self, ray: &Ray<N>, recip_norm2: N) -> Option<Crossing<N>>;
+
+    /// How far from a place of a ray its line crosses a shape without a box; no [`cross`](Self::cross) is asked for of
+    /// those.
+    fn cross_far<N: Arithmetic>(&self, _place: [N::Wide; 3], _slope: [N; 3]) -> Option<N::Wide> {
+        None
+    }
 
     /// How the surface lies where a ray meets it: the normal points outward, or to the front. `part` is that of the
     /// crossing, with [`LEAVING`](crate::geometry::LEAVING) where the ray leaves.

@@ -1,7 +1,7 @@
 //! All primitives of a blob, each kind in an array of its own.
 
 use crate::format::kind::shapes;
-use crate::format::limits::{WIDE_INDICES, WIDE_LATTICE};
+use crate::format::limits::{UNBOUNDED, WIDE_INDICES, WIDE_LATTICE};
 use crate::format::range::{At, at_most};
 use crate::format::record::{Header, UnitBox};
 use crate::format::{BlobError, Field, Kind, Leaf, SectionKind, Sections};
@@ -67,6 +67,30 @@ macro_rules! registry {
             }
         }
 
+        impl Kind {
+            /// Whether primitives of the kind have a box. Those that have none are in no structure: every query tests
+            /// them first. Builds without code for any of those hold none, and need not tell them apart.
+            #[inline(always)]
+            pub const fn is_bounded(self) -> bool {
+                match self {
+                    _ if !UNBOUNDED => true,
+                    Kind::Triangle | Kind::Sphere => true,
+                    $(Kind::$kind => super::$module::$record::BOUNDED,)*
+                }
+            }
+        }
+
+        impl Kind {
+            /// The last kind that leaves hold.
+            pub(crate) const LAST_BOUNDED: Kind = {
+                let mut last = Kind::ALL.len() - 1;
+                while !Kind::ALL[last].is_bounded() {
+                    last -= 1;
+                }
+                Kind::ALL[last]
+            };
+        }
+
         impl<'a> Shapes<'a> {
             /// Finds the records of a blob, or says which code for them this build lacks.
             pub(crate) fn read(sections: &Sections<'a>, header: &Header) -> Result<Self, BlobError> {
@@ -94,6 +118,7 @@ macro_rules! registry {
                     vertices: Vertices::read(sections, short)?,
                     triangles: Triangles::read(sections)?,
                     spheres: Spheres::read(sections, short)?,
+                    // Without the code there are none: see above.
                     $($field: if Kind::$kind.is_available() {
                         sections.records(SectionKind::$section)?
                     } else {
@@ -133,12 +158,19 @@ macro_rules! registry {
                     $(|| super::$module::$record::NEEDS_NORM && self.count(Kind::$kind) > 0)*
             }
 
-            /// The box of a primitive.
+            /// Whether any primitive has no box.
+            pub(crate) fn has_unbounded(&self) -> bool {
+                UNBOUNDED
+                    && Kind::ALL.into_iter().any(|kind| !kind.is_bounded() && self.records(kind) > 0)
+            }
+
+            /// The box of a primitive; `None` where it has none.
             pub(crate) fn bounds(&self, kind: Kind, index: usize) -> Option<UnitBox> {
                 Some(match kind {
                     _ if !kind.is_available() => return None,
                     Kind::Triangle => triangle::bounds(self.triangle(index)?),
                     Kind::Sphere => self.sphere_bounds(index)?,
+                    _ if !kind.is_bounded() => return None,
                     $(Kind::$kind => Primitive::bounds(self.$field.get(index)?),)*
                 })
             }
@@ -239,6 +271,12 @@ impl<'a> Shapes<'a> {
         self.before(Kind::ALL.len())
     }
 
+    /// Number of those that have a box too: structures count slots among them.
+    pub(crate) fn bounded(&self) -> usize {
+        let kinds = Kind::ALL.iter().filter(|kind| kind.is_bounded());
+        kinds.fold(0, |sum: usize, &kind| sum.wrapping_add(self.records(kind)))
+    }
+
     /// Number of clusters of a kind whose primitives lie nowhere else.
     pub(crate) fn sole_clusters(&self, kind: Kind) -> usize {
         match kind {
@@ -279,12 +317,12 @@ impl<'a> Shapes<'a> {
         kinds.fold(0, |sum: usize, &kind| sum.wrapping_add(self.records(kind)))
     }
 
-    /// The primitive of a slot among those of all kinds, as a leaf of its own; an empty leaf beyond
+    /// The primitive of a slot among those that have a box, as a leaf of its own; an empty leaf beyond
     /// the last.
     #[inline(always)]
     pub(crate) fn single(&self, slot: u32) -> Leaf {
         let mut first = slot;
-        for kind in Kind::ALL {
+        for kind in Kind::ALL.into_iter().filter(|kind| kind.is_bounded()) {
             let count = self.records(kind) as u32;
             if first < count {
                 let count = 1;

@@ -326,6 +326,15 @@ macro_rules! float_number {
                 wide * ratio
             }
 
+            fn far_over(wide: Self, ratios: Self) -> Self {
+                wide / ratios
+            }
+
+            fn remainder(wide: Self, period: Self) -> Self {
+                let rest = wide % period;
+                if rest < 0.0 { rest + period } else { rest }
+            }
+
             #[inline(always)]
             fn divide(numerator: Self, denominator: Self) -> Self {
                 numerator.div(denominator)

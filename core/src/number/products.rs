@@ -49,6 +49,11 @@ pub trait Products: Scalar {
     /// Quotient of two products whose kinds differ by one factor: (length by ratio) over (ratio by
     /// ratio), or (length by length) over (length by ratio): a length; saturates, and 0 / 0 is 0.
     fn divide(numerator: Self::Wide, denominator: Self::Wide) -> Self;
+    /// A far coordinate over a product of two ratios that is not 0, as a far coordinate; saturates at 2^49 units or
+    /// beyond.
+    fn far_over(wide: Self::Wide, ratios: Self::Wide) -> Self::Wide;
+    /// A far coordinate without whole periods: a length in \[0, `period`\].
+    fn remainder(wide: Self::Wide, period: Self) -> Self;
     /// Square root of length squared: a length; 0 for anything negative.
     fn root(square: Self::Wide) -> Self;
     /// Length of a vector of three products, as the same kind of product.

@@ -2,6 +2,7 @@
 
 use crate::accel::Number;
 use crate::format::Leaf;
+use crate::format::limits::UNBOUNDED;
 use crate::observe::event::Met;
 use crate::query::search::Candidate;
 use crate::ray::Ray;
@@ -84,6 +85,7 @@ pub struct Hit<N: Number> {
     /// |---|---|---|
     /// | face of a box; triangle or disc at right angles to an axis | the step from the coordinate on that axis, which is the surface's own, to the next number | 1 sub-step |
     /// | other triangle or disc, of normal `n`, with `r` from `p` to its first corner or centre | `16 u sum(abs(n r)) + 4 u sum(abs(n p))` | 4 sub-steps and `2^-28 sum(abs(r))` |
+    /// | plane | as of a disc, with `r` from `p` to its point | as of a disc, or four times that where `r` is longer than 2^17 units |
     /// | sphere of radius `r` | `20 u r + 4 u sum(abs(n p))` | 8 sub-steps |
     /// | cylinder, cone, frustum | `16 u` of the largest coordinate of the solid, the point and the ray's start | 8 sub-steps |
     /// | torus | `16 u` of the largest coordinate of the solid; on the axis, where `r` is at least `R`, the way along it to where the surface is that far away | likewise, of 8 sub-steps |
@@ -156,6 +158,12 @@ impl<N: Number> Hit<N> {
         } else {
             self.outside()
         }
+    }
+
+    /// Whether the primitive lies in no structure, and the hit perhaps far from the scene's box.
+    #[inline(always)]
+    pub(crate) fn is_unbounded(&self) -> bool {
+        UNBOUNDED && Leaf::from_word(self.place).is_some_and(|leaf| !leaf.kind.is_bounded())
     }
 
     /// The hit as an event.

@@ -1,22 +1,24 @@
 //! Queries: what does a ray meet first, does it meet anything at all?
 //!
-//! `search` tests the primitives to which a structure leads, `clusters` those in leaves of eight, and `hit`
-//! is what comes of it.
+//! `search` tests the primitives to which a structure leads, `clusters` those in leaves of eight, `unbounded`
+//! those that lie in no structure; `hit` is the answer.
 
 mod clusters;
 mod hit;
 mod search;
+mod unbounded;
 
 pub use hit::{Found, Hit};
 
 use crate::accel::cull::Culling;
 use crate::accel::stack::StackView;
 use crate::accel::{Accel, Number};
+use crate::format::limits::UNBOUNDED;
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::scene::Scene;
-use search::Search;
+use search::{Candidate, Search};
 
 /// The primitive that a ray meets first in its interval, found through the structure `A`.
 ///
@@ -66,7 +68,22 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
     if C::ENABLED {
         count.event(ray.query(any));
     }
-    if ANY {
+    let far = if UNBOUNDED && scene.has_unbounded {
+        unbounded::nearest(scene, ray, count)
+    } else {
+        None
+    };
+    let shorter;
+    if let Some((t, place)) = far {
+        shorter = ray.until(t);
+        (search.ray, search.tmax) = (&shorter, shorter.tmax);
+        let (t, part) = (shorter.tmax, 0);
+        search.best = Some(Candidate { t, place, part });
+    }
+    let ray = if UNBOUNDED { search.ray } else { ray };
+    if any && far.is_some() {
+        // One is enough.
+    } else if ANY {
         A::walk_any(
             &scene.space,
             views,
@@ -107,8 +124,12 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
         );
     }
     let best = search.best?;
+    let t = match far {
+        Some((t, place)) if place == best.place => t,
+        _ => best.t.widen() + ray.moved,
+    };
     Some(Found {
-        t: best.t.widen() + ray.moved,
+        t,
         primitive: scene.primitive_at(best.place),
         best,
     })

@@ -149,6 +149,8 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                         Spheres::S24(_) if !WIDE_LATTICE => (),
                         Spheres::S24(spheres) => self.spheres(spheres.get(slots), leaf, count),
                     },
+                    // No structure leads to them.
+                    kind if !kind.is_bounded() => (),
                     $(Kind::$kind => self.records(shapes.$field.get(slots), leaf, count),)*
                 }
             };

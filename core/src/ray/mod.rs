@@ -3,9 +3,11 @@
 mod error;
 mod pencil;
 mod start;
+mod unmoved;
 
 pub use error::RayError;
 pub use pencil::Pencil;
+pub(crate) use unmoved::Unmoved;
 
 use crate::axis::pick;
 use crate::format::record::UnitBox;
@@ -14,6 +16,7 @@ use crate::observe::event::Event;
 use start::{
     check_interval, check_origin, end_after, far_start, interval, is_near, near_start, way_to_box,
 };
+use unmoved::{FarPlace, Place, rounded, unmoved};
 
 /// A half-line with an interval, ready to be traced through one scene.
 ///
@@ -49,6 +52,7 @@ pub struct Ray<N: Arithmetic> {
     pub(crate) moved: N::Wide,
     pub(crate) tmin: N,
     pub(crate) tmax: N,
+    pub(crate) unmoved: Unmoved<N>,
 }
 
 impl<N: Arithmetic> Ray<N> {
@@ -81,6 +85,7 @@ impl<N: Arithmetic> Ray<N> {
             check_origin::<N>(x, y, z)?;
             far_start::<N, false>(bounds, origin, direction, (slope, major), moved)
         };
+        let unmoved = unmoved(|| origin, [tmin, tmax], within);
         let [tmin, tmax] = interval(tmin, tmax, moved);
         Ok(Self {
             origin: start,
@@ -89,6 +94,7 @@ impl<N: Arithmetic> Ray<N> {
             moved,
             tmin,
             tmax: if within { tmax } else { -N::ONE },
+            unmoved,
         })
     }
 
@@ -107,18 +113,30 @@ impl<N: Arithmetic> Ray<N> {
         let from = pick(origin, major).widen();
         let zero = N::Wide::default();
         let moved = way_to_box::<N>(bounds, from, (major, forward), zero);
+        let beside = N::step_beside(N::ZERO);
         Some(Self {
+            unmoved: unmoved(|| origin.map(N::widen), [beside.widen(), tmax], true),
             origin: near_start(origin, N::narrow(moved), slope),
             slope,
             major,
             moved,
-            tmin: if moved > zero {
-                N::ZERO
-            } else {
-                N::step_beside(N::ZERO)
-            },
+            tmin: if moved > zero { N::ZERO } else { beside },
             tmax: end_after(tmax, moved),
         })
+    }
+
+    /// [`from_inside`](Self::from_inside) of a place that can lie far outside of the scene's box, on a shape without
+    /// bounds.
+    #[cold]
+    pub(crate) fn from_anywhere(
+        bounds: &UnitBox,
+        origin: [N; 3],
+        direction: [N::Wide; 3],
+        tmax: Option<N::Wide>,
+    ) -> Option<Self> {
+        let beside = N::step_beside(N::ZERO).widen();
+        let tmax = tmax.unwrap_or(N::far(i64::MAX));
+        Self::new(bounds, origin.map(N::widen), direction, beside, tmax).ok()
     }
 
     /// A ray given in double precision, rounded to this format only after its origin was moved to
@@ -155,6 +173,7 @@ impl<N: Arithmetic> Ray<N> {
             moved: N::far_from_f64(exact.moved),
             tmin: N::length_from_f64(exact.tmin),
             tmax: N::length_from_f64(exact.tmax),
+            unmoved: rounded(exact.unmoved, N::far_from_f64),
         })
     }
 
@@ -212,6 +231,38 @@ impl<N: Arithmetic> Ray<N> {
         [self.tmin, self.tmax]
     }
 
+    /// The interval as the caller gave it, counted from the origin: it can begin before [`start`](Self::start). It counts
+    /// for shapes without bounds, and is empty in builds without them.
+    pub fn unmoved_interval(&self) -> [N::Wide; 2] {
+        let none = [N::far(1), N::Wide::default()];
+        self.unmoved.first().map_or(none, |ray| ray.interval)
+    }
+
+    /// A place on the ray, and its t as the caller counts it: the ray's [`start`](Self::start), or its origin where
+    /// it passes the scene so far away that it has no start.
+    pub fn base(&self) -> ([N::Wide; 3], N::Wide) {
+        let start = self.start_place();
+        self.unmoved.first().map_or(start, |ray| ray.base(start))
+    }
+
+    fn start_place(&self) -> Place<N> {
+        (self.origin.map(N::widen), self.moved)
+    }
+
+    /// Where the ray crosses a surface without bounds, given how far from a place on the ray that is.
+    pub(crate) fn meet_far(
+        &self,
+        cross: impl Fn([N::Wide; 3]) -> Option<N::Wide>,
+    ) -> Option<FarPlace<N>> {
+        self.unmoved.first()?.meet(self.start_place(), cross)
+    }
+
+    /// The place at a `t` that is counted from the origin, which can lie anywhere.
+    pub(crate) fn far_place(&self, t: N::Wide) -> Option<[N::Wide; 3]> {
+        let place = self.unmoved.first()?.place(self.start_place(), t);
+        Some(place.coordinates(self.slope))
+    }
+
     /// A query along this ray, as events report it.
     pub(crate) fn query(&self, any: bool) -> Event {
         Event::Query {
@@ -221,6 +272,15 @@ impl<N: Arithmetic> Ray<N> {
             interval: [self.tmin, self.tmax].map(N::length_to_f64),
             any,
         }
+    }
+
+    /// The ray with an interval that ends at a t, which the caller counts, where that is less; the end as it is
+    /// counted inside of the kernels.
+    pub(crate) fn until(&self, t: N::Wide) -> Self {
+        let tmax = self
+            .tmax
+            .min(end_after::<N>(t, self.moved).min(N::FAR.half()));
+        Self { tmax, ..*self }
     }
 
     /// The point at a parameter that is counted inside the kernels.

@@ -8,6 +8,7 @@ use crate::ray::error::RayError;
 use crate::ray::start::{
     check_origin, far_start, far_start_along, is_near, near_start, way_to_box,
 };
+use crate::ray::unmoved::unmoved;
 
 /// All rays without end from one point: what they share is computed once.
 ///
@@ -120,25 +121,30 @@ impl<N: Arithmetic> Pencil<N> {
         far: impl Fn(&UnitBox, &[N::Wide; 3], N::Wide) -> ([N; 3], N::Wide, bool),
     ) -> Ray<N> {
         let forward = pick(slope, major) > N::ZERO;
-        let (origin, moved, within) = match &self.0 {
+        let zero = N::Wide::default();
+        let (start, moved, within) = match &self.0 {
             Origin::Near { origin, moved } => {
                 let [down, up] = pick(*moved, major);
                 let moved = if forward { up } else { down };
                 (near_start(*origin, moved, slope), moved.widen(), true)
             }
             Origin::Far { origin, bounds } => {
-                let zero = N::Wide::default();
                 let moved = way_to_box::<N>(bounds, pick(*origin, major), (major, forward), zero);
                 far(bounds, origin, moved)
             }
         };
+        let origin = || match &self.0 {
+            Origin::Near { origin, .. } => origin.map(N::widen),
+            Origin::Far { origin, .. } => *origin,
+        };
         Ray {
-            origin,
+            origin: start,
             slope,
             major,
             moved,
             tmin: N::ZERO,
             tmax: if within { N::FAR } else { -N::ONE },
+            unmoved: unmoved(origin, [zero, N::far(i64::MAX)], within),
         }
     }
 }

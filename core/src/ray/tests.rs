@@ -115,5 +115,5 @@ proptest! {
 
 /// A length beyond every scene, however far from it a ray begins.
 fn endless<N: Arithmetic>() -> N::Wide {
-    N::far(1 << 60)
+    N::far(i64::MAX)
 }

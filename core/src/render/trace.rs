@@ -21,7 +21,7 @@ use crate::query::{Hit, any_hit, closest_hit};
 use crate::ray::{Ray, RayError};
 use crate::scene::Scene;
 use crate::shade::effect::{EffectList, Tracer};
-use crate::shade::surface::{Bounce, Filter, Lighting, Secondary, Surface, depart};
+use crate::shade::surface::{Bounce, Filter, Lighting, Secondary, Surface, depart, secondary_ray};
 use crate::shade::{All, Color};
 use core::marker::PhantomData;
 use heapless::{Vec, VecView};
@@ -123,8 +123,7 @@ impl Loop<'_, '_> {
         let (ray, weight, kind) = match waiting {
             Some(next) => {
                 let (origin, direction) = (next.origin, next.direction.map(N::widen));
-                let far = N::FAR.widen();
-                let ray = Ray::from_inside(self.scene.bounds(), origin, direction, far);
+                let ray = secondary_ray(self.scene, origin, direction, None);
                 (tracing.depth, tracing.state) = (next.depth, next.state);
                 (ray, next.weight, next.kind)
             }

@@ -25,6 +25,8 @@ pub struct Scene<'a> {
     pub(in crate::scene) order: Indices<'a>,
     /// Whether any primitive's test needs the norm of the ray's direction.
     pub(crate) needs_norm: bool,
+    /// Whether any primitive is in no structure because it has no box.
+    pub(crate) has_unbounded: bool,
 }
 
 impl<'a> Scene<'a> {
@@ -176,7 +178,7 @@ impl<'a> Scene<'a> {
         self.space.shapes.vertices.len()
     }
 
-    /// The box of a primitive, given by its kind and its slot among those of that kind.
+    /// The box of a primitive, given by its kind and its slot among those of that kind; `None` for one without bounds.
     pub fn primitive_bounds(&self, kind: Kind, slot: usize) -> Option<UnitBox> {
         self.space.shapes.bounds(kind, slot)
     }

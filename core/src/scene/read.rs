@@ -82,6 +82,7 @@ pub(crate) fn scene<'a>(
         object_material: Indices::read(sections, SectionKind::ObjectMaterial)?,
         order: Indices::read(sections, SectionKind::Order)?,
         needs_norm: shapes.needs_norm(),
+        has_unbounded: shapes.has_unbounded(),
     })
 }
 

@@ -1,8 +1,11 @@
 //! Checkerboards.
 
 use crate::accel::Number;
+use crate::axis::pick;
 use crate::format::Effects;
 use crate::format::record::Material;
+use crate::number::{Format, extent};
+use crate::query::Hit;
 use crate::ray::Ray;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
@@ -27,7 +30,7 @@ impl Effect for Checker {
     fn surface<'s, N: Number, X: Tracer<'s, N>>(
         _: &mut X,
         (): &mut (),
-        _: &Ray<N>,
+        ray: &Ray<N>,
         surface: &mut Surface<'_, N>,
     ) {
         let Surface { hit, material, .. } = *surface;
@@ -37,7 +40,12 @@ impl Effect for Checker {
         let length = |q13: i32| N::narrow(N::far(q13.into()));
         let size = length(material.checker_size);
         let parity = (0..3).fold(0, |parity, axis| {
-            let place = hit.point[axis] - length(material.checker_origin[axis]);
+            let origin = length(material.checker_origin[axis]);
+            let place = if hit.is_unbounded() {
+                far_place(ray, hit, axis, origin, size)
+            } else {
+                hit.point[axis] - origin
+            };
             // Far enough for the difference and the quotient to be other numbers.
             let step = N::step_beside(place);
             let depth = hit.error.max(step + step);
@@ -49,4 +57,20 @@ impl Effect for Checker {
             material.odd
         });
     }
+}
+
+/// Where a hit lies in the pattern on one axis, without whole repetitions: also where it is farther than lengths
+/// reach.
+#[cold]
+#[inline(never)]
+fn far_place<N: Number>(ray: &Ray<N>, hit: &Hit<N>, axis: usize, origin: N, size: N) -> N {
+    let place = ray.far_place(hit.t).unwrap_or(hit.point.map(N::widen));
+    let is_exact = hit.beside() == hit.point && pick(hit.normal, axis) != N::ZERO;
+    let is_near = N::FORMAT != Format::Fixed || extent(place.map(N::narrow)) < N::FAR.half();
+    let point = if is_near || is_exact {
+        pick(hit.point, axis).widen()
+    } else {
+        pick(place, axis)
+    };
+    N::remainder(point - origin.widen(), size + size)
 }

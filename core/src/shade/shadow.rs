@@ -7,10 +7,9 @@ use crate::format::record::Light;
 use crate::number::extent;
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, RayKind};
-use crate::ray::Ray;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
-use crate::shade::surface::{Filter, Lighting, Surface, depart};
+use crate::shade::surface::{Filter, Lighting, Surface, depart, secondary_ray};
 
 /// How many surfaces a shadow ray passes; light that has to pass more does not arrive.
 const SURFACES: usize = 4 * MAX_RAY_DEPTH;
@@ -61,11 +60,11 @@ fn through<'s, N: Number, X: Tracer<'s, N>>(
     let mut left = Color::WHITE;
     for _ in 0..SURFACES {
         // The light itself, and what touches it, casts no shadow.
-        let end = distance.map_or(N::FAR.widen(), |distance| {
+        let end = distance.map(|distance| {
             let magnitude = extent(origin).max(N::narrow(distance));
             distance - N::error_bound(magnitude).widen()
         });
-        let Some(ray) = Ray::from_inside(scene.bounds(), origin, way, end) else {
+        let Some(ray) = secondary_ray(scene, origin, way, end) else {
             return left;
         };
         tracer.count().ray(RayKind::Shadow, &ray);

@@ -2,9 +2,11 @@
 
 use crate::accel::Number;
 use crate::format::Effects;
+use crate::format::limits::UNBOUNDED;
 use crate::format::record::{Light, Material};
 use crate::observe::event::RayKind;
 use crate::query::Hit;
+use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shade::Color;
 
@@ -93,4 +95,20 @@ pub(crate) fn depart<N: Number>(
         (true, false) => hit.outside(),
         _ => hit.inside(scene),
     }
+}
+
+/// A ray from a hit, with all `t` up to an end, or without one. Only in scenes with shapes without bounds it can start,
+/// and end, far from the scene's box.
+#[inline(always)]
+pub(crate) fn secondary_ray<N: Number>(
+    scene: &Scene<'_>,
+    origin: [N; 3],
+    way: [N::Wide; 3],
+    end: Option<N::Wide>,
+) -> Option<Ray<N>> {
+    if UNBOUNDED && scene.has_unbounded {
+        return Ray::from_anywhere(scene.bounds(), origin, way, end);
+    }
+    let end = end.unwrap_or(N::FAR.widen());
+    Ray::from_inside(scene.bounds(), origin, way, end)
 }

@@ -46,7 +46,7 @@ fn usual_divisions(bounds: &UnitBox, cells: f64) -> [u32; 3] {
     })
 }
 
-/// The boxes of the primitives in the order of their slots.
+/// The boxes of the primitives that have one, in the order of their slots.
 pub fn slot_boxes(flat: &Flat, boxes: &[super::hierarchy::Primitive]) -> Vec<UnitBox> {
     let mut of_kind = [const { Vec::new() }; Kind::ALL.len()];
     for primitive in boxes {
@@ -57,8 +57,10 @@ pub fn slot_boxes(flat: &Flat, boxes: &[super::hierarchy::Primitive]) -> Vec<Uni
         }
         known[place] = primitive.bounds;
     }
-    let slots = flat.slots.iter().zip(&of_kind);
+    let slots = Kind::ALL.into_iter().zip(flat.slots.iter().zip(&of_kind));
     slots
+        .filter(|(kind, _)| kind.is_bounded())
+        .map(|(_, slots)| slots)
         .flat_map(|(slots, boxes)| slots.iter().map(|&index| boxes[index as usize]))
         .collect()
 }

@@ -36,6 +36,9 @@ pub enum CompileError {
         pieces: usize,
         most: usize,
     },
+    #[error("{object} passes the middle of the other objects at more than {most:.3e} scene units")]
+    #[diagnostic(help("move it nearer, or add an object beside it"))]
+    OutOfReach { object: String, most: f64 },
     #[error("{bits} lattice bits are not possible")]
     #[diagnostic(help("use 10 to 24"))]
     LatticeBits { bits: u8 },

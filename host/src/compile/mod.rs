@@ -46,9 +46,9 @@ use advice::{Size, advice};
 use candidates::target::Targets;
 use context::BuildContext;
 use glam::DVec3;
-use gridel_core::Structure;
 use gridel_core::format::Leaf;
 use gridel_core::format::record::{Gridels, UnitBox};
+use gridel_core::{Kind, Structure};
 use hierarchy::{Node, Primitive, Splits};
 use pairs::Flat;
 use primitives::Primitives;
@@ -331,6 +331,11 @@ impl Hierarchies {
         };
         if wide_alone {
             flat.slots.clone_from(&wide.slots);
+        }
+        // What has no box is in no structure, and stays in the order of the scene file.
+        for kind in Kind::ALL.into_iter().filter(|kind| !kind.is_bounded()) {
+            let count = snapped.numbers[kind as usize].len() as u32;
+            flat.slots[kind as usize] = (0..count).collect();
         }
         Ok(Self {
             root,

@@ -10,6 +10,7 @@ use crate::shape::{Lattice, Shape, Solid, displacement};
 use crate::table::{grouped, printable};
 use glam::{DVec3, IVec3};
 use gridel_core::Kind;
+use gridel_core::format::limits::FARTHEST_POINT;
 use gridel_core::format::record::UnitBox;
 use gridel_core::geometry::Geometry;
 use serde::{Serialize, Serializer};
@@ -87,13 +88,17 @@ impl Serialize for LeftOut {
     }
 }
 
-/// The box of everything in a scene; a point for an empty one.
+/// The box of everything in a scene that has one, or else of points of what has none; a point for an empty one.
 pub fn extent(scene: &Scene) -> (DVec3, DVec3) {
     let nowhere = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    let boxes = scene.objects.iter().map(|object| object.shape.bounds());
-    let [lowest, highest] = boxes.fold(nowhere, |[low, high], [lowest, highest]| {
-        [low.min(lowest), high.max(highest)]
-    });
+    let shapes = || scene.objects.iter().map(|object| &object.shape);
+    let none_bounded = !shapes().any(Shape::is_bounded);
+    let counted = shapes().filter(|shape| none_bounded || shape.is_bounded());
+    let [lowest, highest] = counted
+        .map(Shape::bounds)
+        .fold(nowhere, |[low, high], [lowest, highest]| {
+            [low.min(lowest), high.max(highest)]
+        });
     if lowest.x > highest.x {
         (DVec3::ZERO, DVec3::ZERO)
     } else {
@@ -146,7 +151,7 @@ impl Primitives {
         Ok(())
     }
 
-    /// The box of every primitive, for the builder.
+    /// The box of every primitive that has one, for the builder.
     pub fn boxes(&self) -> Vec<Primitive> {
         let of = |kind: Kind, count: usize, bounds: &dyn Fn(usize) -> UnitBox| -> Vec<Primitive> {
             (0..count)
@@ -164,7 +169,8 @@ impl Primitives {
             UnitBox::around(lowest.into(), highest.into())
         };
         let triangles = of(Kind::Triangle, self.triangles.len(), &triangle);
-        let others = Kind::ALL.into_iter().flat_map(|kind| {
+        let bounded = Kind::ALL.into_iter().filter(|kind| kind.is_bounded());
+        let others = bounded.flat_map(|kind| {
             of(kind, self.records.count(kind), &|i| {
                 self.records.bounds(kind, i)
             })
@@ -259,6 +265,12 @@ impl Primitives {
                     self.leave_out();
                     return self.check_count();
                 };
+                if !fits && !kind.is_bounded() {
+                    return Err(CompileError::OutOfReach {
+                        object: name(),
+                        most: lattice.unit() * (FARTHEST_POINT >> 8) as f64,
+                    });
+                }
                 self.needs_room |= !fits;
                 let steps = displacement / lattice.fine_steps();
                 if steps > FAR_MOVED {

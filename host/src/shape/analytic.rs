@@ -203,6 +203,9 @@ pub trait Analytic: Geometric + Sized {
 
     /// The shape on the lattice, or `None` if the lattice leaves nothing of it.
     fn snapped(&self, lattice: &Lattice) -> Option<Snapped<Self::Record>> {
+        if !self.has_extent() {
+            return None;
+        }
         let rounded = self.map(&Map {
             point: &|point| real(lattice.snap(point)),
             direction: &|direction| real(integers(direction)),

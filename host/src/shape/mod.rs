@@ -139,7 +139,25 @@ macro_rules! registry {
             }
         }
 
+        impl Shape {
+            /// Whether it has a box. Shapes without one lie outside of all structures.
+            pub(crate) fn is_bounded(&self) -> bool {
+                match self {
+                    Self::Mesh { .. } | Self::Sphere(_) => true,
+                    $(Self::$kind(_) => Kind::$kind.is_bounded(),)*
+                }
+            }
+        }
+
         impl Solid {
+            /// Whether it has a box.
+            pub fn is_bounded(&self) -> bool {
+                match self {
+                    Self::Triangle(_) | Self::Sphere(_) => true,
+                    $(Self::$kind(_) => Kind::$kind.is_bounded(),)*
+                }
+            }
+
             /// A primitive of a blob.
             pub fn of(geometry: Geometry) -> Self {
                 match geometry {

@@ -27,7 +27,7 @@ pub const UNEVEN: Misfit = Misfit {
 };
 
 /// The largest entry's size, and the matrix divided by it, which cannot overflow when multiplied.
-fn to_size_one(matrix: DMat3) -> (f64, DMat3) {
+pub fn to_size_one(matrix: DMat3) -> (f64, DMat3) {
     let DMat3 {
         x_axis: x,
         y_axis: y,

@@ -1,6 +1,7 @@
 //! Puts one ray to every structure in one number format, and holds the answers to the promises.
 
 use super::judge::{Answer, GRAZING, Judge, RoundedRay, STEPS, Wrong, step};
+use crate::shape::Solid;
 use crate::shape::random::Random;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
@@ -141,7 +142,8 @@ pub fn check<N: Number>(
         }
     }
     let rounded = RoundedRay::of(ray);
-    if let Some(what) = list.hit.as_ref().and_then(|hit| numbers(&rounded, hit)) {
+    let hit = list.hit.as_ref();
+    if let Some(what) = hit.and_then(|hit| numbers(&rounded, judge, hit)) {
         fault(Promise::Numbers, list.structure, what);
     }
 
@@ -149,7 +151,7 @@ pub fn check<N: Number>(
         t: N::far_to_f64(hit.t) - rounded.moved,
         primitive: hit.primitive,
     });
-    let reference = rounded.in_f64(scene.bounds());
+    let reference = rounded.in_f64(scene);
     let reference = reference.and_then(|ray| ask::<f64, List>(scene, &ray).hit);
     let close = match (answer, reference) {
         (None, None) => true,
@@ -162,11 +164,12 @@ pub fn check<N: Number>(
             let start = rounded.start.iter().fold(extent, |m, x| m.max(x.abs()));
             let reach = start.max(reference.t.abs()).max(rounded.moved.abs());
             let solid = judge.solid(answer.primitive);
-            let magnitude = solid.map_or(reach, |solid| reach.max(solid.extent()));
+            let at_solid = solid.map_or(0.0, |it| rounded.step(N::FORMAT, reference.t, it));
+            let step = step(N::FORMAT, reach).max(at_solid);
             let normals = list.hit.iter().map(|hit| hit.normal.map(N::ratio_to_f64));
             let mut normals = normals.chain([reference.normal]);
             outcome.grazes = normals.any(|normal| rounded.cosine(normal).abs() < GRAZING);
-            outcome.error = (answer.t - reference.t).abs() / step(N::FORMAT, magnitude);
+            outcome.error = (answer.t - reference.t).abs() / step;
             outcome.error <= STEPS
         }
         _ => false,
@@ -212,7 +215,7 @@ fn bits<N: Number>(hit: &Option<Hit<N>>) -> Option<(u32, u32, bool, [u64; 8])> {
 }
 
 /// What is wrong with the numbers of a hit.
-fn numbers<N: Number>(ray: &RoundedRay, hit: &Hit<N>) -> Option<String> {
+fn numbers<N: Number>(ray: &RoundedRay, judge: &Judge, hit: &Hit<N>) -> Option<String> {
     let t = N::far_to_f64(hit.t);
     let point = hit.point.map(N::length_to_f64);
     let normal = hit.normal.map(N::ratio_to_f64);
@@ -233,7 +236,9 @@ fn numbers<N: Number>(ray: &RoundedRay, hit: &Hit<N>) -> Option<String> {
     }
     // Hits count from the ray's own start, which rounds once more.
     let slack = 2.0 * step(N::FORMAT, t.abs().max(ray.moved.abs()));
-    let [first, last] = ray.interval.map(|t| t + ray.moved);
+    let solid = judge.solid(hit.primitive);
+    let interval = ray.interval_of(solid.is_none_or(Solid::is_bounded));
+    let [first, last] = interval.map(|t| t + ray.moved);
     if t < first - slack || t > last + slack {
         return Some(format!("t {t:?} lies outside of {first:?} to {last:?}"));
     }

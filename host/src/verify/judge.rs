@@ -3,6 +3,7 @@
 
 use crate::shape::Solid;
 use crate::shape::exact::{Line, Real};
+use gridel_core::format::limits;
 use gridel_core::format::record::UnitBox;
 use gridel_core::{Format, Kind, Number, Ray, Scene};
 
@@ -16,6 +17,9 @@ pub const GRAZING: f64 = 1.0 / STEPS;
 
 /// How far it is through a scene at the most, in units.
 const FARTHEST: f64 = 131_072.0;
+
+/// How far away shapes without bounds are met at the most, in units.
+const FARTHEST_HIT: f64 = (limits::FARTHEST_HIT >> 13) as f64;
 
 /// The step of a format: a sub-step of `fixed`, or the unit of rounding times the largest magnitude
 /// among the coordinates of ray, hit and shape.
@@ -34,24 +38,40 @@ pub struct RoundedRay {
     pub slope: [f64; 3],
     /// What counts, from `start`.
     pub interval: [f64; 2],
+    /// What counts of shapes without bounds, likewise.
+    pub far_interval: [f64; 2],
     /// The t of `start` as hits count it.
     pub moved: f64,
 }
 
 impl RoundedRay {
     pub fn of<N: Number>(ray: &Ray<N>) -> Self {
+        let (start, moved) = ray.base();
+        let moved = N::far_to_f64(moved);
         Self {
-            start: ray.start().map(N::length_to_f64),
+            start: start.map(N::far_to_f64),
             slope: ray.slope().map(N::ratio_to_f64),
             interval: ray.interval().map(N::length_to_f64),
-            moved: N::far_to_f64(ray.moved()),
+            far_interval: ray.unmoved_interval().map(|t| N::far_to_f64(t) - moved),
+            moved,
         }
     }
 
     /// The same ray in double precision.
-    pub fn in_f64(&self, bounds: &UnitBox) -> Option<Ray<f64>> {
-        let [first, last] = self.interval;
-        Ray::from_f64(bounds, self.start, self.slope, first, last).ok()
+    pub fn in_f64(&self, scene: &Scene<'_>) -> Option<Ray<f64>> {
+        let mut kinds = Kind::ALL.into_iter();
+        let bounded = kinds.all(|kind| kind.is_bounded() || scene.count(kind) == 0);
+        let [first, last] = self.interval_of(bounded);
+        Ray::from_f64(scene.bounds(), self.start, self.slope, first, last).ok()
+    }
+
+    /// What counts, from `start`, of shapes with bounds or without.
+    pub fn interval_of(&self, bounded: bool) -> [f64; 2] {
+        if bounded {
+            self.interval
+        } else {
+            self.far_interval
+        }
     }
 
     /// Of the angle between the ray and a vector of length 1.
@@ -66,6 +86,17 @@ impl RoundedRay {
 
     fn magnitude(&self, t: f64) -> f64 {
         largest(self.start).max(t.abs()).max(self.moved.abs())
+    }
+
+    /// The step of a format at a shape. A shape without bounds may be met nearer to where a ray begins far away than to
+    /// its start; slopes are rounded on the way between them.
+    pub fn step(&self, format: Format, t: f64, solid: &Solid) -> f64 {
+        let near = step(format, self.magnitude(t).max(solid.extent()));
+        let from_origin = (t + self.moved).abs() < t.abs();
+        if solid.is_bounded() || format != Format::Fixed || !from_origin {
+            return near;
+        }
+        near.max(f64::powi(2.0, -30) * self.moved.abs())
     }
 }
 
@@ -94,7 +125,7 @@ pub enum Wrong {
 /// The primitives of a scene as exact shapes.
 pub struct Judge {
     /// In ascending order of the primitives' numbers, which the pieces of a cut triangle share.
-    solids: Vec<(u32, UnitBox, Solid)>,
+    solids: Vec<(u32, Option<UnitBox>, Solid)>,
 }
 
 impl Judge {
@@ -105,9 +136,7 @@ impl Judge {
                 let bounds = scene.primitive_bounds(kind, slot);
                 let solid = scene.geometry(kind, slot).map(Solid::of);
                 let primitive = scene.primitive(kind, slot as u32);
-                if let (Some(bounds), Some(solid)) = (bounds, solid) {
-                    solids.push((primitive, bounds, solid));
-                }
+                solids.extend(solid.map(|solid| (primitive, bounds, solid)));
             }
         }
         solids.sort_by_key(|&(primitive, _, _)| primitive);
@@ -136,14 +165,14 @@ impl Judge {
         answer: Option<Answer>,
     ) -> Result<(), Wrong> {
         let line = ray.line();
-        let [tmin, tmax] = ray.interval;
+        let met = answer.and_then(|answer| self.solid(answer.primitive));
+        let [tmin, tmax] = ray.interval_of(met.is_none_or(Solid::is_bounded));
         let begin = Real::of(tmin);
-        let mut end = Real::of(tmax.min(1e300));
+        let mut end = None;
         if let Some(answer) = answer {
             let pieces = || self.pieces(answer.primitive);
-            let extent = pieces().map(|solid| solid.extent()).reduce(f64::max);
-            let extent = extent.ok_or(Wrong::NotThere)?;
-            let off = STEPS * step(format, ray.magnitude(answer.t).max(extent));
+            let step = pieces().map(|solid| ray.step(format, answer.t, solid));
+            let off = STEPS * step.reduce(f64::max).ok_or(Wrong::NotThere)?;
             let there = pieces().any(|solid| {
                 Crossings::new(solid, &line, off).may_be_met_at(&Real::of(answer.t), &begin)
             });
@@ -151,16 +180,26 @@ impl Judge {
                 return Err(Wrong::NotThere);
             }
             // Hits count from the ray's own start, which rounds once more.
-            end = Real::of(answer.t - off);
+            end = Some(answer.t - off);
         }
-        let reach = ray.magnitude(answer.map_or(FARTHEST, |answer| answer.t));
+        let reach = answer.map_or(FARTHEST, |answer| answer.t);
         for (primitive, bounds, solid) in &self.solids {
             let itself = answer.is_some_and(|answer| answer.primitive == *primitive);
-            if itself || !may_meet(ray, bounds) {
+            if itself || bounds.is_some_and(|bounds| !may_meet(ray, &bounds)) {
                 continue;
             }
-            let off = STEPS * step(format, reach.max(solid.extent()));
-            let met = Crossings::new(solid, &line, off).are_met_by(&begin);
+            let [begin, last] = ray.interval_of(solid.is_bounded());
+            let begin = Real::of(begin);
+            let end = Real::of(end.unwrap_or(last.min(FARTHEST_HIT)));
+            let met_by = |reach: f64| {
+                let off = STEPS * ray.step(format, reach, solid);
+                Crossings::new(solid, &line, off).are_met_by(&begin)
+            };
+            let met = match met_by(reach) {
+                // It may be met far beyond.
+                Some(t) if !solid.is_bounded() => met_by(t.to_f64().max(reach)),
+                met => met,
+            };
             if let Some(t) = met.filter(|t| *t < end) {
                 return Err(Wrong::Missed {
                     primitive: *primitive,
@@ -181,8 +220,8 @@ impl Judge {
         within: f64,
     ) -> bool {
         self.pieces(primitive).any(|solid| {
-            let off = within + STEPS * step(format, ray.magnitude(t).max(solid.extent()));
-            let begin = Real::of(ray.interval[0]);
+            let off = within + STEPS * ray.step(format, t, solid);
+            let begin = Real::of(ray.interval_of(solid.is_bounded())[0]);
             Crossings::new(solid, &ray.line(), off).may_be_met_at(&Real::of(t), &begin)
         })
     }

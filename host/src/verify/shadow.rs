@@ -87,7 +87,7 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
     let (hit, right) = (
         ask::<N, List>(scene, ray).hit,
         rounded
-            .in_f64(scene.bounds())
+            .in_f64(scene)
             .and_then(|ray| ask::<f64, List>(scene, &ray).hit),
     );
     let (Some(hit), Some(right)) = (hit, right) else {

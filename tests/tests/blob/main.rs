@@ -16,7 +16,7 @@ use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_host::render::{Job, render};
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Shape};
-use gridel_host::shape::Torus;
+use gridel_host::shape::{Plane, Torus};
 use gridel_tests::effort::step;
 use gridel_tests::fuzz::{sealed, speaks};
 use gridel_tests::query::{UnitRay, any, closest, held, through};
@@ -47,7 +47,11 @@ fn small_scene() -> gridel_host::scene::Scene {
         major_radius: 0.3,
         minor_radius: 0.1,
     });
-    scene.objects.push(scenes::of([torus]).objects.remove(0));
+    let plane = Shape::Plane(Plane {
+        point: DVec3::new(0.5, -0.4, 0.3),
+        normal: DVec3::new(1.0, 2.0, 0.0),
+    });
+    scene.objects.extend(scenes::of([torus, plane]).objects);
     scene.materials.push(Material {
         name: String::from("everything"),
         diffuse: Diffuse::Checker {

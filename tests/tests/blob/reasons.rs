@@ -10,7 +10,7 @@ use gridel_core::format::record::{
 use gridel_core::format::{
     BlobError, Child, Effects, Field, Kind, Leaf, Link, Reason, SectionKind,
 };
-use gridel_core::geometry::{cone::Cone, cuboid::Cuboid, disc::Disc, torus::Torus};
+use gridel_core::geometry::{cone::Cone, cuboid::Cuboid, disc::Disc, plane::Plane, torus::Torus};
 use gridel_core::{Names, Prevalidated, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;
@@ -365,6 +365,19 @@ fn primitives() -> Errors {
     }
     errors.reason("torus 0", Reason::ZeroAxis, |it| {
         it.change(SectionKind::Tori, 0, |it: &mut Torus| it.axis = [0; 3])
+    });
+    let planes: [Forgery<Plane>; 3] = [
+        (Field::Point, &|it| it.point[2] = (1 << 25) + 1),
+        (Field::Point, &|it| it.point[0] = i32::MIN),
+        (Field::Normal, &|it| it.normal[1] = -(1 << 24) - 1),
+    ];
+    for (field, forge) in planes {
+        errors.field("plane 0", field, |it| {
+            it.change(SectionKind::Planes, 0, forge)
+        });
+    }
+    errors.reason("plane 0", Reason::ZeroNormal, |it| {
+        it.change(SectionKind::Planes, 0, |it: &mut Plane| it.normal = [0; 3])
     });
     errors.reason("cone 0", Reason::ZeroAxis, |it| {
         it.change(SectionKind::Cones, 0, |it: &mut Cone| it.apex = it.base)

@@ -86,7 +86,11 @@ impl Left {
             };
             for side in [1.0, -1.0] {
                 let normal = side * DVec3::from_array(hit.normal.map(N::ratio_to_f64));
-                let way = outward(random, normal);
+                let mut way = outward(random, normal);
+                if !solid.is_bounded() {
+                    // What is nearly parallel to it meets it somewhere, or not, as slopes are rounded.
+                    way += normal * f64::powi(2.0, -16);
+                }
                 let from = depart(&scene, &hit, side > 0.0);
                 let outside = side > 0.0 || solid.is_flat();
                 if !outside && solid.excess(from) > -0.5 * hit.error.length_to_f64() {

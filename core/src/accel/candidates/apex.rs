@@ -350,7 +350,7 @@ impl<'a> Records<'a> for Views<'a> {
         }
         let ascend = |before: u8, after: u8| before <= after;
         // One more than there are slots, for where a list is cut.
-        let end = space.shapes.total().saturating_add(1);
+        let end = space.shapes.bounded().saturating_add(1);
         self.lists.check(&LISTS, next.into(), end, ascend)?;
         Ok(0)
     }

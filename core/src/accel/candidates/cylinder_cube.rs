@@ -79,7 +79,8 @@ impl<'a> Records<'a> for Views<'a> {
     }
 
     fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
-        self.0.check(space, GRIDELS, &LISTS, space.shapes.total())?;
+        self.0
+            .check(space, GRIDELS, &LISTS, space.shapes.bounded())?;
         Ok(0)
     }
 }

@@ -263,7 +263,7 @@ impl<'a> Records<'a> for Views<'a> {
         }
         let ascend = |before: u8, after: u8| before <= after;
         self.lists
-            .check(&LISTS, cells as u64, space.shapes.total(), ascend)?;
+            .check(&LISTS, cells as u64, space.shapes.bounded(), ascend)?;
         Ok(0)
     }
 }

@@ -187,7 +187,7 @@ impl Views<'_> {
     /// are as many entries as that takes: so there are no others. A search that finds each entry of a
     /// list proves that they ascend.
     fn check_lists(&self, space: &Space<'_>, counts: [u32; 3]) -> Result<(), BlobError> {
-        let slots = space.shapes.total();
+        let slots = space.shapes.bounded();
         let reach = reach(space, divide(space.bounds(), counts), MARGIN);
         let listed = self.lists.entries() as u64;
         // First, because it bounds the work.
@@ -232,7 +232,7 @@ impl<'a> Records<'a> for Views<'a> {
     }
 
     fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
-        let slots = space.shapes.total();
+        let slots = space.shapes.bounded();
         let Some(shape) = self.shape else {
             if slots == 0 {
                 return Ok(0);

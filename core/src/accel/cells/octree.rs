@@ -262,7 +262,7 @@ impl<'a> Records<'a> for Views<'a> {
 
     /// Children follow their parents, so every node is reached once; leaves take the lists in order.
     fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
-        let slots = space.shapes.total();
+        let slots = space.shapes.bounded();
         if self.nodes.is_empty() != (slots == 0) {
             return Err(BlobError::Count {
                 section: SectionKind::OctreeNodes,

@@ -190,7 +190,8 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
             if ended {
                 return Err(wrong(section, index, Reason::ChildAfterGap));
             }
-            let (found, next) = match (child.as_node(), Leaf::from_word(child.0)) {
+            let leaf = Leaf::from_word(child.0).filter(|leaf| leaf.kind.is_bounded());
+            let (found, next) = match (child.as_node(), leaf) {
                 (Some(number), _) => (number as usize, &mut next_node),
                 (None, Some(leaf)) => match (leaf.kind, leaf.count) {
                     (Kind::Triangle, 0) => (leaf.first as usize, &mut next_strip),
@@ -217,7 +218,7 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
                     }
                 },
                 (None, None) => {
-                    let kinds = [0, Kind::ALL.len() as i64 - 1];
+                    let kinds = [0, Kind::LAST_BOUNDED as i64];
                     let node = Location::Record(section, index);
                     return Err(node.out_of_range(Field::LeafKind, (child.0 >> 29).into(), kinds));
                 }
@@ -239,7 +240,9 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
         (next_pack, full_packs),
         (next_sparse, packs.len()),
     ];
-    let kinds = Kind::ALL.into_iter().filter(|kind| !kind.is_clustered());
+    let kinds = Kind::ALL
+        .into_iter()
+        .filter(|kind| !kind.is_clustered() && kind.is_bounded());
     let others = kinds.map(|kind| (others[kind as usize], space.shapes.count(kind)));
     for (found, expected) in clusters.into_iter().chain(others) {
         if found != expected {
@@ -277,15 +280,17 @@ fn check_homes(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
         return Ok(());
     }
     check_records(space)?;
-    if homes.len() != shapes.total() {
+    let bounded = || Kind::ALL.into_iter().filter(|kind| kind.is_bounded());
+    let slots = bounded().map(|kind| shapes.records(kind)).sum();
+    if homes.len() != slots {
         return Err(BlobError::Count {
             section,
             found: homes.len(),
-            expected: shapes.total(),
+            expected: slots,
         });
     }
     let mut rest = homes.iter().enumerate();
-    for kind in Kind::ALL {
+    for kind in bounded() {
         for (slot, (index, &home)) in (0..shapes.records(kind) as u32).zip(rest.by_ref()) {
             let (cluster, lane) = (home >> 3, home & 7);
             let leads_back = match kind {

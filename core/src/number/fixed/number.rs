@@ -231,6 +231,15 @@ impl Products for Fixed {
         numerator.divided_by(denominator)
     }
 
+    fn far_over(wide: Product, ratios: Product) -> Product {
+        wide.over_ratios(ratios)
+    }
+
+    fn remainder(wide: Product, period: Self) -> Self {
+        let rest = wide.0.checked_rem_euclid(period.0.into());
+        Fixed(rest.unwrap_or(0) as i32)
+    }
+
     fn root(square: Product) -> Self {
         with_sign(nearest_root(square.0.max(0) as u64), 0)
     }

@@ -185,4 +185,24 @@ proptest! {
         let found = i128::from(Fixed::wide_scale(Product(wide), Fixed(ratio)).0);
         prop_assert!((found - exact).abs() <= 1);
     }
+
+    /// Quotients of any magnitude, to a part in 2^30, up to where they saturate.
+    #[test]
+    fn far_quotients_agree_with_128_bits(
+        wide: i64, ratios in 1..=i64::MAX, bits in [0..64_u32, 0..63], negative: bool,
+    ) {
+        let (wide, ratios) = (wide >> bits[0], (ratios >> bits[1]).max(1));
+        let ratios = if negative { -ratios } else { ratios };
+        let far = 1_i128 << 62;
+        let exact = (i128::from(wide) << 60) / i128::from(ratios);
+        let exact = exact.clamp(-far, far);
+        let found = i128::from(Fixed::far_over(Product(wide), Product(ratios)).0);
+        prop_assert!((found - exact).abs() <= 1 + (exact.abs() >> 30), "{found} {exact}");
+    }
+
+    #[test]
+    fn remainders_lie_within_their_period(wide: i64, period in 1..=i32::MAX) {
+        let found = Fixed::remainder(Product(wide), Fixed(period)).0;
+        prop_assert_eq!(i64::from(found), wide.rem_euclid(period.into()));
+    }
 }

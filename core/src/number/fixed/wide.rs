@@ -100,6 +100,33 @@ impl Product {
         Self((high << (32 - RATIO_BITS)).wrapping_add(low))
     }
 
+    /// [`Products::far_over`](crate::number::Products::far_over).
+    pub(super) fn over_ratios(self, denominator: Self) -> Self {
+        let sign = self.0 ^ denominator.0;
+        let (a, b) = (self.0.unsigned_abs(), denominator.0.unsigned_abs());
+        let (up, down) = (wide_leading_zeros(a), wide_leading_zeros(b));
+        // The divisor's upper 32 bits, and all of the dividend's: to a part in 2^31.
+        let Some(quotient) = a
+            .wrapping_shl(up)
+            .checked_div(b.wrapping_shl(down) >> 32)
+            .filter(|_| b != 0)
+        else {
+            return Self(0);
+        };
+        // From a / b times 2^(up + 32 - down) to a / b times 2^(2 * RATIO_BITS).
+        let magnitude = match (2 * RATIO_BITS + down).checked_sub(up.wrapping_add(32)) {
+            Some(left) if left >= wide_leading_zeros(quotient) => i64::MAX as u64,
+            Some(left) => quotient << left,
+            None => {
+                let right = up.wrapping_add(32).wrapping_sub(2 * RATIO_BITS + down);
+                quotient.checked_shr(right).unwrap_or(0)
+            }
+        };
+        // Leaves room for the coordinates of an origin.
+        let magnitude = magnitude.min(1 << 62) as i64;
+        Self(if sign < 0 { -magnitude } else { magnitude })
+    }
+
     /// [`Products::divide`](crate::number::Products::divide).
     pub(super) fn divided_by(self, denominator: Self) -> Fixed {
         let sign = self.0 ^ denominator.0;

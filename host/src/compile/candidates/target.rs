@@ -109,13 +109,14 @@ impl<'f> Targets<'f> {
         let mut first = [0; Kind::ALL.len()];
         let mut box_first = [0; Kind::ALL.len()];
         let (mut slots, mut numbers) = (0, 0);
-        for kind in Kind::ALL {
+        let bounded = Kind::ALL.into_iter().filter(|kind| kind.is_bounded());
+        for kind in bounded.clone() {
             first[kind as usize] = slots;
             box_first[kind as usize] = numbers;
             slots += flat.slots[kind as usize].len();
             numbers += boxes.iter().filter(|it| it.kind == kind).count();
         }
-        let targets = Kind::ALL.into_iter().flat_map(|kind| {
+        let targets = bounded.flat_map(|kind| {
             let indices = &flat.slots[kind as usize];
             let boxes = &boxes[box_first[kind as usize]..];
             indices.iter().map(move |&index| Target {

@@ -216,6 +216,28 @@ fn discs_and_cones_follow_a_mirror() {
     assert_eq!(cone, expected);
 }
 
+/// The normal stays at right angles to the plane whatever the scales are.
+#[test]
+fn planes_take_every_transform() {
+    const PLANE: &str = r#"kind = "plane", point = [1, 0, 0], normal = [5, 5, 0]"#;
+    let moved = |transforms: &[&str]| {
+        let Shape::Plane(plane) = only(PLANE, transforms) else {
+            panic!()
+        };
+        plane
+    };
+    let wide = moved(&["scale = [2, 1, 1]"]);
+    assert_eq!(wide.point, DVec3::new(2.0, 0.0, 0.0));
+    assert!(wide.normal.angle_between(DVec3::new(1.0, 2.0, 0.0)) < 1e-12);
+    let turned = moved(&["rotate = [0, 0, 90]", "translate = [0, 0, 4]"]);
+    assert!(turned.point.distance(DVec3::new(0.0, 1.0, 4.0)) < 1e-12);
+    assert!(turned.normal.angle_between(DVec3::new(-1.0, 1.0, 0.0)) < 1e-12);
+    let mirrored = moved(&["scale = [-1, 1, 1]"]);
+    assert!(mirrored.normal.angle_between(DVec3::new(-1.0, 1.0, 0.0)) < 1e-12);
+    let flattened = refusal(&nested(PLANE, &["scale = [1, 0, 1]"]));
+    assert!(flattened.cause.contains("flattened"), "{flattened}");
+}
+
 #[test]
 fn uneven_scales_that_cancel_out_are_even() {
     let shape = only(SPHERE, &["scale = [4, 2, 1]", "scale = [0.5, 1, 2]"]);

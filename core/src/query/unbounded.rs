@@ -1,0 +1,61 @@
+//! Shapes without bounds, which lie in no structure: every query tests all of them before it walks one.
+
+use crate::accel::Number;
+use crate::format::Kind;
+use crate::format::kind::shapes;
+use crate::geometry::PrimitiveId;
+use crate::geometry::primitive::Primitive;
+use crate::observe::count::Observer;
+use crate::observe::event::Event;
+use crate::ray::Ray;
+use crate::scene::Scene;
+
+/// The nearest hit in the interval that the caller gave, and its t as the caller counts it. Of hits at the same t the
+/// one that comes first in the scene file counts.
+#[cold]
+#[inline(never)]
+pub(super) fn nearest<N: Number, C: Observer>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    count: &mut C,
+) -> Option<(N::Wide, PrimitiveId)> {
+    let mut best: Option<(N::Wide, PrimitiveId)> = None;
+    let [tmin, tmax] = ray.unmoved_interval();
+    let mut consider = |t: Option<N::Wide>, place: PrimitiveId, count: &mut C| {
+        let hit = t.filter(|&t| t >= tmin && t <= tmax);
+        if let Some(t) = hit
+            && best.is_none_or(|(least, first)| {
+                t < least || t == least && scene.key(place) < scene.key(first)
+            })
+        {
+            best = Some((t, place));
+        }
+        count.objects(1);
+        if C::ENABLED {
+            count.event(Event::Candidate {
+                kind: place.kind,
+                primitive: scene.primitive_at(place),
+                crossing: t.map(|t| [N::far_to_f64(t - ray.moved); 2]),
+                nearest: best.is_some_and(|best| best.1 == place),
+            });
+        }
+    };
+    macro_rules! each {
+        (
+            forms { $($form:tt)* }
+            records { $(
+                $(#[doc = $doc:literal])* $kind:ident = $number:literal, $name:literal,
+                [$field:ident: $module:ident::$record:ident], $section:tt;
+            )* }
+        ) => {
+            $(if Kind::$kind.is_available() && !Kind::$kind.is_bounded() {
+                for (slot, record) in (0..).zip(scene.space.shapes.$field) {
+                    let met = ray.meet_far(|place| record.cross_far(place, ray.slope));
+                    consider(met.map(|met| met.t()), PrimitiveId::in_slot(Kind::$kind, slot), count);
+                }
+            })*
+        };
+    }
+    shapes!(each);
+    best
+}

@@ -1,0 +1,125 @@
+//! What a caller gave before its ray was moved to the scene's box, for shapes without bounds: a ray can meet them
+//! anywhere.
+
+use crate::format::limits::{FARTHEST_HIT, UNBOUNDED};
+use crate::number::Arithmetic;
+use core::array::from_fn;
+
+/// A ray before it is moved to the scene's box: one, or none in builds without shapes that need it.
+pub(crate) type Unmoved<N> = [UnmovedRay<N>; UNBOUNDED as usize];
+
+/// A ray's origin and interval before the ray is moved to the scene's box.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct UnmovedRay<N: Arithmetic> {
+    origin: [N::Wide; 3],
+    pub(super) interval: [N::Wide; 2],
+    /// Whether the ray's start is a place on it. It is none where the ray passes the scene far away.
+    holds_start: bool,
+}
+
+/// A place on a ray, and its t, counted from the origin.
+pub(super) type Place<N> = (
+    [<N as crate::number::Scalar>::Wide; 3],
+    <N as crate::number::Scalar>::Wide,
+);
+
+/// Where a ray meets a shape without bounds, counted from a place on the ray that is not far away.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FarPlace<N: Arithmetic> {
+    base: [N::Wide; 3],
+    /// The t of `base`, counted from the origin.
+    at: N::Wide,
+    /// The t from there.
+    rest: N::Wide,
+}
+
+/// Asks for the origin only where it is kept.
+#[inline(always)]
+pub(super) fn unmoved<N: Arithmetic>(
+    origin: impl Fn() -> [N::Wide; 3],
+    interval: [N::Wide; 2],
+    holds_start: bool,
+) -> Unmoved<N> {
+    from_fn(|_| UnmovedRay {
+        origin: origin(),
+        interval,
+        holds_start,
+    })
+}
+
+/// The same ray of another format.
+#[inline(always)]
+pub(super) fn rounded<N: Arithmetic, M: Arithmetic>(
+    unmoved: Unmoved<N>,
+    round: impl Fn(N::Wide) -> M::Wide,
+) -> Unmoved<M> {
+    unmoved.map(|ray| UnmovedRay {
+        origin: ray.origin.map(&round),
+        interval: ray.interval.map(&round),
+        holds_start: ray.holds_start,
+    })
+}
+
+impl<N: Arithmetic> UnmovedRay<N> {
+    /// The ray's start if that is a place on it, and else its origin.
+    pub(super) fn base(&self, start: Place<N>) -> Place<N> {
+        if self.holds_start {
+            start
+        } else {
+            (self.origin, N::Wide::default())
+        }
+    }
+
+    /// Where a surface is crossed, given how far from a place on the ray that is.
+    ///
+    /// The place is the origin or the start, whichever is nearer to the crossing: so numbers are fine where the
+    /// crossing is, and a ray that begins beside a surface stays beside it.
+    pub(super) fn meet(
+        &self,
+        start: Place<N>,
+        cross: impl Fn([N::Wide; 3]) -> Option<N::Wide>,
+    ) -> Option<FarPlace<N>> {
+        let from = |(base, at): Place<N>| {
+            let rest = cross(base)?;
+            Some(FarPlace::<N> { base, at, rest })
+        };
+        let first = from((self.origin, N::Wide::default()))?;
+        let second = from(self.base(start))?;
+        let is_nearer = magnitude::<N>(second.rest) < magnitude::<N>(first.rest);
+        let nearer = if is_nearer { second } else { first };
+        (magnitude::<N>(nearer.rest) < N::far(FARTHEST_HIT)).then_some(nearer)
+    }
+
+    /// The place at a `t` that is counted from the origin.
+    pub(super) fn place(&self, start: Place<N>, t: N::Wide) -> FarPlace<N> {
+        let (base, at) = self.base(start);
+        if magnitude::<N>(t - at) < magnitude::<N>(t) {
+            let rest = t - at;
+            FarPlace { base, at, rest }
+        } else {
+            let (base, at, rest) = (self.origin, N::Wide::default(), t);
+            FarPlace { base, at, rest }
+        }
+    }
+}
+
+impl<N: Arithmetic> FarPlace<N> {
+    /// Counted from the origin.
+    pub(crate) fn t(&self) -> N::Wide {
+        self.at + self.rest
+    }
+
+    pub(crate) fn coordinates(&self, slope: [N; 3]) -> [N::Wide; 3] {
+        let [x, y, z] = self.base;
+        let along = |from: N::Wide, slope: N| from + N::wide_scale(self.rest, slope);
+        [along(x, slope[0]), along(y, slope[1]), along(z, slope[2])]
+    }
+}
+
+fn magnitude<N: Arithmetic>(wide: N::Wide) -> N::Wide {
+    if wide < N::Wide::default() {
+        -wide
+    } else {
+        wide
+    }
+}
