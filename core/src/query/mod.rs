@@ -62,28 +62,67 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
 ) -> Option<Found<N>> {
     // Known when the code is compiled, unless one copy of it is to serve both.
     let any = if A::ONE_COPY { any } else { ANY };
-    let views = A::views(&scene.structures);
-    let cull = A::Cull::<N>::new(ray);
-    let mut search = Search::new(scene, ray, &cull);
     if C::ENABLED {
         count.event(ray.query(any));
     }
-    let far = if UNBOUNDED && scene.has_unbounded {
-        unbounded::nearest(scene, ray, count)
-    } else {
-        None
-    };
-    let shorter;
-    if let Some((t, place)) = far {
-        shorter = ray.until(t);
-        (search.ray, search.tmax) = (&shorter, shorter.tmax);
-        let (t, part) = (shorter.tmax, 0);
-        search.best = Some(Candidate { t, place, part });
+    if UNBOUNDED && scene.has_unbounded {
+        return search_all::<N, A, C, ANY>(scene, ray, stack, count, any);
     }
-    let ray = if UNBOUNDED { search.ray } else { ray };
-    if any && far.is_some() {
-        // One is enough.
-    } else if ANY {
+    let best = search_structure::<N, A, C, ANY>(scene, ray, None, stack, count, any)?;
+    Some(Found {
+        t: best.t.widen() + ray.moved,
+        primitive: scene.primitive_at(best.place),
+        best,
+    })
+}
+
+/// The same in a scene that holds shapes without bounds.
+#[cold]
+#[inline(never)]
+fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    stack: &mut StackView,
+    count: &mut C,
+    any: bool,
+) -> Option<Found<N>> {
+    let far = unbounded::nearest(scene, ray, count);
+    let end = far.map_or(*ray, |(t, _)| ray.until(t));
+    let first = far.map(|(_, place)| Candidate {
+        t: end.tmax,
+        place,
+        part: 0,
+    });
+    let best = if any && first.is_some() {
+        first?
+    } else {
+        search_structure::<N, A, C, ANY>(scene, &end, first, stack, count, any)?
+    };
+    let t = match far {
+        Some((t, place)) if place == best.place => t,
+        _ => best.t.widen() + ray.moved,
+    };
+    Some(Found {
+        t,
+        primitive: scene.primitive_at(best.place),
+        best,
+    })
+}
+
+/// The best hit among the primitives of a structure, and a first one that was found before.
+#[cfg_attr(feature = "wide", inline(always))]
+fn search_structure<N: Number, A: Accel, C: Observer, const ANY: bool>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    first: Option<Candidate<N>>,
+    stack: &mut StackView,
+    count: &mut C,
+    any: bool,
+) -> Option<Candidate<N>> {
+    let views = A::views(&scene.structures);
+    let cull = A::Cull::<N>::new(ray);
+    let mut search = Search::new(scene, ray, &cull, first);
+    if ANY {
         A::walk_any(
             &scene.space,
             views,
@@ -123,16 +162,7 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
             },
         );
     }
-    let best = search.best?;
-    let t = match far {
-        Some((t, place)) if place == best.place => t,
-        _ => best.t.widen() + ray.moved,
-    };
-    Some(Found {
-        t,
-        primitive: scene.primitive_at(best.place),
-        best,
-    })
+    search.best
 }
 
 /// The first hit of a ray in its interval: [`closest_primitive`] with its surface.

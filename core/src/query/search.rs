@@ -42,7 +42,12 @@ pub(super) struct Search<'s, 'a, N: Number, K> {
 
 impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     #[inline(always)]
-    pub(super) fn new(scene: &'s Scene<'a>, ray: &'s Ray<N>, cull: &'s K) -> Self {
+    pub(super) fn new(
+        scene: &'s Scene<'a>,
+        ray: &'s Ray<N>,
+        cull: &'s K,
+        best: Option<Candidate<N>>,
+    ) -> Self {
         Self {
             scene,
             ray,
@@ -54,7 +59,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             },
             strip_ray: InWide::new(|| StripRay::new(ray, &scene.space.shapes.clusters().strips)),
             tmax: ray.tmax,
-            best: None,
+            best,
         }
     }
 
