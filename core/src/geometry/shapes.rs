@@ -170,8 +170,10 @@ macro_rules! registry {
                     _ if !kind.is_available() => return None,
                     Kind::Triangle => triangle::bounds(self.triangle(index)?),
                     Kind::Sphere => self.sphere_bounds(index)?,
-                    _ if !kind.is_bounded() => return None,
-                    $(Kind::$kind => Primitive::bounds(self.$field.get(index)?),)*
+                    $(Kind::$kind if Kind::$kind.is_available() && Kind::$kind.is_bounded() => {
+                        Primitive::bounds(self.$field.get(index)?)
+                    })*
+                    _ => return None,
                 })
             }
 
@@ -205,7 +207,11 @@ macro_rules! registry {
                         let (center, radius) = self.spheres.get(index)?;
                         sphere::surface(center, radius, point)
                     }
-                    $(Kind::$kind => self.$field.get(index)?.surface(ray, part, point),)*
+                    // The optimiser needs this guard to leave out the shapes that a build lacks.
+                    $(Kind::$kind if !UNBOUNDED || Kind::$kind.is_available() => {
+                        self.$field.get(index)?.surface(ray, part, point)
+                    })*
+                    _ => return None,
                 })
             }
 

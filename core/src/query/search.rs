@@ -154,9 +154,11 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                         Spheres::S24(_) if !WIDE_LATTICE => (),
                         Spheres::S24(spheres) => self.spheres(spheres.get(slots), leaf, count),
                     },
-                    // No structure leads to them.
-                    kind if !kind.is_bounded() => (),
-                    $(Kind::$kind => self.records(shapes.$field.get(slots), leaf, count),)*
+                    $(Kind::$kind if Kind::$kind.is_available() && Kind::$kind.is_bounded() => {
+                        self.records(shapes.$field.get(slots), leaf, count)
+                    })*
+                    // No structure leads to what has no bounds.
+                    _ => (),
                 }
             };
         }

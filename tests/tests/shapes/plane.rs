@@ -47,7 +47,7 @@ fn rays_in_and_along_a_plane_miss_it_and_grazing_rays_meet_it() {
                     Case {
                         class: "graze",
                         solid: Solid::Plane(Plane {
-                            point: point,
+                            point,
                             normal: DVec3::AXES[axis],
                         }),
                         rays: vec![(origin.to_array(), slope(way))],
@@ -127,10 +127,7 @@ fn planes_of_small_integers_have_exact_sides() {
         let mut random = Random(seed);
         let mut whole = |most: f64| (random.signed() * most).round();
         let point = DVec3::new(whole(1000.0), whole(1000.0), whole(1000.0)) * STEP;
-        let solid = Solid::Plane(Plane {
-            point: point,
-            normal: normal,
-        });
+        let solid = Solid::Plane(Plane { point, normal });
         let blob = gridel_tests::judge::blob_of([&solid]);
         let scene = blob.scene().expect("a scene");
         // Integers at right angles to the normal.

@@ -24,8 +24,9 @@ fn the_documented_example_holds_what_it_says() {
         "ring/cone 1",
         "ring/frustum 2",
         "ring/disc 3",
-        "triangle 5",
-        "mesh 6",
+        "plane 5",
+        "triangle 6",
+        "mesh 7",
     ];
     assert_eq!(names, expected);
     assert_eq!(material_of(&scene, "left/cylinder 1"), "steel");
@@ -56,7 +57,7 @@ fn the_documented_example_holds_what_it_says() {
     let Shape::Mesh {
         vertices,
         triangles,
-    } = &named(&scene, "mesh 6").shape
+    } = &named(&scene, "mesh 7").shape
     else {
         panic!()
     };
