@@ -72,7 +72,7 @@ pub struct Cull {
 
 impl<N: CullArithmetic> Culling<N> for Cull {
     /// Costs three divisions and some fifty operations.
-    #[inline]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     fn new(ray: &Ray<N>) -> Self {
         let axis = |k: usize| N::cull_axis(ray.slope[k], ray.origin[k]);
         Self {
@@ -133,7 +133,7 @@ impl<N: CullArithmetic> PairCulling<N> for Cull {
 pub struct Deferred;
 
 impl<N: CullArithmetic> Culling<N> for Deferred {
-    #[inline]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     fn new(_: &Ray<N>) -> Self {
         Self
     }
@@ -227,7 +227,7 @@ impl Cull {
     }
 
     /// The interval of a box, the ray's own aside.
-    #[inline]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     pub(crate) fn interval(&self, bounds: &UnitBox) -> Interval {
         let axis = |k: usize| self.axes[k].between(plane_word(bounds.0[k]));
         axis(0).and(axis(1)).and(axis(2))

@@ -104,7 +104,7 @@ impl CullAxis {
     }
 
     /// The steps at which the ray enters and leaves between the two planes of a word.
-    #[inline]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     pub(in crate::accel) fn between(&self, planes: u32) -> Interval {
         let [near, far] = self.ordered(planes);
         Interval {
@@ -127,7 +127,7 @@ impl CullAxis {
     /// it counts as up to a unit higher. Below another lies the lower half of the given word alone: its
     /// upper half is where the ray leaves if it runs up the axis, and where it enters if it runs down.
     /// Either way the interval grows.
-    #[inline]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     pub(in crate::accel) fn around_by_shifts(&self, planes: u32) -> Interval {
         let near = planes.wrapping_shl(self.rotation ^ 16);
         let far = planes.wrapping_shl(self.rotation);

@@ -4,7 +4,7 @@
 //! height along it, a point lies in the solid where `h = (rho - R)^2 + y^2 - r^2` is not positive. So
 //! a spindle torus (`r > R`) has its outer surface alone. The textbook's quartic is
 //! `h ((rho + R)^2 + y^2 - r^2)`; it is neither expanded nor solved in radicals, because its
-//! coefficients lose the tube of a thin ring to rounding: see [`profile`](self::profile).
+//! coefficients lose the tube of a thin ring to rounding: see `torus/profile.rs`.
 //!
 //! The line's origin is its point closest to the centre, so lengths are those of the solid, wherever
 //! the ray comes from.

@@ -163,7 +163,7 @@ impl<N: Project> Projection<N> {
     /// seen edge on.
     ///
     /// Cost: 9 loads and some 30 multiplications and additions.
-    #[inline]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     pub(crate) fn meets<const MAJOR: usize, V: Vertex>(&self, a: &V, b: &V, c: &V) -> bool {
         let seen = |vertex: &V, role: usize| {
             let coordinate = vertex.steps(axis::<MAJOR>(self.major, role));
@@ -217,7 +217,7 @@ pub(crate) fn cross<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> Option<
 }
 
 /// The normal, of any length: exact but for one rounding a component.
-#[inline]
+#[cfg_attr(not(feature = "small"), inline(always))]
 fn normal<N: Arithmetic>([a, b, c]: [[i32; 3]; 3]) -> [N; 3] {
     let edge = |from: [i32; 3], to: [i32; 3]| {
         let axis = |k: usize| to[k].wrapping_sub(from[k]);

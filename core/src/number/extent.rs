@@ -3,7 +3,7 @@
 use crate::number::Arithmetic;
 
 /// The larger of two extents, for error bounds.
-#[inline]
+#[cfg_attr(not(feature = "small"), inline(always))]
 pub(crate) fn extent<N: Arithmetic>(coordinates: [N; 3]) -> N {
     coordinates[0]
         .abs()

@@ -38,7 +38,7 @@ pub trait Products: Scalar {
         stride: Self::Wide,
     ) -> Self;
     /// Three products added: `a . b`.
-    #[inline]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     fn dot(a: [Self; 3], b: [Self; 3]) -> Self::Wide {
         a[0].wide(b[0]) + a[1].wide(b[1]) + a[2].wide(b[2])
     }

@@ -40,6 +40,7 @@ use search::{Candidate, Search};
 /// ```
 // Hosts have the room; a ray that goes through memory is waited for.
 #[cfg_attr(feature = "wide", inline(always))]
+#[cfg_attr(not(feature = "wide"), inline)]
 pub fn closest_primitive<N: Number, A: Accel, C: Observer>(
     scene: &Scene<'_>,
     ray: &Ray<N>,

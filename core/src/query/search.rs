@@ -72,7 +72,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     }
 
     /// The same of a primitive whose crossing may have been rounded out of its box.
-    #[inline]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     #[cfg_attr(feature = "small", inline(never))]
     fn consider_in_box(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: PrimitiveId) {
         if let Some(hit) = accept_in_box(self.ray, self.cull, crossing, bounds, self.tmax) {

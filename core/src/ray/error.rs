@@ -11,7 +11,7 @@ pub enum RayError {
     Direction,
     /// The origin is infinite or NaN.
     Origin,
-    /// The origin is farther than [`FARTHEST`] along an axis.
+    /// The origin is farther than [`FARTHEST`](crate::format::limits::FARTHEST) along an axis.
     Distance,
     /// `tmin` is greater than `tmax`, or one of them is NaN.
     Interval,

@@ -31,7 +31,7 @@ use unmoved::{FarPlace, Place, rounded, unmoved};
 /// origin that was given.
 ///
 /// # Limits
-/// - **Origin:** each coordinate is at most 2^37 units ([`FARTHEST`]), or the ray is rejected with
+/// - **Origin:** each coordinate is at most 2^37 units ([`FARTHEST`](crate::format::limits::FARTHEST)), or the ray is rejected with
 ///   [`RayError::Distance`]. A scene's box is at most 2^16 units wide, so rays from 2^20 times its width
 ///   are answered. The origin is moved in twice the format's precision, by the direction as it is given
 ///   and not by its rounded slopes: from any distance the ray starts where it comes to the box, within two
@@ -63,9 +63,10 @@ impl<N: Arithmetic> Ray<N> {
     ///
     /// # Errors
     /// If the direction is zero, or anything is NaN, or the origin or direction infinite, or the origin
-    /// farther than [`FARTHEST`] along an axis, or `tmin > tmax`: see the limits of [`Ray`].
+    /// farther than [`FARTHEST`](crate::format::limits::FARTHEST) along an axis, or `tmin > tmax`: see the limits of [`Ray`].
     // Hosts have the room; through memory a ray would cost as much again.
     #[cfg_attr(feature = "wide", inline(always))]
+    #[cfg_attr(not(feature = "wide"), inline)]
     pub fn new(
         bounds: &UnitBox,
         origin: [N::Wide; 3],
@@ -101,6 +102,7 @@ impl<N: Arithmetic> Ray<N> {
     /// A ray from a place in the scene, as hits give places, with all `t` up to `tmax` but 0, where it
     /// meets what it starts on. `None` if the direction is zero.
     #[cfg_attr(feature = "wide", inline(always))]
+    #[cfg_attr(not(feature = "wide"), inline)]
     pub(crate) fn from_inside(
         bounds: &UnitBox,
         origin: [N; 3],
@@ -284,7 +286,7 @@ impl<N: Arithmetic> Ray<N> {
     }
 
     /// The point at a parameter that is counted inside the kernels.
-    #[inline]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     pub(crate) fn at(&self, t: N) -> [N; 3] {
         let along = |axis: usize| self.origin[axis] + t * self.slope[axis];
         [along(0), along(1), along(2)]

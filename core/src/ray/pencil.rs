@@ -47,14 +47,14 @@ impl<N: Arithmetic> Pencil<N> {
     /// ```
     ///
     /// # Errors
-    /// If the origin is infinite or NaN, or farther than [`FARTHEST`].
+    /// If the origin is infinite or NaN, or farther than [`FARTHEST`](crate::format::limits::FARTHEST).
     pub fn new(bounds: &UnitBox, origin: [N::Wide; 3]) -> Result<Self, RayError> {
         let [x, y, z] = origin;
         check_origin::<N>(x, y, z)?;
         Ok(Self::of(bounds, origin))
     }
 
-    /// The rays from a point that is no farther than [`FARTHEST`].
+    /// The rays from a point that is no farther than [`FARTHEST`](crate::format::limits::FARTHEST).
     pub(crate) fn of(bounds: &UnitBox, origin: [N::Wide; 3]) -> Self {
         let zero = N::Wide::default();
         let moved = [0, 1, 2].map(|axis| {

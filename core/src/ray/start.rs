@@ -10,7 +10,7 @@ use core::cmp::Ordering;
 
 /// How far rays are moved that run up or down one axis, from a coordinate on it: to the plane in which the scene's
 /// box begins, or towards it for hits behind the point.
-#[inline]
+#[cfg_attr(not(feature = "small"), inline(always))]
 pub(super) fn way_to_box<N: Arithmetic>(
     bounds: &UnitBox,
     origin: N::Wide,
@@ -88,7 +88,7 @@ pub(super) fn near_start<N: Arithmetic>(origin: [N; 3], moved: N, slope: [N; 3])
 
 /// Where a ray starts that is moved from an origin anywhere, how far that is, and whether it lies within
 /// [`REACH`]: else it meets nothing. `EXACT` says that slopes and lengths are not rounded.
-#[inline]
+#[cfg_attr(not(feature = "small"), inline(always))]
 pub(super) fn far_start<N: Arithmetic, const EXACT: bool>(
     bounds: &UnitBox,
     origin: [N::Wide; 3],

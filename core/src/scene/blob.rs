@@ -202,6 +202,7 @@ impl<'a> Scene<'a> {
 
     /// The number, in scene-file order, of a primitive that lies somewhere.
     #[cfg_attr(feature = "wide", inline(always))]
+    #[cfg_attr(not(feature = "wide"), inline)]
     pub(crate) fn primitive_at(&self, place: PrimitiveId) -> u32 {
         self.key(place).0
     }
@@ -209,6 +210,7 @@ impl<'a> Scene<'a> {
     /// What decides between hits at the same t: the primitive's number, and between pieces of one
     /// primitive, kind and slot; so answers do not depend on the structure either.
     #[cfg_attr(feature = "wide", inline(always))]
+    #[cfg_attr(not(feature = "wide"), inline)]
     pub(crate) fn key(&self, place: PrimitiveId) -> (u32, u8, u32) {
         let PrimitiveId { kind, number, .. } = place;
         let Some(lane) = place.lane() else {

@@ -29,13 +29,13 @@ impl<N: Number> Color<N> {
     }
 
     /// Channel by channel; one of the two holds ratios.
-    #[inline]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     pub(crate) fn times(self, ratios: Self) -> Self {
         self.zip(ratios, |a, b| a * b)
     }
 
     /// All channels by one ratio.
-    #[inline]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     pub(crate) fn scaled(self, ratio: N) -> Self {
         Self(self.0.map(|channel| channel * ratio))
     }

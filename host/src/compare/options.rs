@@ -44,7 +44,7 @@ impl Default for Options<'_> {
 pub type Contender = (Structure, Option<Builder>);
 
 impl Options<'_> {
-    /// How often [`compare`] tells what happens next, if all contenders can be built and are right.
+    /// How often [`compare`](crate::compare::compare) reports progress, if all contenders can be built and are right.
     pub fn steps(&self) -> u64 {
         let contenders = self.contenders().len();
         (2 + contenders * (2 + self.repeats)) as u64

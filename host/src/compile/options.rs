@@ -26,7 +26,7 @@ pub const LARGEST_LEAF: usize = Leaf::MAX_COUNT as usize;
 pub struct Options {
     /// Acceleration structures; the list is always there.
     pub structures: Vec<Structure>,
-    /// Bits that coordinates are snapped to: see [`LATTICE_BITS`].
+    /// Bits that coordinates are snapped to: see [`LATTICE_BITS`](crate::compile::LATTICE_BITS).
     pub lattice_bits: u8,
     /// Primitives that make a leaf of a hierarchy whatever rays pay for it, at most
     /// [`LARGEST_LEAF`]: fewer nodes and more tests. With 0 the costs alone decide.
@@ -47,7 +47,7 @@ pub struct Options {
     /// holds.
     pub gridels: Option<u32>,
     /// Most bytes of each table of candidate lists, and in the apexes' of each point or direction;
-    /// otherwise what [`usual_budget`] says.
+    /// otherwise what [`usual_budget`](crate::compile::usual_budget) says.
     pub budget: Option<u64>,
 }
 

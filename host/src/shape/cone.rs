@@ -239,7 +239,7 @@ impl Analytic for Cone {
             .max(these[1].displacement(&others[1]))
     }
 
-    /// Where rounding both ends to the lattice moves the surface by more than [`GOOD`] steps, because a
+    /// Where rounding both ends to the lattice moves the surface by more than `GOOD` steps, because a
     /// short axis leans, the ends are those 1/256 units that move it least, whatever the lattice's step.
     fn settled(&self, rounded: Self, lattice: &Lattice) -> (Self, f64) {
         let displacement = self.displacement(&rounded);

@@ -62,7 +62,7 @@ impl Project for Fixed {
         Fixed((product(depth.0, shear.0) >> 32) as i32)
     }
 
-    #[inline]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     fn surrounds_origin(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool {
         if NARROW_PRODUCTS && let Some(surround) = halves::surround(a, b, c) {
             return surround;

@@ -216,7 +216,7 @@ impl Products for Fixed {
         Self::narrow(origin + depth.times_ratio(step, stride))
     }
 
-    #[inline]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     fn from_wide(product: Product) -> Self {
         saturate(round_off(product.0, RATIO_BITS))
     }

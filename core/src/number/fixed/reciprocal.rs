@@ -4,7 +4,7 @@ use crate::number::fixed::halves::{product, product_unsigned, quotient};
 
 /// 2^61 / `d` for `d` in \[2^30, 2^31), to a part in 2^29: a division in 32 bits, which small cores
 /// have or emulate cheaply, and one step of Newton's iteration.
-#[inline]
+#[cfg_attr(not(feature = "small"), inline(always))]
 pub(crate) fn reciprocal(d: u32) -> u32 {
     let coarse = quotient(d.wrapping_add(1 << 14) >> 15) << 14;
     // d * coarse is 2^61 but for a part in 2^15.

@@ -9,7 +9,7 @@ use crate::number::fixed::root::nearest_root;
 use crate::number::fixed::wide::Product;
 
 /// `v >> bits` on the magnitude, so that rounding does not depend on the sign.
-#[inline]
+#[cfg_attr(not(feature = "small"), inline(always))]
 const fn shift_magnitude(v: i64, bits: i32) -> i32 {
     let magnitude = v.unsigned_abs();
     let shifted = if bits >= 0 {
@@ -68,7 +68,7 @@ pub(super) fn direction(v: [i64; 3]) -> [Fixed; 3] {
 }
 
 /// [`Vectors::slopes`](crate::number::Vectors::slopes).
-#[inline]
+#[cfg_attr(not(feature = "small"), inline(always))]
 pub(super) fn slopes(v: [Product; 3]) -> Option<([Fixed; 3], usize)> {
     let v = v.map(|product| product.0);
     let narrow = v.map(|component| component as i32);
@@ -93,7 +93,7 @@ fn slopes_of_wide(v: [i64; 3]) -> Option<([Fixed; 3], usize)> {
 }
 
 /// [`Vectors::slopes`](crate::number::Vectors::slopes) of a vector of at most 31 bits and a sign.
-#[inline]
+#[cfg_attr(not(feature = "small"), inline(always))]
 fn slopes_of_narrow(v: [i32; 3]) -> Option<([Fixed; 3], usize)> {
     let [x, y, z] = v.map(i32::unsigned_abs);
     let (largest, axis) = if x >= y && x >= z {
@@ -134,7 +134,7 @@ fn slopes_of_narrow(v: [i32; 3]) -> Option<([Fixed; 3], usize)> {
 }
 
 /// [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2).
-#[inline]
+#[cfg_attr(not(feature = "small"), inline(always))]
 pub(super) fn recip_norm2(d: [Fixed; 3]) -> Fixed {
     // d . d has 60 fraction bits: as 29, 1 to 3 lies in [2^29, 2^31).
     let norm2 = (Fixed::dot(d, d).0 >> 31) as u32;

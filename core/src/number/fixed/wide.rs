@@ -89,7 +89,7 @@ impl Product {
     }
 
     /// [`Products::wide_scale`](crate::number::Products::wide_scale).
-    #[inline]
+    #[cfg_attr(not(feature = "small"), inline(always))]
     pub(super) fn scaled(self, ratio: Fixed) -> Self {
         keep(|| i64::try_from((self.0 as i128 * ratio.0 as i128) >> RATIO_BITS).is_ok());
         let high = (self.0 >> 32).wrapping_mul(ratio.0 as i64);
