@@ -16,7 +16,7 @@ use crate::observe::event::Event;
 use start::{
     check_interval, check_origin, end_after, far_start, interval, is_near, near_start, way_to_box,
 };
-use unmoved::{FarPlace, Place, rounded, unmoved};
+use unmoved::{FarPlace, Place, unmoved};
 
 /// A half-line with an interval, ready to be traced through one scene.
 ///
@@ -175,7 +175,11 @@ impl<N: Arithmetic> Ray<N> {
             moved: N::far_from_f64(exact.moved),
             tmin: N::length_from_f64(exact.tmin),
             tmax: N::length_from_f64(exact.tmax),
-            unmoved: rounded(exact.unmoved, N::far_from_f64),
+            unmoved: unmoved(
+                || origin.map(N::far_from_f64),
+                [tmin, tmax].map(N::far_from_f64),
+                exact.holds_start(),
+            ),
         })
     }
 
@@ -245,6 +249,11 @@ impl<N: Arithmetic> Ray<N> {
     pub fn base(&self) -> ([N::Wide; 3], N::Wide) {
         let start = self.start_place();
         self.unmoved.first().map_or(start, |ray| ray.base(start))
+    }
+
+    /// Whether the start is a place on the ray.
+    fn holds_start(&self) -> bool {
+        self.unmoved.first().is_none_or(|ray| ray.holds_start)
     }
 
     fn start_place(&self) -> Place<N> {

@@ -14,7 +14,7 @@ pub(crate) struct UnmovedRay<N: Arithmetic> {
     origin: [N::Wide; 3],
     pub(super) interval: [N::Wide; 2],
     /// Whether the ray's start is a place on it. It is none where the ray passes the scene far away.
-    holds_start: bool,
+    pub(super) holds_start: bool,
 }
 
 /// A place on a ray, and its t, counted from the origin.
@@ -44,19 +44,6 @@ pub(super) fn unmoved<N: Arithmetic>(
         origin: origin(),
         interval,
         holds_start,
-    })
-}
-
-/// The same ray of another format.
-#[inline(always)]
-pub(super) fn rounded<N: Arithmetic, M: Arithmetic>(
-    unmoved: Unmoved<N>,
-    round: impl Fn(N::Wide) -> M::Wide,
-) -> Unmoved<M> {
-    unmoved.map(|ray| UnmovedRay {
-        origin: ray.origin.map(&round),
-        interval: ray.interval.map(&round),
-        holds_start: ray.holds_start,
     })
 }
 
