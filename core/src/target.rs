@@ -6,7 +6,7 @@ pub(crate) const SMALL: bool = cfg!(feature = "small");
 /// Whether the code of the structure `wide`, and of the clusters in its leaves, is in this build.
 pub(crate) const WIDE: bool = cfg!(feature = "wide");
 
-/// What only builds with [`WIDE`] hold; of no size in others.
+/// A value that only builds with [`WIDE`] hold; it has no size in others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct InWide<T>([T; WIDE as usize]);
 

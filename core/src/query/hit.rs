@@ -62,7 +62,7 @@ impl<N: Number> Found<N> {
     }
 }
 
-/// What a ray met.
+/// Where a ray meets a primitive, and how the surface lies there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit<N: Number> {
     /// Where on the ray: a length in units along the ray's major axis (see [`Ray`]).

@@ -22,7 +22,7 @@ use search::{Candidate, Search};
 
 /// The primitive that a ray meets first in its interval, found through the structure `A`.
 ///
-/// Of hits at the same t the one that comes first in the scene file counts, so the answer is the
+/// Among hits at the same t the one that comes first in the scene file counts, so the answer is the
 /// same whatever the structure. The stack must be as deep as the blob says.
 ///
 /// ```
@@ -136,19 +136,6 @@ fn search_structure<N: Number, A: Accel, C: Observer, const ANY: bool>(
                 search.best.is_some()
             },
         );
-    } else if A::ONE_COPY {
-        A::walk(
-            &scene.space,
-            views,
-            ray,
-            &cull,
-            stack,
-            count,
-            |leaf, count| {
-                search.leaf::<A, C, ANY>(leaf, count);
-                (!any || search.best.is_none()).then_some(search.tmax)
-            },
-        );
     } else {
         A::walk(
             &scene.space,
@@ -159,7 +146,7 @@ fn search_structure<N: Number, A: Accel, C: Observer, const ANY: bool>(
             count,
             |leaf, count| {
                 search.leaf::<A, C, ANY>(leaf, count);
-                Some(search.tmax)
+                (!any || search.best.is_none()).then_some(search.tmax)
             },
         );
     }

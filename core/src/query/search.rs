@@ -71,7 +71,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         }
     }
 
-    /// The same of a primitive whose crossing may have been rounded out of its box.
+    /// Considers a crossing that may have been rounded out of the primitive's box.
     #[cfg_attr(not(feature = "small"), inline(always))]
     #[cfg_attr(feature = "small", inline(never))]
     fn consider_in_box(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: PrimitiveId) {
@@ -80,7 +80,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         }
     }
 
-    /// The same, out of line, because few of the primitives that are tested come this far.
+    /// Considers such a crossing out of line, because few of the tested primitives come this far.
     #[cfg_attr(not(feature = "small"), inline(never))]
     fn consider_out_of_line(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: PrimitiveId) {
         self.consider_in_box(crossing, bounds, place);

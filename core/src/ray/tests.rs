@@ -32,7 +32,7 @@ fn length() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// What is near starts as what is far: all that is saved is arithmetic.
+/// The short arithmetic for near origins gives the same starts as the long one for far origins.
 fn same_start<N: Arithmetic>(origin: [f64; 3], direction: [f64; 3], tmin: f64) {
     let bounds = UnitBox([[-300, 400], [-32_768, 32_767], [5, 6]]);
     let origin = origin.map(N::far_from_f64);

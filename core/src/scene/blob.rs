@@ -144,8 +144,8 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// The scene with queries through [`Wide`](crate::Wide) at a level of instructions; at first they
-    /// are portable.
+    /// Returns the scene with queries through [`Wide`](crate::Wide) at a level of instructions. The
+    /// default is portable. Has no effect in a build without the feature `wide`.
     pub fn with_simd(self, simd: SimdLevel) -> Self {
         let mut scene = self;
         scene.space.simd = InWide::new(|| simd);

@@ -1,4 +1,4 @@
-//! What the host asks of a primitive and of a shape.
+//! The two traits of shapes on the host: [`Geometric`] for all primitives, [`Analytic`] for shapes with a record.
 
 use super::direction::integers;
 use super::exact::{Line, Real, Vector};
@@ -11,12 +11,12 @@ use glam::{DAffine3, DVec3};
 use gridel_core::format::record::UnitBox;
 use std::cell::Cell;
 
-/// A normal, and what an error of it is proportional to.
+/// A normal, and the figures that its error bound is proportional to.
 pub struct Normal {
     pub exact: Vector,
-    /// How often coordinates are larger than the length that the direction is taken from.
+    /// The ratio of the largest coordinate to the length from which the direction is computed.
     pub condition: f64,
-    /// The length that the angle of a cone is taken from, half of its slanted side.
+    /// Half of a cone's slant height, from which its angle is computed; infinite for other surfaces.
     pub size: f64,
 }
 
@@ -30,121 +30,124 @@ impl Normal {
     }
 }
 
-/// Where the surface of a primitive lies.
+/// The kind of surface that a primitive has.
 #[derive(Clone, Copy, Debug)]
 pub enum Surface {
-    /// On the sides of its box.
+    /// The sides of its box.
     Box,
-    /// In a plane.
+    /// Part of a plane.
     Plane { normal: DVec3, point: DVec3 },
-    /// On all of a sphere.
+    /// A whole sphere.
     Sphere { center: DVec3, radius: f64 },
-    /// Somewhere in its box.
+    /// Any other surface inside its box.
     Curved,
 }
 
 /// The geometry of a primitive: of a triangle, or of a shape.
 ///
-/// Crossings can be asked of a primitive that is larger or smaller by a length on all sides. That is how
-/// errors are judged: an answer is off by no more than a length if some primitive that differs by no more
-/// than that length gives it. So a ray that barely touches is judged as fairly as one that strikes head on.
+/// A crossing can be computed for the primitive grown or shrunk by a length on all sides. `verify` judges
+/// errors so: an answer is within a length if a primitive that differs by at most that length gives the
+/// same answer. Grazing rays need no other rule.
 pub trait Geometric {
-    /// Whether it encloses nothing.
+    /// Returns whether the primitive has no inside.
     fn is_flat(&self) -> bool {
         false
     }
 
-    /// Whether no line enters it twice.
+    /// Returns whether no line enters the primitive twice.
     fn is_convex(&self) -> bool {
         true
     }
 
-    /// Two balls with a box around them that holds all of it; their centres have its middle between them.
+    /// Returns two spheres, as centres and radii. Their common box holds the primitive, and its middle lies
+    /// halfway between the centres.
     fn ends(&self) -> [(DVec3, f64); 2];
 
+    /// Returns the kind of surface.
     fn surface(&self) -> Surface {
         Surface::Curved
     }
 
-    /// Its smallest feature; of a triangle, none of its own.
+    /// Returns the size of its smallest feature. A triangle has none of its own: its mesh has.
     fn feature(&self) -> Option<f64>;
 
-    /// Its middle.
+    /// Returns the middle.
     fn middle(&self) -> DVec3 {
         let [(first, _), (last, _)] = self.ends();
         first.midpoint(last)
     }
 
-    /// About how large it is.
+    /// Returns its approximate size.
     fn size(&self) -> f64 {
         let [(first, first_radius), (last, last_radius)] = self.ends();
         first.distance(last).max(first_radius).max(last_radius)
     }
 
-    /// The largest magnitude of a coordinate.
+    /// Returns the largest magnitude of a coordinate.
     fn extent(&self) -> f64 {
         let [(first, first_radius), (last, last_radius)] = self.ends();
         first.abs().max(last.abs()).max_element() + first_radius.max(last_radius)
     }
 
-    /// A point of it, in about a direction from its middle.
+    /// Returns a point inside or on it, roughly in a direction from its middle.
     fn point(&self, direction: DVec3, random: &mut Random) -> DVec3;
 
-    /// The crossings of a line with it, moved outward by a length (inward by a negative one), in order.
+    /// Returns the intervals of a line inside the primitive, in order. `grow` moves the surface outward; a
+    /// negative one moves it inward.
     fn spans(&self, line: &Line, grow: &Real) -> Vec<(Real, Real)>;
 
-    /// By how much it would have to grow for a point to be on its surface. Of what is flat, its plane alone.
+    /// Returns how far the surface would have to grow to hold a point. For flat primitives, counts their plane only.
     fn excess(&self, point: [f64; 3]) -> f64;
 
-    /// The outward (or front) normals at a point, one for each face that it may be on.
+    /// Returns the outward (or front) normals at a point, one for each face that can hold it.
     fn normals(&self, point: [f64; 3]) -> Vec<Normal>;
 
-    /// The normals at a place where the surface meets itself, if that is as near to a point as it may be
-    /// off by.
+    /// Returns the normals at a place where the surface meets itself, if a point is within `off` of it.
     fn normals_within(&self, _point: [f64; 3], _off: f64) -> Option<Vec<Normal>> {
         None
     }
 
-    /// The normal on the side of a direction, where a point is as near to an axis as it may be off by: there
-    /// the side is not to be told, and at a tip every normal of the mantle supports the solid.
+    /// Returns the normal on the side of a direction, for a point within `off` of the axis. So near to the axis
+    /// every side is possible, and at a tip every normal of the mantle is one.
     fn normal_towards(&self, _direction: [f64; 3], _point: [f64; 3], _off: f64) -> Option<Normal> {
         None
     }
 }
 
-/// A function of points, one of directions and one of lengths.
+/// How to change the numbers of a shape: functions of points, directions and lengths.
 pub struct Map<'m> {
     pub point: &'m dyn Fn(DVec3) -> DVec3,
     pub direction: &'m dyn Fn(DVec3) -> DVec3,
     pub length: &'m dyn Fn(f64) -> f64,
 }
 
-/// A shape that some numbers describe: all that the host knows of it.
+/// A shape with a record of its own: reading, transforms, snapping to the lattice.
 ///
 /// The registry of shapes in the core names every record, and so every implementation of this. In scene
 /// files, and up to the lattice, a shape is in scene units; as a primitive of a blob it is in units.
 pub trait Analytic: Geometric + Sized {
-    /// What its test costs, a triangle's being 1: about what boards pay, with and without floats.
+    /// The cost of an intersection test, relative to a triangle's: about the mean of boards with and without
+    /// floating-point units.
     const TEST_COST: f64;
 
-    /// The kinds of objects in scene files that are this shape, with their keys.
+    /// The values of `kind` in scene files that mean this shape, with their keys.
     const KINDS: &[(&str, &[&str])];
 
-    /// The shape on the lattice.
+    /// The record of the core.
     type Record;
 
     /// Reads a kind of [`KINDS`](Self::KINDS).
     fn read<K: Keys>(kind: &str, keys: &K) -> Result<Self, K::Error>;
 
-    /// What people call it.
+    /// Returns the name that reports use.
     fn kind(&self) -> &'static str {
         Self::KINDS[0].0
     }
 
-    /// The shape of other numbers.
+    /// Returns the shape with all numbers changed.
     fn map(&self, by: &Map<'_>) -> Self;
 
-    /// Whether all numbers are finite.
+    /// Returns whether all numbers are finite.
     fn is_finite(&self) -> bool {
         let all = Cell::new(true);
         let vector = |v: DVec3| {
@@ -162,18 +165,21 @@ pub trait Analytic: Geometric + Sized {
         all.get()
     }
 
-    /// Whether there is something of it.
+    /// Returns `false` for an empty shape, such as a sphere of radius 0.
     fn has_extent(&self) -> bool;
 
-    /// Its box.
+    /// Returns the box, as its lowest and its highest corner.
     fn bounds(&self) -> [DVec3; 2];
 
-    /// The normals of what is flat, as long as twice its area.
+    /// Returns the normals of flat parts, with lengths of twice their areas.
     fn faces(&self) -> Vec<DVec3> {
         Vec::new()
     }
 
-    /// The shape after a transform, unless it is another then.
+    /// Returns the transformed shape.
+    ///
+    /// # Errors
+    /// If the result is not this kind of shape.
     fn transformed(&self, by: &DAffine3) -> Result<Self, Misfit> {
         let scale = similarity(by.matrix3)?;
         Ok(self.map(&Map {
@@ -183,25 +189,25 @@ pub trait Analytic: Geometric + Sized {
         }))
     }
 
-    /// Vertices and triangles of the same surface, for transforms after which the shape is another.
+    /// Returns the surface as a mesh, for transforms that `transformed` rejects.
     fn as_mesh(&self) -> Option<Mesh> {
         None
     }
 
-    /// How far two of these shapes are apart at most.
+    /// Returns the largest distance between the surfaces of two such shapes.
     fn displacement(&self, other: &Self) -> f64;
 
-    /// The shape in 1/256 unit that lies on the lattice next to a given one, better than that whose numbers
-    /// are all rounded, and how far they are apart.
+    /// Returns the shape on the lattice, in 1/256 unit, that is nearest to this one, and their distance. By
+    /// default this is the shape with all numbers rounded.
     fn settled(&self, rounded: Self, _lattice: &Lattice) -> (Self, f64) {
         let displacement = self.displacement(&rounded);
         (rounded, displacement)
     }
 
-    /// The record of integers of 1/256 unit, and whether its box lies in the range of box coordinates.
+    /// Returns the record, and whether its box is in the range of box coordinates. `self` is in 1/256 unit.
     fn record(&self) -> (Self::Record, bool);
 
-    /// The shape on the lattice, or `None` if the lattice leaves nothing of it.
+    /// Snaps the shape to the lattice. Returns `None` if it collapses.
     fn snapped(&self, lattice: &Lattice) -> Option<Snapped<Self::Record>> {
         if !self.has_extent() {
             return None;
@@ -228,13 +234,13 @@ pub trait Analytic: Geometric + Sized {
         })
     }
 
-    /// The box of a record.
+    /// Returns the box of a record.
     fn record_bounds(record: &Self::Record) -> UnitBox;
 
-    /// A record's shape, in 1/256 unit.
+    /// Returns the shape of a record, in 1/256 unit.
     fn of_record(record: &Self::Record) -> Self;
 
-    /// A record's shape, in units.
+    /// Returns the shape of a record, in units.
     fn in_units(record: &Self::Record) -> Self {
         Self::of_record(record).map(&Map {
             point: &|point| point / 256.0,

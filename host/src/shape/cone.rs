@@ -28,7 +28,7 @@ pub struct Cone {
 }
 
 impl Cone {
-    /// What it lies between.
+    /// Returns the two caps.
     fn caps(&self) -> [Disc; 2] {
         let normal = self.apex - self.base;
         self.ends().map(|(center, radius)| Disc {

@@ -62,7 +62,7 @@ fn common(ratios: DVec3) -> Option<DVec3> {
 ///
 /// Convergents of the continued fraction, in integers.
 fn simple_fraction(x: f64) -> Option<(u64, u64)> {
-    /// What three roundings of an `f64` take, relative.
+    /// The relative error of three roundings of an `f64`.
     const ROUNDED: f64 = 2.0 * f64::EPSILON;
     if x == 0.0 {
         return Some((0, 1));

@@ -14,7 +14,7 @@ use gridel_core::geometry::disc;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
     pub center: DVec3,
-    /// Of any length above 0.
+    /// Any length above 0.
     pub normal: DVec3,
     pub radius: f64,
 }

@@ -17,6 +17,6 @@ pub trait Keys {
     /// A finite number above 0.
     fn length(&self, key: &'static str) -> Result<f64, Self::Error>;
 
-    /// What is wrong with a key that is there, and what to do about it.
+    /// Returns the error for a key with an invalid value: the cause, and the remedy.
     fn error(&self, key: &'static str, cause: String, remedy: &str) -> Self::Error;
 }

@@ -1,8 +1,8 @@
-//! The shapes: one file for each, with all that the host knows of it.
+//! The shapes: one file per shape holds the whole of its host code.
 //!
 //! The registry of shapes in the core, `shapes!`, names the files, so a shape that has none does not compile.
-//! Triangles come in meshes, which share vertices; what is particular to them is with meshes in
-//! [`scene`](crate::scene) and [`compile`](mod@crate::compile).
+//! Triangles of a mesh share vertices, so [`scene`](crate::scene) reads meshes and
+//! [`compile`](mod@crate::compile) snaps them.
 
 mod analytic;
 mod crossing;
@@ -67,7 +67,7 @@ macro_rules! registry {
             $($(#[doc = $doc])* $kind($record),)*
         }
 
-        /// What each shape makes of an expression, and something else for meshes.
+        /// Evaluates an expression for the shape, and another one for meshes.
         macro_rules! of_shape {
             ($shape:expr, $it:ident => $value:expr, $mesh:pat => $other:expr) => {
                 match $shape {
@@ -196,7 +196,7 @@ macro_rules! registry {
             }
         }
 
-        /// What a test of a primitive costs, a triangle's being 1.
+        /// Returns the cost of an intersection test, relative to a triangle's.
         pub(crate) const fn test_cost(kind: Kind) -> f64 {
             match kind {
                 Kind::Triangle => 1.0,
@@ -252,7 +252,7 @@ impl Shape {
         of_shape!(self, it => it.as_mesh(), Self::Mesh { .. } => None)
     }
 
-    /// What people call it.
+    /// Returns the name that reports use.
     #[cfg(test)]
     pub(crate) fn kind(&self) -> &'static str {
         of_shape!(self, it => it.kind(), Self::Mesh { triangles, .. } => match triangles.len() {

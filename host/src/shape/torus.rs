@@ -11,11 +11,11 @@ use gridel_core::format::record::UnitBox;
 use gridel_core::geometry::torus;
 use std::cmp::Ordering;
 
-/// What a disc of the minor radius sweeps along a circle of the major radius around an axis.
+/// The solid that a disc of the minor radius sweeps along a circle of the major radius around an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torus {
     pub center: DVec3,
-    /// Of any length above 0.
+    /// The direction of the axis; any length above 0.
     pub axis: DVec3,
     pub major_radius: f64,
     pub minor_radius: f64,
@@ -177,7 +177,7 @@ const BITS: usize = 220;
 /// A torus in real numbers.
 struct Ring {
     center: Vector,
-    /// Of length 1.
+    /// The axis, of length 1.
     axis: Vector,
     major: Real,
     minor: Real,
