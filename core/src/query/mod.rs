@@ -90,7 +90,8 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
             count,
             |leaf, count| {
                 search.leaf::<A, C, ANY>(leaf, count);
-                (!any || search.best.is_none()).then_some(search.tmax)
+                let found = A::ONE_COPY && any && search.best.is_some();
+                (!found).then_some(search.tmax)
             },
         );
     }
