@@ -146,7 +146,8 @@ fn search_structure<N: Number, A: Accel, C: Observer, const ANY: bool>(
             count,
             |leaf, count| {
                 search.leaf::<A, C, ANY>(leaf, count);
-                (!any || search.best.is_none()).then_some(search.tmax)
+                let found = A::ONE_COPY && any && search.best.is_some();
+                (!found).then_some(search.tmax)
             },
         );
     }
