@@ -1,5 +1,7 @@
 //! The traversal stack.
 
+use crate::observe::count::Observer;
+use crate::observe::event::{Event, NodeId};
 use heapless::{Vec, VecView};
 
 /// A child that waits for its turn: 12 bytes.
@@ -40,5 +42,26 @@ impl<const DEPTH: usize> Stack<DEPTH> {
     /// The stack as queries take it.
     pub fn as_view(&mut self) -> &mut StackView {
         &mut self.0
+    }
+}
+
+/// The next child that waits and is entered before the limit. Those that are passed over are reported: `report` gives
+/// a child's name, and where it is entered, in units.
+#[inline(always)]
+pub(in crate::accel) fn pop<C: Observer>(
+    stack: &mut StackView,
+    limit: i32,
+    count: &mut C,
+    report: impl Fn(&Entry) -> (NodeId, f64),
+) -> Option<Entry> {
+    loop {
+        let entry = stack.pop()?;
+        if entry.near <= limit {
+            return Some(entry);
+        }
+        if C::ENABLED {
+            let (place, enters) = report(&entry);
+            count.event(Event::GivenUp { place, enters });
+        }
     }
 }

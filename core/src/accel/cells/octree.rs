@@ -16,7 +16,7 @@ use crate::accel::cull_axis::Interval;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
-use crate::accel::stack::{Entry, StackView};
+use crate::accel::stack::{Entry, StackView, pop};
 use crate::accel::traverse::Traverse;
 use crate::format::range::At;
 use crate::format::{
@@ -186,20 +186,13 @@ impl Traverse for Octree {
                     }
                 }
             }
-            loop {
-                let Some(entry) = stack.pop() else { return };
-                if entry.near <= end {
-                    number = entry.node;
-                    place = Place(entry.far as u32);
-                    break;
-                }
-                if C::ENABLED {
-                    count.event(Event::GivenUp {
-                        place: node_id(entry.node),
-                        enters: <Cull as Culling<N>>::units(entry.near),
-                    });
-                }
-            }
+            let next = pop(stack, end, count, |entry| {
+                let enters = <Cull as Culling<N>>::units(entry.near);
+                (node_id(entry.node), enters)
+            });
+            let Some(entry) = next else { return };
+            number = entry.node;
+            place = Place(entry.far as u32);
         }
     }
 }

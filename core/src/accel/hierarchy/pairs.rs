@@ -7,7 +7,7 @@ use crate::accel::hierarchy::order::Order;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
-use crate::accel::stack::{Entry, StackView};
+use crate::accel::stack::{Entry, StackView, pop};
 use crate::format::link::Node;
 use crate::format::record::UnitBox;
 use crate::format::{BlobError, Leaf, Reason, SectionKind, Sections};
@@ -365,23 +365,15 @@ where
                     continue;
                 }
             }
-            loop {
-                let Some(entry) = stack.pop() else { return };
-                if entry.near <= limit {
-                    node = Node(entry.node);
-                    interval = Interval {
-                        near: entry.near,
-                        far: entry.far.min(limit),
-                    };
-                    break;
-                }
-                if C::ENABLED {
-                    count.event(Event::GivenUp {
-                        place: Node(entry.node).id(),
-                        enters: K::units(entry.near),
-                    });
-                }
-            }
+            let next = pop(stack, limit, count, |entry| {
+                (Node(entry.node).id(), K::units(entry.near))
+            });
+            let Some(entry) = next else { return };
+            node = Node(entry.node);
+            interval = Interval {
+                near: entry.near,
+                far: entry.far.min(limit),
+            };
         }
     }
 }

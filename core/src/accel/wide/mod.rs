@@ -20,7 +20,7 @@ use crate::accel::cull::Culling;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
-use crate::accel::stack::{Entry, StackView};
+use crate::accel::stack::{Entry, StackView, pop};
 use crate::accel::traverse::Traverse;
 use crate::format::cluster::LANES;
 use crate::format::record::WideNode;
@@ -113,7 +113,7 @@ impl Traverse for Wide {
                 return;
             };
             limit = N::WideCull::limit(tmax);
-            let Some(next) = pop::<N, C>(stack, limit, count) else {
+            let Some(next) = pop_closest::<N, C>(stack, limit, count) else {
                 return;
             };
             current = next;
@@ -168,20 +168,15 @@ fn level<N: Number>(space: &Space<'_>) -> SimdLevel {
 
 /// The next child that waits and is entered before the limit.
 #[inline(always)]
-fn pop<N: Number, C: Observer>(stack: &mut StackView, limit: i32, count: &mut C) -> Option<Child> {
-    loop {
-        let entry = stack.pop()?;
-        if entry.near <= limit {
-            return Some(Child(entry.node));
-        }
-        if C::ENABLED {
-            let place = Child(entry.node).id();
-            count.event(Event::GivenUp {
-                place,
-                enters: N::WideCull::units(entry.near),
-            });
-        }
-    }
+fn pop_closest<N: Number, C: Observer>(
+    stack: &mut StackView,
+    limit: i32,
+    count: &mut C,
+) -> Option<Child> {
+    let entry = pop(stack, limit, count, |entry| {
+        (Child(entry.node).id(), N::WideCull::units(entry.near))
+    })?;
+    Some(Child(entry.node))
 }
 
 /// The next child that waits, of those that wait together.
@@ -208,7 +203,7 @@ fn descend<S: Simd, N: Number, C: Observer>(
     while let Some(number) = current.as_node() {
         let opened = open::<S, N, C>(simd, nodes, number, cull, limit, count);
         let Some((node, mut met, near)) = opened else {
-            let Some(next) = pop::<N, C>(stack, limit, count) else {
+            let Some(next) = pop_closest::<N, C>(stack, limit, count) else {
                 return Child::NONE;
             };
             current = next;
