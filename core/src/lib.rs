@@ -66,6 +66,8 @@ pub mod scene;
 #[cfg(any(test, feature = "selftest"))]
 pub mod selftest;
 pub mod shade;
+#[doc(hidden)]
+pub mod shared;
 mod simd;
 mod target;
 

@@ -2,11 +2,11 @@
 
 use crate::query::{HitBits, UnitRay, any, closest, depart, held, through};
 use crate::random::Random;
-use gridel_core::accel::cull::Cull;
-use gridel_core::accel::hierarchy::bvh;
 use gridel_core::accel::{Space, StructureViews, Traverse};
 use gridel_core::format::Leaf;
 use gridel_core::format::limits::FARTHEST;
+use gridel_core::shared::Cull;
+use gridel_core::shared::walk_bvh;
 use gridel_core::{
     Accel, Bvh, Counters, Flagged, List, NoCount, Number, Observer, Ray, Scene, StackView,
     Structure,
@@ -24,7 +24,7 @@ impl Accel for Plain {
 
 impl Traverse for Plain {
     const STRUCTURE: Structure = Structure::Bvh;
-    type Views<'a> = bvh::Views<'a>;
+    type Views<'a> = <Bvh as Traverse>::Views<'a>;
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Observer>(
@@ -36,7 +36,7 @@ impl Traverse for Plain {
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        bvh::walk(space, views, ray, cull, stack, count, leaf);
+        walk_bvh(space, views, ray, cull, stack, count, leaf);
     }
 }
 

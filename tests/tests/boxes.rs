@@ -2,8 +2,8 @@
 //! a tree changes an answer. That structures agree ray by ray is in `structures`.
 
 use glam::DVec3;
-use gridel_core::accel::cull::{Culling, PairCulling};
 use gridel_core::format::record::UnitBox;
+use gridel_core::shared::{Culling, PairCulling};
 use gridel_core::{Kind, NoCount, Number, Ray, Scene, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;

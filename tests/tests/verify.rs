@@ -1,9 +1,9 @@
 //! `verify` finds nothing wrong with what is right, and everything that is made wrong on purpose.
 
 use glam::{DQuat, DVec3, EulerRot};
-use gridel_core::accel::cull::Cull;
 use gridel_core::accel::{Space, StackView, StructureViews, Traverse};
 use gridel_core::format::Leaf;
+use gridel_core::shared::Cull;
 use gridel_core::{Accel, Flagged, Hit, Kind, List, Number, Observer, Ray, Scene, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::scene::Shape;

@@ -6,18 +6,18 @@
 //! this certain, and not only likely: a primitive's `t` lies in the culling interval of the
 //! primitive's own box, or is clamped to it, [`Scene::from_bytes`](crate::Scene::from_bytes) proves
 //! that this box lies in the leaf's and every box in its parent's, and culling is monotone (see
-//! [`cull`]). Whatever was rounded on the way, a primitive that is met lies in boxes that are met.
+//! `cull`). Whatever was rounded on the way, a primitive that is met lies in boxes that are met.
 
 pub mod candidates;
 pub mod cells;
 pub(crate) mod clamp;
-pub mod cull;
+pub(crate) mod cull;
 pub(crate) mod cull_axis;
 #[cfg(feature = "all-structures")]
 mod dynamic;
 pub mod hierarchy;
 mod lanes;
-pub mod list;
+mod list;
 pub(crate) mod number;
 mod records;
 mod registry;

@@ -249,11 +249,11 @@ pub struct DualNode {
     /// The node's lower side in the low half and its upper side in the high half, on each carve's
     /// axis; zero where there is no carve.
     pub carves: [u32; 2],
-    /// Axes, and the children or the leaf: see [`Way`](crate::format::NodeWord).
+    /// Axes, and the children or the leaf: see [`NodeWord`](crate::format::NodeWord).
     pub way: u32,
 }
 
-/// How the cylinder cubes partition the scene's box: see [`gridels`](crate::accel::candidates::gridels).
+/// How the cylinder cubes partition the scene's box: see `accel::candidates::gridels`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Gridels {

@@ -4,10 +4,10 @@ use super::CompileError;
 use super::estimate::{Rays, ordinary_tests};
 use super::pairs::Flat;
 use super::section::{Section, indices, section};
-use gridel_core::accel::cells::grid::MARGIN;
-use gridel_core::accel::cells::lists::{Divisions, cells_of, divide};
 use gridel_core::format::SectionKind;
 use gridel_core::format::record::{GridShape, UnitBox};
+use gridel_core::shared::MARGIN;
+use gridel_core::shared::{Divisions, cells_of, divide};
 use gridel_core::{Kind, Structure};
 
 /// Most bytes that a grid or an octree may take while it is built, its part of the blob included.

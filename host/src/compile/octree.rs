@@ -5,10 +5,10 @@ use super::cells::{Cells, MOST_BYTES, Range, longest, volume};
 use super::estimate::{Rays, ordinary_tests};
 use super::section::{Section, indices, section};
 use gridel_core::Structure;
-use gridel_core::accel::cells::lists::{cells_of, divide};
-use gridel_core::accel::cells::octree::MOST_LEVELS;
 use gridel_core::format::record::UnitBox;
 use gridel_core::format::{OctreeNode, SectionKind};
+use gridel_core::shared::MOST_LEVELS;
+use gridel_core::shared::{cells_of, divide};
 
 /// Primitives in a cell of an octree that are not worth a split.
 const FEW: usize = 6;

@@ -15,8 +15,8 @@ use super::section::section;
 use super::surroundings::Surroundings;
 use super::writer;
 use gridel_core::Structure;
-use gridel_core::accel::candidates::ray_classes::ClassPoint;
 use gridel_core::format::SectionKind;
+use gridel_core::shared::ClassPoint;
 
 /// Lays a structure out.
 ///

@@ -21,7 +21,7 @@
 //! little more.
 //! The ray's
 //! point at a hit lies in the primitive's box widened by 17 units (see
-//! [`gridels`](crate::accel::candidates::gridels)), not more than a unit on the wrong side of that plane, and otherwise
+//! `accel::candidates::gridels`), not more than a unit on the wrong side of that plane, and otherwise
 //! in the volume that a rectangle reaching [`Apex::REACH`] units around the apex sweeps when it moves
 //! along the major axis while its sides move by the least and the greatest slope of the cell. The
 //! builder lists what meets that volume.

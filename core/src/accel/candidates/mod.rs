@@ -18,7 +18,7 @@ pub mod cylinder_cube;
 pub mod cylinder_cube_entry;
 pub mod cylinder_cube_tight;
 mod gridel_table;
-pub mod gridels;
+pub(crate) mod gridels;
 mod line;
 pub(in crate::accel) mod lists;
 pub mod ray_classes;

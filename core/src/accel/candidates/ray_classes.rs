@@ -8,7 +8,7 @@
 //! which the budget had no room, lead to the hierarchy ([`Bvh`]).
 //!
 //! **No candidate is lost.** A ray's place is its point at its start, or where it enters the scene's
-//! box made larger (see [`gridels`](crate::accel::candidates::gridels)), which comes before every hit. In integers it
+//! box made larger (see `accel::candidates::gridels`), which comes before every hit. In integers it
 //! is off by less than two units. So the points at which anything is hit lie in the volume that the
 //! class's box of places, widened by [`Gridels::REACH`], sweeps while it moves along the major axis
 //! and its sides move by the class's least and greatest slopes. The builder lists what meets that.

@@ -1,7 +1,7 @@
 //! The regular grid, walked cell by cell (the paper's rival of the cylinder cube).
 //!
 //! On every axis the ray crosses plane `p` at the step at which culling lets it enter a box that
-//! begins there: `p * inverse + near` (see [`cull`](crate::accel::cull)). Which cell it is in at a step is
+//! begins there: `p * inverse + near` (see `accel::cull`). Which cell it is in at a step is
 //! therefore a matter of comparing integers that are computed anew for every plane, so no error
 //! accumulates, and no direction is special: along an axis that the ray does not move on, all planes
 //! lie behind it or before it for good. A walk has at most `x + y + z` cells.

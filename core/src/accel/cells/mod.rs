@@ -9,5 +9,5 @@
 //! every primitive is in every cell that it reaches.
 
 pub mod grid;
-pub mod lists;
+pub(crate) mod lists;
 pub mod octree;

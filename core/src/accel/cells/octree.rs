@@ -8,7 +8,7 @@
 //! culling interval of its primitive's box, there is on every axis a division that the box meets and
 //! whose interval holds `t`. The cell of the three lies in a leaf that lists the primitive, and
 //! culling is monotone, so every node around that leaf is entered no later than at `t`. (See
-//! [`cull`](crate::accel::cull). No direction is special, no interval is reflected.)
+//! `accel::cull`. No direction is special, no interval is reflected.)
 
 use crate::accel::cells::lists::{Divisions, Lists, Range, Tester, check_complete, divide, reach};
 use crate::accel::cull::{Cull, Culling, PairCulling};

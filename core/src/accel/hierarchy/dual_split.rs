@@ -14,7 +14,7 @@
 //! are compared.
 //!
 //! **Culling is conservative and monotone.** Where a ray crosses a plane is monotone in the plane's
-//! place ([`cull`](crate::accel::cull)), so the interval of a region is the intersection of those of the
+//! place (`accel::cull`), so the interval of a region is the intersection of those of the
 //! planes that made it, whatever was rounded, and a box in a region has its interval in the
 //! region's; all the more where a core culls with wider ones.
 //! [`Scene::from_bytes`](crate::Scene::from_bytes) proves that the box of each primitive lies in the

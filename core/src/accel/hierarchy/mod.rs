@@ -18,12 +18,12 @@
 
 pub mod bvh;
 mod check;
-pub mod direction;
+pub(crate) mod direction;
 pub mod dual_split;
 pub mod flagged;
 pub mod flagged_slabs;
 pub(crate) mod order;
 pub(in crate::accel) mod pairs;
-pub mod reach;
+pub(crate) mod reach;
 pub mod slabs;
 pub mod spheres;

@@ -4,7 +4,7 @@
 //! A volume has two planes for each of 3, 7 or 13 directions: the axes, the diagonals of the cube,
 //! the diagonals of its faces. Along a direction `n` a ray's coordinate is `y = n . x / 2^h`, where h
 //! keeps planes in 16 bits; it is a line like that of an axis, with slope and origin of its own, so
-//! slabs are culled by the very rule of boxes (see [`cull`](crate::accel::cull)), and what is proved there
+//! slabs are culled by the very rule of boxes (see `accel::cull`), and what is proved there
 //! holds here: `y` errs by no more than the coordinates do. What volumes must hold is more than the
 //! primitives: see [`Reach`].
 //!

@@ -6,13 +6,13 @@
 //! tested in eight lanes too, or a single primitive of the kinds that have no clusters.
 //!
 //! The answers are the list's, bit for bit: culling is conservative, lane by lane (see
-//! [`cull`]), and what a cluster's lanes do not reject goes through the same scalar
+//! `cull`), and what a cluster's lanes do not reject goes through the same scalar
 //! code as everywhere else, or has been through its operations lane by lane. Children that are met
 //! are pushed in no order, but the nearest is taken at once: sorting costs more than it saves. Where
 //! any hit will do, children are taken as they lie, and those of a node wait in one entry.
 
 mod check;
-pub mod cull;
+pub(crate) mod cull;
 
 pub(super) use check::check_records;
 

@@ -5,7 +5,7 @@ use crate::cli::failure::Failure;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use gridel_core::Structure;
-use gridel_core::accel::hierarchy::direction::DIRECTION_COUNTS;
+use gridel_core::shared::DIRECTION_COUNTS;
 use gridel_host::compile::{self, Quality, takes_hierarchy};
 
 /// How structures are built.

@@ -1,7 +1,7 @@
 //! The rays that a scene's own picture casts, as points in the space of rays.
 
 use crate::picture_rays::PictureRays;
-use gridel_core::accel::candidates::ray_classes::ClassPoint;
+use gridel_core::shared::ClassPoint;
 use gridel_core::{Scene, Settings};
 
 /// Pixels along the longer side of the picture whose rays are taken.

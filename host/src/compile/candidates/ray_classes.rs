@@ -5,9 +5,9 @@ use super::lists::{List, Lists, Plan};
 use super::shaft::Shaft;
 use super::target::Targets;
 use gridel_core::Structure;
-use gridel_core::accel::candidates::ray_classes::{ClassPoint, ClassRange};
 use gridel_core::format::ClassNode;
 use gridel_core::format::record::Gridels;
+use gridel_core::shared::{ClassPoint, ClassRange};
 use rayon::prelude::*;
 use std::collections::BinaryHeap;
 
