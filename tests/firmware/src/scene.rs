@@ -34,17 +34,17 @@ pub type Accel = gridel_core::Grid;
 pub type Accel = gridel_core::List;
 
 /// The scene of [`BLOB`], proved now.
-#[cfg(not(feature = "vouched"))]
+#[cfg(not(feature = "prevalidated"))]
 pub fn load(blob: &'static [u8]) -> Result<Scene<'static>, BlobError> {
     Scene::from_bytes(blob)
 }
 
 /// The scene of [`BLOB`], proved while the program was compiled.
-#[cfg(feature = "vouched")]
+#[cfg(feature = "prevalidated")]
 pub fn load(_: &'static [u8]) -> Result<Scene<'static>, BlobError> {
     static PREVALIDATED: gridel_core::Prevalidated<'static> =
         match gridel_core::Prevalidated::of(BLOB) {
-            Ok(vouched) => vouched,
+            Ok(prevalidated) => prevalidated,
             Err(_) => panic!("the blob was damaged"),
         };
     Scene::prevalidated(core::hint::black_box(PREVALIDATED))

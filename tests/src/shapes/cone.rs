@@ -32,6 +32,15 @@ impl Sample for Cone {
         },
     ];
 
+    fn example() -> Self {
+        Self {
+            base: DVec3::new(0.0, 0.0, 0.2),
+            base_radius: 0.8,
+            apex: DVec3::new(0.0, 0.0, 1.8),
+            apex_radius: 0.3,
+        }
+    }
+
     /// Needles and coins.
     fn random(random: &mut Random, name: &str, room: Room) -> Self {
         let Room {

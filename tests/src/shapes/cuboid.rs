@@ -11,6 +11,13 @@ impl Sample for Cuboid {
         normal: (0.0, "exact"),
     }];
 
+    fn example() -> Self {
+        Self {
+            min: DVec3::new(-0.7, -0.7, 0.3),
+            max: DVec3::new(0.7, 0.7, 1.7),
+        }
+    }
+
     fn random(random: &mut Random, _: &str, room: Room) -> Self {
         let mut reach = room.offset(random).abs();
         reach[random.below(3)] /= room.stretch;

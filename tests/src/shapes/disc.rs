@@ -13,6 +13,14 @@ impl Sample for Disc {
         normal: (8.0, "its own, normalised"),
     }];
 
+    fn example() -> Self {
+        Self {
+            center: DVec3::new(0.0, 0.0, 1.0),
+            normal: DVec3::new(0.3, -1.0, 0.4),
+            radius: 0.9,
+        }
+    }
+
     fn random(random: &mut Random, _: &str, room: Room) -> Self {
         Self {
             normal: rounded_direction(random),

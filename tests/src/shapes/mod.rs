@@ -8,6 +8,7 @@ pub use sample::{Named, Room, Sample, lattice, lattice_point};
 
 use crate::random::Random;
 use glam::DVec3;
+use gridel_core::Kind;
 use gridel_host::scene::Shape;
 use gridel_host::shape::exact::Real;
 use gridel_host::shape::{Solid, Sphere, Triangle};
@@ -28,6 +29,19 @@ macro_rules! registry {
         /// The names of all shapes.
         pub fn names() -> impl Iterator<Item = &'static Named> {
             Sphere::NAMES.iter().chain(Triangle::NAMES)$(.chain($record::NAMES))*
+        }
+
+        /// A shape of each kind, for pictures.
+        pub fn examples() -> Vec<(&'static str, Shape)> {
+            let mesh = Shape::Mesh {
+                vertices: Triangle::example().to_vec(),
+                triangles: vec![[0, 1, 2]],
+            };
+            vec![
+                (Kind::Triangle.name(), mesh),
+                (Kind::Sphere.name(), Shape::Sphere(Sphere::example())),
+                $((Kind::$kind.name(), Shape::$kind($record::example())),)*
+            ]
         }
 
         /// A random shape of a name, its numbers on the lattice.

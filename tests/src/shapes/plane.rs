@@ -11,6 +11,13 @@ impl Sample for Plane {
         normal: (8.0, "its own, normalised; exact along an axis"),
     }];
 
+    fn example() -> Self {
+        Self {
+            point: DVec3::new(0.0, 0.0, 0.1),
+            normal: DVec3::new(0.1, 0.0, 1.0),
+        }
+    }
+
     /// Often nearly level.
     fn random(random: &mut Random, _: &str, room: Room) -> Self {
         let mut normal = rounded_direction(random);

@@ -31,6 +31,9 @@ impl Room {
 pub trait Sample: Sized {
     const NAMES: &[Named];
 
+    /// One for pictures: about a unit wide, above the origin, with a cost that can be measured.
+    fn example() -> Self;
+
     /// A random shape of a name, its numbers on the lattice.
     fn random(random: &mut Random, name: &str, room: Room) -> Self;
 

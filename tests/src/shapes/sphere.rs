@@ -11,6 +11,13 @@ impl Sample for Sphere {
         normal: (8.0, "the hit's point less the centre, normalised"),
     }];
 
+    fn example() -> Self {
+        Self {
+            center: DVec3::new(0.0, 0.0, 1.0),
+            radius: 0.8,
+        }
+    }
+
     fn random(random: &mut Random, _: &str, room: Room) -> Self {
         Self {
             center: lattice_point(room.center),

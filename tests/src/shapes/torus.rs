@@ -17,6 +17,15 @@ impl Sample for Torus {
         ),
     }];
 
+    fn example() -> Self {
+        Self {
+            center: DVec3::new(0.0, 0.0, 1.0),
+            axis: DVec3::new(0.3, -1.0, 0.4),
+            major_radius: 0.6,
+            minor_radius: 0.25,
+        }
+    }
+
     /// Rings, thin ones, horns and spindles.
     fn random(random: &mut Random, _: &str, room: Room) -> Self {
         let axis = rounded_direction(random);

@@ -11,6 +11,14 @@ impl Sample for Triangle {
         normal: (8.0, "in integers, exact but for one normalisation"),
     }];
 
+    fn example() -> Self {
+        [
+            DVec3::new(-2.0, -2.0, 0.0),
+            DVec3::new(2.0, -2.0, 0.0),
+            DVec3::new(0.0, 2.0, 0.0),
+        ]
+    }
+
     fn random(random: &mut Random, _: &str, room: Room) -> Self {
         loop {
             let first = room.center + room.offset(random);

@@ -3,49 +3,19 @@
 
 use crate::scenes::{Compiled, compile_with, small};
 use glam::DVec3;
-use gridel_core::Structure;
+use gridel_core::{Kind, Structure};
 use gridel_host::compile::Options;
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Place, Scene, Shape};
-use gridel_host::shape::{Cone, Cuboid, Disc, Sphere};
+use gridel_host::shape::{Cuboid, Sphere};
+use gridel_tests::shapes::examples;
 
 /// The scene that all others add to: a triangle and a diffuse light that throws no shadows.
 pub const BASE: &str = "base";
 
-/// A part's name, and how to make it.
-type Shapes = [(&'static str, fn() -> Shape); 4];
+const TRIANGLE: &str = Kind::Triangle.name();
+
 /// A part's name, and how to call for it.
 type Effects = [(&'static str, fn(&mut Scene)); 6];
-
-/// Beside triangles.
-const SHAPES: Shapes = [
-    ("sphere", || {
-        Shape::Sphere(Sphere {
-            center: DVec3::new(0.0, 0.0, 1.0),
-            radius: 0.8,
-        })
-    }),
-    ("box", || {
-        Shape::Box(Cuboid {
-            min: DVec3::new(-0.7, -0.7, 0.3),
-            max: DVec3::new(0.7, 0.7, 1.7),
-        })
-    }),
-    ("disc", || {
-        Shape::Disc(Disc {
-            center: DVec3::new(0.0, 0.0, 1.0),
-            normal: DVec3::new(0.3, -1.0, 0.4),
-            radius: 0.9,
-        })
-    }),
-    ("cone", || {
-        Shape::Cone(Cone {
-            base: DVec3::new(0.0, 0.0, 0.2),
-            base_radius: 0.8,
-            apex: DVec3::new(0.0, 0.0, 1.8),
-            apex_radius: 0.3,
-        })
-    }),
-];
 
 const EFFECTS: Effects = [
     ("shadow", |scene| scene.render.shadows = true),
@@ -70,9 +40,9 @@ const EFFECTS: Effects = [
 /// and those for effects no other shapes; absorption comes with the glass that it is in.
 pub fn scenes() -> Vec<Compiled> {
     let mut all = vec![compile(BASE, base())];
-    for (name, shape) in SHAPES {
+    for (name, shape) in beside_triangles() {
         let mut scene = base();
-        scene.objects.push(object(shape()));
+        scene.objects.push(object(shape));
         all.push(compile(name, scene));
     }
     for (name, call_for) in EFFECTS {
@@ -98,6 +68,8 @@ pub fn combinations() -> impl Iterator<Item = (Vec<&'static str>, Vec<&'static s
         ("box", "shadow highlight"),
         ("disc", "shadow"),
         ("cone", "shadow"),
+        ("torus", "shadow"),
+        ("triangle plane", "shadow"),
         ("triangle sphere", "shadow"),
         ("triangle box", "shadow"),
         ("sphere box", "shadow"),
@@ -130,8 +102,8 @@ pub fn combination(shapes: &[&str], effects: &[&str]) -> Compiled {
     if !shapes.contains(&"triangle") {
         scene.objects.clear();
     }
-    for (_, shape) in SHAPES.into_iter().filter(|(name, _)| shapes.contains(name)) {
-        scene.objects.push(object(shape()));
+    for (_, shape) in beside_triangles().filter(|(name, _)| shapes.contains(name)) {
+        scene.objects.push(object(shape));
     }
     for (_, call_for) in EFFECTS
         .into_iter()
@@ -220,18 +192,20 @@ fn base() -> Scene {
             color: [0.8; 3],
         }],
         materials: vec![Material::default()],
-        objects: vec![object(Shape::Mesh {
-            vertices: vec![
-                DVec3::new(-2.0, -2.0, 0.0),
-                DVec3::new(2.0, -2.0, 0.0),
-                DVec3::new(0.0, 2.0, 0.0),
-            ],
-            triangles: vec![[0, 1, 2]],
-        })],
+        objects: triangles().map(|(_, shape)| object(shape)).collect(),
         ..Scene::default()
     };
     scene.render.shadows = false;
     scene
+}
+
+fn triangles() -> impl Iterator<Item = (&'static str, Shape)> {
+    examples().into_iter().filter(|(name, _)| *name == TRIANGLE)
+}
+
+/// A shape of every other kind.
+fn beside_triangles() -> impl Iterator<Item = (&'static str, Shape)> {
+    examples().into_iter().filter(|(name, _)| *name != TRIANGLE)
 }
 
 fn object(shape: Shape) -> Object {
