@@ -16,6 +16,7 @@ use gridel_host::verify::{
 };
 use gridel_tests::effort::{part_of, third_of};
 use gridel_tests::scenes;
+use gridel_tests::shapes::examples;
 
 fn mesh(subdivisions: usize) -> Blob {
     let (vertices, triangles) = scenes::icosphere(subdivisions);
@@ -39,6 +40,20 @@ fn right_scenes_are_right() {
         let leaks = report.promises.last().expect("promises").checked;
         assert_eq!(leaks > 0, name == "mesh");
     }
+}
+
+/// A ray through the hole of a torus meets it again, and one towards a plane meets it far from the scene's box.
+#[test]
+fn every_shape_keeps_its_promises() {
+    for (name, shape) in examples() {
+        let blob = scenes::blob(&scenes::of([shape]), 24);
+        let report = verify(&blob.scene().expect("a scene"), 1500, &|| ());
+        assert_eq!(report.broken(), 0, "{name}: {report:#?}");
+    }
+    let all = scenes::of(examples().into_iter().map(|(_, shape)| shape));
+    let blob = scenes::blob(&all, 24);
+    let report = verify(&blob.scene().expect("a scene"), 3000, &|| ());
+    assert_eq!(report.broken(), 0, "{report:#?}");
 }
 
 /// Among them was a ray down a cylinder whose other slope vanished when it was squared.
@@ -358,22 +373,29 @@ fn a_broken_structure_is_caught() {
 /// Where the error bound of a hit is a lie, secondary rays meet their own surface.
 #[test]
 fn a_bound_that_is_too_small_is_caught() {
-    let blob = scenes::blob(&scenes::soup(23, 30, 0.4), 24);
-    let scene = blob.scene().expect("a scene");
-    let judge = Judge::of(&scene);
-    let mut random = Random(9);
-    let (mut honest, mut lying) = (0, 0);
-    for ray in Targets::of(&scene).rays(5).take(3000) {
-        let Some(ready) = ray.ready::<f32>(&scene) else {
-            continue;
-        };
-        let Some(mut hit) = ask::<f32, List>(&scene, &ready).hit else {
-            continue;
-        };
-        honest += leave(&scene, &judge, &hit, &mut random).len();
-        hit.error = 0.0;
-        lying += leave(&scene, &judge, &hit, &mut random).len();
+    let tori = examples().into_iter().filter(|(name, _)| *name == "torus");
+    let scenes = [
+        scenes::soup(23, 30, 0.4),
+        scenes::of(tori.map(|(_, shape)| shape)),
+    ];
+    for scene in scenes {
+        let blob = scenes::blob(&scene, 24);
+        let scene = blob.scene().expect("a scene");
+        let judge = Judge::of(&scene);
+        let mut random = Random(9);
+        let (mut honest, mut lying) = (0, 0);
+        for ray in Targets::of(&scene).rays(5).take(3000) {
+            let Some(ready) = ray.ready::<f32>(&scene) else {
+                continue;
+            };
+            let Some(mut hit) = ask::<f32, List>(&scene, &ready).hit else {
+                continue;
+            };
+            honest += leave(&scene, &judge, &hit, &mut random).len();
+            hit.error = 0.0;
+            lying += leave(&scene, &judge, &hit, &mut random).len();
+        }
+        assert_eq!(honest, 0);
+        assert!(lying > 20, "{lying}");
     }
-    assert_eq!(honest, 0);
-    assert!(lying > 20, "{lying}");
 }

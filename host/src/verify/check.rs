@@ -255,8 +255,8 @@ pub fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, outward: bool) -> [f64
     start.map(N::length_to_f64)
 }
 
-/// Lets rays leave a hit on both sides, as the ray loop does, and tells which of them meet the same
-/// surface again, or never leave the solid that they are in.
+/// Lets rays leave a hit on both sides, as the ray loop does. Those that meet the same surface again, or never leave
+/// the solid that they are in, are faults.
 pub fn leave<N: Number>(
     scene: &Scene<'_>,
     judge: &Judge,
@@ -289,7 +289,18 @@ pub fn leave<N: Number>(
         let Ok(ray) = ray else { continue };
         let next = ask::<N, List>(scene, &ray).hit;
         let again = next.filter(|next| next.primitive == hit.primitive);
+        // What is not convex can be met again elsewhere.
+        let elsewhere = again.is_some_and(|again| {
+            let rounded = RoundedRay::of(&ray);
+            let t = N::far_to_f64(again.t) - rounded.moved;
+            let itself = hit.primitive;
+            away && !solid.is_convex()
+                && solid.excess(from) > 0.0
+                && again.front
+                && judge.crosses(N::FORMAT, itself, &rounded, t, 0.0)
+        });
         let what = match (again, next) {
+            _ if elsewhere => continue,
             // From inside of a solid it is met again, from the inside.
             (Some(again), _) if away || again.front => {
                 format!("hits it again at {:?}", N::far_to_f64(again.t))
