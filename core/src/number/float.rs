@@ -434,7 +434,8 @@ macro_rules! float_number {
             // sums and quotient, the plane's normal, and the next test of the same surface.
             const RELATIVE_ERROR: Self = 16.0 * $precision;
 
-            const ABSOLUTE_ERROR: Self = $smallest;
+            // Twice, so that of a step so long along a normal the largest coordinate is not flushed to zero.
+            const ABSOLUTE_ERROR: Self = $smallest + $smallest;
 
             // A sum is rounded to the next number where it lies more than half way there, which is at most
             // u of the coordinate.

@@ -9,7 +9,7 @@
 use glam::DVec3;
 use gridel_core::{Fixed, Hit, List, NoCount, Number, Scene};
 use gridel_host::shape::Solid;
-use gridel_host::shape::{Cone, Cuboid, Disc, Sphere, Torus};
+use gridel_host::shape::{Cone, Cuboid, Disc, Plane, Sphere, Torus};
 use gridel_host::verify::judge::Crossings;
 use gridel_tests::cases::{SHAPES, cases, lattice};
 use gridel_tests::effort::part_of;
@@ -208,6 +208,53 @@ fn rays_that_leave_a_large_ground_do_not_meet_it() {
     for shape in 0..5 {
         every_format!(judge(shape));
     }
+}
+
+/// In the middle of the lattice every coordinate of a hit can be 0, and the bound as small as it gets.
+#[test]
+fn rays_that_leave_the_middle_of_the_lattice_do_not_come_back() {
+    fn judge<N: Number>(solid: &Solid, random: &mut Random) -> usize {
+        let blob = blob_of([solid]);
+        let scene = blob.scene().expect("a scene");
+        let way = DVec3::from_array(random.direction());
+        let Some(hit) = next_hit::<N>(&scene, (-way).to_array(), way) else {
+            return 0;
+        };
+        let outside = DVec3::from_array(hit.normal.map(N::ratio_to_f64));
+        for side in [true, false] {
+            let normal = if side { outside } else { -outside };
+            let way = outward(random, normal) + normal * f64::powi(2.0, -16);
+            let again = next_hit::<N>(&scene, depart(&scene, &hit, side), way);
+            assert!(again.is_none(), "{solid:?} {hit:?} {way} {again:?}");
+        }
+        1
+    }
+    let mut random = Random(80);
+    let mut hits = 0;
+    for _ in 0..part_of(2000, 20_000) {
+        let normal = (DVec3::from_array(random.direction()) * 256.0).round();
+        let (across, along) = normal.normalize().any_orthonormal_pair();
+        let corner = |x: f64, y: f64| (across * x + along * y).map(lattice);
+        let corners = [corner(8.0, 0.0), corner(-4.0, 7.0)];
+        let solids = [
+            Solid::Disc(Disc {
+                center: DVec3::ZERO,
+                normal,
+                radius: 8.0,
+            }),
+            Solid::Plane(Plane {
+                point: DVec3::ZERO,
+                normal,
+            }),
+            Solid::Triangle([corners[0], corners[1], -corners[0] - corners[1]]),
+        ];
+        for solid in &solids {
+            hits += judge::<Fixed>(solid, &mut random);
+            hits += judge::<f32>(solid, &mut random);
+            hits += judge::<f64>(solid, &mut random);
+        }
+    }
+    assert!(hits > 1000, "{hits}");
 }
 
 /// 1,000 shapes and 1,000 rays at each in the full run; the sizes of a shape span seven magnitudes
