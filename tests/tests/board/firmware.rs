@@ -301,6 +301,11 @@ impl Program<'_> {
 
     /// Runs the program and returns what it measured.
     pub fn run(&self) -> BTreeMap<String, u64> {
+        self.lines().into_iter().collect()
+    }
+
+    /// Runs the program and returns its figures in the order in which it prints them.
+    pub fn lines(&self) -> Vec<(String, u64)> {
         let output = self.output();
         assert!(
             output.status.success(),

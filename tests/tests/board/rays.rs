@@ -5,7 +5,7 @@ use crate::figures::Figures;
 use crate::firmware::{Build, board};
 use crate::plan::Plan;
 use crate::scenes::{self, Compiled};
-use gridel_core::{Fixed, Format, List, Stack, Structure};
+use gridel_core::{Fixed, Format, List, NoCount, Ray, Stack, Structure, closest_hit};
 use gridel_host::measure::board::Board;
 
 /// Stack and workspace of the suzanne workload at most: loading, and tracing primary rays.
@@ -41,6 +41,11 @@ pub fn plan(plan: &mut Plan) {
             .in_full()
             .run(move || rays_without_a_camera(board, format, &scenes::suzanne()));
     }
+    for board in ["mps2-an386", "microbit"].map(board) {
+        plan.test_on("the_range_finder_measures_distances", board, board.format())
+            .in_full()
+            .run(move || the_range_finder_measures_distances(board));
+    }
     for board in ["mps2-an386", "mps2-an385"].map(board) {
         let format = board.format();
         plan.test_on("primary_rays_of_molecules::nanotube", board, format)
@@ -55,6 +60,34 @@ pub fn plan(plan: &mut Plan) {
             .in_full()
             .run(move || primary_rays_of_suzanne_in_16_kib(board));
     }
+}
+
+/// The example of a range finder prints what the host finds, to the unit.
+fn the_range_finder_measures_distances(board: &'static Board) {
+    let compiled = scenes::torus();
+    let build = Build::new(board, board.format(), Structure::DualSplit, &compiled);
+    let printed = build.program("range").lines();
+    let scene = compiled.blob.scene().expect("the compiler's own blob");
+    let [x, y, z] = scene.bounds().0.map(|side| side.map(i64::from));
+    let distance = |step: i64| {
+        let origin = [x[0] + (x[1] - x[0]) * step / 7, y[1] + 1, (z[0] + z[1]) / 2];
+        let (origin, down) = (origin.map(|it| it as f64), [0.0, -1.0, 0.0]);
+        let ray = Ray::<f64>::from_f64(scene.bounds(), origin, down, 0.0, f64::INFINITY);
+        let (ray, mut stack) = (ray.expect("a ray"), Stack::<0>::new());
+        let hit = closest_hit::<f64, List, _>(&scene, &ray, stack.as_view(), &mut NoCount);
+        hit.map(|hit| hit.t)
+    };
+    assert_eq!(printed.len(), 8, "{build}: {printed:?}");
+    let mut hits = 0;
+    for (step, (name, value)) in printed.iter().enumerate() {
+        let right = match distance(step as i64) {
+            Some(t) => name == "distance" && (*value as f64 + 0.5 - t).abs() < 1.0,
+            None => name == "miss" && *value == step as u64,
+        };
+        hits += usize::from(name == "distance");
+        assert!(right, "{build}: {printed:?}, at {step}");
+    }
+    assert!(hits > 3, "{build}: {printed:?}");
 }
 
 fn primary_rays_of_suzanne(board: &'static Board, format: Format) {

@@ -2,14 +2,18 @@
 //! along tangents, from inside and from far away.
 
 use super::{hold, hold_all, of_every_sort};
-use glam::DVec3;
-use gridel_core::Number;
+use glam::{DQuat, DVec3};
+use gridel_core::{List, NoCount, Number, Scene};
 use gridel_host::shape::Solid;
 use gridel_host::shape::Torus;
+use gridel_host::verify::judge::step;
 use gridel_tests::cases::{Case, lattice, slope};
 use gridel_tests::effort::part_of;
 use gridel_tests::every_format;
+use gridel_tests::judge::blob_of;
+use gridel_tests::query::{UnitRay, closest};
 use gridel_tests::random::Random;
+use std::f64::consts::TAU;
 
 /// A torus as a ray is aimed at it.
 struct Target {
@@ -98,6 +102,43 @@ fn rays_through_the_hole_and_along_the_axis() {
         )
     });
     hold_all("holes of tori", "torus", &cases);
+}
+
+/// Slopes whose squares are no ordinary numbers, or 0, lead where a slope of 0 leads.
+#[test]
+fn rays_nearly_along_the_axis() {
+    fn t<N: Number>(scene: &Scene<'_>, origin: DVec3, way: DVec3) -> Option<f64> {
+        let ray = UnitRay::new(origin.to_array(), way.to_array()).ready::<N>(scene);
+        let hit = closest::<N, List>(scene, &ray.expect("a ray"), &mut NoCount)?;
+        Some(N::far_to_f64(hit.t))
+    }
+    fn judge<N: Number>(axis: DVec3) {
+        let mut random = Random(76);
+        let (major_radius, minor_radius) = (25_600.0, 3840.0);
+        let solid = Solid::Torus(Torus {
+            center: DVec3::ZERO,
+            axis,
+            major_radius,
+            minor_radius,
+        });
+        let blob = blob_of([&solid]);
+        let scene = blob.scene().expect("a scene");
+        let outward = axis.any_orthonormal_vector();
+        for _ in 0..part_of(500, 10_000) {
+            let turned = DQuat::from_axis_angle(axis, TAU * random.unit()) * outward;
+            let beyond = 0.9 * random.signed() * minor_radius;
+            let place = (turned * (major_radius + beyond) - axis * 20_000.0).map(lattice);
+            let straight = t::<N>(&scene, place, axis).expect("a hit");
+            let nearly = axis + outward * random.magnitude(1e-44, 1e-18);
+            let t = t::<N>(&scene, place, nearly).expect("a hit");
+            let off = step(N::FORMAT, 32_768.0) * 8.0;
+            let about = || format!("{:?} {place} {nearly:?} {t} {straight}", N::FORMAT);
+            assert!((t - straight).abs() < off, "{}", about());
+        }
+    }
+    for axis in DVec3::AXES {
+        every_format!(judge(axis));
+    }
 }
 
 #[test]

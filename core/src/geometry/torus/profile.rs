@@ -20,7 +20,7 @@
 //! below the roundings of a length ends a walk.
 
 use crate::geometry::torus::frame::{Frame, unit};
-use crate::number::Arithmetic;
+use crate::number::{Arithmetic, extent};
 
 /// Steps of a walk, at most. A step from `f`, falling by `g`, to `f1`, falling by `g1`, has
 /// `f1 / f + g1 / g <= 1` because `f` is convex, so the product of both falls to a quarter. It begins below
@@ -64,6 +64,9 @@ impl<N: Arithmetic> Profile<N> {
     ) -> Self {
         let (y, [u, v]) = frame.parts(point);
         let (rise, across) = frame.parts(slope);
+        // The square of a slope that is less would underflow, and along it a line does not move.
+        let moves = extent([across[0], across[1], N::ZERO]) >= N::step_beside(N::ZERO);
+        let across = if moves { across } else { [N::ZERO; 2] };
         let ([cos, sin], run) = unit(across, [N::ONE, N::ZERO]);
         Self {
             y,

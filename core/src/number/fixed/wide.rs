@@ -114,11 +114,12 @@ impl Product {
             return Self(0);
         };
         // From a / b times 2^(up + 32 - down) to a / b times 2^(2 * RATIO_BITS).
-        let magnitude = match (2 * RATIO_BITS + down).checked_sub(up.wrapping_add(32)) {
+        let (left, right) = (down.wrapping_add(2 * RATIO_BITS), up.wrapping_add(32));
+        let magnitude = match left.checked_sub(right) {
             Some(left) if left >= wide_leading_zeros(quotient) => i64::MAX as u64,
             Some(left) => quotient << left,
             None => {
-                let right = up.wrapping_add(32).wrapping_sub(2 * RATIO_BITS + down);
+                let right = right.wrapping_sub(left);
                 quotient.checked_shr(right).unwrap_or(0)
             }
         };
