@@ -2,8 +2,8 @@
 
 use crate::geometry::Project;
 use crate::geometry::project::AxisProjection;
-use crate::number::float::SPLITTER_F64;
-use crate::number::float::product_error;
+use crate::number::error_free::SPLITTER_F64;
+use crate::number::error_free::product_error;
 use core::cmp::Ordering;
 /// How `a b` compares to `c d`, exactly: products of `f32` fit `f64`.
 fn compare_products_f32(a: f32, b: f32, c: f32, d: f32) -> Ordering {
