@@ -12,7 +12,7 @@
 pub struct Link(pub u32);
 
 impl Link {
-    /// Number of pairs that a link can tell apart.
+    /// Number of pairs that a link can address.
     pub const PAIRS: u32 = 1 << 24;
 
     /// A link without owners.

@@ -139,7 +139,7 @@ pub struct Child(pub u32);
 impl Child {
     /// In the lanes behind a node's last child.
     pub const NONE: Self = Self(u32::MAX);
-    /// Number of nodes that a word can tell apart.
+    /// Number of nodes that a word can address.
     pub const NODES: u32 = (1 << 24) - 1;
 
     const NODE: u32 = 7 << 29;

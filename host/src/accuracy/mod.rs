@@ -1,5 +1,5 @@
 //! What accuracy costs in time: settings are swept, their pictures measured against a reference, and
-//! what comes out is told as a table, as sentences, as plots.
+//! the results are printed as a table, as sentences and as plots.
 //!
 //! `setting.rs` says what is swept, `bench.rs` renders and compares, `page.rs` draws.
 
@@ -50,7 +50,7 @@ pub fn frontier_by(points: &[Point], error: impl Fn(&Point) -> f64) -> Vec<bool>
 }
 
 impl Point {
-    /// Whether it surely costs less: by time where the repeats of both tell them apart, else by rays and
+    /// Whether it surely costs less: by time where the repeats of both are distinct, else by rays and
     /// tests, which repeat exactly and compare within a number format.
     fn is_cheaper(&self, other: &Self) -> bool {
         if self.cost.is_below(&other.cost) {
@@ -64,8 +64,8 @@ impl Point {
             && !self.does_the_work_of(other)
     }
 
-    /// Whether both cast the same rays and make the same tests in the same format, and times tell nothing
-    /// else.
+    /// Whether both cast the same rays and make the same tests in the same format, and their times
+    /// do not differ.
     fn does_the_work_of(&self, other: &Self) -> bool {
         let work = |point: &Self| (point.setting.format, point.cost.rays, point.cost.tests);
         work(self) == work(other) && !other.cost.is_below(&self.cost)
@@ -319,7 +319,7 @@ mod tests {
             point(with(Format::F64), 0.1, fast, 100),
         ];
         assert_eq!(frontier(&points), [true, true]);
-        // A little more right, within noise: the times tell nothing, and formats' tests differ in cost.
+        // A little more right, within noise: the times do not decide, and formats' tests differ in cost.
         let points = [
             point(BASE, 0.1, slow, 100),
             point(with(Format::F64), 0.09, fast, 90),
@@ -345,9 +345,9 @@ mod tests {
             frontier(&[more(&[1.0, 1.5]), less(&[1.1, 1.6])]),
             [false, true]
         );
-        // A single repeat tells of no spread.
+        // A single repeat has no spread.
         assert_eq!(frontier(&[more(&[1.0]), less(&[1.1])]), [false, true]);
-        // Where times do tell, they count.
+        // Where times differ beyond their spread, they count.
         assert_eq!(
             frontier(&[more(&[1.0, 1.05]), less(&[1.1, 1.6])]),
             [true, false]

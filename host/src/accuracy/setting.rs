@@ -113,7 +113,7 @@ impl Setting {
 }
 
 fn cutoff_text(cutoff: f64) -> String {
-    // Three digits tell them apart.
+    // Three digits distinguish them.
     format!("{cutoff:.2e}")
         .parse::<f64>()
         .map_or_else(|_| cutoff.to_string(), |x| x.to_string())

@@ -86,7 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         report.take_as_recorded();
     }
     // All of it is done, whatever fails: findings are not lost for a report that cannot be written,
-    // and they make the exit code, whoever reads them. What is recorded was told before.
+    // and they make the exit code, whoever reads them. The changes to recorded figures were printed before.
     let told = tell(arguments, &report, blessed.as_ref());
     let shown = match &arguments.diff {
         Some(folder) => write_evidence(folder, &report),

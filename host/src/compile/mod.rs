@@ -129,7 +129,7 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
     compile_telling(scene, options, &|_, _, _| ())
 }
 
-/// Compiles a scene and tells about what takes long.
+/// Compiles a scene, and reports the progress of tables, which take long.
 ///
 /// # Errors
 /// As [`compile`].

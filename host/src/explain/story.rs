@@ -157,7 +157,7 @@ impl Story {
     }
 }
 
-/// A sample as far as it is told.
+/// A sample, as far as its events were read.
 struct Teller<'t> {
     scene: &'t Scene<'t>,
     frame: Frame,
@@ -292,7 +292,7 @@ impl Ray {
                         lighting.radiance = radiance;
                         lighting.fall = lighting.fall(scene);
                     }
-                    // Nothing was told of it before.
+                    // The light had no event before.
                     None => self.lights.push(Lighting::new(number, 0.0, Fall::Here)),
                 }
             }

@@ -152,7 +152,7 @@ pub enum Culled {
     NotInInterval,
     /// It crosses the plane where it is not in the node around the box, whose span that is.
     NotInParent { plane: Plane, around: [f64; 2] },
-    /// No plane tells: the span is empty by less than culling allows for rounding.
+    /// No single plane is the cause: the span is empty by less than culling allows for rounding.
     Margin,
     /// What was tested has no planes on the axes: the ray is not in it where it counts.
     NotInVolume,

@@ -255,7 +255,7 @@ pub fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, outward: bool) -> [f64
     start.map(N::length_to_f64)
 }
 
-/// Lets rays leave a hit on both sides, as the ray loop does, and tells which of them meet the same
+/// Lets rays leave a hit on both sides, as the ray loop does, and reports which of them meet the same
 /// surface again, or never leave the solid that they are in.
 pub fn leave<N: Number>(
     scene: &Scene<'_>,
@@ -331,7 +331,7 @@ pub fn sealed<N: Number, A: Accel>(
         let ray =
             Ray::<N>::from_f64(scene.bounds(), origin, direction, tmin, f64::INFINITY).ok()?;
         let Some(hit) = ask::<N, A>(scene, &ray).hit else {
-            // Where surfaces coincide, only one of them was told.
+            // Where surfaces coincide, only one of them was reported.
             let crosses = |&(t, moved_on): &(f64, f64)| {
                 let mesh = (0..scene.count(Kind::Triangle)).filter_map(|slot| {
                     let primitive = scene.primitive(Kind::Triangle, slot as u32);

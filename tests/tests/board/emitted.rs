@@ -1,4 +1,4 @@
-//! What `gridel build --emit-rust` writes, and blobs that a program vouches for.
+//! What `gridel build --emit-rust` writes, and blobs that a program prevalidates.
 
 use crate::figures::Figures;
 use crate::firmware::{Build, board};
@@ -84,7 +84,7 @@ fn emitted_modules_run_or_do_not_compile() {
     outgrown(&features, "the blob outgrew WORK_DEPTH");
 }
 
-/// Firmware that vouches for its blob loads it in the same time, however long it is, and without the
+/// Firmware that prevalidates its blob loads it in the same time, however long it is, and without the
 /// code that proves the rest.
 fn vouched_blob_loads_in_constant_time(name: &str, scene: &Compiled) {
     let mut figures = Figures::new();

@@ -177,7 +177,7 @@ fn programs_take_what_is_recorded(board: &'static Board, format: Format) {
 const CRAMBIN: &str = "molecules/1crn.pdb";
 const SUZANNE: &str = "meshes/suzanne.obj";
 
-/// The flash, the RAM and the call stack that the memory report tells are enough for the linked program,
+/// The flash, the RAM and the call stack in the memory report are enough for the linked program,
 /// and at most 5 % more.
 fn memory_report_is_within_5_percent(board: &'static Board, format: Format) {
     let mut all: Vec<Compiled> = ["quick", "glass-chess", "cornell"]
@@ -244,7 +244,7 @@ fn memory_report_bounds_programs_beyond(board: &'static Board, format: Format) {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Flash, RAM and call stack of a scene: what the memory report tells, and what its linked programs take.
+/// Flash, RAM and call stack of a scene: the figures of the memory report, and those of its linked programs.
 /// Flash and static memory are those of the fast program, the call stack is the larger of both.
 fn told_and_linked(
     board: &'static Board,

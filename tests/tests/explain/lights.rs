@@ -71,7 +71,7 @@ fn reasons_are_true() {
     assert!(verdicts.clone().any(|v| v == (0, Verdict::Nearest)));
 }
 
-/// A light that has no direction, because it lies where the ray to it would start, is told of, too.
+/// A light that has no direction, because it lies where the ray to it would start, is reported, too.
 #[test]
 fn a_light_at_the_point_itself_is_told() {
     let mut scene = scenes::of([Shape::Box(Cuboid {

@@ -6,8 +6,8 @@ use gridel_host::explain::{Names, Shown, Story, Subject, explain};
 use gridel_host::trace::{Frame, SceneRay};
 use gridel_tests::scenes;
 
-/// Checks that `origin + distance * direction` is the point of every hit of a story, as it is told and
-/// as it is printed. Returns how many hits there were, and the largest bound that was told.
+/// Checks that `origin + distance * direction` is the point of every hit of a story, in JSON and
+/// in print. Returns the number of hits, and the largest bound.
 fn hits_lie_on_their_rays(story: &Story, about: &dyn Fn() -> String) -> (usize, f64) {
     let names = Names::default();
     let text = Shown {
@@ -68,7 +68,7 @@ fn hits_lie_on_their_rays(story: &Story, about: &dyn Fn() -> String) -> (usize, 
     (hits, largest)
 }
 
-/// The origin that is told is the ray's own, wherever the kernels start, and distances count from it.
+/// The origin in a story is the ray's own, wherever the kernels start, and distances count from it.
 #[test]
 fn explain_tells_points_that_lie_on_the_ray_as_given() {
     let blob = scenes::blob(&scenes::soup(13, 150, 0.3), 24);
@@ -118,7 +118,7 @@ fn explain_tells_points_that_lie_on_the_ray_as_given() {
     }
 }
 
-/// Rays from the camera, through glass and off mirrors lie on the lines that are told, too.
+/// Rays from the camera, through glass and off mirrors lie on the lines of their stories, too.
 #[test]
 fn explain_tells_points_that_lie_on_the_rays_of_pixels() {
     for (name, scene) in scenes::fixtures() {

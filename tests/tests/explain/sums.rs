@@ -64,7 +64,7 @@ fn parts_add_up(name: &str, scene: &Scene<'_>, samples: u16) {
                     );
                 }
             }
-            // What is told is what was counted, shadow rays' tests included.
+            // The story has as many tests as were counted, those of shadow rays included.
             let walks = || {
                 story.samples.iter().flat_map(|s| &s.rays).flat_map(|ray| {
                     let shadows = ray.lights.iter().flat_map(|light| &light.shadow);
@@ -105,7 +105,7 @@ fn parts_add_up_to_the_pixel() {
     }
 }
 
-/// A ray's own story tells the hit that `trace` gives.
+/// A ray's own story has the hit that `trace` returns.
 #[test]
 fn a_rays_hit_is_the_one_that_is_traced() {
     let blob = scenes::blob(&scenes::soup(11, 200, 0.3), 24);

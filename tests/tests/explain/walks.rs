@@ -7,7 +7,7 @@ use gridel_host::trace::{Frame, SceneRay};
 use gridel_tests::scenes;
 use std::collections::HashMap;
 
-/// Whether a hierarchy culls in integers or in lanes, it tells where a ray is in the same units.
+/// Whether a hierarchy culls in integers or in lanes, it reports where a ray is in the same units.
 #[test]
 fn spans_are_told_in_units() {
     let blob = scenes::blob(&scenes::soup(12, 120, 0.1), 24);
@@ -65,7 +65,7 @@ fn spans(walk: &Walk) -> HashMap<&str, Vec<[f64; 2]>> {
     spans
 }
 
-/// What is told to be left out is not gone into, and what is not is gone into or given up.
+/// Places that are reported as culled are not opened; all others are opened or given up.
 #[test]
 fn what_is_told_is_what_is_done() {
     let path = scenes::fixture_folder().join("glass-chess.toml");

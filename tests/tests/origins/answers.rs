@@ -36,7 +36,7 @@ fn answers(scene: &Scene<'_>, ray: SceneRay) -> [(Format, SceneHit, Option<Rejec
                 format.name()
             );
             let (any, any_why) = ask(structure, true);
-            // Of any hit no t is told that could leave its range.
+            // A query for any hit returns no t that could leave its range.
             if !matches!(any_why.or(why), Some(Rejection::Multiple(_))) {
                 assert_eq!(any_why, why);
                 assert_eq!(any.object == 0, hit.object == 0, "{structure:?} {ray:?}");

@@ -50,7 +50,7 @@ fn rendered<N: Number>(scene: &mut SceneFile, away: f64) -> Result<Vec<[u16; 3]>
     Ok(pixels.collect())
 }
 
-/// An eye in the distance sees what one near by sees through a wider lens, or is told that it cannot.
+/// An eye in the distance sees what one near by sees through a wider lens, or is rejected.
 #[test]
 fn far_eyes_see_the_scene_or_are_rejected() {
     fn seen<N: Number>(close: &[[u16; 3]]) -> Vec<Option<usize>> {

@@ -73,7 +73,7 @@ pub enum Fit {
 pub struct NotMeasured(pub Structure);
 
 impl MemoryReport {
-    /// The structures that were measured: those that firmware can vouch for.
+    /// The structures that were measured: those that firmware can prevalidate.
     pub const STRUCTURES: [Structure; 4] = Prevalidated::STRUCTURES;
 
     /// The report of a scene that `blob` holds, in one of the board's number formats, through the

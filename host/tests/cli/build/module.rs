@@ -50,7 +50,7 @@ fn a_module_is_emitted_for_the_board() {
     ] {
         assert!(module.contains(line), "{line}: {module}");
     }
-    // Nobody vouches for a structure that is made for hosts.
+    // A structure that is made for hosts cannot be prevalidated.
     folder.done(
         &[
             &[

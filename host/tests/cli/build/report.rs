@@ -153,7 +153,7 @@ fn the_text_counts_and_explains() {
     ] {
         assert!(text.contains(word), "{word}: {text}");
     }
-    // Nothing to tell of where there is no hierarchy.
+    // Without a hierarchy there is no SAH cost.
     for accel in ["list", "wide"] {
         let text = build("one.obj", &["--accel", accel]);
         assert!(!text.contains("SAH cost"), "{text}");
