@@ -25,7 +25,7 @@ pub fn is_module(path: &Path) -> io::Result<bool> {
     Ok(start == FIRST.as_bytes())
 }
 
-/// What a module is written for.
+/// The target of a module.
 #[derive(Clone, Copy, Debug)]
 pub struct Emitted<'s> {
     pub scene: &'s Scene<'s>,

@@ -1,4 +1,4 @@
-//! What a program proves of its own blob while it is compiled, so that loading need not.
+//! Blobs that a program proves valid while it is compiled, so that loading need not.
 
 use crate::accel::hierarchy::order::Order;
 use crate::format::limits::MAX_STACK_DEPTH;

@@ -1,4 +1,4 @@
-//! What accuracy costs in time: settings are swept, their pictures measured against a reference, and
+//! The cost of accuracy in time: settings are swept, their pictures measured against a reference, and
 //! the results are printed as a table, as sentences and as plots.
 //!
 //! `setting.rs` says what is swept, `bench.rs` renders and compares, `page.rs` draws.
@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 /// What was measured so far; what a sweep writes down after every step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results {
-    /// Of what: the program's version, the scene, the picture's size, the structure, the reference.
+    /// Identifies the sweep: the program's version, the scene, the picture's size, the structure, the reference.
     pub key: String,
     pub base: Setting,
     pub reference: Reference,

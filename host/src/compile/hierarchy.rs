@@ -43,7 +43,7 @@ pub enum Node {
         bounds: UnitBox,
         first: usize,
         count: usize,
-        /// What the tests of its primitives cost.
+        /// The cost of the tests of its primitives.
         tests: f64,
     },
     Inner {

@@ -105,7 +105,7 @@ pub struct Tested {
     pub planes: Vec<Plane>,
     /// From where to where the ray is in it.
     pub span: [f64; 2],
-    /// The same as the kernels count it.
+    /// The span in units, as the kernels compute it.
     #[serde(skip)]
     units: [f64; 2],
     /// Why the ray does not go into it; `None` if it may.

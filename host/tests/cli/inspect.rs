@@ -191,12 +191,12 @@ fn the_ledger_of_a_board_adds_up() {
     }
 }
 
-/// What was recorded of a program of all parts: fast, and with the feature `small`.
+/// The recorded figures of a program of all parts: fast, and with the feature `small`.
 fn everything(board: &str, format: &str, accel: &str) -> [Footprint; 2] {
     program(board, format, accel, &parts().collect::<Vec<_>>())
 }
 
-/// The same of a program of some parts.
+/// The recorded figures of a program of some parts.
 fn program(board: &str, format: &str, accel: &str, parts: &[&str]) -> [Footprint; 2] {
     let board = Board::named(board).unwrap();
     let format = Format::ALL.into_iter().find(|it| it.name() == format);

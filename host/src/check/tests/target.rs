@@ -130,12 +130,12 @@ fn target_takes_the_formats_that_the_board_computes() {
         let (_, report) = folder.run(&format!(
             "[[check]]\nscene = \"ball.toml\"\ntarget = \"{board}\"\nformats = {formats}\n"
         ));
-        let mut told: Vec<_> = report
+        let mut found: Vec<_> = report
             .findings
             .iter()
             .filter_map(|it| it.on.as_deref())
             .collect();
-        told.dedup();
-        assert_eq!(told, on);
+        found.dedup();
+        assert_eq!(found, on);
     }
 }

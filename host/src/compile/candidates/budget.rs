@@ -1,4 +1,4 @@
-//! What a table of lists may take.
+//! The budget of a table of lists.
 
 use crate::compile::error::CompileError;
 use crate::table::counted;

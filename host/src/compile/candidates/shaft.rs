@@ -1,4 +1,4 @@
-//! What a bundle of rays can meet: the volume that a box sweeps while it moves and grows evenly.
+//! The shaft of a bundle of rays: the volume that a box sweeps while it moves and grows evenly.
 
 /// A box from `low + λ low_rate` to `high + λ high_rate`, for λ from 0 to `last`.
 ///

@@ -10,7 +10,7 @@ use gridel_core::{Effects, Format, Kind, Structure};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What the tests recorded.
+/// The figures that the tests recorded.
 const RECORDED: &str = include_str!("programs.json");
 /// Forms of storage and of colours that programs have code for, or have not.
 const FORMS: [&str; 3] = ["wide-lattice", "wide-indices", "display-values"];

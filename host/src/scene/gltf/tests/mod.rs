@@ -52,7 +52,7 @@ pub(in crate::scene) fn text() -> String {
     document().to_string()
 }
 
-/// The same as a binary file.
+/// The document as a binary file.
 pub(in crate::scene) fn binary() -> Vec<u8> {
     let mut document = document();
     document["buffers"] = json!([{"byteLength": 60}]);
