@@ -357,7 +357,7 @@ mod tests {
     #[test]
     fn sentences_carry_the_spread_of_times() {
         let half = Setting { samples: 8, ..BASE };
-        let told = |base: &[f64], fixed: &[f64], halved: &[f64]| {
+        let verdict_text = |base: &[f64], fixed: &[f64], halved: &[f64]| {
             let points = [
                 point(BASE, 0.1, base, 100),
                 point(with(Format::Fixed), 0.2, fixed, 100),
@@ -365,7 +365,7 @@ mod tests {
             ];
             sentences(&BASE, &points).join("\n")
         };
-        let text = told(&[1.0, 1.0, 1.1], &[2.0, 2.1, 2.2], &[0.55, 0.56, 0.6]);
+        let text = verdict_text(&[1.0, 1.0, 1.1], &[2.0, 2.1, 2.2], &[0.55, 0.56, 0.6]);
         for part in [
             "takes 2.10 times the time (1.82 to 2.20)",
             "error 2.00 times as large",
@@ -373,7 +373,7 @@ mod tests {
         ] {
             assert!(text.contains(part), "{part}: {text}");
         }
-        let text = told(&[1.0, 1.0, 1.07], &[1.0, 1.02, 1.05], &[0.98, 1.02, 1.04]);
+        let text = verdict_text(&[1.0, 1.0, 1.07], &[1.0, 1.02, 1.05], &[0.98, 1.02, 1.04]);
         for part in [
             "`fixed` instead of `f32` shows no difference in time beyond the noise of 7 %",
             "shows no difference in time beyond the noise of 8 %",
@@ -382,9 +382,9 @@ mod tests {
         }
         assert!(!text.contains("saves"), "{text}");
         // More time is said to be more, and a single repeat to be one.
-        let text = told(&[1.0, 1.0], &[2.0, 2.0], &[1.5, 1.6]);
+        let text = verdict_text(&[1.0, 1.0], &[2.0, 2.0], &[1.5, 1.6]);
         assert!(text.contains("takes 55 % more time (50 to 60 %)"), "{text}");
-        let text = told(&[1.0], &[2.0], &[0.5]);
+        let text = verdict_text(&[1.0], &[2.0], &[0.5]);
         let once = text.matches("timed once, so its noise is unknown").count();
         assert_eq!(once, 2, "{text}");
     }

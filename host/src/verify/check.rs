@@ -123,20 +123,24 @@ pub fn check<N: Number>(
             what,
         });
     };
-    let told = |hit: &Option<Hit<N>>| match hit {
+    let described = |hit: &Option<Hit<N>>| match hit {
         Some(hit) => format!("primitive {} at {:?}", hit.primitive, N::far_to_f64(hit.t)),
         None => String::from("nothing"),
     };
     for other in heard {
         if bits(&other.hit) != bits(&list.hit) {
-            let what = format!("hits {}, brute force {}", told(&other.hit), told(&list.hit));
+            let what = format!(
+                "hits {}, brute force {}",
+                described(&other.hit),
+                described(&list.hit)
+            );
             fault(Promise::Structures, other.structure, what);
         }
         if other.any != other.hit.is_some() {
             let what = format!(
                 "any hit says {}, and the closest hit is {}",
                 other.any,
-                told(&other.hit)
+                described(&other.hit)
             );
             fault(Promise::AnyHit, other.structure, what);
         }
@@ -179,11 +183,14 @@ pub fn check<N: Number>(
         if let Err(wrong) = judge.check(N::FORMAT, &rounded, answer) {
             let what = match wrong {
                 Wrong::NotThere => {
-                    format!("hits {}, which exact arithmetic misses", told(&list.hit))
+                    format!(
+                        "hits {}, which exact arithmetic misses",
+                        described(&list.hit)
+                    )
                 }
                 Wrong::Missed { primitive, t } => format!(
                     "hits {}; by exact arithmetic it hits primitive {primitive} before, at {:?}",
-                    told(&list.hit),
+                    described(&list.hit),
                     t + rounded.moved
                 ),
             };

@@ -16,13 +16,13 @@ pub fn plan(plan: &mut Plan) {
         .in_full()
         .run(emitted_modules_run_or_do_not_compile);
     type Make = fn() -> Compiled;
-    let vouched: [(&str, Make); 4] = [
+    let prevalidated: [(&str, Make); 4] = [
         ("mps2-an385", scenes::quick),
         ("mps2-an385", scenes::molecule),
         ("microbit", scenes::quick),
         ("sifive_e", scenes::quick),
     ];
-    for (number, (name, scene)) in vouched.into_iter().enumerate() {
+    for (number, (name, scene)) in prevalidated.into_iter().enumerate() {
         let test = format!("vouched_blobs_load_in_constant_time::{number}");
         plan.test_on(&test, board(name), Format::Fixed)
             .in_full()

@@ -84,7 +84,7 @@ fn a_light_at_the_point_itself_is_told() {
         tmin: 0.0,
         tmax: f64::INFINITY,
     };
-    let mut told = |height: f64| {
+    let mut falls_at = |height: f64| {
         scene.lights = vec![
             Light::Point {
                 position: glam::DVec3::Y * height,
@@ -108,8 +108,8 @@ fn a_light_at_the_point_itself_is_told() {
         // Rays start on the face itself.
         (falls, hit.point[1])
     };
-    let (above, start) = told(3.0);
+    let (above, start) = falls_at(3.0);
     assert_eq!(above, [(0, Fall::Lit), (1, Fall::Lit)]);
-    let (here, _) = told(start);
+    let (here, _) = falls_at(start);
     assert_eq!(here, [(0, Fall::Here), (1, Fall::Lit)]);
 }

@@ -16,13 +16,13 @@ fn hits_lie_on_their_rays(story: &Story, about: &dyn Fn() -> String) -> (usize, 
         all_walks: false,
     };
     let text = text.to_string();
-    let told = serde_json::to_value(story).expect("JSON");
+    let json = serde_json::to_value(story).expect("JSON");
     let numbers = |value: &serde_json::Value| {
         let number = |k: usize| value[k].as_f64().expect("a number");
         glam::DVec3::new(number(0), number(1), number(2))
     };
     let (mut hits, mut largest) = (0, 0.0_f64);
-    for sample in told["samples"].as_array().expect("samples") {
+    for sample in json["samples"].as_array().expect("samples") {
         for ray in sample["rays"].as_array().expect("rays") {
             let hit = &ray["hit"];
             if hit.is_null() {

@@ -71,7 +71,7 @@ macro_rules! project {
                 // Rounding is monotone, so the difference of the rounded products has the right
                 // sign unless it is zero.
                 let cross = |a: [Self; 2], b: [Self; 2]| a[0] * b[1] - a[1] * b[0];
-                // Two that differ in sign have a product below zero; one that is zero tells nothing.
+                // Two that differ in sign have a product below zero; one that is zero decides nothing.
                 let (u, v) = (cross(b, c), cross(c, a));
                 let first = u * v;
                 // Few triangles come further.
