@@ -1,4 +1,4 @@
-//! What the code is compiled for.
+//! The target that the code is compiled for.
 
 /// Whether code shall be small where that makes it slower; no bit of an answer depends on it.
 pub(crate) const SMALL: bool = cfg!(feature = "small");

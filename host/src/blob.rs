@@ -95,7 +95,7 @@ pub fn begins_as_blob(bytes: &[u8]) -> bool {
     bytes.starts_with(&MAGIC[..6])
 }
 
-/// The structures that a scene holds, the one that a verb takes unless it is told first.
+/// Returns the structures that a scene holds; a command's default comes first.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};

@@ -25,7 +25,7 @@ pub fn is_module(path: &Path) -> io::Result<bool> {
     Ok(start == FIRST.as_bytes())
 }
 
-/// What a module is written for.
+/// The target of a module.
 #[derive(Clone, Copy, Debug)]
 pub struct Emitted<'s> {
     pub scene: &'s Scene<'s>,
@@ -76,10 +76,10 @@ impl Emitted<'_> {
             );
         }
         let others = Structure::ALL.into_iter().filter(|&it| scene.holds(it));
-        let vouched = others
+        let is_prevalidated = others
             .into_iter()
             .all(|it| Prevalidated::STRUCTURES.contains(&it));
-        let load = if vouched {
+        let load = if is_prevalidated {
             LOAD_PREVALIDATED
         } else {
             LOAD_CHECKED
@@ -93,7 +93,7 @@ impl Emitted<'_> {
              //\n\
              // gridel-core = {{ default-features = false, features = [{features}] }}\n\
              //\n\
-             // What `gridel inspect --target` tells of flash and RAM holds with lto = \"fat\" and\n\
+             // The figures of `gridel inspect --target` for flash and RAM hold with lto = \"fat\" and\n\
              // codegen-units = 1 in the profile. Where flash is short, the feature \"small\" beside those above\n\
              // and opt-level = \"z\" halve the code. Rays take longer then, the call stack grows, and every\n\
              // bit stays.\n\
@@ -168,7 +168,7 @@ const LOAD_PREVALIDATED: &str = "\
 pub fn load() -> Result<gridel_core::Scene<'static>, gridel_core::BlobError> {
     #[allow(long_running_const_eval)]
     static PREVALIDATED: gridel_core::Prevalidated<'static> = match gridel_core::Prevalidated::of(BLOB) {
-        Ok(vouched) => vouched,
+        Ok(prevalidated) => prevalidated,
         Err(_) => panic!(\"the blob was damaged, or has other structures: write it and this module again\"),
     };
     gridel_core::Scene::prevalidated(PREVALIDATED)

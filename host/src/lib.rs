@@ -14,7 +14,7 @@
 //! | compare structures on a scene | [`compare`] |
 //! | put parts of a picture together | [`merge`] |
 //! | trace rays of one's own | [`trace`], and [`npy`] for NumPy's files |
-//! | tell the story of a ray or a pixel | [`explain`] |
+//! | explain a ray or a pixel | [`explain`] |
 //! | measure what accuracy costs in time | [`accuracy`] |
 //! | hold a scene to what is promised | [`verify`] |
 //! | draw charts and heat maps | [`report`] |

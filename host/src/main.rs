@@ -1,4 +1,4 @@
-//! The program `gridel`: compiles scenes, tells what is in a blob, renders, traces and compares.
+//! The program `gridel`: compiles scenes, inspects blobs, renders, traces and compares.
 
 mod cli;
 

@@ -1,7 +1,7 @@
 //! Puts a picture together from parts that were rendered on their own.
 //!
 //! A part says in its file which rows of which picture it is ([`Rows`]) and how that was made, so
-//! parts may come in any order, parts of different pictures are told apart, and parts may overlap
+//! parts may come in any order, parts of different pictures are rejected, and parts may overlap
 //! where they agree: what two machines rendered twice is the same.
 
 use crate::picture::{PictureFormat, Rows, write_png};
@@ -34,7 +34,7 @@ pub enum PartError {
     Rows { rows: Range<u16>, found: u32 },
 }
 
-/// Why parts make no picture; parts are told by their number among those that were added.
+/// Why parts make no picture; parts are numbered in the order in which they were added.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MergeError {
     /// Two parts are of pictures of different sizes: width and height of each.

@@ -132,7 +132,7 @@ impl Drop for Files {
 pub fn abandon(exit_code: i32) -> ! {
     let unfinished = unfinished();
     for path in unfinished.iter() {
-        // There is nobody left to tell of a failure.
+        // The program ends, so a failure is not reported.
         let _ = fs::remove_file(path);
     }
     // The list stays locked, so that no other thread starts or completes a file meanwhile.

@@ -52,7 +52,7 @@ impl Job {
     }
 }
 
-/// Renders some rows. `progress` is told of every row that is done, from any thread.
+/// Renders some rows. Calls `progress` after every row, from any thread.
 ///
 /// # Errors
 /// If the blob lacks the structure or a setting is out of its range.
@@ -166,10 +166,10 @@ fn rows<N: Number, A: Accel, const EFFECTS: u32>(
     Ok(spread(job, progress, &row))
 }
 
-/// What a row cost in all, and each of its pixels.
+/// The cost of a row in total, and of each of its pixels.
 type Cost = (Counters, Vec<u32>);
 
-/// Fills a row, given its number, and may tell what it cost.
+/// Fills a row, given its number, and may return its cost.
 type Row<'r> = dyn Fn(u16, &mut [[u16; 3]]) -> Option<Cost> + Sync + 'r;
 
 /// Spreads rows over all threads.

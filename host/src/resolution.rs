@@ -2,15 +2,15 @@
 //! their contact shadows.
 //!
 //! A second surface at [`FACTOR`] error bounds' distance is met (see
-//! [`Hit::error`](gridel_core::Hit::error)); so an object whose smallest feature is less than that is not told
-//! apart with certainty from the surface that it touches.
+//! [`Hit::error`](gridel_core::Hit::error)); so an object whose smallest feature is less than that may not
+//! be distinguished from the surface that it touches.
 
 use crate::shape::{Solid, Surface};
 use glam::DVec3;
 use gridel_core::{Format, Kind, Scene};
 use serde::Serialize;
 
-/// How many error bounds apart two surfaces are told apart.
+/// Distance, in error bounds, from which two surfaces are distinguished.
 pub const FACTOR: f64 = 8.0;
 
 /// Surfaces with the largest bounds that objects are held against.

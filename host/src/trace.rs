@@ -380,7 +380,7 @@ impl Frame {
             tmax: start.tmax - along,
             begin: along,
         };
-        // Else it passes by the scene so far away that it is not told from where.
+        // Else it passes by the scene so far away that its origin is not representable.
         let is_ray = carried.ray::<N>(scene, direction).is_ok();
         Ok(if is_ray { carried } else { start })
     }

@@ -184,7 +184,7 @@ fn the_page_works(firmware: bool) {
                 };
                 let (printed, shown) = (lines(&output), lines(content));
                 if firmware {
-                    // Cargo tells of what it builds, too.
+                    // Cargo reports what it builds, too.
                     let found = printed.windows(shown.len()).any(|lines| lines == shown);
                     assert!(shown.len() > 10 && found, "{output}");
                 }

@@ -132,7 +132,7 @@ pub fn verdict<N: Number>(
     let length: f64 = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
     verdict.length = (length - 1.0).abs() / ulp_of_one::<N>();
     verdict.point = solid.excess(point).abs() / hit.error.length_to_f64();
-    // Entering or leaving is told apart where a solid smaller by the bound is met, too.
+    // Entering or leaving is distinguished where a solid smaller by the bound is met, too.
     let t = Real::of(N::far_to_f64(hit.t));
     let smaller = solid.spans(&line, &Real::of(-8.0 * step));
     // The next one, and of a ray that starts inside that it is in.
@@ -166,7 +166,7 @@ pub struct Worst {
 }
 
 impl Worst {
-    /// Takes a verdict into account; `about` tells of its case.
+    /// Takes a verdict into account; `about` describes its case.
     pub fn take<N: Number>(&mut self, verdict: &Verdict<N>, about: impl Fn() -> String) {
         self.rays += 1;
         self.hits += usize::from(verdict.hit.is_some());

@@ -74,7 +74,7 @@ fn apexes_serve_the_rays_of_the_eye_and_of_lights() {
         fallen_back::<N, Apex>(scene, &rays.primary);
         let shaded: Vec<_> = rays.shadow.iter().filter(meets).copied().collect();
         assert!(!shaded.is_empty(), "{name}, {format}");
-        // Whether anything is in the way lists tell, though they are cut; what comes first may lie
+        // Lists show whether anything is in the way, though they are cut; what comes first may lie
         // behind the cut.
         let asks_on = |ray: &&Ray<N>| {
             let mut work = Counters::default();

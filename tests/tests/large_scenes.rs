@@ -267,14 +267,18 @@ fn box_on_a_ball() -> Scene {
 
 #[test]
 fn a_box_on_a_large_box_is_resolved_and_on_a_large_ball_it_is_not() {
-    let told = |scene: &Scene| {
+    let unresolved_in = |scene: &Scene| {
         let blob = blob(scene);
         unresolved(&blob.scene().expect("a scene"))
     };
     for extent in [1e3, 1e4, 1e5, 1e6] {
-        assert_eq!(told(&box_on(Ground::Slab, extent)), [], "{extent:e}");
+        assert_eq!(
+            unresolved_in(&box_on(Ground::Slab, extent)),
+            [],
+            "{extent:e}"
+        );
     }
-    let [it] = &told(&box_on_a_ball())[..] else {
+    let [it] = &unresolved_in(&box_on_a_ball())[..] else {
         panic!("one object is not resolved");
     };
     assert_eq!(it.object, 1);

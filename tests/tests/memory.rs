@@ -12,7 +12,7 @@ use peak_alloc::PeakAlloc;
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// Compiles with one structure, and tells the most memory beyond what was there before.
+/// Compiles with one structure, and returns the most memory beyond what was there before.
 fn peak(scene: &Scene, structure: Structure, budget: Option<u64>) -> (u64, Compiled) {
     let options = Options {
         structures: vec![structure],

@@ -98,7 +98,7 @@ fn real_scenes_keep_their_promises() {
 }
 
 /// Two closed pyramids, base on base, whose corners the lattice rounded apart: a ray that leaves the one
-/// may be told of the other, and meets the first no more, because it goes on behind both.
+/// may report the other, and meets the first no more, because it goes on behind both.
 #[test]
 fn closed_meshes_that_touch_do_not_leak() {
     for turn in 0..8 {
@@ -138,7 +138,7 @@ fn cuboid(min: [f64; 3], max: [f64; 3]) -> Shape {
 }
 
 /// A ray that starts inside of several solids leaves them where they end, be it at one place or at
-/// several; and who tells of the later one is wrong.
+/// several; and reporting the later one is wrong.
 #[test]
 fn what_a_ray_leaves_is_judged_as_fairly_as_what_it_enters() {
     // All share the face x = 1; one of them reaches further on the other sides.

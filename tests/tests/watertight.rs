@@ -303,7 +303,7 @@ fn rays_enter_as_often_as_they_leave() {
                 depth += if hit.front { 1 } else { -1 };
                 crossings += 1;
                 let t = N::far_to_f64(hit.t);
-                // The next t that the format can tell from this one, where these rays start.
+                // The next t that the format distinguishes from this one, where these rays start.
                 ray.tmin = t + f64::powi(2.0, if N::FORMAT == Format::F32 { -5 } else { -12 });
                 assert!(crossings < 100 * rays, "a ray that never ends");
             }

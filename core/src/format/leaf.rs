@@ -20,7 +20,7 @@ pub struct Leaf {
 impl Leaf {
     /// Most primitives that a leaf can hold.
     pub const MAX_COUNT: u32 = 31;
-    /// Number of slots of one kind that leaves can tell apart.
+    /// Number of slots of one kind that leaves can address.
     pub const SLOTS: u32 = 1 << 24;
 
     /// Its slots among those of the kind.

@@ -1,6 +1,6 @@
 //! How a pair names its children.
 
-/// What the two children of a pair are: one word.
+/// The two children of a pair, in one word.
 ///
 /// Bits 0 to 23 are the number of the first child that is a pair; if both are, the right one
 /// follows the left. Bits 24 and 25 say that the left and the right child is a leaf. Bits 26 to 31
@@ -12,7 +12,7 @@
 pub struct Link(pub u32);
 
 impl Link {
-    /// Number of pairs that a link can tell apart.
+    /// Number of pairs that a link can address.
     pub const PAIRS: u32 = 1 << 24;
 
     /// A link without owners.

@@ -2,7 +2,7 @@
 
 use crate::format::leaf::Leaf;
 
-/// What a node is: the last word of its record.
+/// The kind and the children of a node: the last word of its record.
 ///
 /// Bits 0 to 23 are the number of its first child, which the second follows, or that of its leaf.
 /// Bits 24 and 25 are the split's axis, 26 and 27 the first carve's, 28 and 29 the second's; 3
@@ -128,7 +128,7 @@ impl OctreeNode {
     }
 }
 
-/// What a child of a node is: one word.
+/// A child of a node, in one word.
 ///
 /// Bits 29 to 31 are 7 for a node, whose number is in bits 0 to 23. Any other word is a [`Leaf`];
 /// one of no slots is the cluster of that number: a strip where its kind is triangles, a pack
@@ -139,7 +139,7 @@ pub struct Child(pub u32);
 impl Child {
     /// In the lanes behind a node's last child.
     pub const NONE: Self = Self(u32::MAX);
-    /// Number of nodes that a word can tell apart.
+    /// Number of nodes that a word can address.
     pub const NODES: u32 = (1 << 24) - 1;
 
     const NODE: u32 = 7 << 29;

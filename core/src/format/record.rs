@@ -292,7 +292,7 @@ pub struct ApexDirection {
     pub window: u16,
 }
 
-/// A rectangle of what tells the rays of an apex apart, on the two axes that follow the major one in
+/// A rectangle of the values that distinguish the rays of an apex, on the two axes that follow the major one in
 /// turn: slopes, with 30 fraction bits, or, where the apex is infinitely far away, places in the
 /// plane that they run to, in 1/256 unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]

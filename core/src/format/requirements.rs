@@ -1,4 +1,4 @@
-//! What a program must provide for its own blob, read while it is compiled.
+//! The memory and features that a program must provide for its own blob, read at compile time.
 
 use crate::format::effects::enable;
 use crate::format::kind::shapes;
@@ -7,7 +7,7 @@ use crate::format::word::{half, proved, word};
 use crate::format::{BlobError, Effects, SectionKind, Structure};
 use core::mem::offset_of;
 
-/// What a blob asks of the program that it is compiled into.
+/// The requirements of a blob on the program that it is compiled into.
 ///
 /// [`Requirements::of`] is a `const fn`: a program that compares what it provides with what its blob asks for,
 /// as the modules of `gridel build --emit-rust` do, does not compile with a blob that has outgrown it.

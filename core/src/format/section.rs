@@ -7,7 +7,7 @@ macro_rules! kinds {
         $(#[$doc:meta])*
         $kind:ident = $number:literal, $name:literal, $record:literal of $owner:literal;
     )*) => {
-        /// What a section holds. The order of the numbers is the order of the sections in a blob.
+        /// The content of a section. The order of the numbers is the order of the sections in a blob.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         #[repr(u16)]
         pub enum SectionKind {

@@ -69,7 +69,7 @@ macro_rules! registry {
 
         impl Kind {
             /// Whether primitives of the kind have a box. Those that have none are in no structure: every query tests
-            /// them first. Builds without code for any of those hold none, and need not tell them apart.
+            /// them first. Builds without code for any of those hold none, and need not distinguish them.
             #[inline(always)]
             pub const fn is_bounded(self) -> bool {
                 match self {

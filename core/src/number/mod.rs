@@ -21,6 +21,7 @@
 mod arithmetic;
 mod convert;
 mod error_bounds;
+pub(crate) mod error_free;
 mod extent;
 pub(crate) mod fixed;
 pub(crate) mod float;

@@ -8,7 +8,7 @@
 
 use crate::format::Kind;
 
-/// What a ray was cast for.
+/// The purpose of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RayKind {
     /// From the camera.
@@ -29,11 +29,11 @@ pub enum Event {
     ///
     /// [sent]: Event::Sent
     Taken {
-        /// What it was cast for.
+        /// The purpose of the ray.
         kind: RayKind,
         /// How many reflections and refractions led to it.
         depth: u8,
-        /// What its radiance is multiplied with.
+        /// The factor of its radiance.
         weight: [f64; 3],
     },
     /// A structure is asked what a ray meets.
@@ -52,7 +52,7 @@ pub enum Event {
     },
     /// A node or a cell is tested: the ray can meet what is in it if `span` is not empty.
     Tested {
-        /// What is tested.
+        /// The part that is tested.
         place: NodeId,
         /// The planes that were tested for it. `None` for one that was not, because it coincides
         /// with a plane around it, or is not worth it.
@@ -65,7 +65,7 @@ pub enum Event {
     Empty(NodeId),
     /// A node that was put off is given up, because a hit was found before it.
     GivenUp {
-        /// What is given up.
+        /// The part that is given up.
         place: NodeId,
         /// Where the ray would enter it.
         enters: f64,
@@ -98,10 +98,10 @@ pub enum Event {
     },
     /// Light for a shadow comes through the glass that was just met.
     Filtered {
-        /// What is left of it.
+        /// The part of it that is left.
         left: [f64; 3],
     },
-    /// What a light adds to a surface, the ray's weight apart.
+    /// The radiance that a light adds to a surface, without the ray's weight.
     Lit {
         /// Its number.
         number: u32,
@@ -110,7 +110,7 @@ pub enum Event {
     },
     /// The ray came through glass that took up light on the way.
     Absorbed {
-        /// What is left of the ray's weight.
+        /// The part of the ray's weight that is left.
         weight: [f64; 3],
     },
     /// Radiance is added to the sample, its weight included.
@@ -127,16 +127,16 @@ pub enum Event {
     },
     /// A ray is put on the work list.
     Sent {
-        /// What it is cast for.
+        /// The purpose of the ray.
         kind: RayKind,
-        /// What its radiance will be multiplied with.
+        /// The factor of its radiance.
         weight: [f64; 3],
     },
     /// A ray is not cast, because it could change too little.
     Dropped {
-        /// What it would have been cast for.
+        /// The purpose that the ray would have had.
         kind: RayKind,
-        /// What its radiance would have been multiplied with.
+        /// The factor that its radiance would have had.
         weight: [f64; 3],
     },
     /// A mirror or glass was met at the largest depth: what it would show is left black.
@@ -172,7 +172,7 @@ pub enum Source {
     Surface,
 }
 
-/// What a query found.
+/// The result of a query.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Met {
     /// As the caller counts it.

@@ -16,7 +16,7 @@ use crate::target::SMALL;
 use core::fmt;
 use core::marker::PhantomData;
 
-/// What a picture shall be like; [`Settings::of`] gives what the scene file states.
+/// The settings of a picture; [`Settings::of`] returns those of the scene file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// Pixels from left to right, above 0.
@@ -32,7 +32,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// What the scene file states, without dithering.
+    /// Returns the settings of the scene file, without dithering.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -77,11 +77,11 @@ pub enum RenderError {
     Resolution(Format),
     /// The workspace has fewer entries or places than it needs.
     Workspace {
-        /// What is short: the stack, or the work list.
+        /// The memory that is short: the stack, or the work list.
         what: &'static str,
-        /// What it holds.
+        /// Its size.
         found: usize,
-        /// What it must hold.
+        /// The size that it must have.
         needed: usize,
     },
 }

@@ -1,4 +1,4 @@
-//! What a program proves of its own blob while it is compiled, so that loading need not.
+//! Blobs that a program proves valid while it is compiled, so that loading need not.
 
 use crate::accel::hierarchy::order::Order;
 use crate::format::limits::MAX_STACK_DEPTH;
@@ -70,8 +70,8 @@ impl<'a> Prevalidated<'a> {
     ///
     /// # Errors
     /// If the checksum does not fit, a hierarchy is not in breadth-first order or deeper than the
-    /// header says, or the header names, or there are sections of, structures that cannot be vouched
-    /// for.
+    /// header says, or the header names, or there are sections of, structures that cannot be
+    /// prevalidated.
     pub const fn of(blob: &'a [u8]) -> Result<Self, BlobError> {
         let expected = proved!(word(blob, offset_of!(Header, checksum)));
         let found = checksum(blob);

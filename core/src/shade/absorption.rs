@@ -57,7 +57,7 @@ impl Effect for Absorption {
     }
 }
 
-/// What is left of light that went through glass up to a hit.
+/// The part of light that is left after glass up to a hit.
 ///
 /// Out of line, because copies of it take more code than the calls.
 #[inline(never)]
@@ -68,7 +68,7 @@ fn left<N: Number>(ray: &Ray<N>, hit: &Hit<N>, material: &Material) -> Color<N> 
     absorb(material, N::from_wide(N::narrow(hit.t).wide(norm)))
 }
 
-/// What is left of light after a length of glass.
+/// The part of light that is left after a length of glass.
 pub(super) fn absorb<N: Number>(material: &Material, length: N) -> Color<N> {
     let coefficients = material.absorption;
     Color(coefficients.map(|coefficient| length.exp_neg(coefficient)))

@@ -1,4 +1,4 @@
-//! What a surface makes of light: one file for each effect, and what they share.
+//! Shading: one file for each effect, and the code that they share.
 //!
 //! An effect implements the trait of `effect.rs` at one or more places of the ray loop, and is named
 //! in the table of `format/effects.rs`.

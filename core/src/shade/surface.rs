@@ -1,4 +1,4 @@
-//! What a ray meets, as effects see it.
+//! The surface that a ray hits, as effects see it.
 
 use crate::accel::Number;
 use crate::format::Effects;

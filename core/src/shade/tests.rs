@@ -428,7 +428,7 @@ fn state_mock_is_inherited_by_the_rays_that_wait() {
             .all(|&channel| channel.abs_diff(white(1)) <= 1)
     );
     let (pixels, _) = picture::<f32, MOCK>(4);
-    // Red has no ambient light here: it tells of the rays that miss, one, two or more surfaces behind.
+    // Red has no ambient light here: it counts the rays that miss, one, two or more surfaces behind.
     let seen = |parts: i32| {
         pixels
             .iter()

@@ -13,7 +13,7 @@ use gridel_core::{Format, Settings, Structure};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
-/// What a setting is worth.
+/// The error of a setting, and its cost.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     pub name: String,
@@ -22,7 +22,7 @@ pub struct Point {
     pub cost: Cost,
 }
 
-/// What a picture costs.
+/// The cost of a picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cost {
     /// Of each repeat, rendering alone.

@@ -1,5 +1,5 @@
-//! What accuracy costs in time: settings are swept, their pictures measured against a reference, and
-//! what comes out is told as a table, as sentences, as plots.
+//! The cost of accuracy in time: settings are swept, their pictures measured against a reference, and
+//! the results are printed as a table, as sentences and as plots.
 //!
 //! `setting.rs` says what is swept, `bench.rs` renders and compares, `page.rs` draws.
 
@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 /// What was measured so far; what a sweep writes down after every step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results {
-    /// Of what: the program's version, the scene, the picture's size, the structure, the reference.
+    /// Identifies the sweep: the program's version, the scene, the picture's size, the structure, the reference.
     pub key: String,
     pub base: Setting,
     pub reference: Reference,
@@ -50,7 +50,7 @@ pub fn frontier_by(points: &[Point], error: impl Fn(&Point) -> f64) -> Vec<bool>
 }
 
 impl Point {
-    /// Whether it surely costs less: by time where the repeats of both tell them apart, else by rays and
+    /// Whether it surely costs less: by time where the repeats of both are distinct, else by rays and
     /// tests, which repeat exactly and compare within a number format.
     fn is_cheaper(&self, other: &Self) -> bool {
         if self.cost.is_below(&other.cost) {
@@ -64,8 +64,8 @@ impl Point {
             && !self.does_the_work_of(other)
     }
 
-    /// Whether both cast the same rays and make the same tests in the same format, and times tell nothing
-    /// else.
+    /// Whether both cast the same rays and make the same tests in the same format, and their times
+    /// do not differ.
     fn does_the_work_of(&self, other: &Self) -> bool {
         let work = |point: &Self| (point.setting.format, point.cost.rays, point.cost.tests);
         work(self) == work(other) && !other.cost.is_below(&self.cost)
@@ -319,7 +319,7 @@ mod tests {
             point(with(Format::F64), 0.1, fast, 100),
         ];
         assert_eq!(frontier(&points), [true, true]);
-        // A little more right, within noise: the times tell nothing, and formats' tests differ in cost.
+        // A little more right, within noise: the times do not decide, and formats' tests differ in cost.
         let points = [
             point(BASE, 0.1, slow, 100),
             point(with(Format::F64), 0.09, fast, 90),
@@ -345,9 +345,9 @@ mod tests {
             frontier(&[more(&[1.0, 1.5]), less(&[1.1, 1.6])]),
             [false, true]
         );
-        // A single repeat tells of no spread.
+        // A single repeat has no spread.
         assert_eq!(frontier(&[more(&[1.0]), less(&[1.1])]), [false, true]);
-        // Where times do tell, they count.
+        // Where times differ beyond their spread, they count.
         assert_eq!(
             frontier(&[more(&[1.0, 1.05]), less(&[1.1, 1.6])]),
             [true, false]
@@ -357,7 +357,7 @@ mod tests {
     #[test]
     fn sentences_carry_the_spread_of_times() {
         let half = Setting { samples: 8, ..BASE };
-        let told = |base: &[f64], fixed: &[f64], halved: &[f64]| {
+        let verdict_text = |base: &[f64], fixed: &[f64], halved: &[f64]| {
             let points = [
                 point(BASE, 0.1, base, 100),
                 point(with(Format::Fixed), 0.2, fixed, 100),
@@ -365,7 +365,7 @@ mod tests {
             ];
             sentences(&BASE, &points).join("\n")
         };
-        let text = told(&[1.0, 1.0, 1.1], &[2.0, 2.1, 2.2], &[0.55, 0.56, 0.6]);
+        let text = verdict_text(&[1.0, 1.0, 1.1], &[2.0, 2.1, 2.2], &[0.55, 0.56, 0.6]);
         for part in [
             "takes 2.10 times the time (1.82 to 2.20)",
             "error 2.00 times as large",
@@ -373,7 +373,7 @@ mod tests {
         ] {
             assert!(text.contains(part), "{part}: {text}");
         }
-        let text = told(&[1.0, 1.0, 1.07], &[1.0, 1.02, 1.05], &[0.98, 1.02, 1.04]);
+        let text = verdict_text(&[1.0, 1.0, 1.07], &[1.0, 1.02, 1.05], &[0.98, 1.02, 1.04]);
         for part in [
             "`fixed` instead of `f32` shows no difference in time beyond the noise of 7 %",
             "shows no difference in time beyond the noise of 8 %",
@@ -382,9 +382,9 @@ mod tests {
         }
         assert!(!text.contains("saves"), "{text}");
         // More time is said to be more, and a single repeat to be one.
-        let text = told(&[1.0, 1.0], &[2.0, 2.0], &[1.5, 1.6]);
+        let text = verdict_text(&[1.0, 1.0], &[2.0, 2.0], &[1.5, 1.6]);
         assert!(text.contains("takes 55 % more time (50 to 60 %)"), "{text}");
-        let text = told(&[1.0], &[2.0], &[0.5]);
+        let text = verdict_text(&[1.0], &[2.0], &[0.5]);
         let once = text.matches("timed once, so its noise is unknown").count();
         assert_eq!(once, 2, "{text}");
     }

@@ -1,4 +1,4 @@
-//! What a sweep turns: five levers, each alone and together.
+//! The settings of a sweep: five levers, each alone and together.
 
 use gridel_core::Format;
 use gridel_core::format::limits::MAX_SAMPLES;
@@ -52,7 +52,7 @@ impl Lever {
         Lever::Cutoff,
     ];
 
-    /// What it is called.
+    /// Its name.
     pub const fn name(self) -> &'static str {
         match self {
             Lever::Format => "number format",
@@ -113,7 +113,7 @@ impl Setting {
 }
 
 fn cutoff_text(cutoff: f64) -> String {
-    // Three digits tell them apart.
+    // Three digits distinguish them.
     format!("{cutoff:.2e}")
         .parse::<f64>()
         .map_or_else(|_| cutoff.to_string(), |x| x.to_string())

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 pub(super) enum Ran {
     /// It printed these figures, and wrote a picture if it should.
     Printed(BTreeMap<String, u64>, Result<Vec<u8>, String>),
-    /// What it needs is not installed.
+    /// The emulator or a file is missing.
     NotRun(String),
     /// It could not be built, or it failed.
     Failed(String),

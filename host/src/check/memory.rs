@@ -1,4 +1,4 @@
-//! What a scene takes on a board that is not emulated: figures of the memory report, held to the board's
+//! The memory of a scene on a board that is not emulated: figures of the memory report, held to the board's
 //! memory and to budgets.
 
 use super::manifest::Budget;

@@ -1,4 +1,4 @@
-//! What a run found, for people and for programs.
+//! The findings of a run, for people and for programs.
 
 use super::image::Image;
 use crate::table::{Align, Table, grouped};
@@ -39,13 +39,13 @@ pub struct Finding {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(tag = "outcome", content = "why", rename_all = "kebab-case")]
 pub enum Outcome {
-    /// It is as the manifest says, or better.
+    /// The figure is as the manifest says, or better.
     Held,
-    /// It is not, and why.
+    /// The figure is not as the manifest says, and why.
     Broken(String),
-    /// It was not, and the manifest has it now.
+    /// The figure was not as the manifest said; the manifest has it now.
     Recorded,
-    /// It could not be measured here, and why.
+    /// The figure could not be measured here, and why.
     NotRun(String),
 }
 

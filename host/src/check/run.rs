@@ -13,7 +13,7 @@ use crate::scene::{self, ImportOptions};
 use gridel_core::{Format, Scene, Settings, Structure};
 use std::io;
 
-/// Measures everything. `progress` is told of each of the [steps](Manifest::steps).
+/// Measures everything. Calls `progress` after each of the [steps](Manifest::steps).
 pub fn run(manifest: &Manifest, progress: &dyn Fn()) -> Report {
     let mut report = Report::default();
     for (index, check) in manifest.checks.iter().enumerate() {

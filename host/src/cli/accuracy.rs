@@ -28,7 +28,7 @@ const MOST_PIXELS: usize = 1 << 22;
 
 /// What is printed as JSON.
 #[derive(Serialize)]
-struct Told<'t> {
+struct Printed<'t> {
     folder: String,
     size: [u16; 2],
     points: &'t [Point],
@@ -108,7 +108,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let choice = choice(arguments, &stem, &results);
     if arguments.json {
-        let told = Told {
+        let printed = Printed {
             folder: folder.display().to_string(),
             size,
             points: &results.points,
@@ -116,7 +116,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             sentences: sentences(&results.base, &results.points),
             cheapest: choice.as_ref(),
         };
-        print_json_warned(&told, &imported.warnings)?;
+        print_json_warned(&printed, &imported.warnings)?;
     } else {
         print(text(&folder, size, &results, choice.as_ref()))?;
     }

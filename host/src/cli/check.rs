@@ -86,8 +86,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         report.take_as_recorded();
     }
     // All of it is done, whatever fails: findings are not lost for a report that cannot be written,
-    // and they make the exit code, whoever reads them. What is recorded was told before.
-    let told = tell(arguments, &report, blessed.as_ref());
+    // and they make the exit code, whoever reads them. The changes to recorded figures were printed before.
+    let printed = print_findings(arguments, &report, blessed.as_ref());
     let shown = match &arguments.diff {
         Some(folder) => write_evidence(folder, &report),
         None => Ok(()),
@@ -103,7 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         0 => Ok(()),
         _ => Err(Failure::Broken),
     };
-    recorded.and(reported).and(shown).and(told).and(held)
+    recorded.and(reported).and(shown).and(printed).and(held)
 }
 
 /// Refuses outputs that would destroy what is read or cannot be written, before any work.
@@ -125,7 +125,11 @@ fn prove_outputs(arguments: &Arguments, manifest: &Manifest) -> Result<(), Failu
 }
 
 /// Prints the findings, and what is recorded of them.
-fn tell(arguments: &Arguments, report: &Report, blessed: Option<&Blessed>) -> Result<(), Failure> {
+fn print_findings(
+    arguments: &Arguments,
+    report: &Report,
+    blessed: Option<&Blessed>,
+) -> Result<(), Failure> {
     let (held, broken, recorded) = (report.held(), report.broken(), report.recorded());
     let not_run = report.not_run();
     let printed = if arguments.json {

@@ -122,7 +122,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
     }
     let progress = Progress::steps("comparing", steps);
     let tell = |what: &str| {
-        progress.tell(what);
+        progress.show(what);
         progress.step();
     };
     let comparison =

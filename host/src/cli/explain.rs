@@ -120,7 +120,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })
 }
 
-/// A story, with the names of the objects that it tells of.
+/// A story, with the names of its objects.
 #[derive(Serialize)]
 struct Named {
     #[serde(flatten)]

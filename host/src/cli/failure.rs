@@ -127,7 +127,7 @@ impl Failure {
             Self::Usage(report) => (report, 2),
             Self::Refused(report) => (report, 3),
         };
-        // Standard error may be closed; the exit code still tells.
+        // Standard error may be closed; the exit code still reports the failure.
         let _ = io::Write::write_fmt(&mut io::stderr(), format_args!("{report:?}\n"));
         ExitCode::from(code)
     }

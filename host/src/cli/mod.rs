@@ -8,7 +8,7 @@
 //! | `source.rs` | the blob or scene file that a verb works on |
 //! | `effects.rs` | what calls for the effects of a scene |
 //! | `output.rs` | files and standard output |
-//! | `shell.rs` | what shells and the manual are told of the program |
+//! | `shell.rs` | completion scripts for shells, and man pages |
 //! | `progress.rs` | the sign of life of long work |
 
 mod arguments;

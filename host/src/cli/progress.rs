@@ -59,8 +59,8 @@ impl Progress {
         progress
     }
 
-    /// What happens now.
-    pub fn tell(&self, what: &str) {
+    /// Shows the current step.
+    pub fn show(&self, what: &str) {
         self.bar.set_message(what.to_owned());
     }
 

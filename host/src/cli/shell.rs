@@ -1,4 +1,4 @@
-//! `gridel completions` and `gridel man`: what shells and `man` are told of the program.
+//! `gridel completions` and `gridel man`: completion scripts for shells, and man pages.
 
 use super::failure::Failure;
 use super::output::{print, write_texts};

@@ -1,5 +1,5 @@
-//! What a verb works on: a scene blob, or a scene file that is compiled on the spot. Which of them
-//! it is, the first bytes tell.
+//! What a verb works on: a scene blob, or a scene file that is compiled on the spot.
+//! The first bytes distinguish them.
 
 use super::arguments::{SceneOptions, TraceOptions, check_quality};
 use super::failure::Failure;
@@ -19,9 +19,9 @@ use std::path::Path;
 pub struct Source {
     input: Input,
     pub blob: Blob,
-    /// What compiling told, for a scene file.
+    /// The compiler's report, for a scene file.
     pub report: Option<compile::Report>,
-    /// What the importer told, and of what the lattice moves far.
+    /// The importer's warnings, and those about objects that the lattice moves far.
     pub warnings: Vec<String>,
     /// The names of a scene file.
     names: Option<Names>,
@@ -113,7 +113,7 @@ impl Source {
             let share = 100 * done / of.max(1);
             let cells = grouped(of);
             let name = structure.name();
-            progress.tell(&format!("compiling {name}: {share} % of {cells} cells"));
+            progress.show(&format!("compiling {name}: {share} % of {cells} cells"));
         };
         let compiled = compile::compile_telling(&imported.scene, &compiling, &tell);
         drop(progress);

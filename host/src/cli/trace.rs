@@ -80,7 +80,7 @@ pub struct Arguments {
     geometry: GeometryOptions,
 }
 
-/// Rays that a thread takes at once, and that are told of as a step.
+/// Rays that a thread takes at once; they count as one step of progress.
 const CHUNK: usize = 4096;
 
 /// What was traced.

@@ -168,7 +168,7 @@ fn text(arguments: &Arguments, report: &Report) -> String {
     text
 }
 
-/// The command that tells a ray's story, in the scene as it was read here.
+/// The command that explains a ray, in the scene as it was read here.
 fn explain(arguments: &Arguments, ray: &str, format: &str, structure: &str) -> String {
     let GeometryOptions {
         lattice_bits,

@@ -9,7 +9,7 @@ struct Measure {
     name: &'static str,
     of: fn(&Row) -> Option<f64>,
     more_is_better: bool,
-    /// Whether it comes from clocks, of which a single repeat tells nothing.
+    /// Whether it is a time, which needs several repeats.
     timed: bool,
 }
 

@@ -45,7 +45,7 @@ pub fn growth(
     Ok(Growth { steps })
 }
 
-/// How often [`growth`] tells what happens next.
+/// How often [`growth`] reports its next step.
 pub fn growth_steps(scene: &Scene, options: &Options<'_>) -> u64 {
     sizes(by_distance(scene).len()).len() as u64 * options.steps()
 }

@@ -30,7 +30,7 @@ use gridel_core::{Effects, Fixed, Format, Number, Scene, Settings, Structure};
 use options::Contender;
 use std::time::Duration;
 
-/// Compares structures on a scene. `progress` is told what happens next.
+/// Compares structures on a scene. Calls `progress` with a description of each step.
 ///
 /// # Errors
 /// If the scene cannot be compiled, or its picture casts too many rays.

@@ -1,4 +1,4 @@
-//! What is compared, and how.
+//! Options of a comparison.
 
 use crate::compile::{self, Builder, CompileError, takes_hierarchy};
 use crate::picture_rays::PictureRaysError;

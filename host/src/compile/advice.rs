@@ -28,7 +28,7 @@ impl Size {
 }
 
 /// What makes a blob smaller, by its own figures and the bytes of the leaves that hierarchies share.
-/// `bytes_with` compiles the scene with other options, and tells how large the blob is.
+/// `bytes_with` compiles the scene with other options, and returns the size of the blob.
 pub fn advice(
     options: &Options,
     blob: &Blob,

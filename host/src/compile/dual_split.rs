@@ -31,7 +31,7 @@ static CARVES: [&[usize]; 10] = [
     &[2, 1],
 ];
 
-/// What is done at a node.
+/// The test at a node.
 #[derive(Clone, Copy)]
 struct Choice {
     cost: f64,

@@ -24,7 +24,7 @@ pub struct Primitive {
 }
 
 impl Primitive {
-    /// What its test costs, a triangle's being 1. Where tests are dear, leaves are small.
+    /// The cost of its test; a triangle's is 1. Where tests are expensive, leaves are small.
     pub const fn test_cost(&self) -> f64 {
         test_cost(self.kind)
     }
@@ -43,7 +43,7 @@ pub enum Node {
         bounds: UnitBox,
         first: usize,
         count: usize,
-        /// What the tests of its primitives cost.
+        /// The cost of the tests of its primitives.
         tests: f64,
     },
     Inner {
@@ -60,9 +60,9 @@ impl Node {
     }
 }
 
-/// What a step down the hierarchy costs, a triangle's test being 1.
+/// The cost of a step down the hierarchy; that of a triangle's test is 1.
 pub const STEP_COST: f64 = 1.5;
-/// Most primitives in a leaf, unless they cannot be told apart.
+/// Most primitives in a leaf, unless their boxes coincide.
 pub const LEAF_SIZE: usize = 4;
 /// Nodes with at most this many primitives are swept, others binned.
 const SWEEP_SIZE: usize = 4096;
@@ -109,8 +109,8 @@ pub fn sah_cost(root: &Node) -> f64 {
     sum(root) / area(root.bounds()).max(1.0)
 }
 
-/// Levels that halving needs: as many as the count has bits, and kinds may have to be told apart
-/// below.
+/// Levels that halving needs: as many as the count has bits, and below those kinds may
+/// have to be separated.
 pub fn halvings(count: usize) -> usize {
     usize::BITS as usize - count.leading_zeros() as usize + Kind::ALL.len()
 }
@@ -156,7 +156,7 @@ fn build_node(
             return leaf;
         }
         None if !one_kind && same_box(primitives) => {
-            // Nothing but their kinds tells them apart.
+            // They differ in their kinds alone.
             primitives.sort_by_key(|p| p.kind);
             let kind = primitives[0].kind;
             primitives.partition_point(|p| p.kind == kind)

@@ -70,7 +70,7 @@ pub struct Report {
     /// The farthest that snapping moved a surface, in scene units: no point of the given surface of
     /// any primitive is farther from its snapped one, and the other way round.
     pub largest_displacement: f64,
-    /// The same of each primitive in scene-file order, in steps of the lattice; 0 for those that are
+    /// The displacement of each primitive in scene-file order, in steps of the lattice; 0 for those that are
     /// left out.
     #[serde(skip)]
     pub displacements: Vec<f32>,
@@ -89,9 +89,9 @@ pub struct Report {
     pub longest_list: usize,
     /// Effects and the names of what calls for each.
     pub effects: Vec<(String, Vec<String>)>,
-    /// What the compiler supplied because the scene has none.
+    /// Parts that the compiler supplied because the scene has none.
     pub supplied: Vec<String>,
-    /// What the structures took to build, from primitives on the lattice to records.
+    /// The time that the structures took to build, from primitives on the lattice to records.
     #[serde(skip)]
     pub setup: Duration,
     /// Structures with tables of candidate lists.
@@ -129,7 +129,7 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
     compile_telling(scene, options, &|_, _, _| ())
 }
 
-/// Compiles a scene and tells about what takes long.
+/// Compiles a scene, and reports the progress of tables, which take long.
 ///
 /// # Errors
 /// As [`compile`].

@@ -1,4 +1,4 @@
-//! What is asked of the compiler.
+//! Options of the compiler.
 
 use super::builder::Builder;
 use super::wide::Quality;
@@ -69,6 +69,6 @@ impl Default for Options {
     }
 }
 
-/// Told now and then, from any thread, how many cells of a structure's table are done, and how many
-/// there are; a table is tried in several sizes where none is asked for.
+/// Called now and then, from any thread, with the number of finished cells of a structure's table, and
+/// of all its cells. A table is tried in several sizes where none is asked for.
 pub type Tell<'t> = &'t (dyn Fn(Structure, u64, u64) + Sync);

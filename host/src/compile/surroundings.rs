@@ -10,7 +10,7 @@ use gridel_core::Effects;
 use gridel_core::format::limits::FARTHEST;
 use gridel_core::format::record;
 
-/// What is supplied with a light, so that shadows are not black.
+/// The ambient light that is supplied with a light, so that shadows are not black.
 const AMBIENT: f64 = 0.15;
 
 /// Everything of a blob that is not geometry.

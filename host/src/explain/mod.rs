@@ -1,6 +1,6 @@
 //! The story of a ray or of a pixel: what was visited, what was met, what it brought.
 //!
-//! It is told by the code that renders, through [`Observer::event`], and only put in order here: `walk.rs`
+//! The renderer reports it through [`Observer::event`]; this module only puts it in order: `walk.rs`
 //! keeps a query's way through a structure, `story.rs` the rays of a pixel and what they add up to,
 //! `text.rs` writes it down for people.
 
@@ -125,11 +125,11 @@ fn watch<N: Number, const EFFECTS: u32>(
     Ok((linear, recorder))
 }
 
-/// Keeps what is told, but not every primitive of a long list that a ray passes by.
+/// Records events, but not every primitive of a long list that a ray passes by.
 #[derive(Default)]
 struct Recorder {
     events: Vec<Event>,
-    /// Steps of the current query that were told.
+    /// Recorded steps of the current query.
     steps: usize,
 }
 

@@ -19,9 +19,9 @@ pub struct Story {
     /// Structure.
     pub accel: &'static str,
     pub samples: Vec<Sample>,
-    /// What comes out, 65535 being white.
+    /// The pixel's linear colour; 65535 is white.
     pub linear: [u16; 3],
-    /// The same as a display takes it.
+    /// The pixel's colour in sRGB, as displays take it.
     pub srgb: [u8; 3],
 }
 
@@ -43,7 +43,7 @@ pub struct Ray {
     /// The ray that caused it, by its place among the sample's rays.
     pub parent: Option<usize>,
     pub depth: u8,
-    /// What its radiance is multiplied with.
+    /// The factor of its radiance.
     pub weight: [f64; 3],
     /// `None` where its direction vanished, so that it was not traced.
     pub walk: Option<Walk>,
@@ -51,7 +51,7 @@ pub struct Ray {
     /// The weight that absorption on the way leaves.
     pub absorbed: Option<[f64; 3]>,
     pub lights: Vec<Lighting>,
-    /// What it adds to the sample, its weight included.
+    /// The radiance that it adds to the sample, its weight included.
     pub added: [f64; 3],
     /// Whether that is the background.
     pub background: bool,
@@ -97,9 +97,9 @@ pub struct Lighting {
     pub cosine: f64,
     /// The way to the light, surface of glass by surface of glass.
     pub shadow: Vec<Walk>,
-    /// What is left of the light behind each.
+    /// The part of the light that is left behind each.
     pub filtered: Vec<[f64; 3]>,
-    /// What the light adds to the surface, the ray's weight apart.
+    /// The radiance that the light adds to the surface, without the ray's weight.
     pub radiance: [f64; 3],
     pub fall: Fall,
 }
@@ -126,7 +126,7 @@ pub enum Fall {
     Here,
 }
 
-/// What a kind of ray is called.
+/// The name of a kind of ray.
 fn kind_name(kind: RayKind) -> &'static str {
     match kind {
         RayKind::Primary => "primary",
@@ -157,7 +157,7 @@ impl Story {
     }
 }
 
-/// A sample as far as it is told.
+/// A sample, as far as its events were read.
 struct Teller<'t> {
     scene: &'t Scene<'t>,
     frame: Frame,
@@ -292,7 +292,7 @@ impl Ray {
                         lighting.radiance = radiance;
                         lighting.fall = lighting.fall(scene);
                     }
-                    // Nothing was told of it before.
+                    // The light had no event before.
                     None => self.lights.push(Lighting::new(number, 0.0, Fall::Here)),
                 }
             }

@@ -30,7 +30,7 @@ impl Display for Shown<'_> {
             Some(([x, y], [width, height])) => write!(f, "Pixel {x},{y} of {width} x {height}")?,
             None => write!(f, "The ray")?,
         }
-        // Sixteen bits tell no more places.
+        // Sixteen bits hold no more digits.
         let [red, green, blue] = linear.map(|channel| f64::from(channel) / 65535.0);
         writeln!(
             f,
@@ -432,7 +432,7 @@ fn bound(error: f64) -> String {
     }
 }
 
-/// A distance, as precisely as it is told from where the kernels start.
+/// A distance, with the precision that it has from where the kernels start.
 fn along(walk: &Walk, distance: f64) -> String {
     match walk.moved {
         0.0 => significant(distance),

@@ -105,7 +105,7 @@ pub struct Tested {
     pub planes: Vec<Plane>,
     /// From where to where the ray is in it.
     pub span: [f64; 2],
-    /// The same as the kernels count it.
+    /// The span in units, as the kernels compute it.
     #[serde(skip)]
     units: [f64; 2],
     /// Why the ray does not go into it; `None` if it may.
@@ -152,7 +152,7 @@ pub enum Culled {
     NotInInterval,
     /// It crosses the plane where it is not in the node around the box, whose span that is.
     NotInParent { plane: Plane, around: [f64; 2] },
-    /// No plane tells: the span is empty by less than culling allows for rounding.
+    /// No single plane is the cause: the span is empty by less than culling allows for rounding.
     Margin,
     /// What was tested has no planes on the axes: the ray is not in it where it counts.
     NotInVolume,

@@ -1,4 +1,4 @@
-//! What the rays through the middles of pixels hit.
+//! The first hits of the rays through the middles of pixels.
 
 use crate::render::chosen;
 use gridel_core::accel::DynAccel;

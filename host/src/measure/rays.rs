@@ -12,12 +12,12 @@ use serde::Serialize;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// What a ray is asked.
+/// The question of a query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Question {
-    /// What it meets first, and where.
+    /// The closest hit.
     Closest,
-    /// Whether it meets anything.
+    /// Any hit.
     Any,
 }
 

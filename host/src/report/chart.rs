@@ -21,7 +21,7 @@ const SIZE: (u32, u32) = (1080, 540);
 const CHART: u32 = 900;
 /// Grid lines.
 const GRID: RGBColor = RGBColor(222, 222, 222);
-/// Colours that people who see fewer of them can tell apart (Okabe and Ito, "Color universal
+/// Colours that colour-blind people can distinguish (Okabe and Ito, "Color universal
 /// design", 2008), in the order in which series take them; then they return, and curves have other
 /// dashes and marks.
 const COLORS: [RGBColor; 7] = [

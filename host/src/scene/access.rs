@@ -7,7 +7,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-/// What the files of a scene may name.
+/// The files that a scene may name.
 #[derive(Clone, Debug)]
 pub(super) struct Access {
     /// The scene's folder, all links followed; `None` where every file is allowed.

@@ -101,19 +101,19 @@ fn malformed_files_are_read_rightly_or_rejected_with_their_cause() {
         match (load(&path, &MoleculeOptions::default()), expected) {
             (Ok(imported), Read(objects, words)) => {
                 let warnings = &imported.warnings;
-                let told = warnings.len() == words.len()
+                let is_warned = warnings.len() == words.len()
                     && words
                         .iter()
                         .all(|it| warnings.iter().any(|w| w.contains(it)));
-                if imported.scene.objects.len() != *objects || !told {
+                if imported.scene.objects.len() != *objects || !is_warned {
                     let found = imported.scene.objects.len();
                     wrong.push(format!("{name}: {found} objects, {warnings:#?}"));
                 }
             }
             (Err(error), Rejected(words)) => {
-                let told = error.to_string();
-                if !told.contains(words) || error.remedy.is_empty() || error.file != path {
-                    wrong.push(format!("{name}: {told}; {}", error.remedy));
+                let text = error.to_string();
+                if !text.contains(words) || error.remedy.is_empty() || error.file != path {
+                    wrong.push(format!("{name}: {text}; {}", error.remedy));
                 }
             }
             (Ok(imported), Rejected(_)) => {

@@ -1,4 +1,4 @@
-//! What is wrong with a scene file: the file, the place, the cause and the remedy.
+//! Errors in scene files: the file, the place, the cause and the remedy.
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ pub struct SceneError {
     pub file: PathBuf,
     /// Line, counted from 1, where the format has lines and the line is known.
     pub line: Option<usize>,
-    /// What is wrong, in one sentence without a full stop.
+    /// The cause, in one sentence without a full stop.
     pub cause: String,
     /// What to do about it, in one sentence without a full stop.
     pub remedy: String,

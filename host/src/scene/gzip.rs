@@ -20,7 +20,7 @@ fn inflate_at_most(path: &Path, bytes: Vec<u8>, most: u64) -> Result<Vec<u8>, Sc
         return Ok(bytes);
     }
     let mut inflated = Vec::new();
-    // One byte more tells a file that is too long.
+    // One byte more shows that a file is too long.
     let mut decoder = MultiGzDecoder::new(&bytes[..]).take(most + 1);
     decoder.read_to_end(&mut inflated).map_err(|error| {
         SceneError::new(

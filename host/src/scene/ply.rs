@@ -125,7 +125,7 @@ fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
         .split(|&byte| byte == b'\n')
         .map(String::from_utf8_lossy);
     // The element whose properties follow, how many of it there are, and what it was warned of.
-    let (mut element, mut count, mut told) = (String::new(), 0, [false; IGNORED.len()]);
+    let (mut element, mut count, mut is_reported) = (String::new(), 0, [false; IGNORED.len()]);
     for (number, line) in (1..).zip(header) {
         let words: Vec<&str> = line.split_whitespace().collect();
         let place = Place {
@@ -137,7 +137,7 @@ fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
             ["element", name, number] => {
                 element = name.to_owned();
                 count = number.parse().unwrap_or(0);
-                told = [false; IGNORED.len()];
+                is_reported = [false; IGNORED.len()];
             }
             ["comment", "TextureFile", ..] => {
                 let sentence = "textures are not drawn; the plain colours are used";
@@ -148,7 +148,7 @@ fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
                 let Some(kind) = IGNORED.iter().position(is_it) else {
                     continue;
                 };
-                if !std::mem::replace(&mut told[kind], true) {
+                if !std::mem::replace(&mut is_reported[kind], true) {
                     let (_, what, lacking) = IGNORED[kind];
                     let sentence = format!("the {what} of a {element} is ignored; {lacking}");
                     warnings.add_times(place, count, sentence);

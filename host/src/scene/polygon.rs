@@ -125,7 +125,7 @@ fn is_strictly_convex(flat: &[Coord<f64>]) -> bool {
             == 1
 }
 
-/// Whether two sides cross inside both. Cutting alone does not tell: of a pentagram every corner can
+/// Whether two sides cross inside both. Cutting alone does not show it: of a pentagram every corner can
 /// be cut off.
 fn crosses_itself(flat: &[Coord<f64>]) -> bool {
     let n = flat.len();

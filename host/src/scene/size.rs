@@ -1,4 +1,4 @@
-//! How much memory a scene takes, told before it is made: a few lines of a file can stand for more
+//! The memory that a scene takes, computed before it is made: a few lines of a file can stand for more
 //! objects than any machine holds.
 
 use super::Shape;

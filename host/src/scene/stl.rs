@@ -57,7 +57,7 @@ fn is_text(bytes: &[u8]) -> bool {
 /// triangle.
 fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     let Input { path, bytes, .. } = input;
-    // Binary files may begin with "solid" as well; their length tells.
+    // Binary files may begin with "solid" as well; their length distinguishes them.
     let announced = announced(&bytes);
     let found = bytes.len() as u64;
     if announced.is_none_or(|count| length(count) != found) {

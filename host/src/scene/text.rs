@@ -102,8 +102,8 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
     })
 }
 
-/// Rejects text in UTF-16 and UTF-32, which no scene format has: read as bytes, its faults would be
-/// told of words that nobody wrote.
+/// Rejects text in UTF-16 and UTF-32, which no scene format has: read as bytes, errors would quote
+/// words that nobody wrote.
 pub(crate) fn check_encoding(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
     // Without a mark, every second byte of plain text is 0, of which other text has none.
     let head = &bytes[..bytes.len().min(64)];

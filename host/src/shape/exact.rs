@@ -1,4 +1,4 @@
-//! Real numbers with 320 bits: more than any test here can tell from exact ones.
+//! Real numbers with 320 bits: no test here can distinguish them from exact ones.
 
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;

@@ -123,20 +123,24 @@ pub fn check<N: Number>(
             what,
         });
     };
-    let told = |hit: &Option<Hit<N>>| match hit {
+    let described = |hit: &Option<Hit<N>>| match hit {
         Some(hit) => format!("primitive {} at {:?}", hit.primitive, N::far_to_f64(hit.t)),
         None => String::from("nothing"),
     };
     for other in heard {
         if bits(&other.hit) != bits(&list.hit) {
-            let what = format!("hits {}, brute force {}", told(&other.hit), told(&list.hit));
+            let what = format!(
+                "hits {}, brute force {}",
+                described(&other.hit),
+                described(&list.hit)
+            );
             fault(Promise::Structures, other.structure, what);
         }
         if other.any != other.hit.is_some() {
             let what = format!(
                 "any hit says {}, and the closest hit is {}",
                 other.any,
-                told(&other.hit)
+                described(&other.hit)
             );
             fault(Promise::AnyHit, other.structure, what);
         }
@@ -179,11 +183,14 @@ pub fn check<N: Number>(
         if let Err(wrong) = judge.check(N::FORMAT, &rounded, answer) {
             let what = match wrong {
                 Wrong::NotThere => {
-                    format!("hits {}, which exact arithmetic misses", told(&list.hit))
+                    format!(
+                        "hits {}, which exact arithmetic misses",
+                        described(&list.hit)
+                    )
                 }
                 Wrong::Missed { primitive, t } => format!(
                     "hits {}; by exact arithmetic it hits primitive {primitive} before, at {:?}",
-                    told(&list.hit),
+                    described(&list.hit),
                     t + rounded.moved
                 ),
             };
@@ -342,7 +349,7 @@ pub fn sealed<N: Number, A: Accel>(
         let ray =
             Ray::<N>::from_f64(scene.bounds(), origin, direction, tmin, f64::INFINITY).ok()?;
         let Some(hit) = ask::<N, A>(scene, &ray).hit else {
-            // Where surfaces coincide, only one of them was told.
+            // Where surfaces coincide, only one of them was reported.
             let crosses = |&(t, moved_on): &(f64, f64)| {
                 let mesh = (0..scene.count(Kind::Triangle)).filter_map(|slot| {
                     let primitive = scene.primitive(Kind::Triangle, slot as u32);

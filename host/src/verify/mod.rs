@@ -115,13 +115,13 @@ const CONTROL: u64 = 16;
 /// Examples that are kept of each promise.
 const EXAMPLES: usize = 5;
 
-/// Steps of the work, for progress: [`verify`] tells of each.
+/// Steps of the work, for progress: [`verify`] reports each.
 pub fn steps(rays: u64) -> u64 {
     2 * rays.div_ceil(CHUNK)
 }
 
 /// Verifies a scene with so many rays of all sorts, and as many at the vertices and edges of closed
-/// meshes. `progress` is told of every step, from any thread. The same rays are thrown every time.
+/// meshes. Calls `progress` after every step, from any thread. The same rays are thrown every time.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};

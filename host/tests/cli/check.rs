@@ -115,7 +115,7 @@ fn mistakes_are_explained() {
     folder.fails(1, &["check", "typo.toml", "--bless"], &words);
 }
 
-/// What an importer passes over is told here too.
+/// The importer's warnings are printed here too.
 #[test]
 fn warnings_of_importers_are_passed_on() {
     let folder = Folder::new();
@@ -270,7 +270,7 @@ fn broken_checks_fail_without_a_reader() {
     }
 }
 
-/// Outputs that cannot be written are told before any work, or else after the findings.
+/// Outputs that cannot be written are reported before any work, or else after the findings.
 #[test]
 fn findings_are_not_lost_with_a_report() {
     let folder = folder();
@@ -318,7 +318,7 @@ fn all_is_recorded_or_nothing() {
     assert_eq!(folder.read("check.toml"), manifest.as_bytes());
 }
 
-/// What is wrong with a file is told where the manifest names it.
+/// A fault of a file is reported where the manifest names it.
 #[test]
 fn files_that_are_missing_have_a_place_and_a_remedy() {
     let folder = folder();

@@ -10,7 +10,7 @@ const NORMALS: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 1 0\nf 1//1 2//
 fn ignored_data_are_in_the_json_of_every_verb() {
     let folder = Folder::new();
     folder.write("a.obj", NORMALS.as_bytes());
-    let told = "a.obj:4: vertex normals are ignored; the surface is shaded flat (and once more)";
+    let warning = "a.obj:4: vertex normals are ignored; the surface is shaded flat (and once more)";
     let small = ["--size", "16x12"];
     for arguments in [
         &["build", "a.obj", "-o", "a.gridel"][..],
@@ -27,12 +27,12 @@ fn ignored_data_are_in_the_json_of_every_verb() {
         let report = folder.json(arguments);
         assert_eq!(
             report["warnings"],
-            serde_json::json!([told]),
+            serde_json::json!([warning]),
             "{arguments:?}"
         );
         let run = folder.run(arguments);
         assert!(
-            run.stderr.contains(&format!("warning: {told}")),
+            run.stderr.contains(&format!("warning: {warning}")),
             "{}",
             run.stderr
         );

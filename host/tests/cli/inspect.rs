@@ -191,12 +191,12 @@ fn the_ledger_of_a_board_adds_up() {
     }
 }
 
-/// What was recorded of a program of all parts: fast, and with the feature `small`.
+/// The recorded figures of a program of all parts: fast, and with the feature `small`.
 fn everything(board: &str, format: &str, accel: &str) -> [Footprint; 2] {
     program(board, format, accel, &parts().collect::<Vec<_>>())
 }
 
-/// The same of a program of some parts.
+/// The recorded figures of a program of some parts.
 fn program(board: &str, format: &str, accel: &str, parts: &[&str]) -> [Footprint; 2] {
     let board = Board::named(board).unwrap();
     let format = Format::ALL.into_iter().find(|it| it.name() == format);
@@ -242,14 +242,14 @@ fn the_call_stack_of_a_ledger_is_enough_for_small_code() {
             let report = folder.json(&inspect);
             let [fast, small] = ["fast", "small"]
                 .map(|build| report["ledger"][build]["call_stack"].as_u64().unwrap());
-            let told = sum(&report, "ram", "call stack");
-            assert_eq!(told, fast.max(small));
+            let reported = sum(&report, "ram", "call stack");
+            assert_eq!(reported, fast.max(small));
             // The scene calls for all but vertex indices of more than 16 bits.
             let most = everything(board, format, accel).map(|build| build.call_stack);
             let most = most[0].max(most[1]);
             assert!(
-                10 * told > 9 * most && 10 * told < 11 * most,
-                "{board} {accel}: {told} of {most}"
+                10 * reported > 9 * most && 10 * reported < 11 * most,
+                "{board} {accel}: {reported} of {most}"
             );
             let text = folder.done(&inspect);
             for word in [

@@ -142,13 +142,13 @@ fn any_hits_are_those_that_have_a_closest_one() {
         if closest.t == f64::INFINITY {
             assert_eq!(*any, SceneHit::MISS);
         } else {
-            let told = SceneHit {
+            let expected = SceneHit {
                 t: 0.0,
                 object: 0,
                 primitive: 0,
                 normal: [0.0; 3],
             };
-            assert_eq!(*any, told);
+            assert_eq!(*any, expected);
         }
     }
 }

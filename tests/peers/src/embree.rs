@@ -70,7 +70,7 @@ struct Functions {
 /// Embree over a geometry; `None` where it is not installed.
 pub fn contender(geometry: &Geometry) -> Option<Contender<'static>> {
     // SAFETY: the library is Embree 3, whose functions have the types given here; handles come from
-    // it, and buffers are as long as it was told.
+    // it, and buffers have the lengths that it was given.
     unsafe {
         let library = ["libembree3.so.3", "libembree3.so"]
             .iter()

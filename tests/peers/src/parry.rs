@@ -30,7 +30,7 @@ pub fn contender(triangles: &[[Vec3; 3]]) -> Contender<'static> {
     let (points, count) = (vertices.len(), faces.len());
     let mesh = TriMesh::new(vertices, faces).expect("a mesh");
     let seconds = started.elapsed().as_secs_f64();
-    // Vertices, indices, and what its hierarchy tells of itself.
+    // Vertices, indices, and the figures that its hierarchy reports.
     let bytes = 12 * points + 12 * count + mesh.bvh().total_memory_size();
     Contender {
         name: String::from("parry3d TriMesh"),

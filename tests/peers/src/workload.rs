@@ -42,7 +42,7 @@ pub struct Rays {
     pub kind: &'static str,
     pub any: bool,
     pub queries: Vec<Query>,
-    /// The same as Gridel takes them.
+    /// The queries in Gridel's form.
     pub scene_rays: Vec<SceneRay>,
 }
 

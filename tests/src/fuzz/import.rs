@@ -11,7 +11,7 @@ use gridel_host::scene::{IMPORTERS, Importer, MoleculeOptions, Scene, Shape, loa
 use std::sync::OnceLock;
 use tempfile::TempDir;
 
-/// Primitives of a scene that is compiled; larger ones take long and tell no more.
+/// Primitives of a scene that is compiled; larger ones take long and test nothing else.
 const MOST_PRIMITIVES: usize = 2000;
 
 /// Reads a scene file, compiles it and loads the blob. The first line is the file's extension, the rest

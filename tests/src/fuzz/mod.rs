@@ -72,17 +72,17 @@ fn agree_in<N: Number>(scene: &Scene<'_>, rays: &[UnitRay]) {
         let bits = |hit: Option<_>| hit.as_ref().map(HitBits::of::<N>);
         let (hit, any) = through(Structure::List, scene, &ready);
         let listed = bits(hit);
-        let told = |structure: Structure| {
+        let described = |structure: Structure| {
             let (format, structure) = (N::FORMAT.name(), structure.name());
             format!("{format}, {structure}: {ray:?}")
         };
-        assert_eq!(listed.is_some(), any, "{}", told(Structure::List));
+        assert_eq!(listed.is_some(), any, "{}", described(Structure::List));
         for &structure in &structures {
             let (hit, any) = through(structure, scene, &ready);
             let found = bits(hit);
             if structure.is_proved() {
-                assert_eq!(found, listed, "{}", told(structure));
-                assert_eq!(any, listed.is_some(), "{}", told(structure));
+                assert_eq!(found, listed, "{}", described(structure));
+                assert_eq!(any, listed.is_some(), "{}", described(structure));
             } else {
                 let nearer = match (found, listed) {
                     (Some(found), Some(listed)) => {
@@ -90,8 +90,12 @@ fn agree_in<N: Number>(scene: &Scene<'_>, rays: &[UnitRay]) {
                     }
                     (found, listed) => found.is_some() && listed.is_none(),
                 };
-                assert!(!nearer, "{}: {found:?}, not {listed:?}", told(structure));
-                assert!(!any || listed.is_some(), "{}", told(structure));
+                assert!(
+                    !nearer,
+                    "{}: {found:?}, not {listed:?}",
+                    described(structure)
+                );
+                assert!(!any || listed.is_some(), "{}", described(structure));
             }
         }
     }

@@ -162,7 +162,7 @@ pub struct Base {
 }
 
 impl Base {
-    /// Of a valid blob.
+    /// Takes a valid blob apart.
     pub fn of(blob: &[u8]) -> Self {
         let parts = Parts::of(blob);
         Self { parts }

@@ -7,9 +7,9 @@ use gridel_host::shape::exact::Real;
 /// A name of a shape, and what kernels may be off by: see [`crate::bounds`].
 pub struct Named {
     pub name: &'static str,
-    /// Steps that t may be off by, and how that comes.
+    /// Steps that t may be off by, and the reason.
     pub crossing: (f64, &'static str),
-    /// The same of normals.
+    /// Steps that normals may be off by, and the reason.
     pub normal: (f64, &'static str),
 }
 

@@ -6,8 +6,8 @@ mod fuzz;
 mod mutants;
 mod names;
 mod old;
+mod prevalidated;
 mod reasons;
-mod vouched;
 
 use glam::DVec3;
 use gridel_core::format::BlobError;

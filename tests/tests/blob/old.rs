@@ -83,15 +83,15 @@ fn answers_as_recorded<N: Number>(name: &str, scene: &Scene<'_>, answers: &[Reco
         let ray = UnitRay::new(origin, direction).ready::<N>(scene);
         let ray = ray.expect("a ray");
         for structure in [Structure::List].into_iter().chain(held(scene)) {
-            let told = || {
+            let described = || {
                 let (format, structure) = (N::FORMAT.name(), structure.name());
                 format!("{name}, {format}, {structure}, ray {number}")
             };
             let (hit, any) = through(structure, scene, &ray);
             let found = hit.as_ref().map(|hit| hit.primitive);
             let primitive = recorded.hit.map(|(primitive, _)| primitive);
-            assert_eq!(found, primitive, "{}", told());
-            assert_eq!(any, primitive.is_some(), "{}", told());
+            assert_eq!(found, primitive, "{}", described());
+            assert_eq!(any, primitive.is_some(), "{}", described());
             if let (Some(hit), Some((_, t))) = (hit, recorded.hit) {
                 // Along the major axis, of which the direction is a multiple.
                 let longest = direction.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -99,7 +99,7 @@ fn answers_as_recorded<N: Number>(name: &str, scene: &Scene<'_>, answers: &[Reco
                 assert!(
                     (found - t).abs() <= TOLERANCE,
                     "{}: {found}, not {t}",
-                    told()
+                    described()
                 );
             }
         }

@@ -111,7 +111,7 @@ fn shapes_and_effects_are_paid_for_one_by_one() {
 }
 
 /// What a product with every shape and effect takes on a board, fast or small, and on one of each kind
-/// of core through every structure that boards vouch for: by which the memory report scales.
+/// of core through every structure that boards prevalidate: by which the memory report scales.
 fn everything_on_a_board(board: &'static Board, format: Format) {
     let scene = scenes::quick();
     let mut linked = Linked::new();

@@ -1,4 +1,4 @@
-//! What `gridel build --emit-rust` writes, and blobs that a program vouches for.
+//! What `gridel build --emit-rust` writes, and blobs that a program prevalidates.
 
 use crate::figures::Figures;
 use crate::firmware::{Build, board};
@@ -16,13 +16,13 @@ pub fn plan(plan: &mut Plan) {
         .in_full()
         .run(emitted_modules_run_or_do_not_compile);
     type Make = fn() -> Compiled;
-    let vouched: [(&str, Make); 4] = [
+    let prevalidated: [(&str, Make); 4] = [
         ("mps2-an385", scenes::quick),
         ("mps2-an385", scenes::molecule),
         ("microbit", scenes::quick),
         ("sifive_e", scenes::quick),
     ];
-    for (number, (name, scene)) in vouched.into_iter().enumerate() {
+    for (number, (name, scene)) in prevalidated.into_iter().enumerate() {
         let test = format!("vouched_blobs_load_in_constant_time::{number}");
         plan.test_on(&test, board(name), Format::Fixed)
             .in_full()
@@ -84,7 +84,7 @@ fn emitted_modules_run_or_do_not_compile() {
     outgrown(&features, "the blob outgrew WORK_DEPTH");
 }
 
-/// Firmware that vouches for its blob loads it in the same time, however long it is, and without the
+/// Firmware that prevalidates its blob loads it in the same time, however long it is, and without the
 /// code that proves the rest.
 fn vouched_blob_loads_in_constant_time(name: &str, scene: &Compiled) {
     let mut figures = Figures::new();

@@ -148,7 +148,7 @@ impl<'b> Build<'b> {
         }
     }
 
-    /// The same for the least flash: small code, and a blob that is vouched for.
+    /// The firmware with the least flash: small code, and a blob that is prevalidated.
     pub fn small(self) -> Self {
         Self {
             small: true,

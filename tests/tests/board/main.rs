@@ -55,7 +55,7 @@ fn main() {
     libtest_mimic::run(&Arguments::from_args(), plan.trials).exit();
 }
 
-/// Boards on whose cores many programs are measured, by which other boards' are told.
+/// Boards on whose cores many programs are measured, by which those of other boards are estimated.
 fn measured_in_full() -> impl Iterator<Item = (&'static Board, Format)> {
     let boards = boards().filter(|&(board, _)| board != &WASM);
     boards.filter(|&(board, format)| board.similar(format) == (board, format))
@@ -192,7 +192,7 @@ fn picture_is_the_hosts(board: &'static Board, format: Format, scene: &Compiled)
     figures.check();
 }
 
-/// Checks a linked program, and adds to the report what it tells.
+/// Checks a linked program, and adds its figures to the report.
 fn look_into(
     build: &Build<'_>,
     elf: &elf::Elf,
@@ -233,7 +233,7 @@ fn look_into(
     report.insert("flash-bytes".into(), elf.flash_bytes());
 }
 
-/// No sum, product or shift of the core leaves its type, and the compiler can tell: with all of them
+/// No sum, product or shift of the core leaves its type, and the compiler can check it: with all of them
 /// checked, nothing is linked that panics.
 fn linked(plan: &mut Plan) {
     let everywhere = [

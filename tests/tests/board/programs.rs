@@ -177,7 +177,7 @@ fn programs_take_what_is_recorded(board: &'static Board, format: Format) {
 const CRAMBIN: &str = "molecules/1crn.pdb";
 const SUZANNE: &str = "meshes/suzanne.obj";
 
-/// The flash, the RAM and the call stack that the memory report tells are enough for the linked program,
+/// The flash, the RAM and the call stack in the memory report are enough for the linked program,
 /// and at most 5 % more.
 fn memory_report_is_within_5_percent(board: &'static Board, format: Format) {
     let mut all: Vec<Compiled> = ["quick", "glass-chess", "cornell"]
@@ -195,17 +195,17 @@ fn memory_report_is_within_5_percent(board: &'static Board, format: Format) {
     ));
     let mut wrong = Vec::new();
     for scene in &all {
-        let (told, linked) = told_and_linked(board, format, scene);
+        let (reported, linked) = reported_and_linked(board, format, scene);
         let names = ["flash", "RAM", "call stack"];
-        for ((name, told), linked) in names.into_iter().zip(told).zip(linked) {
+        for ((name, reported), linked) in names.into_iter().zip(reported).zip(linked) {
             let line = format!(
-                "{} on {}: {told} bytes of {name} told, {linked} linked, {:+.1} %",
+                "{} on {}: {reported} bytes of {name} reported, {linked} linked, {:+.1} %",
                 scene.name,
                 board.name,
-                100.0 * (told as f64 / linked as f64 - 1.0)
+                100.0 * (reported as f64 / linked as f64 - 1.0)
             );
             println!("{line}");
-            if told < linked || 100 * told > 105 * linked {
+            if reported < linked || 100 * reported > 105 * linked {
                 wrong.push(line);
             }
         }
@@ -225,18 +225,18 @@ fn memory_report_bounds_programs_beyond(board: &'static Board, format: Format) {
         (&["triangle", "box", "disc"], &["highlight", "checker"]),
     ] {
         let scene = parts::combination(shapes, effects);
-        let (told, linked) = told_and_linked(board, format, &scene);
+        let (reported, linked) = reported_and_linked(board, format, &scene);
         let names = ["flash", "RAM", "call stack"];
-        for ((name, told), linked) in names.into_iter().zip(told).zip(linked) {
+        for ((name, reported), linked) in names.into_iter().zip(reported).zip(linked) {
             let line = format!(
-                "{} {} on {}: {told} bytes of {name} told, {linked} linked, {:+.1} %",
+                "{} {} on {}: {reported} bytes of {name} reported, {linked} linked, {:+.1} %",
                 shapes.join(" "),
                 effects.join(" "),
                 board.name,
-                100.0 * (told as f64 / linked as f64 - 1.0)
+                100.0 * (reported as f64 / linked as f64 - 1.0)
             );
             println!("{line}");
-            if told < linked {
+            if reported < linked {
                 wrong.push(line);
             }
         }
@@ -244,9 +244,9 @@ fn memory_report_bounds_programs_beyond(board: &'static Board, format: Format) {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Flash, RAM and call stack of a scene: what the memory report tells, and what its linked programs take.
+/// Flash, RAM and call stack of a scene: the figures of the memory report, and those of its linked programs.
 /// Flash and static memory are those of the fast program, the call stack is the larger of both.
-fn told_and_linked(
+fn reported_and_linked(
     board: &'static Board,
     format: Format,
     scene: &Compiled,
@@ -260,7 +260,7 @@ fn told_and_linked(
     let report =
         MemoryReport::of(&view, scene.blob.bytes(), &target, format).expect("dual-split nodes");
     let sizes = [report.fast, report.small].map(|sizes| sizes.call_stack.expect("known"));
-    let told = [
+    let reported = [
         report.flash.used.expect("known"),
         report.ram.used.expect("known"),
         sizes[0].max(sizes[1]),
@@ -276,5 +276,5 @@ fn told_and_linked(
         fast.1.static_bytes() + call_stack,
         call_stack,
     ];
-    (told, linked)
+    (reported, linked)
 }

@@ -157,13 +157,13 @@ pub fn suzanne() -> Compiled {
     compile("suzanne", suzanne_scene(), [64, 64])
 }
 
-/// The same on a lattice of 16 bits, which moves no vertex by more than 2.4e-5 of 2.7.
+/// Suzanne on a lattice of 16 bits, which moves no vertex by more than 2.4e-5 of 2.7.
 pub fn suzanne_in_16_bits() -> Compiled {
     let (name, size) = ("suzanne-16", [64, 64]);
     compile_with(name, suzanne_scene(), size, small())
 }
 
-/// The same in as few bytes as a hierarchy takes.
+/// Suzanne in as few bytes as a hierarchy takes.
 pub fn small_suzanne() -> Compiled {
     let options = Options {
         structures: vec![Structure::Flagged],

@@ -43,7 +43,7 @@ impl CallGraph {
     /// Reads a program that was linked with `--emit-relocs`.
     ///
     /// # Errors
-    /// If a frame cannot be told, or a function may be called through a pointer that was handed on.
+    /// If a frame is unknown, or a function may be called through a pointer that was handed on.
     pub fn read(file: &File<'_>) -> Result<Self, String> {
         let decoder: Decoder = match file.architecture() {
             Architecture::Arm => thumb,
@@ -278,7 +278,7 @@ struct Code<'d> {
 /// What decoding a function found.
 #[derive(Default)]
 struct Decoded {
-    /// Bytes by which the stack pointer falls; `None` if that cannot be told.
+    /// Bytes by which the stack pointer falls; `None` if that is unknown.
     frame: Option<u64>,
     targets: Vec<u64>,
     /// Whether it calls an address in a register.

@@ -182,7 +182,7 @@ fn solids_are_left_as_often_as_they_are_entered() {
                     depth += if hit.front { 1 } else { -1 };
                     crossings += 1;
                     ray.tmin = N::far_to_f64(hit.t);
-                    // The next number that the format can tell from this one.
+                    // The next number that the format distinguishes from this one.
                     ray.tmin += ray.tmin * f64::powi(2.0, -21) + f64::powi(2.0, -12);
                 }
                 // A chord shorter than the steps may be passed over between its ends.

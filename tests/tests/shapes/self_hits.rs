@@ -119,7 +119,7 @@ impl Left {
         }
     }
 
-    fn told<N: Number>(&self, name: &str) {
+    fn report<N: Number>(&self, name: &str) {
         let Self {
             away,
             through,
@@ -139,7 +139,7 @@ fn no_self_hits<N: Number>(shape: usize, shapes: usize, rays_each: usize) {
     for case in cases(500 + shape as u64, shape, shapes, rays_each) {
         left.leave::<N>(&case.solid, case.rays, &mut random);
     }
-    left.told::<N>(SHAPES[shape]);
+    left.report::<N>(SHAPES[shape]);
 }
 
 /// A ground as large as the lattice whose top lies about a height, level or nearly so.
@@ -203,7 +203,7 @@ fn rays_that_leave_a_large_ground_do_not_meet_it() {
             left.leave::<N>(&solid, rays, &mut random);
         }
         assert!(left.away > 1000, "{}", left.away);
-        left.told::<N>(SHAPES[shape]);
+        left.report::<N>(SHAPES[shape]);
     }
     for shape in 0..5 {
         every_format!(judge(shape));

@@ -89,7 +89,7 @@ impl Project for Fixed {
 
     #[inline(always)]
     fn is_steep(approach: Product) -> bool {
-        // 2^-8 with 60 fraction bits; the upper half tells. Small code has one way for all.
+        // 2^-8 with 60 fraction bits; the upper half decides. Small code has one way for all.
         const LEAST: i32 = 1 << (2 * RATIO_BITS - 8 - 32);
         let upper = (approach.0 >> 32) as i32;
         !SMALL && !(-LEAST..LEAST).contains(&upper)

@@ -2,8 +2,8 @@
 
 use crate::geometry::Project;
 use crate::geometry::project::AxisProjection;
-use crate::number::float::SPLITTER_F64;
-use crate::number::float::product_error;
+use crate::number::error_free::SPLITTER_F64;
+use crate::number::error_free::product_error;
 use core::cmp::Ordering;
 /// How `a b` compares to `c d`, exactly: products of `f32` fit `f64`.
 fn compare_products_f32(a: f32, b: f32, c: f32, d: f32) -> Ordering {
@@ -71,7 +71,7 @@ macro_rules! project {
                 // Rounding is monotone, so the difference of the rounded products has the right
                 // sign unless it is zero.
                 let cross = |a: [Self; 2], b: [Self; 2]| a[0] * b[1] - a[1] * b[0];
-                // Two that differ in sign have a product below zero; one that is zero tells nothing.
+                // Two that differ in sign have a product below zero; one that is zero decides nothing.
                 let (u, v) = (cross(b, c), cross(c, a));
                 let first = u * v;
                 // Few triangles come further.

@@ -74,7 +74,7 @@ pub(crate) const fn leading_zeros(x: u32) -> u32 {
     }
 }
 
-/// The same of 64 bits.
+/// Counts the leading zeros of 64 bits.
 #[inline(always)]
 pub(super) const fn wide_leading_zeros(x: u64) -> u32 {
     if NARROW_PRODUCTS {

@@ -24,7 +24,7 @@ fn root(square: u64) -> u64 {
     root_of_full(square << up) >> (up / 2)
 }
 
-/// The same for 0 and squares of at least 2^62.
+/// The greatest integer whose square is at most `square`, which is 0 or at least 2^62.
 fn root_of_full(square: u64) -> u64 {
     let high = (square >> 32) as u32;
     // 1 / sqrt(high / 2^32) with 30 fraction bits, by two steps of Newton's iteration from 7 bits to 26,

@@ -39,7 +39,7 @@ pub fn measure(
         write_file(&file, |out| text.and_then(|text| out.write_all(&text)))
     };
     write(&results)?;
-    // One thread, so that times tell of the work and not of the machine's other work.
+    // One thread, so that times do not depend on the machine's other work.
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(1)
         .build()

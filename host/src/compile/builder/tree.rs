@@ -156,7 +156,7 @@ impl Tree {
 #[derive(Clone, Copy, Default)]
 struct Facts {
     count: usize,
-    /// What the tests of its primitives cost.
+    /// The cost of the tests of its primitives.
     tests: f64,
     /// By the surface area heuristic.
     cost: f64,

@@ -1,10 +1,10 @@
-//! What a table of lists may take.
+//! The budget of a table of lists.
 
 use crate::compile::error::CompileError;
 use crate::table::counted;
 use gridel_core::Structure;
 
-/// What a table may take, and who is told how far it is.
+/// The limits of a table, and the callback for progress.
 #[derive(Clone, Copy)]
 pub struct Budget<'t> {
     /// Gridels a side, if that is asked for.
@@ -14,7 +14,7 @@ pub struct Budget<'t> {
     pub tell: Tell<'t>,
 }
 
-/// Told now and then, from any thread, how many cells are done, and how many there are.
+/// Called now and then, from any thread, with the number of finished cells and of all cells.
 pub type Tell<'t> = &'t (dyn Fn(u64, u64) + Sync);
 
 /// A table that does not fit its budget.

@@ -1,4 +1,4 @@
-//! What the paper's cylinder cube takes, and why its last scene did not fit.
+//! The size of the paper's cylinder cube, and why its last scene did not fit.
 
 use super::cylinder_cube::{Cylinders, FACES, Form, Hulls, Pair};
 use super::lists::List;

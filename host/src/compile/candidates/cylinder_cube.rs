@@ -267,7 +267,7 @@ impl Form for Hulls<'_> {
 /// this and all later ones, and the last level of this and all earlier ones.
 pub fn sorted(mut met: Vec<(u32, [f64; 2])>, list: &mut List) {
     const LEVELS: f64 = 16.0;
-    /// Of a level; more than what rounding can move a place.
+    /// Part of a level; more than rounding can move a place.
     const SPARE: f64 = 1e-6;
     met.sort_unstable_by(|(a, from), (b, to)| {
         (from[0] + from[1])

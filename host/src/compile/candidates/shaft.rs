@@ -1,4 +1,4 @@
-//! What a bundle of rays can meet: the volume that a box sweeps while it moves and grows evenly.
+//! The shaft of a bundle of rays: the volume that a box sweeps while it moves and grows evenly.
 
 /// A box from `low + λ low_rate` to `high + λ high_rate`, for λ from 0 to `last`.
 ///
@@ -6,7 +6,7 @@
 /// rays from a box of origins in a range of slopes, with λ the length along their major axis.
 /// Another box meets the volume if it meets the box at one λ, and that is six linear inequalities
 /// in λ alone: an exact test. It is the shaft of E. Haines and J. Wallace ("Shaft Culling for
-/// Efficient Ray-Cast Radiosity", 1991), and tells where along the shaft the box is met besides.
+/// Efficient Ray-Cast Radiosity", 1991), and also yields where along the shaft the box is met.
 #[derive(Clone, Copy, Debug)]
 pub struct Shaft {
     pub low: [f64; 3],

@@ -9,7 +9,7 @@ use gridel_core::format::cluster::LANES;
 
 /// Most trees of a forest that costs are kept for.
 const FORESTS: usize = LANES - 1;
-/// What a leaf's test costs, a node's being 1.
+/// The cost of a leaf's test; that of a node's is 1.
 const LEAF_COST: f64 = 1.0;
 
 /// How each subtree is cut into forests.

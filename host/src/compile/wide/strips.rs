@@ -1,8 +1,8 @@
 //! Finds generalised strips in a mesh: up to 6 triangles on 8 vertices, each on three in a row.
 //!
-//! Greedy: the triangle with the fewest neighbours that are still free goes first, along that way
+//! Greedy: the triangle with the fewest neighbours that are still free goes first, along that path
 //! through it that zigzags over free triangles whose box is smallest for the square of their number:
-//! rays are spared one strip in twelve that they would test if the longest way were always taken, and
+//! rays are spared one strip in twelve that they would test if the longest path were always taken, and
 //! the bytes come back where short strips are joined, the two that make the smallest box before
 //! others. Places between them hold no triangle.
 
@@ -111,9 +111,9 @@ fn neighbours(vertices: usize, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     neighbours
 }
 
-/// A way through free triangles, each of which shares an edge with the one before.
+/// A path through free triangles, each of which shares an edge with the one before.
 #[derive(Clone, Copy)]
-struct Way {
+struct Path {
     vertices: [u32; LANES],
     triangles: [u32; STRIP_TRIANGLES],
     count: usize,
@@ -161,67 +161,67 @@ impl Mesh<'_> {
     /// The best strip of free triangles through one of them.
     fn best_through(&self, triangle: u32, free: &[bool]) -> Strip {
         let [a, b, c] = self.triangles[triangle as usize];
-        let mut best: Option<(usize, i64, Way, Hull)> = None;
+        let mut best: Option<(usize, i64, Path, Hull)> = None;
         // The same zigzag backwards is another of the six.
         for vertices in [[a, b, c], [b, c, a], [c, a, b]] {
             let ahead = self.zigzag(triangle, vertices, free);
             let [first, second, third] = vertices;
             let behind = self.zigzag(triangle, [third, second, first], free);
             for back in 0..behind.count {
-                let Some(way) = Way::through(&behind, back, &ahead) else {
+                let Some(path) = Path::through(&behind, back, &ahead) else {
                     continue;
                 };
-                let bounds = self.bounds(&way.vertices[..way.count + 2]);
+                let bounds = self.bounds(&path.vertices[..path.count + 2]);
                 let cost = bounds.area();
                 let better = best.as_ref().is_none_or(|(count, least, ..)| {
                     let square = |count: usize| (count * count) as i64;
-                    let (here, there) = (cost * square(*count), least * square(way.count));
-                    here < there || here == there && way.count > *count
+                    let (here, there) = (cost * square(*count), least * square(path.count));
+                    here < there || here == there && path.count > *count
                 });
                 if better {
-                    best = Some((way.count, cost, way, bounds));
+                    best = Some((path.count, cost, path, bounds));
                 }
             }
         }
-        let (count, _, way, bounds) = best.expect("a triangle is a strip");
+        let (count, _, path, bounds) = best.expect("a triangle is a strip");
         Strip {
-            vertices: way.vertices[..count + 2].iter().copied().collect(),
-            triangles: way.triangles[..count].iter().copied().map(Some).collect(),
+            vertices: path.vertices[..count + 2].iter().copied().collect(),
+            triangles: path.triangles[..count].iter().copied().map(Some).collect(),
             bounds,
         }
     }
 
     /// Goes on from a triangle over the edge of its last two vertices, as far as it is free.
-    fn zigzag(&self, start: u32, corners: [u32; 3], free: &[bool]) -> Way {
-        let mut way = Way {
+    fn zigzag(&self, start: u32, corners: [u32; 3], free: &[bool]) -> Path {
+        let mut path = Path {
             vertices: [0; LANES],
             triangles: [NOBODY; STRIP_TRIANGLES],
             count: 1,
         };
-        way.vertices[..3].copy_from_slice(&corners);
-        way.triangles[0] = start;
-        while way.count < STRIP_TRIANGLES {
-            let last = way.triangles[way.count - 1] as usize;
-            let left_behind = way.vertices[way.count - 1];
+        path.vertices[..3].copy_from_slice(&corners);
+        path.triangles[0] = start;
+        while path.count < STRIP_TRIANGLES {
+            let last = path.triangles[path.count - 1] as usize;
+            let left_behind = path.vertices[path.count - 1];
             let corners = self.triangles[last];
             let Some(corner) = corners.iter().position(|&it| it == left_behind) else {
                 break;
             };
             let next = self.neighbours[last][corner];
-            let taken = &way.triangles[..way.count];
+            let taken = &path.triangles[..path.count];
             if next == NOBODY || !free[next as usize] || taken.contains(&next) {
                 break;
             }
-            let edge = [way.vertices[way.count], way.vertices[way.count + 1]];
+            let edge = [path.vertices[path.count], path.vertices[path.count + 1]];
             let fresh = self.triangles[next as usize];
             let Some(&fresh) = fresh.iter().find(|it| !edge.contains(it)) else {
                 break;
             };
-            way.triangles[way.count] = next;
-            way.vertices[way.count + 2] = fresh;
-            way.count += 1;
+            path.triangles[path.count] = next;
+            path.vertices[path.count + 2] = fresh;
+            path.count += 1;
         }
-        way
+        path
     }
 
     fn bounds(&self, vertices: &[u32]) -> Hull {
@@ -232,22 +232,22 @@ impl Mesh<'_> {
     }
 }
 
-impl Way {
-    /// The way that comes `back` triangles from behind a start and goes ahead as far as fits;
+impl Path {
+    /// The path that comes `back` triangles from behind a start and goes ahead as far as it fits;
     /// `None` if it comes over a triangle twice.
-    fn through(behind: &Way, back: usize, ahead: &Way) -> Option<Way> {
+    fn through(behind: &Path, back: usize, ahead: &Path) -> Option<Path> {
         let count = (back + ahead.count).min(STRIP_TRIANGLES);
-        let mut way = *ahead;
-        way.count = count;
+        let mut path = *ahead;
+        path.count = count;
         for place in 0..back {
-            way.triangles[place] = behind.triangles[back - place];
-            way.vertices[place] = behind.vertices[back + 2 - place];
+            path.triangles[place] = behind.triangles[back - place];
+            path.vertices[place] = behind.vertices[back + 2 - place];
         }
         let forward = count - back;
-        way.triangles[back..count].copy_from_slice(&ahead.triangles[..forward]);
-        way.vertices[back..count + 2].copy_from_slice(&ahead.vertices[..forward + 2]);
-        let (before, after) = way.triangles[..count].split_at(back);
-        (!before.iter().any(|it| after.contains(it))).then_some(way)
+        path.triangles[back..count].copy_from_slice(&ahead.triangles[..forward]);
+        path.vertices[back..count + 2].copy_from_slice(&ahead.vertices[..forward + 2]);
+        let (before, after) = path.triangles[..count].split_at(back);
+        (!before.iter().any(|it| after.contains(it))).then_some(path)
     }
 }
 

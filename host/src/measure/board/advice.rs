@@ -6,8 +6,8 @@ use gridel_core::accel::Entry;
 use gridel_core::{Effects, Format, Kind, Scene};
 
 impl MemoryReport {
-    /// What would save memory of the kind that is short, by the scene's own figures; `smaller` tells
-    /// what makes the blob smaller, which takes time.
+    /// Suggests changes that save memory of the kind that is short, by the scene's own figures.
+    /// `smaller` suggests what makes the blob smaller, which takes time.
     pub fn advice(&self, scene: &Scene<'_>, smaller: impl FnOnce() -> Option<String>) -> String {
         let mut steps = Vec::new();
         if self.ram.missing() > 0 {

@@ -102,7 +102,7 @@ impl ProgramEstimate<'_> {
         })
     }
 
-    /// Lists the code of the fast program, by part as far as it can be told apart.
+    /// Lists the code of the fast program, by part as far as parts can be separated.
     pub fn list_code(&self, flash: &mut Account) {
         const COMMON: &str = "loading, diffuse light";
         let (board, format) = self.similar;

@@ -1,4 +1,4 @@
-//! What a picture costs on boards, as far as recorded figures tell.
+//! The cost of a picture on boards, estimated from recorded figures.
 //!
 //! Two pictures are recorded in `fixtures/recorded/board.json`, instruction by instruction: the quick
 //! scene, of simple solids, and the glass chessboard, of cones and cylinders in glass. Divided by

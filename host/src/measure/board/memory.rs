@@ -9,7 +9,7 @@
 //! On one board of each kind of core many programs were built. For other boards, and for structures other
 //! than dual-split nodes, the figures are scaled by programs that were built for both.
 //!
-//! What is not known is no 0: it makes the sum unknown, and whether the scene fits undecided.
+//! An unknown figure does not count as 0: the sum becomes unknown, and so does whether the scene fits.
 
 use super::Board;
 use super::account::Account;
@@ -62,7 +62,7 @@ pub struct Sizes {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Fit {
     Fits,
-    /// What is short, and by how much.
+    /// The kinds of memory that are short, and by how much.
     Short(String),
     /// What is not known.
     Undecided(String),
@@ -73,7 +73,7 @@ pub enum Fit {
 pub struct NotMeasured(pub Structure);
 
 impl MemoryReport {
-    /// The structures that were measured: those that firmware can vouch for.
+    /// The structures that were measured: those that firmware can prevalidate.
     pub const STRUCTURES: [Structure; 4] = Prevalidated::STRUCTURES;
 
     /// The report of a scene that `blob` holds, in one of the board's number formats, through the

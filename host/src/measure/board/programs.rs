@@ -3,14 +3,14 @@
 //!
 //! `programs.json` is written by the board tests. Code is not a sum: what a part takes depends on what
 //! the compiler makes of the rest, by some percent of the program. A program that was built is therefore
-//! told exactly; one that was not is bounded by the smallest that holds all of it and more.
+//! reported exactly; one that was not is bounded by the smallest that holds all of it and more.
 
 use super::Board;
 use gridel_core::{Effects, Format, Kind, Structure};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What the tests recorded.
+/// The figures that the tests recorded.
 const RECORDED: &str = include_str!("programs.json");
 /// Forms of storage and of colours that programs have code for, or have not.
 const FORMS: [&str; 3] = ["wide-lattice", "wide-indices", "display-values"];
@@ -164,7 +164,7 @@ impl Programs {
     }
 }
 
-/// All that a program can have code for, in the order in which it is told.
+/// All that a program can have code for, in the order of the report.
 pub fn parts() -> impl Iterator<Item = &'static str> {
     let kinds = Kind::ALL.map(Kind::name);
     kinds.into_iter().chain(FORMS).chain(Effects::ALL.names())

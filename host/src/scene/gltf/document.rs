@@ -45,7 +45,7 @@ fn parse(path: &Path, container: &Container<'_>) -> Result<Root, SceneError> {
             return wrong;
         }
         let cause = error.to_string();
-        // The line is told before the cause.
+        // The error names the line before the cause.
         let cause = cause
             .rsplit_once(" at line ")
             .map_or(cause.as_str(), |(cause, _)| cause);

@@ -3,8 +3,8 @@
 //!
 //! Each set of triangles of each node becomes an object, in the order of the nodes; a mesh that
 //! several nodes share is copied. Meshes stand as they are at rest: skins, morph targets and
-//! animations are ignored, and so are normals, textures and vertex colours. What of this a file
-//! has, a warning tells. Images are never read, wherever they lie.
+//! animations are ignored, and so are normals, textures and vertex colours. A warning names
+//! those of them that a file has. Images are never read, wherever they lie.
 
 mod buffers;
 mod check;

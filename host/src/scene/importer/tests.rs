@@ -88,7 +88,7 @@ fn real_files_are_recognized_by_their_content() {
         };
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
-            // Some files are megabytes, which take long to inflate and tell no more.
+            // Some files are megabytes, which take long to inflate and test nothing else.
             let small =
                 std::fs::metadata(&path).is_ok_and(|it| it.is_file() && it.len() < 2_000_000);
             let Ok(Some(importer)) = Importers(IMPORTERS).of_name(&path) else {

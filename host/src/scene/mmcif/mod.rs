@@ -1,5 +1,5 @@
 //! The categories of mmCIF that say where atoms are (`atom_site`) and which of them are bonded
-//! beyond what distances tell (`struct_conn`).
+//! beyond those that distances imply (`struct_conn`).
 //!
 //! The author's chain and residue names (`auth_`) come before the archive's (`label_`), as in PDB
 //! files of the same structure.

@@ -127,7 +127,7 @@ fn ends_of<'a>(atom: &Atom<'a>) -> [End<'a>; 2] {
     [End::Serial(atom.serial), End::Name(name)]
 }
 
-/// The bonds between the chosen atoms: those of the file, and those that distances tell.
+/// The bonds between the chosen atoms: those of the file, and those that distances imply.
 fn find_bonds(
     source: &Source,
     parsed: &Parsed<'_>,

@@ -27,7 +27,7 @@ pub(in crate::scene) struct Atom<'a> {
 }
 
 impl<'a> Atom<'a> {
-    /// What tells its residue from others of its model.
+    /// The key that distinguishes its residue from others of its model.
     pub(in crate::scene) fn residue_key(&self) -> [&'a str; 3] {
         [self.chain, self.number, self.insertion]
     }

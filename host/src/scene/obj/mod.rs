@@ -27,7 +27,7 @@ pub(super) const IMPORTER: Importer = Importer {
     name: "OBJ",
     about: "Wavefront's meshes, with MTL materials",
     extensions: &["obj"],
-    // The format says nothing; modelling programs export y up unless they are told otherwise.
+    // The format says nothing; modelling programs export y up by default.
     up: Up::Y,
     binary: false,
     example: "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 1 0\nf 1 2 3 4\n",

@@ -282,12 +282,12 @@ fn known_meshes() {
         match normals {
             0 => assert_eq!(warnings, [] as [&str; 0], "{name}"),
             _ => {
-                let told = format!(
+                let expected = format!(
                     "vertex normals are ignored; the surface is shaded flat (and {} times more)",
                     normals - 1
                 );
                 assert!(
-                    warnings.len() == 1 && warnings[0].ends_with(&told),
+                    warnings.len() == 1 && warnings[0].ends_with(&expected),
                     "{warnings:?}"
                 );
             }

@@ -54,7 +54,7 @@ fn convex_is_a_fan() {
     );
 }
 
-/// Outlines that cross themselves are told from those that only touch, even where every corner of
+/// Outlines that cross themselves are distinguished from those that only touch, even where every corner of
 /// them can be cut off.
 #[test]
 fn crossing_outlines_are_not_exact() {

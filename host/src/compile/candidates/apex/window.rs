@@ -19,7 +19,7 @@ const SAMPLES: u64 = 1024;
 /// 2^32 divided by the golden ratio: its multiples are spread evenly.
 const GOLDEN: u32 = 0x9e37_79b9;
 
-/// The size of cells with which an apex takes at most so many bytes, as far as samples tell; `None` if
+/// The size of cells with which an apex takes at most so many bytes, estimated from samples; `None` if
 /// no size does.
 pub(super) fn cell_size(faces: &[Face], targets: &[Target], bytes: f64) -> Option<f64> {
     let entry = if targets.len() < 256 { 2.0 } else { 3.0 };

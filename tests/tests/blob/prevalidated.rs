@@ -1,4 +1,4 @@
-//! Blobs that a program vouches for: what is proved then, and that nothing depends on the rest.
+//! Blobs that a program prevalidates: what is proved then, and that nothing depends on the rest.
 
 use super::forged::section;
 use super::{render_small, small_scene};
@@ -35,19 +35,19 @@ fn blob_for_boards(lattice_bits: u8) -> Vec<u8> {
     compiled.blob.bytes().to_vec()
 }
 
-fn vouched(blob: &Blob) -> Result<Scene<'_>, BlobError> {
+fn prevalidated(blob: &Blob) -> Result<Scene<'_>, BlobError> {
     Scene::prevalidated(Prevalidated::of(blob.bytes())?)
 }
 
 #[test]
 fn answers_are_those_of_a_blob_that_was_checked() {
-    fn same<N: Number>(vouched: &Scene<'_>, checked: &Scene<'_>) {
+    fn same<N: Number>(prevalidated: &Scene<'_>, checked: &Scene<'_>) {
         for ray in rays::rays(checked, 3).take(2000) {
             let Some(ready) = ray.ready::<N>(checked) else {
                 continue;
             };
             for structure in held(checked) {
-                let answer = through::<N>(structure, vouched, &ready);
+                let answer = through::<N>(structure, prevalidated, &ready);
                 assert_eq!(answer, through(structure, checked, &ready), "{ray:?}");
             }
         }
@@ -55,15 +55,15 @@ fn answers_are_those_of_a_blob_that_was_checked() {
     for lattice_bits in [16, 24] {
         let blob = Blob::new(&blob_for_boards(lattice_bits));
         let checked = blob.scene().expect("a scene");
-        let vouched = vouched(&blob).expect("a scene");
-        assert_eq!(held(&vouched).count(), 3);
-        every_format!(same(&vouched, &checked));
+        let prevalidated = prevalidated(&blob).expect("a scene");
+        assert_eq!(held(&prevalidated).count(), 3);
+        every_format!(same(&prevalidated, &checked));
     }
 }
 
 /// A const evaluation, as firmware has the compiler do it.
 #[test]
-fn blobs_are_vouched_for_while_a_program_is_compiled() {
+fn blobs_are_prevalidated_while_a_program_is_compiled() {
     const EMPTY: Result<Prevalidated<'static>, BlobError> = Prevalidated::of(&[]);
     const SHORT: Result<Prevalidated<'static>, BlobError> = Prevalidated::of(&[0x47; 24]);
     assert!(matches!(EMPTY, Err(BlobError::Truncated { found: 0, .. })));
@@ -75,13 +75,13 @@ fn damage_is_found() {
     let mut bytes = blob_for_boards(16);
     for bit in 0..8 * bytes.len() {
         bytes[bit / 8] ^= 1 << (bit % 8);
-        speaks(&vouched(&Blob::new(&bytes)).expect_err("a flipped bit was vouched for"));
+        speaks(&prevalidated(&Blob::new(&bytes)).expect_err("a flipped bit was prevalidated"));
         bytes[bit / 8] ^= 1 << (bit % 8);
     }
     for length in 0..bytes.len() {
-        speaks(&vouched(&Blob::new(&bytes[..length])).expect_err("a part was vouched for"));
+        speaks(&prevalidated(&Blob::new(&bytes[..length])).expect_err("a part was prevalidated"));
         // With a checksum that fits, loading finds out.
-        speaks(&vouched(&sealed(&bytes[..length])).expect_err("a part was loaded"));
+        speaks(&prevalidated(&sealed(&bytes[..length])).expect_err("a part was loaded"));
     }
 }
 
@@ -104,7 +104,7 @@ fn disorder_is_found() {
                     SectionKind::DualNodes => bit < 24,
                     _ => true,
                 };
-                match vouched(&sealed(&changed)) {
+                match prevalidated(&sealed(&changed)) {
                     Err(error) => speaks(&error),
                     Ok(scene) => {
                         assert!(!leads, "{kind:?} {record}: bit {bit}");
@@ -127,7 +127,7 @@ fn disorder_is_found() {
 }
 
 #[test]
-fn tables_cannot_be_vouched_for() {
+fn tables_cannot_be_prevalidated() {
     for structure in Structure::ALL {
         let options = Options {
             structures: vec![Structure::Bvh, structure],
@@ -180,7 +180,7 @@ fn nothing_depends_on_what_is_not_proved() {
                 spoil(free, &mut random);
             }
         }
-        match vouched(&sealed(&bytes)) {
+        match prevalidated(&sealed(&bytes)) {
             Err(error) => {
                 refused += 1;
                 speaks(&error);

@@ -1,0 +1,79 @@
+//! Boards in an emulator, with a program in place of it.
+
+use super::*;
+use std::os::unix::fs::PermissionsExt;
+
+/// A program in place of the emulator.
+fn emulator(folder: &Folder, script: &str) -> String {
+    let path = folder.path("emulator");
+    let version = "if [ \"$1\" = --version ]; then exit 0; fi";
+    fs::write(&path, format!("#!/bin/sh\n{version}\n{script}\n")).unwrap();
+    fs::set_permissions(&path, PermissionsExt::from_mode(0o755)).unwrap();
+    path.display().to_string()
+}
+
+fn board(emulator: &str, rest: &str) -> String {
+    format!(
+        "[[check]]\nscene = \"ball.toml\"\n[[check.board]]\nmachine = \"toy\"\n\
+         emulator = \"{emulator}\"\nelf = \"program.elf\"\n{rest}\n"
+    )
+}
+
+#[test]
+fn figures_are_held_and_recorded() {
+    let folder = Folder::new();
+    fs::write(folder.path("program.elf"), "\x7fELF").unwrap();
+    let toy = emulator(
+        &folder,
+        "echo noise; echo loops 12; echo bytes 500; printf abc >p",
+    );
+    let text = board(
+        &toy,
+        "budget = { loops = 12, bytes = 400, lost = 1 } # all\npicture = \"p\"",
+    );
+    let (manifest, report) = folder.run(&text);
+    assert_eq!(
+        (report.held(), report.broken(), report.not_run()),
+        (1, 3, 0)
+    );
+    let whys: Vec<_> = report.findings.iter().map(why).collect();
+    assert!(
+        whys[0].contains("bytes is 500, and at most 400"),
+        "{whys:?}"
+    );
+    assert!(
+        whys[2].contains("does not print the figure \"lost\""),
+        "{whys:?}"
+    );
+    assert!(
+        whys[3].contains("has 3 bytes and the host's 576"),
+        "{whys:?}"
+    );
+    let blessed = bless(&manifest, &report);
+    assert_eq!(blessed.left, ["ball: lost", "ball: picture"]);
+    record(&blessed);
+    let recorded = "budget = { loops = 12, bytes = 500, lost = 1 } # all";
+    assert!(folder.text().contains(recorded), "{}", folder.text());
+}
+
+#[test]
+fn failures_are_broken_and_what_is_missing_is_not_run() {
+    let folder = Folder::new();
+    let first = |text: &str| folder.run(text).1.findings.remove(0);
+    let budget = "budget = { loops = 1 }\nseconds = 1";
+    let toy = emulator(&folder, "echo no luck >&2; exit 3");
+    let missing = first(&board(&toy, budget));
+    assert!(matches!(&missing.outcome, Outcome::NotRun(why) if why.contains("program.elf")));
+    fs::write(folder.path("program.elf"), "\x7fELF").unwrap();
+    let missing = first(&board("no-such-emulator", budget));
+    assert!(matches!(&missing.outcome, Outcome::NotRun(why) if why.contains("not installed")));
+    fs::write(folder.path("program.elf"), BALL).unwrap();
+    let text = first(&board(&toy, budget));
+    assert!(matches!(&text.outcome, Outcome::Broken(why) if why.contains("is not an ELF file")));
+    fs::write(folder.path("program.elf"), "\x7fELF").unwrap();
+    let failed = first(&board(&toy, budget));
+    assert!(matches!(&failed.outcome, Outcome::Broken(why) if why.contains("no luck")));
+    let toy = emulator(&folder, "exec sleep 60");
+    let endless = first(&board(&toy, budget));
+    assert!(matches!(&endless.outcome, Outcome::Broken(why) if why.contains("after 1 s")));
+}

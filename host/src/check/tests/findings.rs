@@ -1,0 +1,185 @@
+//! Findings, their evidence, and what is recorded.
+
+use super::*;
+
+#[test]
+fn broken_figures_are_recorded_and_nothing_else_changes() {
+    let folder = Folder::new();
+    let text = r#"# The ball.
+[[check]]
+scene = "ball.toml" # in this folder
+formats = ["fixed", "f64"]
+samples = 2
+hash = {}
+
+[check.budget] # of the board
+blob_bytes = 1_000_000 # plenty
+stack_entries = 0
+working_bytes = 1 # too small
+tests_per_ray = 0.25
+"#;
+    let (manifest, report) = folder.run(text);
+    assert_eq!(
+        (report.held(), report.broken(), report.not_run()),
+        (2, 6, 0)
+    );
+    let blessed = bless(&manifest, &report);
+    assert!(blessed.left.is_empty());
+    assert_eq!(folder.text(), text);
+    record(&blessed);
+    let new = folder.text();
+    let diff = blessed.diff();
+    assert!(diff.contains("-working_bytes = 1 # too small\n"), "{diff}");
+    assert!(
+        new.contains("blob_bytes = 1_000_000 # plenty\nstack_entries = 0\n"),
+        "{new}"
+    );
+    for line in new
+        .lines()
+        .zip(text.lines())
+        .filter(|(new, old)| new != old)
+    {
+        let changes = [
+            "hash = { fixed = \"",
+            "working_bytes = ",
+            "tests_per_ray = ",
+        ];
+        assert!(
+            changes.iter().any(|change| line.0.starts_with(change)),
+            "{line:?}"
+        );
+        assert_eq!(
+            line.0.split_once('#').map(|(_, comment)| comment),
+            line.1.split_once('#').map(|(_, comment)| comment)
+        );
+    }
+    // And now everything holds, in both formats.
+    let (manifest, report) = folder.run(&new);
+    assert_eq!(
+        (report.held(), report.broken()),
+        (8, 0),
+        "{}",
+        report.table()
+    );
+    assert_eq!(bless(&manifest, &report).diff(), "");
+}
+
+/// The picture changes, and nothing else does.
+#[test]
+fn another_picture_is_broken_and_shown() {
+    let folder = Folder::new();
+    let text = "[[check]]\nscene = \"ball.toml\"\nhash = {}\nreference = \"ball.png\"\n";
+    let (manifest, report) = folder.run(text);
+    assert_eq!(report.broken(), 2);
+    assert!(why(&report.findings[1]).contains("ball.png cannot be read"));
+    record(&bless(&manifest, &report));
+    let (_, report) = folder.run(&folder.text());
+    assert_eq!((report.held(), report.broken()), (2, 0));
+
+    fs::write(folder.path("ball.toml"), BALL.replace("= 0.5", "= 0.51")).unwrap();
+    let (_, report) = folder.run(&folder.text());
+    assert_eq!(report.broken(), 2, "{}", report.table());
+    for finding in &report.findings {
+        let evidence = finding.evidence.as_ref().unwrap();
+        assert_eq!(evidence.name, "ball-f32");
+        let mut png = Vec::new();
+        let expected = evidence.expected.as_ref().unwrap();
+        evidence.rendered.write_beside(expected, &mut png).unwrap();
+        let path = folder.path("beside.png");
+        fs::write(&path, png).unwrap();
+        let beside = Image::read(&path).unwrap();
+        assert_eq!(beside.size, [48, 12]);
+        // The first pixel is background in all three; it is what differs.
+        let panel = |number: usize| beside.pixels[3 * 16 * number];
+        assert_eq!((panel(0), panel(1), panel(2)), (188, 189, 255));
+    }
+    // Within a tolerance the reference holds again.
+    let text = folder.text();
+    let tolerant = format!("{text}tolerance = {{ channel = 1 }}\n");
+    let (_, report) = folder.run(&tolerant);
+    assert_eq!(
+        (report.held(), report.broken()),
+        (1, 1),
+        "{}",
+        report.table()
+    );
+    let tolerant = format!("{text}tolerance = {{ pixels = 191 }}\n");
+    let (_, report) = folder.run(&tolerant);
+    let found = match report.findings[1].found {
+        Some(Figure::Count(found)) => found,
+        _ => panic!("{:?}", report.findings[1]),
+    };
+    assert!((1..=191).contains(&found));
+    assert_eq!(report.findings[1].outcome, Outcome::Held);
+}
+
+#[test]
+fn what_cannot_be_read_is_broken_and_the_rest_goes_on() {
+    let folder = Folder::new();
+    fs::write(folder.path("broken.gridel"), "GRIDEL, or not").unwrap();
+    fs::write(folder.path("bad.toml"), "object = 3").unwrap();
+    let text = "
+        [[check]]\nscene = \"missing.toml\"\nhash = {}
+        [[check]]\nscene = \"broken.gridel\"\nhash = {}
+        [[check]]\nscene = \"bad.toml\"\nhash = {}
+        [[check]]\nname = \"blob\"\nscene = \"broken.gridel\"\nlattice_bits = 16\nhash = {}
+        [[check]]\nscene = \"ball.toml\"\nbudget = { blob_bytes = 5000 }";
+    let (manifest, report) = folder.run(text);
+    assert_eq!((report.held(), report.broken()), (1, 4));
+    for (finding, cause) in report.findings.iter().zip([
+        "missing.toml cannot be read",
+        "broken.gridel: ",
+        "bad.toml:1: `object` holds an integer",
+        "`lattice_bits` is for scene files",
+    ]) {
+        assert!(why(finding).contains(cause), "{}", why(finding));
+    }
+    // None of that can be recorded.
+    let blessed = bless(&manifest, &report);
+    assert_eq!((blessed.left.len(), blessed.diff().as_str()), (4, ""));
+}
+
+/// Broken pictures of all checks and boards lie in one folder.
+#[test]
+fn evidence_has_names_of_its_own() {
+    let folder = Folder::new();
+    let check =
+        |name: &str| format!("[[check]]\nscene = \"ball.toml\"\nname = \"{name}\"\nhash = {{}}\n");
+    let board = "[[check.board]]\nmachine = \"c\"\nelf = \"e\"\n";
+    let text = ["a/b", "a b", "A:B"].map(check).concat() + board + board;
+    let manifest = folder.manifest(&text).unwrap();
+    let names: Vec<_> = manifest.evidence().collect();
+    let expected = ["a-b-f32", "a-b-f32-2", "A-B-f32-3", "A-B-c", "A-B-c-2"];
+    assert_eq!(names, expected);
+    let (_, report) = folder.run(&text);
+    let found = report.findings.iter().filter_map(|it| it.evidence.as_ref());
+    let found: Vec<_> = found.map(|evidence| evidence.name.as_str()).collect();
+    assert_eq!(found, expected[..3]);
+}
+
+#[test]
+fn junit_names_suites_cases_and_reasons() {
+    let folder = Folder::new();
+    let text = "[[check]]\nname = \"a <ball>\"\nscene = \"ball.toml\"\n\
+                budget = { blob_bytes = 1, stack_entries = 9 }";
+    let (_, report) = folder.run(text);
+    let mut xml = Vec::new();
+    report.write_junit(&mut xml).unwrap();
+    let xml = String::from_utf8(xml).unwrap();
+    for part in [
+        "<testsuites name=\"gridel check\" tests=\"2\" skipped=\"0\" failures=\"1\" errors=\"0\">",
+        "<testsuite name=\"a &lt;ball&gt;\" tests=\"2\" skipped=\"0\" failures=\"1\" errors=\"0\">",
+        "<testcase name=\"blob_bytes\" classname=\"a &lt;ball&gt;\">",
+        "<property name=\"allowed\" value=\"1\"/>",
+        "<failure message=\"",
+    ] {
+        assert!(xml.contains(part), "{part} in {xml}");
+    }
+    let tags = |start: &str| xml.matches(start).count();
+    for tag in ["testsuites", "testsuite", "testcase", "properties"] {
+        let (open, close) = (format!("<{tag} "), format!("</{tag}>"));
+        let open = tags(&open) + tags(&format!("<{tag}>"));
+        assert_eq!(open, tags(&close), "{tag} in {xml}");
+    }
+    assert!(xml.contains("blob_bytes is"), "{xml}");
+}

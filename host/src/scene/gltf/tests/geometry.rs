@@ -1,0 +1,133 @@
+//! Nodes, meshes and accessors.
+
+use super::*;
+
+/// The sum of the triangles' normals, each as long as twice its area.
+fn facing(object: &Object) -> DVec3 {
+    let (vertices, triangles) = mesh(object);
+    let corners = |t: &[u32; 3]| t.map(|corner| vertices[corner as usize]);
+    let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
+    triangles.iter().map(|t| normal(corners(t))).sum()
+}
+
+#[test]
+fn a_square_as_text_and_as_binary() {
+    let scene = scene(&document());
+    let (vertices, triangles) = mesh(&scene.objects[0]);
+    assert_eq!(vertices[2], DVec3::new(1.0, 1.0, 0.0));
+    assert_eq!(triangles, [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!(scene.objects[0].name, "tile");
+    assert_eq!(scene.materials[0].diffuse, Diffuse::Plain([1.0; 3]));
+    assert_eq!(
+        read(&binary()).unwrap().scene.objects[0].shape,
+        scene.objects[0].shape
+    );
+    let with_mark = [b"\xef\xbb\xbf", document().to_string().as_bytes()].concat();
+    assert!(read(&with_mark).is_ok());
+}
+
+#[test]
+fn a_buffer_in_a_file_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("thing.gltf");
+    let mut document = document();
+    document["buffers"][0]["uri"] = json!("the%20square.bin");
+    std::fs::write(&path, document.to_string()).unwrap();
+    let missing = load(&path).unwrap_err();
+    assert!(missing.cause.contains("the square.bin"), "{missing}");
+    std::fs::write(folder.path().join("the square.bin"), square()).unwrap();
+    assert_eq!(load(&path).unwrap().scene.objects.len(), 1);
+}
+
+/// Children stand in their parents, and what is mirrored still faces outward.
+#[test]
+fn nodes_place_their_meshes() {
+    let mut document = document();
+    document["nodes"] = json!([
+        {"translation": [10, 0, 0], "children": [1, 2], "rotation": [0, 0, 1, 1]},
+        {"mesh": 0, "scale": [2, 2, 2]},
+        {"mesh": 0, "scale": [-1, 1, 1], "name": "mirrored"},
+    ]);
+    document["scenes"][0]["nodes"] = json!([0]);
+    let scene = scene(&document);
+    let (vertices, _) = mesh(&scene.objects[0]);
+    assert!(vertices[1].distance(DVec3::new(10.0, 2.0, 0.0)) < 1e-6);
+    assert!(facing(&scene.objects[0]).distance(DVec3::Z * 8.0) < 1e-6);
+    assert_eq!(scene.objects[1].name, "mirrored");
+    assert!(facing(&scene.objects[1]).distance(DVec3::Z * 2.0) < 1e-6);
+}
+
+#[test]
+fn strips_fans_and_meshes_without_indices() {
+    let mut document = document();
+    document["meshes"][0]["primitives"] = json!([
+        {"attributes": {"POSITION": 0}, "mode": 6},
+        {"attributes": {"POSITION": 0}, "mode": 5},
+        {"attributes": {"POSITION": 0}},
+        {"attributes": {"POSITION": 0}, "mode": 1},
+    ]);
+    let scene = scene(&document);
+    let triangles: Vec<_> = scene.objects.iter().map(|object| mesh(object).1).collect();
+    assert_eq!(triangles[0], [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!(triangles[1], [[0, 1, 2], [1, 3, 2]]);
+    assert_eq!(triangles[2], [[0, 1, 2]]);
+    assert_eq!(scene.objects.len(), 3);
+    assert_eq!(scene.objects[1].name, "tile 1");
+}
+
+/// An accessor may replace elements of its view, or of nothing.
+#[test]
+fn sparse_positions() {
+    let mut bytes = square();
+    bytes.extend([2, 0, 0, 0]);
+    bytes.extend([9.0_f32, 8.0, 7.0].iter().flat_map(|x| x.to_le_bytes()));
+    let mut document = document();
+    document["buffers"][0] = json!({
+        "byteLength": bytes.len(),
+        "uri": format!("data:;base64,{}", STANDARD.encode(&bytes)),
+    });
+    let views = document["bufferViews"].as_array_mut().unwrap();
+    views.push(json!({"buffer": 0, "byteOffset": 60, "byteLength": 4}));
+    views.push(json!({"buffer": 0, "byteOffset": 64, "byteLength": 12}));
+    document["accessors"][0]["sparse"] = json!({
+        "count": 1,
+        "indices": {"bufferView": 2, "componentType": 5121},
+        "values": {"bufferView": 3},
+    });
+    let placed = scene(&document);
+    let (vertices, _) = mesh(&placed.objects[0]);
+    assert_eq!(vertices[1..3], [DVec3::X, DVec3::new(9.0, 8.0, 7.0)]);
+    let accessor = document["accessors"][0].as_object_mut().unwrap();
+    accessor.remove("bufferView");
+    let placed = scene(&document);
+    let (vertices, _) = mesh(&placed.objects[0]);
+    assert_eq!(vertices[1..3], [DVec3::ZERO, DVec3::new(9.0, 8.0, 7.0)]);
+    document["accessors"][0]["count"] = json!(2);
+    let part = document["meshes"][0]["primitives"][0].as_object_mut();
+    part.unwrap().remove("indices");
+    assert!(cause(&document).contains("replaces element 2"));
+}
+
+/// Triangles, instances counted, as other programs count them.
+#[test]
+fn files_of_other_projects() {
+    for (name, objects, triangles) in [
+        ("monkey.glb", 1, 968),
+        ("BoxTextured.glb", 1, 12),
+        ("boolean.glb", 28, 3936),
+        ("nested.glb", 3, 36),
+        ("no_indices_3storybuilding.glb", 3, 72),
+        ("TestScene.gltf", 9, 1096),
+    ] {
+        let Some(path) = test_scenes::find(&format!("meshes/{name}")) else {
+            return;
+        };
+        let scene = load(&path).unwrap_or_else(|error| panic!("{error}")).scene;
+        let count: usize = scene
+            .objects
+            .iter()
+            .map(|object| mesh(object).1.len())
+            .sum();
+        assert_eq!((scene.objects.len(), count), (objects, triangles), "{name}");
+    }
+}

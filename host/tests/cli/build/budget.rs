@@ -1,0 +1,170 @@
+//! Budgets of blobs, tables and boards, and the advice where one is exceeded.
+
+use crate::program::{Folder, fixture};
+use gridel_host::table::grouped;
+
+#[test]
+fn a_budget_refuses_before_writing() {
+    let folder = Folder::with_quick();
+    let accels = ["--accel", "bvh", "--accel", "flagged", "--strip-names"];
+    folder.done(&[&["build", "quick.toml", "-o", "quick.gridel"], &accels[..]].concat());
+    let most = folder.read("quick.gridel").len();
+    let build = |bytes: &str| {
+        let accels = ["--accel", "bvh", "--accel", "flagged", "--max-bytes"];
+        let mut arguments = vec!["build", "quick.toml", "-o", "quick.gridel"];
+        arguments.extend(accels);
+        arguments.push(bytes);
+        arguments.into_iter().map(String::from).collect::<Vec<_>>()
+    };
+    let run = |bytes: &str, check: &dyn Fn(&[&str])| {
+        let arguments = build(bytes);
+        check(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+    };
+    let advice = ["--max-bytes", "leaving out `--accel bvh` saves"];
+    run("1K", &|arguments| folder.fails(3, arguments, &advice));
+    run(&(most - 1).to_string(), &|arguments| {
+        folder.fails(3, arguments, &advice);
+    });
+    run(&most.to_string(), &|arguments| {
+        folder.done(arguments);
+    });
+    run("1M", &|arguments| {
+        folder.done(arguments);
+    });
+    run("some", &|arguments| folder.fails(2, arguments, &["64K"]));
+}
+
+/// What would be saved is what is saved.
+#[test]
+fn the_advice_for_a_budget_is_exact() {
+    let folder = Folder::with_quick();
+    let bytes = |accels: &[&str]| {
+        let options: Vec<_> = accels.iter().flat_map(|accel| ["--accel", accel]).collect();
+        let build = ["build", "quick.toml", "-o", "new.gridel", "--strip-names"];
+        folder.done(&[&build, &options[..]].concat());
+        folder.read("new.gridel").len()
+    };
+    let advice = |accels: &[&str]| {
+        let options: Vec<_> = accels.iter().flat_map(|accel| ["--accel", accel]).collect();
+        let build = [
+            "build",
+            "quick.toml",
+            "-o",
+            "new.gridel",
+            "--max-bytes",
+            "1K",
+        ];
+        folder.run(&[&build[..], &options].concat()).said()
+    };
+    let list = bytes(&["list"]);
+    for accel in ["dual-split", "flagged", "wide", "apex"] {
+        let saved = bytes(&[accel]) - list;
+        let said = advice(&[accel]);
+        let expected = format!("instead of {accel} saves {} bytes", grouped(saved));
+        assert!(said.contains(&expected), "{expected}: {said}");
+    }
+    let whole = bytes(&["dual-split"]);
+    folder.done(&[
+        "build",
+        "quick.toml",
+        "-o",
+        "new.gridel",
+        "--lattice-bits",
+        "16",
+        "--strip-names",
+    ]);
+    let saved = whole - folder.read("new.gridel").len();
+    let expected = format!("`--lattice-bits 16` saves {} bytes", grouped(saved));
+    let said = advice(&["dual-split"]);
+    assert!(said.contains(&expected), "{expected}: {said}");
+    let saved = bytes(&["bvh", "flagged"]) - bytes(&["flagged"]);
+    let said = advice(&["bvh", "flagged"]);
+    let expected = format!("leaving out `--accel bvh` saves {} bytes", grouped(saved));
+    assert!(said.contains(&expected), "{expected}: {said}");
+}
+
+#[test]
+fn a_table_beyond_its_budget_is_refused_as_a_blob_is() {
+    let folder = Folder::with_quick();
+    let build = [
+        "build",
+        "quick.toml",
+        "-o",
+        "new.gridel",
+        "--accel",
+        "cylinder-cube",
+    ];
+    let tight = ["--gridels", "1", "--budget", "10"];
+    folder.fails(
+        3,
+        &[&build[..], &tight].concat(),
+        &["1 gridel a side", "--budget"],
+    );
+}
+
+/// Code and stack of the boards were measured, so they can change: what is asked for here lies far
+/// from any border.
+#[test]
+fn a_scene_that_does_not_fit_a_board_is_refused_with_figures() {
+    let folder = Folder::new();
+    folder.write("quick.toml", &fixture("quick"));
+    let build = ["build", "quick.toml", "-o", "quick.gridel"];
+    let with = |options: &[&'static str]| [&build, options].concat();
+
+    let refused = |arguments: &[&str]| {
+        let run = folder.run(arguments);
+        assert_eq!(run.code, Some(3), "{arguments:?}: {}", run.stderr);
+        run.said()
+    };
+    let text = refused(&with(&["--target", "stm32vldiscovery", "--ram", "1K"]));
+    assert!(
+        text.contains("bytes of RAM") && text.contains("more than the 1,024"),
+        "{text}"
+    );
+    assert!(
+        text.contains("a ray depth of 5 in place of 6 saves 40 bytes"),
+        "{text}"
+    );
+    // Rows are counted whole, so parts of them are no advice.
+    assert!(!text.contains("parts of rows"), "{text}");
+    let text = refused(&with(&["--flash", "8K"]));
+    assert!(text.contains("bytes of flash"), "{text}");
+    assert!(text.contains("with the feature `small`"), "{text}");
+    let text = refused(&with(&["--flash", "8K", "--ram", "1K"]));
+    assert_eq!(text.matches("`--accel list`").count(), 1, "{text}");
+    assert_eq!(folder.names(), ["quick.toml"]);
+    folder.done(&with(&["--target", "mps2-an386"]));
+}
+
+/// What is said to make a blob smaller is what it does, whether its own bytes are bounded or a board's.
+#[test]
+fn advice_on_flash_is_what_it_saves() {
+    let folder = Folder::new();
+    // Larger leaves and flagged sides pay where there is a hierarchy to speak of.
+    folder.done(&["sample", "nanotube", "-o", "tube.pdb"]);
+    let bytes = |options: &[&str]| {
+        let build = ["build", "tube.pdb", "-o", "tube.gridel"];
+        folder.done(&[&build[..], options].concat());
+        folder.read("tube.gridel").len()
+    };
+    let all = bytes(&[]);
+    for refusing in [["--flash", "8K"], ["--max-bytes", "8K"]] {
+        let run = folder.run(&[&["build", "tube.pdb", "-o", "new.gridel"], &refusing[..]].concat());
+        assert_eq!(run.code, Some(3), "{}", run.stderr);
+        for option in [
+            ["--lattice-bits", "16"],
+            ["--leaf-size", "8"],
+            ["--accel", "flagged"],
+            ["--accel", "list"],
+        ] {
+            let saved = all - bytes(&option);
+            let instead = match option[0] {
+                "--accel" => " instead of dual-split",
+                _ => "",
+            };
+            let option = option.join(" ");
+            let advice = format!("`{option}`{instead} saves {} bytes", grouped(saved));
+            assert!(run.said().contains(&advice), "{advice}: {}", run.said());
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! `gridel build`.
+
+mod budget;
+mod files;
+mod module;
+mod report;

@@ -1,0 +1,73 @@
+//! The Rust module of `--emit-rust`.
+
+use crate::program::{Folder, fixture};
+use gridel_core::Structure;
+
+/// The module walks what the blob was built for, whatever that is, and names its feature.
+#[test]
+fn a_module_is_emitted_for_every_structure() {
+    let folder = Folder::new();
+    folder.write("quick.toml", &fixture("quick"));
+    for structure in Structure::ALL {
+        let name = structure.name();
+        let build = ["build", "quick.toml", "-o", "b.gridel", "--accel", name];
+        // Small tables.
+        let options: &[_] = match name.starts_with("cylinder") {
+            true => &["--gridels", "2"],
+            false => &[],
+        };
+        folder.done(&[&build[..], options, &["--emit-rust", "src"]].concat());
+        let module = String::from_utf8(folder.read("src/scene.rs")).unwrap();
+        let accel = format!("pub type Accel = gridel_core::{structure:?};");
+        assert!(module.contains(&accel), "{name}: {module}");
+        let feature = format!("features = [\"{name}\", ");
+        assert_eq!(
+            module.contains(&feature),
+            structure != Structure::List,
+            "{name}: {module}"
+        );
+    }
+}
+
+#[test]
+fn a_module_is_emitted_for_the_board() {
+    let folder = Folder::new();
+    folder.write("quick.toml", &fixture("quick"));
+    let emit = ["--emit-rust", "module", "--target", "mps2-an386"];
+    folder.done(&[&["build", "quick.toml", "-o", "quick.gridel"], &emit[..]].concat());
+    assert_eq!(
+        folder.read("module/scene.gridel"),
+        folder.read("quick.gridel")
+    );
+    let module = String::from_utf8(folder.read("module/scene.rs")).unwrap();
+    for line in [
+        "pub type Number = f32;",
+        "pub type Accel = gridel_core::DualSplit;",
+        "\"dual-split\", \"triangle\", \"sphere\", \"box\", \"disc\", \"cone\", \"wide-lattice\"",
+        "pub const WORK_DEPTH: usize = 7;",
+        "gridel_core::Scene::prevalidated(PREVALIDATED)",
+        "the blob outgrew the flash of mps2-an386",
+    ] {
+        assert!(module.contains(line), "{line}: {module}");
+    }
+    // A structure that is made for hosts cannot be prevalidated.
+    folder.done(
+        &[
+            &[
+                "build",
+                "quick.toml",
+                "-o",
+                "quick.gridel",
+                "--accel",
+                "wide",
+            ],
+            &emit[..2],
+        ]
+        .concat(),
+    );
+    let module = String::from_utf8(folder.read("module/scene.rs")).unwrap();
+    assert!(
+        module.contains("gridel_core::Scene::from_bytes(BLOB)"),
+        "{module}"
+    );
+}

@@ -1,0 +1,189 @@
+//! The view, lights, materials, primitives and objects.
+
+use super::{Errors, Forgery, everything};
+use gridel_core::format::record::{Light, Material, Sphere24, Vertex24, View};
+use gridel_core::format::{Effects, Field, Reason, SectionKind};
+use gridel_core::geometry::cone::Cone;
+use gridel_core::geometry::cuboid::Cuboid;
+use gridel_core::geometry::disc::Disc;
+use gridel_core::geometry::plane::Plane;
+use gridel_core::geometry::torus::Torus;
+
+pub(super) fn surroundings() -> Errors {
+    let mut errors = everything();
+    let far = (1 << 50) + 1;
+    let view = "section view";
+    let fields: [Forgery<View>; 12] = [
+        (Field::Eye, &|it| it.eye[1] = far),
+        (Field::Eye, &|it| it.eye[1] = -far),
+        (Field::CameraVector, &|it| it.up[2] = i32::MAX),
+        (Field::Background, &|it| it.background[0] = -1),
+        (Field::AmbientLight, &|it| it.ambient[0] = -1),
+        (Field::Cutoff, &|it| it.cutoff = -1),
+        (Field::Width, &|it| it.width = 0),
+        (Field::Height, &|it| it.height = 0),
+        (Field::Samples, &|it| it.samples = 0),
+        (Field::Samples, &|it| it.samples = 257),
+        (Field::RayDepth, &|it| it.depth = 17),
+        (Field::DisplayValues, &|it| it.display_values = 2),
+    ];
+    for (field, forge) in fields {
+        errors.field(view, field, |it| it.change(SectionKind::View, 0, forge));
+    }
+    let lights: [Forgery<Light>; 3] = [
+        (Field::Kind, &|it| it.directional = 2),
+        (Field::Color, &|it| it.color[2] = -1),
+        (Field::PositionOrDirection, &|it| it.vector[0] = far),
+    ];
+    for (field, forge) in lights {
+        errors.field("light 0", field, |it| {
+            it.change(SectionKind::Lights, 0, forge)
+        });
+    }
+    errors.reason("light 1", Reason::ZeroDirection, |it| {
+        it.change(SectionKind::Lights, 1, |it: &mut Light| it.vector = [0; 3])
+    });
+    let above = (1 << 30) + 1;
+    let materials: [Forgery<Material>; 9] = [
+        (Field::Diffuse, &|it| it.diffuse[0] = above),
+        (Field::Odd, &|it| it.odd[1] = -1),
+        (Field::Highlight, &|it| it.highlight[2] = above),
+        (Field::Mirror, &|it| it.mirror[0] = above),
+        (Field::Transmittance, &|it| it.transmit[0] = above),
+        (Field::InverseIor, &|it| it.inverse_ior = above),
+        (Field::Shininess, &|it| it.shininess = 0),
+        (Field::CheckerSize, &|it| it.checker_size = -1),
+        (Field::CheckerOrigin, &|it| it.checker_origin[0] = above),
+    ];
+    for (field, forge) in materials {
+        errors.field("material 1", field, |it| {
+            it.change(SectionKind::Materials, 1, forge)
+        });
+    }
+    errors.reason("material 0", Reason::SpareNotZero, |it| {
+        it.change(SectionKind::Materials, 0, |it: &mut Material| it.spare = 1)
+    });
+    errors.reason("material 0", Reason::MissingEffect, |it| {
+        it.header().effects &= !Effects::MIRROR.0
+    });
+    errors
+}
+
+pub(super) fn primitives() -> Errors {
+    let mut errors = everything();
+    let far = 1 << 24;
+    errors.field("vertex 2", Field::Coordinate, |it| {
+        it.change(SectionKind::Vertices, 2, |it: &mut Vertex24| it.0[1] = far)
+    });
+    errors.field("triangle 1", Field::Vertex, |it| {
+        it.change(SectionKind::Triangles, 1, |it: &mut [u16; 3]| {
+            it[2] = u16::MAX
+        })
+    });
+    errors.field("sphere 0", Field::Radius, |it| {
+        it.change(SectionKind::Spheres, 0, |it: &mut Sphere24| {
+            it.radius = [0; 3]
+        })
+    });
+    errors.field("sphere 1", Field::LowestCoordinate, |it| {
+        it.change(SectionKind::Spheres, 1, |it: &mut Sphere24| {
+            it.center[0] = [0, 0, 0x80]
+        })
+    });
+    errors.field("box 0", Field::HighestCoordinate, |it| {
+        it.change(SectionKind::Boxes, 0, |it: &mut Cuboid| it.highest[0] = far)
+    });
+    errors.reason("box 0", Reason::InvertedBox, |it| {
+        it.change(SectionKind::Boxes, 0, |it: &mut Cuboid| {
+            std::mem::swap(&mut it.lowest[1], &mut it.highest[1])
+        })
+    });
+    let discs: [Forgery<Disc>; 3] = [
+        (Field::Center, &|it| it.center[0] = far),
+        (Field::Normal, &|it| it.normal[0] = far + 1),
+        (Field::Radius, &|it| it.radius = 0),
+    ];
+    for (field, forge) in discs {
+        errors.field("disc 0", field, |it| {
+            it.change(SectionKind::Discs, 0, forge)
+        });
+    }
+    errors.reason("disc 0", Reason::ZeroNormal, |it| {
+        it.change(SectionKind::Discs, 0, |it: &mut Disc| it.normal = [0; 3])
+    });
+    errors.reason("disc 0", Reason::OutsideScene, |it| {
+        it.change(SectionKind::Discs, 0, |it: &mut Disc| {
+            it.bounds.0[0][0] = i16::MIN
+        })
+    });
+    let cones: [Forgery<Cone>; 3] = [
+        (Field::BaseCenter, &|it| it.base[0] = far),
+        (Field::ApexCenter, &|it| it.apex[0] = far),
+        (Field::Radius, &|it| it.base_radius = -1),
+    ];
+    for (field, forge) in cones {
+        errors.field("cone 0", field, |it| {
+            it.change(SectionKind::Cones, 0, forge)
+        });
+    }
+    let tori: [Forgery<Torus>; 4] = [
+        (Field::Center, &|it| it.center[0] = i32::MAX),
+        (Field::Axis, &|it| it.axis[1] = (1 << 24) + 1),
+        (Field::Radius, &|it| it.minor_radius = 0),
+        (Field::Radius, &|it| it.major_radius = -1),
+    ];
+    for (field, forge) in tori {
+        errors.field("torus 0", field, |it| {
+            it.change(SectionKind::Tori, 0, forge)
+        });
+    }
+    errors.reason("torus 0", Reason::ZeroAxis, |it| {
+        it.change(SectionKind::Tori, 0, |it: &mut Torus| it.axis = [0; 3])
+    });
+    let planes: [Forgery<Plane>; 3] = [
+        (Field::Point, &|it| it.point[2] = (1 << 25) + 1),
+        (Field::Point, &|it| it.point[0] = i32::MIN),
+        (Field::Normal, &|it| it.normal[1] = -(1 << 24) - 1),
+    ];
+    for (field, forge) in planes {
+        errors.field("plane 0", field, |it| {
+            it.change(SectionKind::Planes, 0, forge)
+        });
+    }
+    errors.reason("plane 0", Reason::ZeroNormal, |it| {
+        it.change(SectionKind::Planes, 0, |it: &mut Plane| it.normal = [0; 3])
+    });
+    errors.reason("cone 0", Reason::ZeroAxis, |it| {
+        it.change(SectionKind::Cones, 0, |it: &mut Cone| it.apex = it.base)
+    });
+    errors.reason("cone 0", Reason::ZeroRadii, |it| {
+        it.change(SectionKind::Cones, 0, |it: &mut Cone| {
+            (it.base_radius, it.apex_radius) = (0, 0)
+        })
+    });
+    errors.field("object 1", Field::FirstPrimitive, |it| {
+        it.set(SectionKind::ObjectFirst, 1, u32::MAX)
+    });
+    errors.field("object 0", Field::Material, |it| {
+        it.set(SectionKind::ObjectMaterial, 0, u32::MAX)
+    });
+    errors.field("slot 0", Field::Primitive, |it| {
+        it.set(SectionKind::Order, 0, u32::MAX)
+    });
+    let leaves: [Forgery<u32>; 3] = [
+        (Field::Kind, &|it| *it |= 7 << 29),
+        (Field::Primitives, &|it| *it &= !(31 << 24)),
+        (Field::FirstSlot, &|it| *it += 1),
+    ];
+    for (field, forge) in leaves {
+        errors.field("leaf 0", field, |it| {
+            it.change(SectionKind::Leaves, 0, forge)
+        });
+    }
+    // The last leaf is the last one of its kind.
+    let last = errors.base.records(SectionKind::Leaves) - 1;
+    errors.field(&format!("leaf {last}"), Field::EndSlot, |it| {
+        it.change(SectionKind::Leaves, last, |it: &mut u32| *it += 1 << 24)
+    });
+    errors
+}

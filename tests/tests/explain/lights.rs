@@ -1,0 +1,115 @@
+//! Lights at a hit, and what blocks them.
+
+use super::story;
+use gridel_core::{Format, Settings, Structure};
+use gridel_host::explain::{Fall, Step, Subject, Verdict, explain};
+use gridel_host::scene::{Light, Object, Place, Shape};
+use gridel_host::shape::{Cuboid, Sphere};
+use gridel_host::trace::SceneRay;
+use gridel_tests::scenes;
+
+/// What stands in a light's way is named, and what is culled says why.
+#[test]
+fn reasons_are_true() {
+    let ball = |x: f64, y: f64| {
+        Shape::Sphere(Sphere {
+            center: glam::DVec3::new(x, y, 0.0),
+            radius: 1.0,
+        })
+    };
+    let mut scene = scenes::of([ball(0.0, 0.0), ball(0.0, 5.0), ball(9.0, 9.0)]);
+    scene.objects.push(Object {
+        name: String::from("floor"),
+        material: 0,
+        shape: Shape::Box(Cuboid {
+            min: glam::DVec3::new(-20.0, -3.0, -20.0),
+            max: glam::DVec3::new(20.0, -2.0, 20.0),
+        }),
+        place: Place::default(),
+    });
+    scene.lights = vec![
+        Light::Directional {
+            direction: -glam::DVec3::Y,
+            color: [1.0; 3],
+        },
+        Light::Directional {
+            direction: glam::DVec3::Y,
+            color: [1.0; 3],
+        },
+    ];
+    let blob = scenes::blob(&scene, 24);
+    let scene = blob.scene().expect("a scene");
+    let ray = SceneRay {
+        origin: glam::DVec3::new(0.0, 2.5, 10.0),
+        direction: glam::DVec3::new(0.0, -1.5, -10.0),
+        tmin: 0.0,
+        tmax: f64::INFINITY,
+    };
+    let settings = Settings::of(&scene);
+    let story = explain(
+        &scene,
+        Format::F64,
+        Structure::Bvh,
+        settings,
+        Subject::Ray(ray),
+    );
+    let story = story.expect("a story");
+    let first = &story.samples[0].rays[0];
+    assert_eq!(first.hit.as_ref().map(|hit| hit.object), Some(0));
+    let falls: Vec<_> = first.lights.iter().map(|light| &light.fall).collect();
+    let blocked = Fall::Blocked {
+        kind: "sphere",
+        primitive: 1,
+        object: 1,
+    };
+    assert_eq!(falls, [&blocked, &Fall::Behind]);
+    let walk = first.walk.as_ref().expect("a walk");
+    let verdicts = walk.steps.iter().filter_map(|step| match step {
+        Step::Candidate(candidate) => Some((candidate.primitive, candidate.verdict)),
+        _ => None,
+    });
+    assert!(verdicts.clone().any(|v| v == (0, Verdict::Nearest)));
+}
+
+/// A light that has no direction, because it lies where the ray to it would start, is reported, too.
+#[test]
+fn a_light_at_the_point_itself_is_told() {
+    let mut scene = scenes::of([Shape::Box(Cuboid {
+        min: glam::DVec3::splat(-1.0),
+        max: glam::DVec3::ONE,
+    })]);
+    let ray = SceneRay {
+        origin: glam::DVec3::new(0.0, 5.0, 0.0),
+        direction: -glam::DVec3::Y,
+        tmin: 0.0,
+        tmax: f64::INFINITY,
+    };
+    let mut falls_at = |height: f64| {
+        scene.lights = vec![
+            Light::Point {
+                position: glam::DVec3::Y * height,
+                color: [1.0; 3],
+            },
+            Light::Directional {
+                direction: -glam::DVec3::Y,
+                color: [1.0; 3],
+            },
+        ];
+        let blob = scenes::blob(&scene, 24);
+        let scene = blob.scene().expect("a scene");
+        let story = story(&scene, Format::Fixed, Structure::Bvh, ray);
+        let ray = &story.samples[0].rays[0];
+        let falls: Vec<_> = ray
+            .lights
+            .iter()
+            .map(|l| (l.light, l.fall.clone()))
+            .collect();
+        let hit = ray.hit.as_ref().expect("a hit");
+        // Rays start on the face itself.
+        (falls, hit.point[1])
+    };
+    let (above, start) = falls_at(3.0);
+    assert_eq!(above, [(0, Fall::Lit), (1, Fall::Lit)]);
+    let (here, _) = falls_at(start);
+    assert_eq!(here, [(0, Fall::Here), (1, Fall::Lit)]);
+}

@@ -1,0 +1,146 @@
+//! Hits lie on their rays within the printed bound.
+
+use super::{rays, story, way};
+use gridel_core::{Format, Settings, Structure};
+use gridel_host::explain::{Names, Shown, Story, Subject, explain};
+use gridel_host::trace::{Frame, SceneRay};
+use gridel_tests::scenes;
+
+/// Checks that `origin + distance * direction` is the point of every hit of a story, in JSON and
+/// in print. Returns the number of hits, and the largest bound.
+fn hits_lie_on_their_rays(story: &Story, about: &dyn Fn() -> String) -> (usize, f64) {
+    let names = Names::default();
+    let text = Shown {
+        story,
+        names: &names,
+        all_walks: false,
+    };
+    let text = text.to_string();
+    let json = serde_json::to_value(story).expect("JSON");
+    let numbers = |value: &serde_json::Value| {
+        let number = |k: usize| value[k].as_f64().expect("a number");
+        glam::DVec3::new(number(0), number(1), number(2))
+    };
+    let (mut hits, mut largest) = (0, 0.0_f64);
+    for sample in json["samples"].as_array().expect("samples") {
+        for ray in sample["rays"].as_array().expect("rays") {
+            let hit = &ray["hit"];
+            if hit.is_null() {
+                continue;
+            }
+            let [origin, direction] =
+                ["origin", "direction"].map(|name| numbers(&ray["walk"][name]));
+            let number = |name: &str| hit[name].as_f64().expect("a number");
+            let (distance, error) = (number("distance"), number("distance_error"));
+            let apart = (origin + distance * direction).distance(numbers(&hit["point"]));
+            assert!(apart <= error, "{}: {apart:e} beyond {error:e}", about());
+            hits += 1;
+            largest = largest.max(error);
+        }
+    }
+    let mut printed = 0;
+    let mut ray = None;
+    let mut distance = None;
+    for line in text.lines().map(str::trim) {
+        let vector = |text: &str| {
+            let numbers = text.trim_start_matches('(').split(", ");
+            let numbers: Vec<f64> = numbers.map(|x| x.parse().expect("a number")).collect();
+            glam::DVec3::from_slice(&numbers)
+        };
+        if let Some(rest) = line.strip_prefix("from (") {
+            let (origin, rest) = rest.split_once(") along (").expect("a direction");
+            let (direction, _) = rest.split_once("):").expect("an end");
+            ray = Some((vector(origin), vector(direction)));
+        } else if line.starts_with("hits the ") {
+            let (_, rest) = line.rsplit_once(", at distance ").expect("a distance");
+            let (at, within) = rest.split_once(" within ").expect("a bound");
+            let number = |text: &str| text.parse::<f64>().expect("a number");
+            distance = Some((number(at), number(within)));
+        } else if let Some(rest) = line.strip_prefix("at (") {
+            let (point, _) = rest.split_once("), which").expect("a point");
+            let ((origin, direction), (at, within)) = ray.zip(distance).expect("a ray");
+            let apart = (origin + at * direction).distance(vector(point));
+            assert!(apart <= within, "{}: {line}, off by {apart:e}", about());
+            printed += 1;
+        }
+    }
+    assert_eq!(printed, hits, "{}", about());
+    (hits, largest)
+}
+
+/// The origin in a story is the ray's own, wherever the kernels start, and distances count from it.
+#[test]
+fn explain_tells_points_that_lie_on_the_ray_as_given() {
+    let blob = scenes::blob(&scenes::soup(13, 150, 0.3), 24);
+    let scene = blob.scene().expect("a scene");
+    let frame = Frame::of(&scene);
+    let size = frame.length(65_536.0);
+    for exponent in [0, 1, 4, 10, 20] {
+        let far = f64::powi(2.0, exponent);
+        let mut hits = 0;
+        for (number, near) in rays(8, 60).enumerate() {
+            let target = near.origin + near.direction;
+            let origin = far * near.origin;
+            let ray = SceneRay {
+                origin,
+                direction: (target - origin) * [1.0, 1e-3, 7e5][number % 3],
+                ..near
+            };
+            for format in Format::ALL {
+                for structure in [Structure::List, Structure::DualSplit, Structure::Wide] {
+                    let story = story(&scene, format, structure, ray);
+                    let about = || format!("{} {} {ray:?}", format.name(), structure.name());
+                    let walk = way(&story);
+                    assert_eq!(walk.origin, ray.origin.to_array(), "{}", about());
+                    let (found, error) = hits_lie_on_their_rays(&story, &about);
+                    hits += found;
+                    // The bound is no excuse: a few steps of the format, and of these numbers.
+                    let (bits, digits) = match format {
+                        Format::Fixed => (18, 46),
+                        Format::F32 => (18, 19),
+                        Format::F64 => (46, 46),
+                    };
+                    let most = f64::powi(2.0, -bits) * size
+                        + f64::powi(2.0, -digits) * ray.origin.length();
+                    assert!(error <= most, "{}: {error:e} {most:e}", about());
+                    // The rest of the way counts from the same place.
+                    let met = walk.met().and_then(|met| met.crossing);
+                    let hit = story.samples[0].rays[0].hit.as_ref();
+                    if let (Some([enter, leave]), Some(hit)) = (met, hit) {
+                        let apart = |t: f64| (t - hit.distance).abs();
+                        let nearest = apart(enter).min(apart(leave));
+                        assert!(nearest <= most, "{}: {nearest:e}", about());
+                    }
+                }
+            }
+        }
+        assert!(hits > 100, "{hits} hits from {far} times as far");
+    }
+}
+
+/// Rays from the camera, through glass and off mirrors lie on the lines of their stories, too.
+#[test]
+fn explain_tells_points_that_lie_on_the_rays_of_pixels() {
+    for (name, scene) in scenes::fixtures() {
+        let blob = scenes::blob(&scene, 24);
+        let view = blob.scene().expect("a scene");
+        let settings = Settings {
+            width: 32,
+            height: 24,
+            samples: 1,
+            ..Settings::of(&view)
+        };
+        let mut hits = 0;
+        for format in Format::ALL {
+            for place in (0..32 * 24).step_by(11) {
+                let pixel = [(place % 32) as u16, (place / 32) as u16];
+                let subject = Subject::Pixel(pixel);
+                let story = explain(&view, format, Structure::DualSplit, settings, subject);
+                let story = story.expect("a story");
+                let about = || format!("{name} {} {pixel:?}", format.name());
+                hits += hits_lie_on_their_rays(&story, &about).0;
+            }
+        }
+        assert!(hits > 10, "{name}: {hits} hits");
+    }
+}

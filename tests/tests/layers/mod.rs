@@ -1,0 +1,55 @@
+//! Imports run one way: from a layer to those below it, and between files without a cycle.
+
+mod faults;
+mod paths;
+mod source;
+
+use faults::faults;
+use source::sources;
+use std::path::Path;
+
+/// A crate whose imports are checked: its sources, and its top modules from the lowest layer up, in rows of
+/// what belongs together.
+struct Layers {
+    sources: &'static str,
+    order: &'static [&'static str],
+}
+
+const CORE: Layers = Layers {
+    sources: "../core/src",
+    order: &[
+        "axis target simd format observe",
+        "number ray geometry accel scene query shade render selftest",
+    ],
+};
+
+const HOST: Layers = Layers {
+    sources: "../host/src",
+    order: &[
+        "output simd table blob picture_rays shape",
+        "scene sample compile",
+        "render trace npy picture merge resolution report",
+        "measure emit",
+        "accuracy compare verify explain check",
+        "cli main",
+    ],
+};
+
+#[track_caller]
+fn check(layers: &Layers) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(layers.sources);
+    let rows = layers.order.iter();
+    let order: Vec<&str> = rows.flat_map(|row| row.split_whitespace()).collect();
+    let faults = faults(&sources(&folder), &order);
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn core_imports_run_one_way() {
+    check(&CORE);
+}
+
+#[test]
+fn host_imports_run_one_way() {
+    check(&HOST);
+}
