@@ -109,6 +109,8 @@ static SAMPLES: &[Sample] = &[
     fixture!("stress-cylinder", "hard cases of cylinders"),
     fixture!("stress-cone", "hard cases of cones"),
     fixture!("stress-frustum", "hard cases of frusta"),
+    fixture!("stress-torus", "hard cases of tori"),
+    fixture!("stress-plane", "hard cases of planes"),
 ];
 
 fn name() -> impl TypedValueParser<Value = &'static Sample> {

@@ -149,7 +149,10 @@ impl Analytic for Plane {
             point: integers(self.point),
             normal: integers(self.normal),
         };
-        (record, self.point.abs().max_element() <= FARTHEST_POINT as f64)
+        (
+            record,
+            self.point.abs().max_element() <= FARTHEST_POINT as f64,
+        )
     }
 
     fn record_bounds(_: &plane::Plane) -> UnitBox {

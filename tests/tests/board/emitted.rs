@@ -23,10 +23,10 @@ pub fn plan(plan: &mut Plan) {
         ("sifive_e", scenes::quick),
     ];
     for (number, (name, scene)) in prevalidated.into_iter().enumerate() {
-        let test = format!("vouched_blobs_load_in_constant_time::{number}");
+        let test = format!("prevalidated_blobs_load_in_constant_time::{number}");
         plan.test_on(&test, board(name), Format::Fixed)
             .in_full()
-            .run(move || vouched_blob_loads_in_constant_time(name, &scene()));
+            .run(move || prevalidated_blob_loads_in_constant_time(name, &scene()));
     }
 }
 
@@ -86,7 +86,7 @@ fn emitted_modules_run_or_do_not_compile() {
 
 /// Firmware that prevalidates its blob loads it in the same time, however long it is, and without the
 /// code that proves the rest.
-fn vouched_blob_loads_in_constant_time(name: &str, scene: &Compiled) {
+fn prevalidated_blob_loads_in_constant_time(name: &str, scene: &Compiled) {
     let mut figures = Figures::new();
     let build = Build::new(board(name), Format::Fixed, Structure::DualSplit, scene);
     let emitted = Emitted {
@@ -110,7 +110,7 @@ fn vouched_blob_loads_in_constant_time(name: &str, scene: &Compiled) {
     );
     let load = report["load-instructions"];
     assert!(load <= 6000, "{build}: {load} instructions to load");
-    figures.add(&format!("{build} vouched"), &report);
+    figures.add(&format!("{build} prevalidated"), &report);
     figures.check();
 }
 

@@ -91,7 +91,7 @@ fn pictures(plan: &mut Plan) {
     let large: [(&str, &'static Board, Make); 4] = [
         ("glass", discovery, scenes::glass_chess_small),
         ("molecule", discovery, scenes::molecule),
-        ("torus", board("microbit"), scenes::torus),
+        ("torus", board("microbit"), scenes::torus_mesh),
         ("protein", discovery, scenes::protein),
     ];
     for (name, board, scene) in large {

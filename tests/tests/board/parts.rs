@@ -159,7 +159,7 @@ pub fn outgrown() -> [(&'static str, Compiled); 6] {
             through(Structure::Flagged),
         ),
         ("or has other structures", through(Structure::Grid)),
-        ("the blob outgrew STACK_DEPTH", super::scenes::torus()),
+        ("the blob outgrew STACK_DEPTH", super::scenes::torus_mesh()),
     ]
 }
 

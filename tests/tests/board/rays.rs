@@ -35,7 +35,7 @@ pub fn plan(plan: &mut Plan) {
             .run(move || primary_rays_of_suzanne_in_16_bits(board, format));
         plan.test_on("rays_without_a_camera::torus", board, format)
             .in_full()
-            .run(move || rays_without_a_camera(board, format, &scenes::torus()));
+            .run(move || rays_without_a_camera(board, format, &scenes::torus_mesh()));
         plan.test_on("rays_without_a_camera::suzanne", board, format)
             .with_scene(scenes::SUZANNE)
             .in_full()
@@ -64,7 +64,7 @@ pub fn plan(plan: &mut Plan) {
 
 /// The example of a range finder prints what the host finds, to the unit.
 fn the_range_finder_measures_distances(board: &'static Board) {
-    let compiled = scenes::torus();
+    let compiled = scenes::torus_mesh();
     let build = Build::new(board, board.format(), Structure::DualSplit, &compiled);
     let printed = build.program("range").lines();
     let scene = compiled.blob.scene().expect("the compiler's own blob");

@@ -102,7 +102,7 @@ pub fn protein() -> Compiled {
 }
 
 /// A torus of 2,048 triangles, lit from the side on which it is seen.
-pub fn torus() -> Compiled {
+pub fn torus_mesh() -> Compiled {
     const AROUND: u32 = 32;
     let angle = |step: u32| f64::from(step) * TAU / f64::from(AROUND);
     let vertex = |ring: u32, step: u32| {
@@ -135,7 +135,7 @@ pub fn torus() -> Compiled {
         }],
         materials: vec![Material::default()],
         objects: vec![Object {
-            name: String::from("torus"),
+            name: String::from("torus-mesh"),
             material: 0,
             shape: Shape::Mesh {
                 vertices: cells
@@ -148,7 +148,7 @@ pub fn torus() -> Compiled {
         }],
         ..Scene::default()
     };
-    compile_with("torus", scene, [64, 64], small())
+    compile_with("torus-mesh", scene, [64, 64], small())
 }
 
 /// The mesh on which tracers for boards are compared: seen from 3.2 before its middle, in a square

@@ -89,7 +89,7 @@ fn the_quick_scene_shows_every_shape_and_every_effect() {
 #[test]
 fn each_stress_scene_holds_one_shape_and_nothing_that_reflects() {
     for shape in [
-        "sphere", "triangle", "box", "disc", "cylinder", "cone", "frustum",
+        "sphere", "triangle", "box", "disc", "cylinder", "cone", "frustum", "torus", "plane",
     ] {
         let scene = fixture(&format!("stress-{shape}.toml"));
         assert_eq!(kinds(&scene), BTreeSet::from([shape]));
