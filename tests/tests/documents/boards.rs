@@ -183,6 +183,8 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
         ("box", "base"),
         ("disc", "base"),
         ("cone", "base"),
+        ("torus", "base"),
+        ("plane", "base"),
         ("shadow", "base"),
         ("highlight", "base"),
         ("mirror", "base"),
