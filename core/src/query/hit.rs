@@ -67,7 +67,8 @@ impl<N: Number> Found<N> {
 pub struct Hit<N: Number> {
     /// Where on the ray: a length in units along the ray's major axis (see [`Ray`]).
     pub t: N::Wide,
-    /// The point of the surface next to where `t` lies on the ray, in units.
+    /// The point of the surface next to where `t` lies on the ray, in units. In `fixed`, a plane met more than 2^18
+    /// units from the lattice's middle has a nearer point of it here, and `t` alone says where it is met.
     pub point: [N; 3],
     /// The geometric normal, of length 1: outward from solids, to the side from which a triangle's
     /// corners run counter-clockwise, along a disc's own.

@@ -74,7 +74,7 @@ const fn molecule(
 }
 
 static SAMPLES: &[Sample] = &[
-    fixture!("quick", "every shape and effect once; renders in a moment"),
+    fixture!("quick", "every effect once; renders in a moment"),
     fixture!(
         "glass-chess",
         "a glass chessboard with glass figures, about 150 objects"

@@ -216,12 +216,27 @@ fn sum(report: &Value, account: &str, word: &str) -> u64 {
     items.map(|item| item["bytes"].as_u64().unwrap()).sum()
 }
 
+/// What `quick` lacks.
+const OTHER_SHAPES: &[u8] = b"
+[[object]]
+kind = 'torus'
+center = [0, 1, 0]
+axis = [0, 1, 0]
+major_radius = 1
+minor_radius = 0.5
+
+[[object]]
+kind = 'plane'
+point = [0, -1, 0]
+normal = [0, 1, 0]
+";
+
 /// The call stack is enough for a build with the feature `small`, too, which takes more of it, and the
 /// ledger says for which builds that holds.
 #[test]
 fn the_call_stack_of_a_ledger_is_enough_for_small_code() {
     let folder = Folder::new();
-    folder.write("quick.toml", &fixture("quick"));
+    folder.write("quick.toml", &[&fixture("quick"), OTHER_SHAPES].concat());
     for accel in ["dual-split", "flagged", "bvh", "list"] {
         let build = [
             "build",
@@ -293,7 +308,7 @@ fn memory_report_lists_the_code_of_the_scenes_program() {
         let listed = sum(&report, "flash", "code");
         assert_eq!(report["ledger"]["fast"]["code"], listed);
         // What the scene does not call for.
-        let others = ["torus", "wide-indices", "display-values"];
+        let others = ["torus", "plane", "wide-indices", "display-values"];
         let parts: Vec<&str> = parts().filter(|it| !others.contains(it)).collect();
         let [fast, _] = program(board, format, "dual-split", &parts);
         assert_eq!(listed, fast.code + fast.code.div_ceil(100), "{board}");

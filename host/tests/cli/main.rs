@@ -14,6 +14,7 @@ mod merge;
 mod names;
 mod options;
 mod pipe;
+mod plane;
 mod render;
 mod sample;
 #[cfg(feature = "shell")]

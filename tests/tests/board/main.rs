@@ -67,6 +67,11 @@ fn pictures(plan: &mut Plan) {
         let is_ordinary = format == board.format();
         let test = if is_ordinary { test } else { test.in_full() };
         test.run(move || picture_is_the_hosts(board, format, &scenes::quick()));
+        plan.test_on("every_shape_on_every_board", board, format)
+            .in_full()
+            .run(move || {
+                compare_with_the_hosts(board, format, &parts::every_shape());
+            });
     }
 
     let names = [
@@ -177,6 +182,18 @@ fn other_processors(plan: &mut Plan) {
 /// nothing that panics or allocates, no soft floats in `fixed`, and no more memory than there is.
 fn picture_is_the_hosts(board: &'static Board, format: Format, scene: &Compiled) {
     let mut figures = Figures::new();
+    let (build, report) = compare_with_the_hosts(board, format, scene);
+    figures.add(&build.to_string(), &report);
+    figures.check();
+}
+
+/// Renders a picture that has to be the host's to the bit, by a program that neither panics nor allocates.
+/// Returns its figures.
+fn compare_with_the_hosts<'b>(
+    board: &'static Board,
+    format: Format,
+    scene: &'b Compiled,
+) -> (Build<'b>, BTreeMap<String, u64>) {
     let build = Build::new(board, format, Structure::DualSplit, scene);
     let program = build.program("picture");
     let mut report = program.run();
@@ -188,8 +205,7 @@ fn picture_is_the_hosts(board: &'static Board, format: Format, scene: &Compiled)
     if board != &WASM {
         look_into(&build, &program.elf(), board, format, &mut report);
     }
-    figures.add(&build.to_string(), &report);
-    figures.check();
+    (build, report)
 }
 
 /// Checks a linked program, and adds its figures to the report.

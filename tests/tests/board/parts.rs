@@ -53,6 +53,18 @@ pub fn scenes() -> Vec<Compiled> {
     all
 }
 
+/// A shape of every kind, with shadows and a mirror.
+pub fn every_shape() -> Compiled {
+    let mut scene = base();
+    scene.render.shadows = true;
+    scene.materials[0].mirror = [0.3; 3];
+    scene.objects = examples()
+        .into_iter()
+        .map(|(_, shape)| object(shape))
+        .collect();
+    compile("every-shape", scene)
+}
+
 /// What scenes often call for together: shapes, and effects. Each takes eight builds, two on every kind
 /// of core, so the list is short; the memory report bounds what is not on it.
 pub fn combinations() -> impl Iterator<Item = (Vec<&'static str>, Vec<&'static str>)> {

@@ -19,7 +19,7 @@ pub struct Compiled {
     pub blob: Blob,
 }
 
-/// Every shape and every effect.
+/// Every effect.
 pub fn quick() -> Compiled {
     fixture("quick", [48, 36])
 }
