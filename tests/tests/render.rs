@@ -45,7 +45,7 @@ fn fixtures_are_as_recorded() {
     }
     let report = check::run(&manifest, &|| ());
     eprintln!("{}", report.table());
-    let (broken, not_run) = (report.broken(), report.not_run());
+    let (broken, not_run) = (report.failed(), report.not_run());
     assert_eq!(
         (broken, not_run),
         (0, 0),

@@ -12,7 +12,8 @@ use gridel_host::shape::random::Random;
 use gridel_host::shape::{Cone, Cuboid};
 use gridel_host::verify::judge::{Answer, GRAZING, Judge, RoundedRay, STEPS};
 use gridel_host::verify::{
-    ClosedMesh, Heard, Promise, RAYS, Targets, UnitRay, ask, ask_all, check, leave, sealed, verify,
+    ClosedMesh, Promise, RAYS, StructureAnswer, Targets, UnitRay, ask, ask_all, check, leave,
+    sealed, verify,
 };
 use gridel_tests::effort::{part_of, third_of};
 use gridel_tests::scenes;
@@ -233,7 +234,7 @@ fn a_ray_that_is_nearly_parallel_to_a_cylinder_meets_its_cap() {
 }
 
 /// Changes the answers of one structure and returns which promises are found broken.
-fn broken_by(change: impl Fn(&mut Heard<f64>)) -> Vec<Promise> {
+fn broken_by(change: impl Fn(&mut StructureAnswer<f64>)) -> Vec<Promise> {
     let blob = mesh(2);
     let scene = blob.scene().expect("a scene");
     let judge = Judge::of(&scene);
@@ -252,7 +253,7 @@ fn broken_by(change: impl Fn(&mut Heard<f64>)) -> Vec<Promise> {
     promises
 }
 
-fn with_hit(change: impl Fn(&mut Hit<f64>)) -> impl Fn(&mut Heard<f64>) {
+fn with_hit(change: impl Fn(&mut Hit<f64>)) -> impl Fn(&mut StructureAnswer<f64>) {
     move |heard| {
         if let Some(hit) = &mut heard.hit {
             change(hit);
@@ -264,7 +265,7 @@ fn with_hit(change: impl Fn(&mut Hit<f64>)) -> impl Fn(&mut Heard<f64>) {
 fn mutated_answers_are_caught() {
     assert_eq!(broken_by(|_| ()), []);
     // Of one structure.
-    let flagged = |heard: &Heard<f64>| heard.structure == Structure::Flagged;
+    let flagged = |heard: &StructureAnswer<f64>| heard.structure == Structure::Flagged;
     let lost = broken_by(|heard| {
         if flagged(heard) {
             heard.hit = None;

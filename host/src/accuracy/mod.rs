@@ -8,7 +8,7 @@ mod page;
 mod setting;
 
 pub use bench::{Bench, Cost, MeasureError, Point, Reference, reference_setting};
-pub use page::{Exhibit, page};
+pub use page::{Comparison, page};
 pub use setting::{Lever, Setting, least_reference_samples, sweep};
 
 use crate::table::significant;

@@ -11,7 +11,7 @@ use std::io;
 
 /// A picture of a setting beside what differs from the reference, as sRGB pixels.
 #[derive(Clone, Debug)]
-pub struct Exhibit {
+pub struct Comparison {
     pub name: String,
     pub picture: Vec<u8>,
     /// Empty for the reference.
@@ -35,7 +35,7 @@ pub fn page(
     scene: &str,
     size: [u16; 2],
     results: &Results,
-    exhibits: &[Exhibit],
+    comparisons: &[Comparison],
 ) -> io::Result<String> {
     let mut page = String::from(HEAD);
     let name = escape(scene);
@@ -66,7 +66,7 @@ pub fn page(
         "<h2>Pictures</h2>\n<p>Below each: how display values differ from the \
         reference, eight times enlarged.</p>\n<div class=\"pictures\">\n",
     );
-    for exhibit in exhibits {
+    for exhibit in comparisons {
         let _ = write!(body, "<figure>{}", image(size, &exhibit.picture)?);
         if !exhibit.difference.is_empty() {
             body.push_str(&image(size, &exhibit.difference)?);

@@ -54,7 +54,7 @@ pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
             Some(Record::Picture(path, image)) if pictures.insert(path) => {
                 blessed.references.push((path.clone(), image.clone()));
             }
-            None if matches!(finding.outcome, super::Outcome::Broken(_)) => {
+            None if matches!(finding.outcome, super::Outcome::Failed(_)) => {
                 let what = format!("{}: {}", finding.check, finding.what);
                 // In several formats it is still one thing.
                 if !blessed.left.contains(&what) {

@@ -63,8 +63,8 @@ fn case(xml: &mut String, suite: &str, finding: &Finding) {
         );
     }
     let reason = match &finding.outcome {
-        Outcome::Held | Outcome::Recorded => None,
-        Outcome::Broken(why) => Some(("failure", why)),
+        Outcome::Passed | Outcome::Recorded => None,
+        Outcome::Failed(why) => Some(("failure", why)),
         Outcome::NotRun(why) => Some(("skipped", why)),
     };
     if let Some((tag, why)) = reason {
@@ -83,7 +83,7 @@ fn counts(findings: &[Finding]) -> String {
         "tests=\"{}\" skipped=\"{}\" failures=\"{}\" errors=\"0\"",
         findings.len(),
         count(|outcome| matches!(outcome, Outcome::NotRun(_))),
-        count(|outcome| matches!(outcome, Outcome::Broken(_))),
+        count(|outcome| matches!(outcome, Outcome::Failed(_))),
     )
 }
 

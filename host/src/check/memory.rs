@@ -34,7 +34,7 @@ impl Run<'_> {
                     structure.name(),
                     MemoryReport::STRUCTURES.map(Structure::name).join(", ")
                 );
-                self.push(on(), "target", None, None, Outcome::Broken(why));
+                self.push(on(), "target", None, None, Outcome::Failed(why));
                 return;
             }
         };
@@ -43,7 +43,7 @@ impl Run<'_> {
             let outcome = match account.used {
                 _ if account.missing() > 0 => {
                     let help = help(&report, what, scene);
-                    Outcome::Broken(format!(
+                    Outcome::Failed(format!(
                         "the scene takes {} bytes more than the {} of {}; what helps: {}",
                         grouped(account.missing()),
                         grouped(account.available),
@@ -51,8 +51,8 @@ impl Run<'_> {
                         help
                     ))
                 }
-                None => Outcome::Broken(format!("whether it fits is undecided: {unknown}")),
-                Some(_) => Outcome::Held,
+                None => Outcome::Failed(format!("whether it fits is undecided: {unknown}")),
+                Some(_) => Outcome::Passed,
             };
             let found = account.used.map(Figure::Count);
             let available = Some(Figure::Count(account.available));
@@ -82,7 +82,7 @@ impl Run<'_> {
             let allowed = Figure::Count(most);
             let Some(found) = found else {
                 let why = format!("whether {what} is within its budget is undecided: {unknown}");
-                self.push(on(), what, None, Some(allowed), Outcome::Broken(why));
+                self.push(on(), what, None, Some(allowed), Outcome::Failed(why));
                 continue;
             };
             let keys = ["budget", what].map(|name| Key::Name(name.into()));

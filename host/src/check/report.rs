@@ -40,9 +40,9 @@ pub struct Finding {
 #[serde(tag = "outcome", content = "why", rename_all = "kebab-case")]
 pub enum Outcome {
     /// The figure is as the manifest says, or better.
-    Held,
+    Passed,
     /// The figure is not as the manifest says, and why.
-    Broken(String),
+    Failed(String),
     /// The figure was not as the manifest said; the manifest has it now.
     Recorded,
     /// The figure could not be measured here, and why.
@@ -94,14 +94,14 @@ impl Report {
             .count()
     }
 
-    /// How many findings hold.
-    pub fn held(&self) -> usize {
-        self.count(|outcome| *outcome == Outcome::Held)
+    /// The number of comparisons that passed.
+    pub fn passed(&self) -> usize {
+        self.count(|outcome| *outcome == Outcome::Passed)
     }
 
-    /// How many do not.
-    pub fn broken(&self) -> usize {
-        self.count(|outcome| matches!(outcome, Outcome::Broken(_)))
+    /// The number of comparisons that failed.
+    pub fn failed(&self) -> usize {
+        self.count(|outcome| matches!(outcome, Outcome::Failed(_)))
     }
 
     /// How many were recorded.
@@ -143,8 +143,8 @@ impl Report {
                 figure(&finding.found),
                 figure(&finding.allowed),
                 match &finding.outcome {
-                    Outcome::Held => String::from("passed"),
-                    Outcome::Broken(_) => String::from("FAILED"),
+                    Outcome::Passed => String::from("passed"),
+                    Outcome::Failed(_) => String::from("FAILED"),
                     Outcome::Recorded => String::from("recorded"),
                     Outcome::NotRun(_) => String::from("skipped"),
                 },

@@ -25,7 +25,7 @@ pub fn run(manifest: &Manifest, progress: &dyn Fn()) -> Report {
             warnings: &mut report.warnings,
         };
         if let Err(why) = run.all(progress) {
-            run.push(None, "scene", None, None, Outcome::Broken(why));
+            run.push(None, "scene", None, None, Outcome::Failed(why));
         }
     }
     report
@@ -202,12 +202,12 @@ impl Run<'_> {
         evidence: Evidence,
     ) {
         let outcome = match &recorded {
-            Some(recorded) if found.within(recorded) => Outcome::Held,
-            Some(_) => Outcome::Broken(String::from("the picture is not the recorded one")),
-            None => Outcome::Broken(String::from("no hash is recorded for this format")),
+            Some(recorded) if found.within(recorded) => Outcome::Passed,
+            Some(_) => Outcome::Failed(String::from("the picture is not the recorded one")),
+            None => Outcome::Failed(String::from("no hash is recorded for this format")),
         };
         let keys = vec![Key::Name("hash".into()), Key::Name(format.name().into())];
-        let broken = outcome != Outcome::Held;
+        let broken = outcome != Outcome::Passed;
         let record = self.value(keys, &found);
         let on = Some(format.name().to_owned());
         let finding = self.push(on, "hash", Some(found), recorded, outcome);
@@ -242,18 +242,18 @@ impl Run<'_> {
                 };
                 let cause = format!("cannot be read: {error}");
                 let error = self.manifest.error(&reference.picture, cause, remedy);
-                (None, Outcome::Broken(explained(&error)))
+                (None, Outcome::Failed(explained(&error)))
             }
             Ok(None) => {
                 let [width, height] = image.size;
                 let why = format!("the reference is not {width} by {height} pixels large");
-                (None, Outcome::Broken(why))
+                (None, Outcome::Failed(why))
             }
             Ok(Some(difference)) => {
                 let outcome = if difference.beyond <= reference.pixels {
-                    Outcome::Held
+                    Outcome::Passed
                 } else {
-                    Outcome::Broken(format!(
+                    Outcome::Failed(format!(
                         "{} pixels differ by more than {} of 255, and the largest difference is {}",
                         difference.beyond, reference.channel, difference.largest
                     ))
@@ -261,7 +261,7 @@ impl Run<'_> {
                 (Some(Figure::Count(difference.beyond)), outcome)
             }
         };
-        let broken = outcome != Outcome::Held;
+        let broken = outcome != Outcome::Passed;
         let evidence = evidence(name, &image, expected.ok());
         let (on, allowed) = (
             Some(format.name().to_owned()),
@@ -291,7 +291,7 @@ impl Run<'_> {
         let broken = match &ran {
             Ran::Printed(..) => None,
             Ran::NotRun(why) => Some(Outcome::NotRun(why.clone())),
-            Ran::Failed(why) => Some(Outcome::Broken(why.clone())),
+            Ran::Failed(why) => Some(Outcome::Failed(why.clone())),
         };
         let mut printed = None;
         if let Ran::Printed(figures, picture) = ran {
@@ -320,7 +320,7 @@ impl Run<'_> {
                 }
                 (Some(None), _) => {
                     let why = format!("the program does not print the figure {name:?}");
-                    self.push(on(), name, None, most, Outcome::Broken(why));
+                    self.push(on(), name, None, most, Outcome::Failed(why));
                 }
                 (None, Some(outcome)) => {
                     let outcome = outcome.clone();
@@ -333,7 +333,7 @@ impl Run<'_> {
             return Ok(());
         }
         let Some((_, bytes)) = printed else {
-            let outcome = broken.unwrap_or(Outcome::Held);
+            let outcome = broken.unwrap_or(Outcome::Passed);
             self.push(on(), "picture", None, None, outcome);
             return Ok(());
         };
@@ -342,7 +342,7 @@ impl Run<'_> {
         let rendered = self.render(scene, with, Settings::of(scene), false)?;
         let expected = Image::of(&rendered.picture);
         if bytes.as_ref().is_ok_and(|bytes| *bytes == expected.pixels) {
-            self.push(on(), "picture", None, None, Outcome::Held);
+            self.push(on(), "picture", None, None, Outcome::Passed);
             return Ok(());
         }
         let (why, evidence) = match bytes {
@@ -363,7 +363,7 @@ impl Run<'_> {
             }
             Err(why) => (why, None),
         };
-        self.push(on(), "picture", None, None, Outcome::Broken(why))
+        self.push(on(), "picture", None, None, Outcome::Failed(why))
             .evidence = evidence;
         Ok(())
     }
@@ -388,11 +388,11 @@ impl Run<'_> {
         let within = most.as_ref().is_none_or(|most| found.within(most));
         let record = (!within).then(|| self.value(keys, &found));
         let outcome = if within {
-            Outcome::Held
+            Outcome::Passed
         } else {
             let most = most.as_ref().map(Figure::to_string).unwrap_or_default();
             let help = help.map_or(String::new(), |help| format!("; what helps: {help}"));
-            Outcome::Broken(format!(
+            Outcome::Failed(format!(
                 "{what} is {found}, and at most {most} is allowed{help}"
             ))
         };

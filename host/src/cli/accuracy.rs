@@ -13,7 +13,7 @@ use super::failure::Failure;
 use super::output::{print, print_json_warned, prove, write_texts};
 use super::source::import;
 use choice::{Choice, choice};
-use folder::{CSV, PAGE, exhibits, kept};
+use folder::{CSV, PAGE, comparisons, kept};
 use gridel_host::accuracy::{
     Bench, MeasureError, Point, frontier, least_reference_samples, page, sentences, sweep,
 };
@@ -100,8 +100,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         prove(&folder.join(name))?;
     }
     let results = measure(arguments, &mut bench, &folder, (key, kept), &settings)?;
-    let exhibits = exhibits(&folder, size, &results)?;
-    let page = page(&stem, size, &results, &exhibits)
+    let comparisons = comparisons(&folder, size, &results)?;
+    let page = page(&stem, size, &results, &comparisons)
         .map_err(|error| Failure::failed(error.to_string(), "report this as a fault of gridel"))?;
     let csv = csv(&results.points);
     write_texts(&folder, &[(PAGE, page), (CSV, csv)])?;

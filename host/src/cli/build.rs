@@ -125,7 +125,7 @@ struct Built<'r> {
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     unresolved: &'r [Unresolved],
     /// Where a board is given.
-    #[serde(rename = "ledger", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "memory_report", skip_serializing_if = "Option::is_none")]
     memory: Option<&'r MemoryReport>,
 }
 

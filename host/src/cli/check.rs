@@ -50,8 +50,8 @@ pub struct Arguments {
 #[derive(Serialize)]
 struct Checked<'r> {
     manifest: String,
-    held: usize,
-    broken: usize,
+    passed: usize,
+    failed: usize,
     /// What was broken and is recorded now.
     recorded: usize,
     not_run: usize,
@@ -70,7 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.require_boards {
         for finding in &mut report.findings {
             if let Outcome::NotRun(why) = &finding.outcome {
-                finding.outcome = Outcome::Broken(format!("skipped: {why}"));
+                finding.outcome = Outcome::Failed(format!("skipped: {why}"));
             }
         }
     }
@@ -99,11 +99,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let recorded = staged
         .and_then(Files::keep)
         .map_err(|(path, error)| Failure::writing(&path, &error));
-    let held = match report.broken() {
+    let failure = match report.failed() {
         0 => Ok(()),
         _ => Err(Failure::Broken),
     };
-    recorded.and(reported).and(shown).and(printed).and(held)
+    recorded.and(reported).and(shown).and(printed).and(failure)
 }
 
 /// Refuses outputs that would destroy what is read or cannot be written, before any work.
@@ -130,13 +130,13 @@ fn print_findings(
     report: &Report,
     blessed: Option<&Blessed>,
 ) -> Result<(), Failure> {
-    let (held, broken, recorded) = (report.held(), report.broken(), report.recorded());
+    let (passed, failed, recorded) = (report.passed(), report.failed(), report.recorded());
     let not_run = report.not_run();
     let printed = if arguments.json {
         print_json(&Checked {
             manifest: arguments.manifest.display().to_string(),
-            held,
-            broken,
+            passed,
+            failed,
             recorded,
             not_run,
             report,
@@ -146,7 +146,7 @@ fn print_findings(
             Some(_) => format!("{recorded} recorded, "),
             None => String::new(),
         };
-        let summary = format!("{held} passed, {recorded}{broken} failed, {not_run} skipped\n");
+        let summary = format!("{passed} passed, {recorded}{failed} failed, {not_run} skipped\n");
         let diff = blessed.map(Blessed::diff).unwrap_or_default();
         let reasons = reasons(report);
         print(format!("{}{reasons}{summary}{diff}", report.table()))
@@ -167,7 +167,7 @@ fn print_findings(
 fn reasons(report: &Report) -> String {
     let mut lines = Vec::new();
     for finding in &report.findings {
-        let (Outcome::Broken(why) | Outcome::NotRun(why)) = &finding.outcome else {
+        let (Outcome::Failed(why) | Outcome::NotRun(why)) = &finding.outcome else {
             continue;
         };
         let on = finding.on.as_ref().map(|on| format!(" on {on}"));

@@ -121,15 +121,15 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         steps += growth_steps(&imported.scene, &options);
     }
     let progress = Progress::steps("comparing", steps);
-    let tell = |what: &str| {
+    let show = |what: &str| {
         progress.show(what);
         progress.step();
     };
     let comparison =
-        compare(&imported.scene, &options, &tell).map_err(|error| Failure::in_file(path, error))?;
+        compare(&imported.scene, &options, &show).map_err(|error| Failure::in_file(path, error))?;
     let grown = match &arguments.plot {
         Some(_) => Some(
-            growth(&imported.scene, &options, &tell)
+            growth(&imported.scene, &options, &show)
                 .map_err(|error| Failure::in_file(path, error))?,
         ),
         None => None,

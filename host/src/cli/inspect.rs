@@ -50,7 +50,7 @@ struct Inspection {
     working_memory: Vec<WorkingMemory>,
     effects: Vec<CalledFor>,
     /// Where a board is given.
-    #[serde(rename = "ledger", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "memory_report", skip_serializing_if = "Option::is_none")]
     memory: Option<MemoryReport>,
 }
 

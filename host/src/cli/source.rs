@@ -109,13 +109,13 @@ impl Source {
             compiling.lattice_bits = bits;
         }
         let progress = Progress::unknown("compiling");
-        let tell = |structure: Structure, done: u64, of: u64| {
+        let on_progress = |structure: Structure, done: u64, of: u64| {
             let share = 100 * done / of.max(1);
             let cells = grouped(of);
             let name = structure.name();
             progress.show(&format!("compiling {name}: {share} % of {cells} cells"));
         };
-        let compiled = compile::compile_telling(&imported.scene, &compiling, &tell);
+        let compiled = compile::compile_with_progress(&imported.scene, &compiling, &on_progress);
         drop(progress);
         let Compiled { blob, report } =
             compiled.map_err(|error| Failure::compiling(input.path(), error))?;

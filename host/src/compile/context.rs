@@ -2,10 +2,10 @@
 
 use super::candidates::target::Targets;
 use super::hierarchy::{Node, Primitive};
-use super::options::{Options, Tell};
+use super::options::{OnProgress, Options};
 use super::pairs::Flat;
 use super::primitives::Primitives;
-use super::surroundings::Surroundings;
+use super::shading_data::ShadingData;
 use super::volumes::Tree;
 use super::wide::Wide;
 use crate::scene::Scene;
@@ -27,9 +27,9 @@ pub struct BuildContext<'g> {
     pub primitives: &'g Primitives,
     /// The box of all primitives; a point without any.
     pub bounds: UnitBox,
-    pub surroundings: &'g Surroundings,
+    pub shading_data: &'g ShadingData,
     pub options: &'g Options,
-    pub tell: Tell<'g>,
+    pub on_progress: OnProgress<'g>,
 }
 
 impl<'g> BuildContext<'g> {

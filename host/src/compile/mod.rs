@@ -21,8 +21,8 @@ mod pairs;
 mod primitives;
 mod records;
 mod section;
+mod shading_data;
 mod structures;
-mod surroundings;
 mod volumes;
 mod wide;
 mod writer;
@@ -34,7 +34,7 @@ pub use error::CompileError;
 pub use framing::{BACKGROUND, framing};
 pub use lattice::BITS as LATTICE_BITS;
 pub use names::{KeptNames, Names};
-pub use options::{LARGEST_LEAF, Options, Tell};
+pub use options::{LARGEST_LEAF, OnProgress, Options};
 pub use primitives::LeftOut;
 pub use structures::{takes_hierarchy, usual_budget};
 pub use wide::Quality;
@@ -126,23 +126,23 @@ pub struct TableStats {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileError> {
-    compile_telling(scene, options, &|_, _, _| ())
+    compile_with_progress(scene, options, &|_, _, _| ())
 }
 
 /// Compiles a scene, and reports the progress of tables, which take long.
 ///
 /// # Errors
 /// As [`compile`].
-pub fn compile_telling(
+pub fn compile_with_progress(
     scene: &Scene,
     options: &Options,
-    tell: Tell<'_>,
+    on_progress: OnProgress<'_>,
 ) -> Result<Compiled, CompileError> {
     check(scene, options)?;
     let extent = primitives::extent(scene);
     let (lattice, snapped) = snap(scene, extent, options.lattice_bits)?;
     let structures = held(&options.structures);
-    let surroundings = surroundings::Surroundings::of(scene, &lattice, extent)?;
+    let shading_data = shading_data::ShadingData::of(scene, &lattice, extent)?;
     let started = Instant::now();
     let Hierarchies {
         root,
@@ -165,9 +165,9 @@ pub fn compile_telling(
         order: &order,
         primitives: &snapped,
         bounds,
-        surroundings: &surroundings,
+        shading_data: &shading_data,
         options,
-        tell,
+        on_progress,
     };
     let layouts = structures
         .iter()
@@ -226,8 +226,8 @@ pub fn compile_telling(
         sah_cost,
         bytes,
         longest_list,
-        effects: surroundings.called_for.clone(),
-        supplied: surroundings.supplied.clone(),
+        effects: shading_data.called_for.clone(),
+        supplied: shading_data.supplied.clone(),
         setup,
         tables,
         names,

@@ -71,4 +71,4 @@ impl Default for Options {
 
 /// Called now and then, from any thread, with the number of finished cells of a structure's table, and
 /// of all its cells. A table is tried in several sizes where none is asked for.
-pub type Tell<'t> = &'t (dyn Fn(Structure, u64, u64) + Sync);
+pub type OnProgress<'t> = &'t (dyn Fn(Structure, u64, u64) + Sync);

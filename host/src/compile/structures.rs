@@ -12,7 +12,7 @@ use super::layout::Layout;
 use super::octree;
 use super::options::Options;
 use super::section::section;
-use super::surroundings::Surroundings;
+use super::shading_data::ShadingData;
 use super::writer;
 use gridel_core::Structure;
 use gridel_core::format::SectionKind;
@@ -24,8 +24,8 @@ use gridel_core::shared::ClassPoint;
 /// If it would exceed its budget.
 pub fn lay_out(structure: Structure, context: &BuildContext<'_>) -> Result<Layout, CompileError> {
     let flat = context.flat;
-    let tell = |done, of| (context.tell)(structure, done, of);
-    let budget = budget(context.options, structure, &tell);
+    let on_progress = |done, of| (context.on_progress)(structure, done, of);
+    let budget = budget(context.options, structure, &on_progress);
     Ok(match structure {
         Structure::List => Layout::apart(
             structure,
@@ -89,7 +89,7 @@ pub fn lay_out(structure: Structure, context: &BuildContext<'_>) -> Result<Layou
             Layout::of_classes(ray_classes::build(&context.targets(), &rays, budget)?)
         }
         Structure::Apex => {
-            let Surroundings { view, lights, .. } = context.surroundings;
+            let ShadingData { view, lights, .. } = context.shading_data;
             Layout::of_apexes(apex::build(&context.targets(), view, lights, budget))
         }
         Structure::Wide => {
@@ -117,11 +117,15 @@ fn picture_rays(context: &BuildContext<'_>) -> Result<Vec<ClassPoint>, CompileEr
 }
 
 /// The budget of a structure's table.
-fn budget<'t>(options: &Options, structure: Structure, tell: budget::Tell<'t>) -> Budget<'t> {
+fn budget<'t>(
+    options: &Options,
+    structure: Structure,
+    on_progress: budget::OnProgress<'t>,
+) -> Budget<'t> {
     Budget {
         gridels: options.gridels,
         bytes: options.budget.unwrap_or(usual_budget(structure)),
-        tell,
+        on_progress,
     }
 }
 

@@ -80,15 +80,15 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
         lattice,
         primitives,
         flat,
-        surroundings,
+        shading_data,
         ..
     } = *context;
     let objects = scene.objects.len() as u32;
     let total = primitives.total;
 
-    let mut sections = vec![section(SectionKind::View, &[surroundings.view])];
-    sections.push(section(SectionKind::Lights, &surroundings.lights));
-    sections.push(section(SectionKind::Materials, &surroundings.materials));
+    let mut sections = vec![section(SectionKind::View, &[shading_data.view])];
+    sections.push(section(SectionKind::Lights, &shading_data.lights));
+    sections.push(section(SectionKind::Materials, &shading_data.materials));
     if objects != total && objects > 1 {
         sections.push(indices(
             SectionKind::ObjectFirst,
@@ -96,10 +96,10 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
             2,
         ));
     }
-    if surroundings.materials.len() > 1 {
+    if shading_data.materials.len() > 1 {
         sections.push(indices(
             SectionKind::ObjectMaterial,
-            &surroundings.object_material,
+            &shading_data.object_material,
             1,
         ));
     }
@@ -137,7 +137,7 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
         blob_bytes: 0,
         checksum: 0,
         structures,
-        effects: surroundings.effects.0,
+        effects: shading_data.effects.0,
         stack_depth,
         longest_leaf: if uses_leaves {
             flat.longest_leaf as u16

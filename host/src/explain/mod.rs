@@ -96,9 +96,9 @@ pub fn explain(
     Ok(story)
 }
 
-type Told = Result<([u16; 3], Recorder), ExplainError>;
+type Recording = Result<([u16; 3], Recorder), ExplainError>;
 
-fn with_format<N: Number>(scene: &Scene<'_>, settings: Settings, subject: Subject) -> Told {
+fn with_format<N: Number>(scene: &Scene<'_>, settings: Settings, subject: Subject) -> Recording {
     if Effects(OPAQUE).contains(scene.effects()) {
         watch::<N, OPAQUE>(scene, settings, subject)
     } else {
@@ -110,7 +110,7 @@ fn watch<N: Number, const EFFECTS: u32>(
     scene: &Scene<'_>,
     settings: Settings,
     subject: Subject,
-) -> Told {
+) -> Recording {
     let renderer = Renderer::<N, DynAccel, EFFECTS>::with_settings(scene, settings)?;
     let mut space = Box::new(Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new());
     let mut space = space.as_view();

@@ -58,7 +58,7 @@ pub struct Fault {
 
 /// What one structure answers.
 #[derive(Clone, Copy, Debug)]
-pub struct Heard<N: Number> {
+pub struct StructureAnswer<N: Number> {
     pub structure: Structure,
     pub hit: Option<Hit<N>>,
     pub any: bool,
@@ -77,9 +77,9 @@ pub struct Outcome {
 }
 
 /// Asks one structure.
-pub fn ask<N: Number, A: Accel>(scene: &Scene<'_>, ray: &Ray<N>) -> Heard<N> {
+pub fn ask<N: Number, A: Accel>(scene: &Scene<'_>, ray: &Ray<N>) -> StructureAnswer<N> {
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
-    Heard {
+    StructureAnswer {
         structure: A::STRUCTURE,
         hit: closest_hit::<N, A, _>(scene, ray, stack.as_view(), &mut NoCount),
         any: any_hit::<N, A, _>(scene, ray, stack.as_view(), &mut NoCount),
@@ -87,14 +87,14 @@ pub fn ask<N: Number, A: Accel>(scene: &Scene<'_>, ray: &Ray<N>) -> Heard<N> {
 }
 
 /// Asks the list and then every structure that a scene holds.
-pub fn ask_all<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Heard<N>> {
+pub fn ask_all<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<StructureAnswer<N>> {
     let list = ask::<N, List>(scene, ray);
     let others = Structure::ALL
         .into_iter()
         .filter(|&structure| structure != Structure::List)
         .filter_map(|structure| {
             let chosen = scene.choose(structure)?;
-            Some(Heard {
+            Some(StructureAnswer {
                 structure,
                 ..ask::<N, DynAccel>(&chosen, ray)
             })
@@ -108,7 +108,7 @@ pub fn check<N: Number>(
     scene: &Scene<'_>,
     judge: &Judge,
     ray: &Ray<N>,
-    heard: &[Heard<N>],
+    heard: &[StructureAnswer<N>],
     control: bool,
 ) -> Outcome {
     let mut outcome = Outcome::default();

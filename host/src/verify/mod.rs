@@ -12,7 +12,9 @@ pub mod rays;
 mod shadow;
 
 pub use crate::trace::UnitRay;
-pub use check::{Fault, Heard, Outcome, Promise, ask, ask_all, check, depart, leave, sealed};
+pub use check::{
+    Fault, Outcome, Promise, StructureAnswer, ask, ask_all, check, depart, leave, sealed,
+};
 pub use closed::ClosedMesh;
 pub use rays::Targets;
 

@@ -65,12 +65,12 @@ fn blessing_makes_checks_hold() {
     assert!(text.contains("working_bytes = 1000"), "{text}");
 
     let report = folder.json(&["check", "check.toml"]);
-    assert_eq!(report["held"], 5);
-    assert_eq!(report["broken"], 0);
+    assert_eq!(report["passed"], 5);
+    assert_eq!(report["failed"], 0);
     let finding = &report["findings"][0];
     assert_eq!(finding["check"], "quick");
     assert_eq!(finding["what"], "blob_bytes");
-    assert_eq!(finding["outcome"], "held");
+    assert_eq!(finding["outcome"], "passed");
     assert_eq!(finding["found"], finding["allowed"]);
 
     // The scene changes: JSON says why, and the exit code that something is.
@@ -84,7 +84,7 @@ fn blessing_makes_checks_hold() {
     let broken = folder.run(&["check", "check.toml", "--json"]);
     assert_eq!(broken.code, Some(1));
     let report: Value = serde_json::from_str(&broken.stdout).unwrap();
-    assert_eq!(report["broken"], 2, "{report}");
+    assert_eq!(report["failed"], 2, "{report}");
     let hash = report["findings"]
         .as_array()
         .unwrap()

@@ -154,14 +154,16 @@ fn broken_blobs_are_told() {
     );
 }
 
-/// The items of the ledger add up, and the blob's are all of its bytes.
+/// The items of the memory report add up, and the blob's are all of its bytes.
 #[test]
-fn the_ledger_of_a_board_adds_up() {
+fn the_memory_report_of_a_board_adds_up() {
     let folder = Folder::new();
     folder.write("quick.toml", &fixture("quick"));
     for target in ["stm32vldiscovery", "sifive_e"] {
         let report = folder.json(&["inspect", "quick.toml", "--target", target]);
-        let items = report["ledger"]["flash"]["items"].as_array().unwrap();
+        let items = report["memory_report"]["flash"]["items"]
+            .as_array()
+            .unwrap();
         let blob = items
             .iter()
             .filter(|item| item["what"].as_str().unwrap().starts_with("blob"));
@@ -175,7 +177,7 @@ fn the_ledger_of_a_board_adds_up() {
                 .sum::<u64>()
                 > 16 * 1024
         );
-        let ram = report["ledger"]["ram"]["items"].as_array().unwrap();
+        let ram = report["memory_report"]["ram"]["items"].as_array().unwrap();
         let all: u64 = ram.iter().map(|item| item["bytes"].as_u64().unwrap()).sum();
         let text = folder.done(&["inspect", "quick.toml", "--target", target]);
         let (_, ram) = text.split_once("RAM  in all").unwrap();
@@ -207,9 +209,11 @@ fn program(board: &str, format: &str, accel: &str, parts: &[&str]) -> [Footprint
     [program.fast.unwrap(), program.small.unwrap()]
 }
 
-/// The bytes of all items of a ledger's account that begin with a word.
+/// The bytes of all items of a memory report's account that begin with a word.
 fn sum(report: &Value, account: &str, word: &str) -> u64 {
-    let items = report["ledger"][account]["items"].as_array().unwrap();
+    let items = report["memory_report"][account]["items"]
+        .as_array()
+        .unwrap();
     let items = items
         .iter()
         .filter(|item| item["what"].as_str().unwrap().starts_with(word));
@@ -232,9 +236,9 @@ normal = [0, 1, 0]
 ";
 
 /// The call stack is enough for a build with the feature `small`, too, which takes more of it, and the
-/// ledger says for which builds that holds.
+/// memory report says for which builds that holds.
 #[test]
-fn the_call_stack_of_a_ledger_is_enough_for_small_code() {
+fn the_call_stack_of_a_memory_report_is_enough_for_small_code() {
     let folder = Folder::new();
     folder.write("quick.toml", &[&fixture("quick"), OTHER_SHAPES].concat());
     for accel in ["dual-split", "flagged", "bvh", "list"] {
@@ -255,8 +259,11 @@ fn the_call_stack_of_a_ledger_is_enough_for_small_code() {
         ] {
             let inspect = ["inspect", "quick.gridel", "--target", board];
             let report = folder.json(&inspect);
-            let [fast, small] = ["fast", "small"]
-                .map(|build| report["ledger"][build]["call_stack"].as_u64().unwrap());
+            let [fast, small] = ["fast", "small"].map(|build| {
+                report["memory_report"][build]["call_stack"]
+                    .as_u64()
+                    .unwrap()
+            });
             let reported = sum(&report, "ram", "call stack");
             assert_eq!(reported, fast.max(small));
             // The scene calls for all but vertex indices of more than 16 bits.
@@ -280,7 +287,11 @@ fn the_call_stack_of_a_ledger_is_enough_for_small_code() {
     // What was accepted for the fast build alone.
     let report = folder.json(&["inspect", "quick.toml", "--target", "stm32vldiscovery"]);
     let all = sum(&report, "ram", "");
-    let call_stack = |build: &str| report["ledger"][build]["call_stack"].as_u64().unwrap();
+    let call_stack = |build: &str| {
+        report["memory_report"][build]["call_stack"]
+            .as_u64()
+            .unwrap()
+    };
     let more = call_stack("small") - call_stack("fast");
     let build = |ram: u64| {
         let ram = ram.to_string();
@@ -306,13 +317,13 @@ fn memory_report_lists_the_code_of_the_scenes_program() {
     ] {
         let report = folder.json(&["inspect", "quick.toml", "--target", board]);
         let listed = sum(&report, "flash", "code");
-        assert_eq!(report["ledger"]["fast"]["code"], listed);
+        assert_eq!(report["memory_report"]["fast"]["code"], listed);
         // What the scene does not call for.
         let others = ["torus", "plane", "wide-indices", "display-values"];
         let parts: Vec<&str> = parts().filter(|it| !others.contains(it)).collect();
         let [fast, _] = program(board, format, "dual-split", &parts);
         assert_eq!(listed, fast.code + fast.code.div_ceil(100), "{board}");
-        assert_eq!(report["ledger"]["measured"], true, "{board}");
+        assert_eq!(report["memory_report"]["measured"], true, "{board}");
     }
 }
 
@@ -327,10 +338,10 @@ fn little_is_asked_of_every_board_for_a_scene_that_calls_for_little() {
     for board in BOARDS.map(|board| board.name) {
         let report = folder.json(&["inspect", "plain.toml", "--target", board]);
         let code = sum(&report, "flash", "code");
-        let items = report["ledger"]["flash"]["items"].to_string();
+        let items = report["memory_report"]["flash"]["items"].to_string();
         assert!(items.contains("code: sphere"), "{items}");
         assert!(!items.contains("cone"), "{items}");
-        let format = report["ledger"]["format"].as_str().unwrap();
+        let format = report["memory_report"]["format"].as_str().unwrap();
         let [most, _] = everything(board, format, "dual-split").map(|build| build.code);
         assert!(5 * code < 4 * most, "{board}: {code} of {most}");
         folder.done(&[
@@ -385,7 +396,7 @@ fn what_was_not_measured_is_refused() {
 
 /// A scene that does not fit is shown all the same, and refused.
 #[test]
-fn a_ledger_with_something_missing_is_refused() {
+fn a_memory_report_with_something_missing_is_refused() {
     let folder = Folder::new();
     folder.write("quick.toml", &fixture("quick"));
     for json in [&[][..], &["--json"]] {
@@ -395,7 +406,7 @@ fn a_ledger_with_something_missing_is_refused() {
         let shown = if json.is_empty() {
             "RAM  MISSING"
         } else {
-            "\"ledger\""
+            "\"memory_report\""
         };
         assert!(run.stdout.contains(shown), "{}", run.stdout);
         assert!(run.said().contains("bytes of RAM"), "{}", run.stderr);

@@ -33,7 +33,7 @@ fn figures_are_held_and_recorded() {
     );
     let (manifest, report) = folder.run(&text);
     assert_eq!(
-        (report.held(), report.broken(), report.not_run()),
+        (report.passed(), report.failed(), report.not_run()),
         (1, 3, 0)
     );
     let whys: Vec<_> = report.findings.iter().map(why).collect();
@@ -69,11 +69,11 @@ fn failures_are_broken_and_what_is_missing_is_not_run() {
     assert!(matches!(&missing.outcome, Outcome::NotRun(why) if why.contains("not installed")));
     fs::write(folder.path("program.elf"), BALL).unwrap();
     let text = first(&board(&toy, budget));
-    assert!(matches!(&text.outcome, Outcome::Broken(why) if why.contains("is not an ELF file")));
+    assert!(matches!(&text.outcome, Outcome::Failed(why) if why.contains("is not an ELF file")));
     fs::write(folder.path("program.elf"), "\x7fELF").unwrap();
     let failed = first(&board(&toy, budget));
-    assert!(matches!(&failed.outcome, Outcome::Broken(why) if why.contains("no luck")));
+    assert!(matches!(&failed.outcome, Outcome::Failed(why) if why.contains("no luck")));
     let toy = emulator(&folder, "exec sleep 60");
     let endless = first(&board(&toy, budget));
-    assert!(matches!(&endless.outcome, Outcome::Broken(why) if why.contains("after 1 s")));
+    assert!(matches!(&endless.outcome, Outcome::Failed(why) if why.contains("after 1 s")));
 }

@@ -20,7 +20,7 @@ tests_per_ray = 0.25
 "#;
     let (manifest, report) = folder.run(text);
     assert_eq!(
-        (report.held(), report.broken(), report.not_run()),
+        (report.passed(), report.failed(), report.not_run()),
         (2, 6, 0)
     );
     let blessed = bless(&manifest, &report);
@@ -56,7 +56,7 @@ tests_per_ray = 0.25
     // And now everything holds, in both formats.
     let (manifest, report) = folder.run(&new);
     assert_eq!(
-        (report.held(), report.broken()),
+        (report.passed(), report.failed()),
         (8, 0),
         "{}",
         report.table()
@@ -70,15 +70,15 @@ fn another_picture_is_broken_and_shown() {
     let folder = Folder::new();
     let text = "[[check]]\nscene = \"ball.toml\"\nhash = {}\nreference = \"ball.png\"\n";
     let (manifest, report) = folder.run(text);
-    assert_eq!(report.broken(), 2);
+    assert_eq!(report.failed(), 2);
     assert!(why(&report.findings[1]).contains("ball.png cannot be read"));
     record(&bless(&manifest, &report));
     let (_, report) = folder.run(&folder.text());
-    assert_eq!((report.held(), report.broken()), (2, 0));
+    assert_eq!((report.passed(), report.failed()), (2, 0));
 
     fs::write(folder.path("ball.toml"), BALL.replace("= 0.5", "= 0.51")).unwrap();
     let (_, report) = folder.run(&folder.text());
-    assert_eq!(report.broken(), 2, "{}", report.table());
+    assert_eq!(report.failed(), 2, "{}", report.table());
     for finding in &report.findings {
         let evidence = finding.evidence.as_ref().unwrap();
         assert_eq!(evidence.name, "ball-f32");
@@ -98,7 +98,7 @@ fn another_picture_is_broken_and_shown() {
     let tolerant = format!("{text}tolerance = {{ channel = 1 }}\n");
     let (_, report) = folder.run(&tolerant);
     assert_eq!(
-        (report.held(), report.broken()),
+        (report.passed(), report.failed()),
         (1, 1),
         "{}",
         report.table()
@@ -110,7 +110,7 @@ fn another_picture_is_broken_and_shown() {
         _ => panic!("{:?}", report.findings[1]),
     };
     assert!((1..=191).contains(&found));
-    assert_eq!(report.findings[1].outcome, Outcome::Held);
+    assert_eq!(report.findings[1].outcome, Outcome::Passed);
 }
 
 #[test]
@@ -125,7 +125,7 @@ fn what_cannot_be_read_is_broken_and_the_rest_goes_on() {
         [[check]]\nname = \"blob\"\nscene = \"broken.gridel\"\nlattice_bits = 16\nhash = {}
         [[check]]\nscene = \"ball.toml\"\nbudget = { blob_bytes = 5000 }";
     let (manifest, report) = folder.run(text);
-    assert_eq!((report.held(), report.broken()), (1, 4));
+    assert_eq!((report.passed(), report.failed()), (1, 4));
     for (finding, cause) in report.findings.iter().zip([
         "missing.toml cannot be read",
         "broken.gridel: ",

@@ -53,8 +53,8 @@ impl Folder {
 
 fn why(finding: &Finding) -> &str {
     match &finding.outcome {
-        Outcome::Held | Outcome::Recorded => "",
-        Outcome::Broken(why) | Outcome::NotRun(why) => why,
+        Outcome::Passed | Outcome::Recorded => "",
+        Outcome::Failed(why) | Outcome::NotRun(why) => why,
     }
 }
 

@@ -21,7 +21,7 @@ fn found(report: &Report, what: &str) -> u64 {
 fn target_holds_a_scene_that_fits_by_the_memory_report() {
     let folder = Folder::new();
     let (_, report) = folder.run(&on_discovery(""));
-    assert_eq!((report.held(), report.broken()), (2, 0), "{report:?}");
+    assert_eq!((report.passed(), report.failed()), (2, 0), "{report:?}");
     assert!(
         report.findings.iter().all(|it| {
             it.on.as_deref() == Some("stm32vldiscovery fixed") && it.allowed.is_some()
@@ -35,9 +35,9 @@ fn target_holds_a_scene_that_fits_by_the_memory_report() {
         ))
     };
     let (_, report) = folder.run(&budgets(flash, ram));
-    assert_eq!((report.held(), report.broken()), (5, 0), "{report:?}");
+    assert_eq!((report.passed(), report.failed()), (5, 0), "{report:?}");
     let (_, report) = folder.run(&budgets(flash - 1, ram - 1));
-    assert_eq!((report.held(), report.broken()), (3, 2), "{report:?}");
+    assert_eq!((report.passed(), report.failed()), (3, 2), "{report:?}");
     for (what, found) in [("flash", flash), ("ram", ram)] {
         let finding = report.findings.iter().find(|it| it.what == what).unwrap();
         let why = why(finding);
@@ -75,14 +75,14 @@ fn target_budgets_are_recorded_and_a_board_is_not() {
     let folder = Folder::new();
     let text = on_discovery("budget = { flash = 1, ram = 2, call_stack = 3 } # mine\n");
     let (manifest, report) = folder.run(&text);
-    assert_eq!(report.broken(), 3);
+    assert_eq!(report.failed(), 3);
     let blessed = bless(&manifest, &report);
     assert!(blessed.left.is_empty(), "{:?}", blessed.left);
     record(&blessed);
     let text = folder.text();
     assert!(text.contains("# mine") && text.contains("stm32vldiscovery"));
     let (_, report) = folder.run(&text);
-    assert_eq!(report.broken(), 0, "{report:?}");
+    assert_eq!(report.failed(), 0, "{report:?}");
 
     // What is too large for the board is not recorded.
     let wide = BALL
@@ -108,7 +108,7 @@ fn target_budgets_are_recorded_and_a_board_is_not() {
 fn target_without_figures_is_broken_and_says_why() {
     let folder = Folder::new();
     let (_, report) = folder.run(&on_discovery("accel = \"grid\"\n"));
-    assert_eq!((report.held(), report.broken()), (0, 1), "{report:?}");
+    assert_eq!((report.passed(), report.failed()), (0, 1), "{report:?}");
     let why = why(&report.findings[0]);
     assert!(
         why.contains("`grid`") && why.contains("dual-split"),

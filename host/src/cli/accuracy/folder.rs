@@ -4,7 +4,7 @@ use crate::cli::failure::Failure;
 use crate::cli::output::write_file;
 use gridel_core::Rgb888;
 use gridel_core::render::Pixel;
-use gridel_host::accuracy::{Exhibit, Results};
+use gridel_host::accuracy::{Comparison, Results};
 use gridel_host::picture::write_png;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -76,7 +76,11 @@ pub fn write_picture(
 }
 
 /// The reference, and the pictures of levers that were turned alone.
-pub fn exhibits(folder: &Path, size: [u16; 2], results: &Results) -> Result<Vec<Exhibit>, Failure> {
+pub fn comparisons(
+    folder: &Path,
+    size: [u16; 2],
+    results: &Results,
+) -> Result<Vec<Comparison>, Failure> {
     let read = |name: &str| -> Result<Vec<u8>, Failure> {
         let path = picture(folder, name);
         let pixels = || -> io::Result<Vec<u8>> {
@@ -88,19 +92,19 @@ pub fn exhibits(folder: &Path, size: [u16; 2], results: &Results) -> Result<Vec<
         };
         pixels().map_err(|error| Failure::reading(&path, &error))
     };
-    let mut exhibits = vec![Exhibit {
+    let mut comparisons = vec![Comparison {
         name: String::from("the reference"),
         picture: encoded(&results.reference.pixels),
         difference: Vec::new(),
     }];
     for (number, point) in results.points.iter().enumerate() {
         if point.setting.differs(&results.base).len() <= 1 {
-            exhibits.push(Exhibit {
+            comparisons.push(Comparison {
                 name: format!("{} {}", number + 1, point.name),
                 picture: read(&point.name)?,
                 difference: read(&format!("{}-difference", point.name))?,
             });
         }
     }
-    Ok(exhibits)
+    Ok(comparisons)
 }

@@ -44,7 +44,7 @@ pub fn build(targets: &Targets<'_>, view: &View, lights: &[Light], budget: Budge
                 windows[window].list(cell as u32, list);
             },
         };
-        let counted = plan.count(budget.tell);
+        let counted = plan.count(budget.on_progress);
         if count > 0 && counted.figures().bytes > budget.bytes * count as u64 {
             share *= COARSER;
             continue;

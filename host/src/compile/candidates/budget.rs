@@ -11,11 +11,11 @@ pub struct Budget<'t> {
     pub gridels: Option<u32>,
     /// Most bytes of a table.
     pub bytes: u64,
-    pub tell: Tell<'t>,
+    pub on_progress: OnProgress<'t>,
 }
 
 /// Called now and then, from any thread, with the number of finished cells and of all cells.
-pub type Tell<'t> = &'t (dyn Fn(u64, u64) + Sync);
+pub type OnProgress<'t> = &'t (dyn Fn(u64, u64) + Sync);
 
 /// A table that does not fit its budget.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! Builds the cylinder cubes: for every pair of gridels of different faces, what can be met between
 //! them (the paper, section 3.1).
 
-use super::budget::{Budget, OverBudget, Tell};
+use super::budget::{Budget, OnProgress, OverBudget};
 use super::lists::{Counted, List, Lists, Plan};
 use super::shaft::Shaft;
 use super::target::Targets;
@@ -99,7 +99,7 @@ pub fn build<F: Form>(
         if least > budget.bytes {
             return Err(budget.exceeded(F::STRUCTURE, Some(count), least, true));
         }
-        let counted = sized.count(budget.tell);
+        let counted = sized.count(budget.on_progress);
         let needed = counted.figures().bytes;
         if needed > budget.bytes {
             return Err(budget.exceeded(F::STRUCTURE, Some(count), needed, false));
@@ -117,7 +117,7 @@ pub fn build<F: Form>(
             break;
         }
         let sized = plan(count);
-        let counted = sized.count(budget.tell);
+        let counted = sized.count(budget.on_progress);
         let needed = counted.figures().bytes;
         if needed > budget.bytes {
             if best.is_none() {
@@ -153,8 +153,8 @@ impl<'f, F: Form> OfSize<'f, F> {
         })
     }
 
-    fn count(&self, tell: Tell<'_>) -> Counted {
-        self.with_plan(|plan| plan.count(tell))
+    fn count(&self, on_progress: OnProgress<'_>) -> Counted {
+        self.with_plan(|plan| plan.count(on_progress))
     }
 
     fn build(self, counted: Counted) -> Cube {

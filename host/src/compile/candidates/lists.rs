@@ -5,7 +5,7 @@
 //! exact size, and the lists that differ are computed again, straight into their places. Beside the
 //! table itself a build takes at most 72 bytes a cell, and nothing that grows with the lists' length.
 
-use super::budget::Tell;
+use super::budget::OnProgress;
 use rayon::prelude::*;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -107,7 +107,7 @@ const CHUNK: usize = 256;
 
 impl Plan<'_> {
     /// Computes every list and counts: what the table would take.
-    pub fn count(&self, tell: Tell<'_>) -> Counted {
+    pub fn count(&self, on_progress: OnProgress<'_>) -> Counted {
         let done = AtomicU64::new(0);
         let mut order = vec![
             Print {
@@ -137,7 +137,7 @@ impl Plan<'_> {
                     };
                 }
                 let cells = prints.len() as u64;
-                tell(done.fetch_add(cells, Ordering::Relaxed) + cells, self.cells);
+                on_progress(done.fetch_add(cells, Ordering::Relaxed) + cells, self.cells);
             });
         let sum = |prints: &[Print]| {
             prints

@@ -1,6 +1,6 @@
 //! Builds the tree over rays: refined where the scene's own rays fall, within a budget.
 
-use super::budget::{Budget, OverBudget, Tell};
+use super::budget::{Budget, OnProgress, OverBudget};
 use super::lists::{List, Lists, Plan};
 use super::shaft::Shaft;
 use super::target::Targets;
@@ -138,12 +138,17 @@ pub fn build(
         }
     }
     done.extend(waiting);
-    Ok(Classes::new(targets, nodes, done, budget.tell))
+    Ok(Classes::new(targets, nodes, done, budget.on_progress))
 }
 
 impl Classes {
     /// Numbers nodes in the order of their parents, and gives lists to the classes that get one.
-    fn new(targets: &Targets<'_>, nodes: Vec<u32>, classes: Vec<Class>, tell: Tell<'_>) -> Self {
+    fn new(
+        targets: &Targets<'_>,
+        nodes: Vec<u32>,
+        classes: Vec<Class>,
+        on_progress: OnProgress<'_>,
+    ) -> Self {
         let mut class_of: Vec<Option<&Class>> = vec![None; nodes.len()];
         for class in classes.iter().filter(|class| class.is_listed()) {
             class_of[class.node] = Some(class);
@@ -188,7 +193,7 @@ impl Classes {
             list: &list,
         };
         Self {
-            lists: plan.build(plan.count(tell)),
+            lists: plan.build(plan.count(on_progress)),
             nodes: ordered,
         }
     }

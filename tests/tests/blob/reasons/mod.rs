@@ -17,7 +17,7 @@ use gridel_host::shape::Sphere;
 use gridel_tests::fuzz::{Base, speaks};
 use header::{headers, names, prevalidated, section_tables};
 use hierarchies::{deep_hierarchy, hierarchies, wide_hierarchies};
-use records::{primitives, surroundings};
+use records::{primitives, shading_data};
 use tables::{candidates, cells};
 
 /// A field of a record, and what puts it out of its range.
@@ -144,7 +144,7 @@ fn every_field_and_reason_is_named_by_the_error_of_a_forged_blob() {
         headers(),
         section_tables(),
         prevalidated(),
-        surroundings(),
+        shading_data(),
         primitives(),
         hierarchies(),
         deep_hierarchy(),

@@ -9,7 +9,7 @@ use gridel_core::geometry::disc::Disc;
 use gridel_core::geometry::plane::Plane;
 use gridel_core::geometry::torus::Torus;
 
-pub(super) fn surroundings() -> Errors {
+pub(super) fn shading_data() -> Errors {
     let mut errors = everything();
     let far = (1 << 50) + 1;
     let view = "section view";

@@ -15,7 +15,7 @@ const AMBIENT: f64 = 0.15;
 
 /// Everything of a blob that is not geometry.
 #[derive(Debug)]
-pub struct Surroundings {
+pub struct ShadingData {
     pub view: record::View,
     pub lights: Vec<record::Light>,
     /// Materials that an object has.
@@ -29,7 +29,7 @@ pub struct Surroundings {
     pub supplied: Vec<String>,
 }
 
-impl Surroundings {
+impl ShadingData {
     pub fn of(
         scene: &Scene,
         lattice: &Lattice,
