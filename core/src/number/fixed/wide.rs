@@ -117,7 +117,7 @@ impl Product {
         let (left, right) = (down.wrapping_add(2 * RATIO_BITS), up.wrapping_add(32));
         let magnitude = match left.checked_sub(right) {
             Some(left) if left >= wide_leading_zeros(quotient) => i64::MAX as u64,
-            Some(left) => quotient << left,
+            Some(left) => quotient.wrapping_shl(left),
             None => {
                 let right = right.wrapping_sub(left);
                 quotient.checked_shr(right).unwrap_or(0)
