@@ -34,7 +34,8 @@ fn native_starts<N: Number>() {
         };
         let direction = [0, 1, 2].map(|k| native((target[k] - from[k]) * length));
         let given = direction.map(N::far_to_f64);
-        let (zero, end) = (N::Wide::default(), N::far(1 << 60));
+        // A pencil's rays have no end.
+        let (zero, end) = (N::Wide::default(), N::far(i64::MAX));
         let ray = Ray::<N>::new(scene.bounds(), origin, direction, zero, end).expect("a ray");
         let pencil = Pencil::<N>::new(scene.bounds(), origin).expect("a pencil");
         let shared = pencil.ray(direction).expect("a ray");
