@@ -167,7 +167,7 @@ pub struct Material {
     pub diffuse: [i32; 3],
     /// Diffuse reflectance of the odd cells.
     pub odd: [i32; 3],
-    /// Edge of a checkerboard's cells, a length with 13 fraction bits; 0 without one.
+    /// Edge of a checkerboard's cells, a length with 13 fraction bits, below 2^30; 0 without one.
     pub checker_size: i32,
     /// A corner of the checkerboard's cells, lengths with 13 fraction bits.
     pub checker_origin: [i32; 3],

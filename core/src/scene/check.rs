@@ -74,12 +74,8 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
         }
         at.within(Field::InverseIor, material.inverse_ior.into(), ONE / 4, ONE)?;
         at.within(Field::Shininess, material.shininess.into(), 1, 1024)?;
-        at.within(
-            Field::CheckerSize,
-            material.checker_size.into(),
-            0,
-            i32::MAX.into(),
-        )?;
+        // The pattern repeats after two cells, which are a length, too.
+        at.within(Field::CheckerSize, material.checker_size.into(), 0, ONE - 1)?;
         at.all_within(Field::CheckerOrigin, &material.checker_origin, -ONE, ONE)?;
         at.ensure(material.spare == 0, Reason::SpareNotZero)?;
         let uncalled = material.effects().without(Effects(header.effects));
