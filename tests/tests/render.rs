@@ -413,3 +413,47 @@ fn depth_only_adds_light() {
     }
     every_format!(monotone(&scene));
 }
+
+/// Sums of ambient light, lights and reflections reach far beyond the largest radiance of `fixed`.
+#[test]
+fn more_light_than_numbers_hold_is_white() {
+    let sum = |ambient: f64, lights: usize, color: f64, mirror: f64| {
+        let mut file = furnace();
+        file.materials = vec![Material {
+            diffuse: Diffuse::Plain([1.0; 3]),
+            mirror: [mirror; 3],
+            ..Material::default()
+        }];
+        file.ambient = [ambient; 3];
+        file.background = Some([ambient.max(2.0); 3]);
+        file.lights = vec![
+            Light::Directional {
+                direction: DVec3::NEG_Z,
+                color: [color; 3],
+            };
+            lights
+        ];
+        let blob = scenes::blob(&file, 24);
+        let scene = blob.scene().expect("a scene");
+        let settings = Settings {
+            width: 16,
+            height: 16,
+            samples: 2,
+            ..Settings::of(&scene)
+        };
+        for format in Format::ALL {
+            let pixels = picture(&scene, &job(format, settings)).pixels;
+            let darkest = pixels.iter().flatten().min().copied();
+            let about = format!("{} {ambient} {lights} {color} {mirror}", format.name());
+            assert_eq!(darkest, Some(u16::MAX), "{about}");
+        }
+    };
+    for mirror in [0.0, 1.0] {
+        for ambient in [0.0, 2.0, 2000.0, 2047.9, 2048.0, 1e9] {
+            for color in [2.0, 100.0, 2048.0, 1e9] {
+                sum(ambient, 1, color, mirror);
+                sum(ambient, 3, color, mirror);
+            }
+        }
+    }
+}

@@ -12,6 +12,9 @@ pub trait Convert: Scalar {
     fn ratio(q30: i32) -> Self;
     /// A radiance from an integer with 20 fraction bits.
     fn radiance(q20: i32) -> Self;
+    /// The sum of two radiances that are not negative. In `fixed` it is at most the largest number, 2048 times display
+    /// white.
+    fn radiance_sum(self, other: Self) -> Self;
     /// Radiance clamped to \[0, 1\] as an integer of 16 bits: 65535 is display white. NaN is 0.
     fn to_linear16(self) -> u16;
     /// A length from scene data in double precision: rounded, saturating, NaN to 0.

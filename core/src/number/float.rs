@@ -163,6 +163,11 @@ macro_rules! float_number {
             }
 
             #[inline(always)]
+            fn radiance_sum(self, other: Self) -> Self {
+                self + other
+            }
+
+            #[inline(always)]
             fn to_linear16(self) -> u16 {
                 (self * 65535.0 + 0.5) as u16
             }

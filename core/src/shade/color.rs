@@ -40,9 +40,10 @@ impl<N: Number> Color<N> {
         Self(self.0.map(|channel| channel * ratio))
     }
 
+    /// The sum of two radiances.
     #[inline(always)]
     pub(crate) fn plus(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
+        self.zip(other, N::radiance_sum)
     }
 
     /// The sum of two sets of ratios, none above 1.

@@ -106,6 +106,13 @@ impl Convert for Fixed {
     }
 
     #[inline(always)]
+    fn radiance_sum(self, other: Self) -> Self {
+        keep(|| self.0 >= 0 && other.0 >= 0);
+        let sum = self.0.wrapping_add(other.0);
+        Fixed(if sum < 0 { i32::MAX } else { sum })
+    }
+
+    #[inline(always)]
     fn to_linear16(self) -> u16 {
         let clamped = self.0.clamp(0, 1 << RADIANCE_BITS) as u64;
         ((clamped * 65535 + (1 << (RADIANCE_BITS - 1))) >> RADIANCE_BITS) as u16
