@@ -50,7 +50,7 @@ impl<N: Number> Samples<N> {
         }
         // Clamped before they are averaged, so that the edge of a highlight is smooth.
         let seen = self.radiance.displayable();
-        self.sum = self.sum.plus(seen);
+        self.sum = self.sum.plus_displayable(seen);
         if C::ENABLED {
             count.event(Event::Seen {
                 place: Some(place([x, y], self.index, samples)),

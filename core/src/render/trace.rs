@@ -244,7 +244,12 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
     /// Adds radiance to the sample.
     #[inline(always)]
     fn bring(&mut self, source: Source, brought: Color<N>, radiance: &mut Color<N>) {
-        *radiance = radiance.plus(brought);
+        // Without effects because of which rays wait, one ray brings all.
+        *radiance = if const { EFFECTS & All::CASTING != 0 } {
+            radiance.plus(brought)
+        } else {
+            brought
+        };
         if C::ENABLED {
             self.count.event(Event::Added {
                 source,

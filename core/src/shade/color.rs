@@ -46,6 +46,12 @@ impl<N: Number> Color<N> {
         self.zip(other, N::radiance_sum)
     }
 
+    /// The sum of displayable radiances, of which there are no more than samples in a pixel.
+    #[inline(always)]
+    pub(crate) fn plus_displayable(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+
     /// The sum of two sets of ratios, none above 1.
     #[inline(always)]
     pub(crate) fn plus_up_to_one(self, other: Self) -> Self {
