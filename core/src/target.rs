@@ -26,3 +26,44 @@ impl<T> InWide<T> {
 /// without an instruction that compares and swaps.
 pub(crate) const NARROW_PRODUCTS: bool =
     cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
+
+/// Inlines a function into every caller, except in builds for small code, where the compiler decides. For short
+/// functions on the path of most rays.
+macro_rules! inline_unless_small {
+    ($function:item) => {
+        #[cfg_attr(not(feature = "small"), inline(always))]
+        $function
+    };
+}
+
+/// Inlines a function into every caller in builds with [`WIDE`], which are for hosts; on boards the compiler decides.
+/// For functions that hand a ray or a hit on: hosts have the room, and through memory it takes longer.
+macro_rules! inline_on_hosts {
+    ($function:item) => {
+        #[cfg_attr(feature = "wide", inline(always))]
+        $function
+    };
+}
+
+/// As [`inline_on_hosts!`], with a hint to inline on boards.
+macro_rules! inline_on_hosts_hint_on_boards {
+    ($function:item) => {
+        #[cfg_attr(feature = "wide", inline(always))]
+        #[cfg_attr(not(feature = "wide"), inline)]
+        $function
+    };
+}
+
+/// Inlines a function into every caller on boards, and into none in builds with [`WIDE`], which are for hosts. For
+/// functions that hosts call from many places and seldom.
+macro_rules! inline_on_boards {
+    ($function:item) => {
+        #[cfg_attr(feature = "wide", inline(never))]
+        #[cfg_attr(not(feature = "wide"), inline(always))]
+        $function
+    };
+}
+
+pub(crate) use {
+    inline_on_boards, inline_on_hosts, inline_on_hosts_hint_on_boards, inline_unless_small,
+};

@@ -28,6 +28,7 @@ use crate::accel::cull_axis::Interval;
 use crate::axis::pick;
 use crate::format::record::{Gridels, Pair, UnitBox, plane_word};
 use crate::ray::Ray;
+use crate::target::inline_unless_small;
 
 /// A form of a ray that culls boxes: [`Cull`] in integers, or lanes of floats where there is SIMD.
 pub trait Culling<N: CullArithmetic>: Copy + core::fmt::Debug + Default + Send + Sync {
@@ -71,15 +72,16 @@ pub struct Cull {
 }
 
 impl<N: CullArithmetic> Culling<N> for Cull {
-    /// Costs three divisions and some fifty operations.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    fn new(ray: &Ray<N>) -> Self {
-        let axis = |k: usize| N::cull_axis(ray.slope[k], ray.origin[k]);
-        Self {
-            axes: [axis(0), axis(1), axis(2)],
-            start: ray.tmin.to_cull(),
+    inline_unless_small!(
+        /// Costs three divisions and some fifty operations.
+        fn new(ray: &Ray<N>) -> Self {
+            let axis = |k: usize| N::cull_axis(ray.slope[k], ray.origin[k]);
+            Self {
+                axes: [axis(0), axis(1), axis(2)],
+                start: ray.tmin.to_cull(),
+            }
         }
-    }
+    );
 
     #[inline(always)]
     fn exact(&self, _: &Ray<N>) -> Cull {
@@ -133,10 +135,11 @@ impl<N: CullArithmetic> PairCulling<N> for Cull {
 pub struct Deferred;
 
 impl<N: CullArithmetic> Culling<N> for Deferred {
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    fn new(_: &Ray<N>) -> Self {
-        Self
-    }
+    inline_unless_small!(
+        fn new(_: &Ray<N>) -> Self {
+            Self
+        }
+    );
 
     // Out of line, because hardly any hit comes this far.
     #[inline(never)]
@@ -226,12 +229,13 @@ impl Cull {
         (x | y << 1 | z << 2) >> 4 & 7
     }
 
-    /// The interval of a box, the ray's own aside.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    pub(crate) fn interval(&self, bounds: &UnitBox) -> Interval {
-        let axis = |k: usize| self.axes[k].between(plane_word(bounds.0[k]));
-        axis(0).and(axis(1)).and(axis(2))
-    }
+    inline_unless_small!(
+        /// The interval of a box, the ray's own aside.
+        pub(crate) fn interval(&self, bounds: &UnitBox) -> Interval {
+            let axis = |k: usize| self.axes[k].between(plane_word(bounds.0[k]));
+            axis(0).and(axis(1)).and(axis(2))
+        }
+    );
 }
 
 /// [`Culling::holds`] for float formats: the point lies within 1/8 unit of the box, and rounding

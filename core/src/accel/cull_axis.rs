@@ -4,7 +4,7 @@ mod fixed;
 mod float;
 
 use crate::number::Arithmetic;
-use crate::target::NARROW_PRODUCTS;
+use crate::target::{NARROW_PRODUCTS, inline_unless_small};
 
 /// Arithmetic of culling.
 pub trait CullArithmetic: Arithmetic {
@@ -103,15 +103,16 @@ impl CullAxis {
         [ordered as i16, (ordered >> 16) as i16]
     }
 
-    /// The steps at which the ray enters and leaves between the two planes of a word.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    pub(in crate::accel) fn between(&self, planes: u32) -> Interval {
-        let [near, far] = self.ordered(planes);
-        Interval {
-            near: self.entry(near),
-            far: self.exit(far),
+    inline_unless_small!(
+        /// The steps at which the ray enters and leaves between the two planes of a word.
+        pub(in crate::accel) fn between(&self, planes: u32) -> Interval {
+            let [near, far] = self.ordered(planes);
+            Interval {
+                near: self.entry(near),
+                far: self.exit(far),
+            }
         }
-    }
+    );
 
     /// The same to cull with: up to a unit wider, where that is cheaper.
     #[inline(always)]
@@ -123,19 +124,20 @@ impl CullAxis {
         }
     }
 
-    /// Each plane is shifted into the upper half of a word. Below it lies the other one or nothing, so that
-    /// it counts as up to a unit higher. Below another lies the lower half of the given word alone: its
-    /// upper half is where the ray leaves if it runs up the axis, and where it enters if it runs down.
-    /// Either way the interval grows.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    pub(in crate::accel) fn around_by_shifts(&self, planes: u32) -> Interval {
-        let near = planes.wrapping_shl(self.rotation ^ 16);
-        let far = planes.wrapping_shl(self.rotation);
-        Interval {
-            near: self.upper_half(near).wrapping_add(self.near),
-            far: self.upper_half(far).wrapping_add(self.far),
+    inline_unless_small!(
+        /// Each plane is shifted into the upper half of a word. Below it lies the other one or nothing, so that
+        /// it counts as up to a unit higher. Below another lies the lower half of the given word alone: its
+        /// upper half is where the ray leaves if it runs up the axis, and where it enters if it runs down.
+        /// Either way the interval grows.
+        pub(in crate::accel) fn around_by_shifts(&self, planes: u32) -> Interval {
+            let near = planes.wrapping_shl(self.rotation ^ 16);
+            let far = planes.wrapping_shl(self.rotation);
+            Interval {
+                near: self.upper_half(near).wrapping_add(self.near),
+                far: self.upper_half(far).wrapping_add(self.far),
+            }
         }
-    }
+    );
 }
 
 /// The steps at which a ray enters and leaves something; it misses where `near > far`.

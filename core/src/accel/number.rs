@@ -36,16 +36,11 @@ impl Number for f64 {
 ///
 /// Cores with SIMD registers take four planes at a time, the others integers. Neither can change
 /// an answer; only how many boxes are visited for nothing may differ, by the width of a margin.
-#[cfg(any(
-    target_arch = "x86_64",
-    target_arch = "aarch64",
-    all(target_arch = "wasm32", target_feature = "simd128")
-))]
-type FloatCulling = crate::accel::lanes::Lanes;
-/// The form in which rays of a float format cull on this machine.
-#[cfg(not(any(
-    target_arch = "x86_64",
-    target_arch = "aarch64",
-    all(target_arch = "wasm32", target_feature = "simd128")
-)))]
-type FloatCulling = Cull;
+type FloatCulling = cfg_select! {
+    any(
+        target_arch = "x86_64",
+        target_arch = "aarch64",
+        all(target_arch = "wasm32", target_feature = "simd128")
+    ) => crate::accel::lanes::Lanes,
+    _ => Cull,
+};

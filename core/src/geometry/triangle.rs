@@ -21,6 +21,7 @@ use crate::geometry::{Surface, cross_plane, flat};
 use crate::number::Arithmetic;
 use crate::number::fixed::halves::product;
 use crate::ray::Ray;
+use crate::target::{inline_on_hosts, inline_unless_small};
 
 /// The vertices of all meshes.
 #[derive(Clone, Copy, Debug)]
@@ -159,39 +160,40 @@ impl<N: Project> Projection<N> {
         }
     }
 
-    /// Whether a ray whose major axis is `MAJOR` meets a triangle, edges included; not if it is
-    /// seen edge on.
-    ///
-    /// Cost: 9 loads and some 30 multiplications and additions.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    pub(crate) fn meets<const MAJOR: usize, V: Vertex>(&self, a: &V, b: &V, c: &V) -> bool {
-        let seen = |vertex: &V, role: usize| {
-            let coordinate = vertex.steps(axis::<MAJOR>(self.major, role));
-            N::project(coordinate, &pick(self.sight, role))
-        };
-        let depth = [seen(a, 2), seen(b, 2), seen(c, 2)];
-        let across = |role: usize| {
-            let shear = if role == 0 {
-                self.shear[0]
-            } else {
-                self.shear[1]
+    inline_unless_small!(
+        /// Whether a ray whose major axis is `MAJOR` meets a triangle, edges included; not if it is
+        /// seen edge on.
+        ///
+        /// Cost: 9 loads and some 30 multiplications and additions.
+        pub(crate) fn meets<const MAJOR: usize, V: Vertex>(&self, a: &V, b: &V, c: &V) -> bool {
+            let seen = |vertex: &V, role: usize| {
+                let coordinate = vertex.steps(axis::<MAJOR>(self.major, role));
+                N::project(coordinate, &pick(self.sight, role))
             };
-            [
-                seen(a, role) + N::shear_by(depth[0], shear),
-                seen(b, role) + N::shear_by(depth[1], shear),
-                seen(c, role) + N::shear_by(depth[2], shear),
-            ]
-        };
-        let x = across(0);
-        if N::same_sign(x) {
-            return false;
+            let depth = [seen(a, 2), seen(b, 2), seen(c, 2)];
+            let across = |role: usize| {
+                let shear = if role == 0 {
+                    self.shear[0]
+                } else {
+                    self.shear[1]
+                };
+                [
+                    seen(a, role) + N::shear_by(depth[0], shear),
+                    seen(b, role) + N::shear_by(depth[1], shear),
+                    seen(c, role) + N::shear_by(depth[2], shear),
+                ]
+            };
+            let x = across(0);
+            if N::same_sign(x) {
+                return false;
+            }
+            let y = across(1);
+            if N::same_sign(y) {
+                return false;
+            }
+            N::surrounds_origin([x[0], y[0]], [x[1], y[1]], [x[2], y[2]])
         }
-        let y = across(1);
-        if N::same_sign(y) {
-            return false;
-        }
-        N::surrounds_origin([x[0], y[0]], [x[1], y[1]], [x[2], y[2]])
-    }
+    );
 }
 
 /// Where a ray meets the plane of a triangle that it [meets](Projection::meets), and whether it does so
@@ -216,18 +218,19 @@ pub(crate) fn cross<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> Option<
     Some((t, N::is_steep(approach)))
 }
 
-/// The normal, of any length: exact but for one rounding a component.
-#[cfg_attr(not(feature = "small"), inline(always))]
-fn normal<N: Arithmetic>([a, b, c]: [[i32; 3]; 3]) -> [N; 3] {
-    let edge = |from: [i32; 3], to: [i32; 3]| {
-        let axis = |k: usize| to[k].wrapping_sub(from[k]);
-        [axis(0), axis(1), axis(2)]
-    };
-    let (p, q) = (edge(a, b), edge(a, c));
-    // Edges have 25 bits and a sign, so the products have 51.
-    let component = |i: usize, j: usize| product(p[i], q[j]).wrapping_sub(product(p[j], q[i]));
-    N::direction([component(1, 2), component(2, 0), component(0, 1)])
-}
+inline_unless_small!(
+    /// The normal, of any length: exact but for one rounding a component.
+    fn normal<N: Arithmetic>([a, b, c]: [[i32; 3]; 3]) -> [N; 3] {
+        let edge = |from: [i32; 3], to: [i32; 3]| {
+            let axis = |k: usize| to[k].wrapping_sub(from[k]);
+            [axis(0), axis(1), axis(2)]
+        };
+        let (p, q) = (edge(a, b), edge(a, c));
+        // Edges have 25 bits and a sign, so the products have 51.
+        let component = |i: usize, j: usize| product(p[i], q[j]).wrapping_sub(product(p[j], q[i]));
+        N::direction([component(1, 2), component(2, 0), component(0, 1)])
+    }
+);
 
 /// The box of a triangle.
 #[inline(always)]
@@ -240,8 +243,9 @@ pub(crate) fn bounds([a, b, c]: [[i32; 3]; 3]) -> UnitBox {
     )
 }
 
-/// The front is where the corners run counter-clockwise.
-#[cfg_attr(feature = "wide", inline(always))]
-pub(crate) fn surface<N: Arithmetic>(corners: [[i32; 3]; 3], point: [N; 3]) -> Surface<N> {
-    flat::surface(normal(corners), corners[0], point)
-}
+inline_on_hosts!(
+    /// The front is where the corners run counter-clockwise.
+    pub(crate) fn surface<N: Arithmetic>(corners: [[i32; 3]; 3], point: [N; 3]) -> Surface<N> {
+        flat::surface(normal(corners), corners[0], point)
+    }
+);

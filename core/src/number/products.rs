@@ -1,6 +1,7 @@
 //! Products of two numbers, and coordinates beyond the scene.
 
 use crate::number::scalar::Scalar;
+use crate::target::inline_unless_small;
 
 /// Arithmetic of wide numbers.
 pub trait Products: Scalar {
@@ -37,11 +38,12 @@ pub trait Products: Scalar {
         step: Self::Wide,
         stride: Self::Wide,
     ) -> Self;
-    /// Three products added: `a . b`.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    fn dot(a: [Self; 3], b: [Self; 3]) -> Self::Wide {
-        a[0].wide(b[0]) + a[1].wide(b[1]) + a[2].wide(b[2])
-    }
+    inline_unless_small!(
+        /// Three products added: `a . b`.
+        fn dot(a: [Self; 3], b: [Self; 3]) -> Self::Wide {
+            a[0].wide(b[0]) + a[1].wide(b[1]) + a[2].wide(b[2])
+        }
+    );
     /// A product with a ratio as a single number: undoes one [`wide`](Self::wide) by a ratio; saturates.
     fn from_wide(product: Self::Wide) -> Self;
     /// Product of a `Wide` (length by ratio, or length squared) with a ratio, as the same kind of `Wide`.

@@ -68,7 +68,6 @@ impl<N: Number, K: Culling<N>> Search<'_, '_, N, K> {
         };
         match self.scene.space.simd() {
             SimdLevel::Portable => ray.met(Portable, strip),
-            #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
             SimdLevel::Avx2(avx2) => avx2.call(
                 #[inline(always)]
                 |avx2, ray, strip, (), (), ()| ray.met(avx2, strip),

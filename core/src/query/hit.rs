@@ -7,6 +7,7 @@ use crate::observe::event::Met;
 use crate::query::search::Candidate;
 use crate::ray::Ray;
 use crate::scene::Scene;
+use crate::target::inline_on_hosts;
 
 /// Which primitive a ray meets first, and where: all of a hit but its surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,47 +20,48 @@ pub struct Found<N: Number> {
 }
 
 impl<N: Number> Found<N> {
-    /// The whole hit: the point and how the surface lies there. `scene` and `ray` are those of the
-    /// query.
-    ///
-    /// ```
-    /// # static BLOB: &[u8] =
-    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
-    /// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_primitive};
-    ///
-    /// let scene = Scene::from_bytes(BLOB)?;
-    /// let mut stack = Stack::<32>::new();
-    /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
-    /// let found = closest_primitive::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
-    /// let hit = found.and_then(|found| found.hit(&scene, &down)).expect("a ball");
-    /// assert_eq!(hit.primitive, 9);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[cfg_attr(feature = "wide", inline(always))]
-    pub fn hit(&self, scene: &Scene<'_>, ray: &Ray<N>) -> Option<Hit<N>> {
-        let best = self.best;
-        let point = ray.at(best.t);
-        let (surface, front) = scene
-            .space
-            .shapes
-            .surface(best.place, best.part, ray, point)?;
-        Some(Hit {
-            t: self.t,
-            point: surface.point,
-            normal: surface.normal,
-            front,
-            object: scene.object(self.primitive),
-            primitive: self.primitive,
-            error: surface.error,
-            is_exact: surface.is_exact,
-            place: Leaf {
-                kind: best.place.kind,
-                first: scene.key(best.place).2,
-                count: 1,
-            }
-            .to_word(),
-        })
-    }
+    inline_on_hosts!(
+        /// The whole hit: the point and how the surface lies there. `scene` and `ray` are those of the
+        /// query.
+        ///
+        /// ```
+        /// # static BLOB: &[u8] =
+        /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+        /// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_primitive};
+        ///
+        /// let scene = Scene::from_bytes(BLOB)?;
+        /// let mut stack = Stack::<32>::new();
+        /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+        /// let found = closest_primitive::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
+        /// let hit = found.and_then(|found| found.hit(&scene, &down)).expect("a ball");
+        /// assert_eq!(hit.primitive, 9);
+        /// # Ok::<(), Box<dyn std::error::Error>>(())
+        /// ```
+        pub fn hit(&self, scene: &Scene<'_>, ray: &Ray<N>) -> Option<Hit<N>> {
+            let best = self.best;
+            let point = ray.at(best.t);
+            let (surface, front) = scene
+                .space
+                .shapes
+                .surface(best.place, best.part, ray, point)?;
+            Some(Hit {
+                t: self.t,
+                point: surface.point,
+                normal: surface.normal,
+                front,
+                object: scene.object(self.primitive),
+                primitive: self.primitive,
+                error: surface.error,
+                is_exact: surface.is_exact,
+                place: Leaf {
+                    kind: best.place.kind,
+                    first: scene.key(best.place).2,
+                    count: 1,
+                }
+                .to_word(),
+            })
+        }
+    );
 }
 
 /// Where a ray meets a primitive, and how the surface lies there.

@@ -13,6 +13,7 @@ use crate::axis::pick;
 use crate::format::record::UnitBox;
 use crate::number::Arithmetic;
 use crate::observe::event::Event;
+use crate::target::{inline_on_hosts, inline_on_hosts_hint_on_boards, inline_unless_small};
 use start::{
     check_interval, check_origin, end_after, far_start, interval, is_near, near_start, way_to_box,
 };
@@ -56,76 +57,76 @@ pub struct Ray<N: Arithmetic> {
 }
 
 impl<N: Arithmetic> Ray<N> {
-    /// A ray through a scene whose box is `bounds` (see [`Scene::bounds`](crate::Scene::bounds)).
-    ///
-    /// Origin and interval are lengths in units; the direction is of any length but 0. Hits are
-    /// reported for `tmin <= t <= tmax`, in lengths along the major axis; `tmin` may be negative.
-    ///
-    /// # Errors
-    /// If the direction is zero, or anything is NaN, or the origin or direction infinite, or the origin
-    /// farther than [`FARTHEST`](crate::format::limits::FARTHEST) along an axis, or `tmin > tmax`: see the limits of [`Ray`].
-    // Hosts have the room; through memory a ray would cost as much again.
-    #[cfg_attr(feature = "wide", inline(always))]
-    #[cfg_attr(not(feature = "wide"), inline)]
-    pub fn new(
-        bounds: &UnitBox,
-        origin: [N::Wide; 3],
-        direction: [N::Wide; 3],
-        tmin: N::Wide,
-        tmax: N::Wide,
-    ) -> Result<Self, RayError> {
-        let (slope, major) = N::slopes(direction).ok_or(RayError::Direction)?;
-        check_interval(tmin, tmax)?;
-        let forward = pick(slope, major) > N::ZERO;
-        let moved = way_to_box::<N>(bounds, pick(origin, major), (major, forward), tmin);
-        let single = (origin.map(N::narrow), N::narrow(moved));
-        let (start, moved, within) = if is_near(single.0, major, single.1) {
-            (near_start(single.0, single.1, slope), moved, true)
-        } else {
-            let [x, y, z] = origin;
-            check_origin::<N>(x, y, z)?;
-            far_start::<N, false>(bounds, origin, direction, (slope, major), moved)
-        };
-        let unmoved = unmoved(|| origin, [tmin, tmax], within);
-        let [tmin, tmax] = interval(tmin, tmax, moved);
-        Ok(Self {
-            origin: start,
-            slope,
-            major,
-            moved,
-            tmin,
-            tmax: if within { tmax } else { -N::ONE },
-            unmoved,
-        })
-    }
+    inline_on_hosts_hint_on_boards!(
+        /// A ray through a scene whose box is `bounds` (see [`Scene::bounds`](crate::Scene::bounds)).
+        ///
+        /// Origin and interval are lengths in units; the direction is of any length but 0. Hits are
+        /// reported for `tmin <= t <= tmax`, in lengths along the major axis; `tmin` may be negative.
+        ///
+        /// # Errors
+        /// If the direction is zero, or anything is NaN, or the origin or direction infinite, or the origin
+        /// farther than [`FARTHEST`](crate::format::limits::FARTHEST) along an axis, or `tmin > tmax`: see the limits of [`Ray`].
+        // Hosts have the room; through memory a ray would cost as much again.
+        pub fn new(
+            bounds: &UnitBox,
+            origin: [N::Wide; 3],
+            direction: [N::Wide; 3],
+            tmin: N::Wide,
+            tmax: N::Wide,
+        ) -> Result<Self, RayError> {
+            let (slope, major) = N::slopes(direction).ok_or(RayError::Direction)?;
+            check_interval(tmin, tmax)?;
+            let forward = pick(slope, major) > N::ZERO;
+            let moved = way_to_box::<N>(bounds, pick(origin, major), (major, forward), tmin);
+            let single = (origin.map(N::narrow), N::narrow(moved));
+            let (start, moved, within) = if is_near(single.0, major, single.1) {
+                (near_start(single.0, single.1, slope), moved, true)
+            } else {
+                let [x, y, z] = origin;
+                check_origin::<N>(x, y, z)?;
+                far_start::<N, false>(bounds, origin, direction, (slope, major), moved)
+            };
+            let unmoved = unmoved(|| origin, [tmin, tmax], within);
+            let [tmin, tmax] = interval(tmin, tmax, moved);
+            Ok(Self {
+                origin: start,
+                slope,
+                major,
+                moved,
+                tmin,
+                tmax: if within { tmax } else { -N::ONE },
+                unmoved,
+            })
+        }
+    );
 
-    /// A ray from a place in the scene, as hits give places, with all `t` up to `tmax` but 0, where it
-    /// meets what it starts on. `None` if the direction is zero.
-    #[cfg_attr(feature = "wide", inline(always))]
-    #[cfg_attr(not(feature = "wide"), inline)]
-    pub(crate) fn from_inside(
-        bounds: &UnitBox,
-        origin: [N; 3],
-        direction: [N::Wide; 3],
-        tmax: N::Wide,
-    ) -> Option<Self> {
-        let (slope, major) = N::slopes(direction)?;
-        let forward = pick(slope, major) > N::ZERO;
-        // A place beside the box at most: always near.
-        let from = pick(origin, major).widen();
-        let zero = N::Wide::default();
-        let moved = way_to_box::<N>(bounds, from, (major, forward), zero);
-        let beside = N::step_beside(N::ZERO);
-        Some(Self {
-            unmoved: unmoved(|| origin.map(N::widen), [beside.widen(), tmax], true),
-            origin: near_start(origin, N::narrow(moved), slope),
-            slope,
-            major,
-            moved,
-            tmin: if moved > zero { N::ZERO } else { beside },
-            tmax: end_after(tmax, moved),
-        })
-    }
+    inline_on_hosts_hint_on_boards!(
+        /// A ray from a place in the scene, as hits give places, with all `t` up to `tmax` but 0, where it
+        /// meets what it starts on. `None` if the direction is zero.
+        pub(crate) fn from_inside(
+            bounds: &UnitBox,
+            origin: [N; 3],
+            direction: [N::Wide; 3],
+            tmax: N::Wide,
+        ) -> Option<Self> {
+            let (slope, major) = N::slopes(direction)?;
+            let forward = pick(slope, major) > N::ZERO;
+            // A place beside the box at most: always near.
+            let from = pick(origin, major).widen();
+            let zero = N::Wide::default();
+            let moved = way_to_box::<N>(bounds, from, (major, forward), zero);
+            let beside = N::step_beside(N::ZERO);
+            Some(Self {
+                unmoved: unmoved(|| origin.map(N::widen), [beside.widen(), tmax], true),
+                origin: near_start(origin, N::narrow(moved), slope),
+                slope,
+                major,
+                moved,
+                tmin: if moved > zero { N::ZERO } else { beside },
+                tmax: end_after(tmax, moved),
+            })
+        }
+    );
 
     /// [`from_inside`](Self::from_inside) of a place that can lie far outside of the scene's box, on a shape without
     /// bounds.
@@ -141,47 +142,48 @@ impl<N: Arithmetic> Ray<N> {
         Self::new(bounds, origin.map(N::widen), direction, beside, tmax).ok()
     }
 
-    /// A ray given in double precision, rounded to this format only after its origin was moved to
-    /// the scene: what hosts use, and tests.
-    ///
-    /// ```
-    /// # static BLOB: &[u8] =
-    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
-    /// use gridel_core::{Fixed, Ray, RayError, Scene};
-    ///
-    /// let scene = Scene::from_bytes(BLOB)?;
-    /// let ray = Ray::<Fixed>::from_f64(scene.bounds(), [0.0; 3], [0.0, 0.0, -2.0], 0.0, 1e9)?;
-    /// assert_eq!(ray.major_axis(), 2);
-    /// let zero = Ray::<Fixed>::from_f64(scene.bounds(), [0.0; 3], [0.0; 3], 0.0, 1e9);
-    /// assert_eq!(zero.err(), Some(RayError::Direction));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
-    /// # Errors
-    /// As [`Ray::new`].
-    #[cfg_attr(feature = "wide", inline(always))]
-    pub fn from_f64(
-        bounds: &UnitBox,
-        origin: [f64; 3],
-        direction: [f64; 3],
-        tmin: f64,
-        tmax: f64,
-    ) -> Result<Self, RayError> {
-        let exact = Ray::<f64>::new(bounds, origin, direction, tmin, tmax)?;
-        Ok(Self {
-            origin: exact.origin.map(|x| N::flush_tiny(N::length_from_f64(x))),
-            slope: exact.slope.map(N::ratio_from_f64),
-            major: exact.major,
-            moved: N::far_from_f64(exact.moved),
-            tmin: N::length_from_f64(exact.tmin),
-            tmax: N::length_from_f64(exact.tmax),
-            unmoved: unmoved(
-                || origin.map(N::far_from_f64),
-                [tmin, tmax].map(N::far_from_f64),
-                exact.holds_start(),
-            ),
-        })
-    }
+    inline_on_hosts!(
+        /// A ray given in double precision, rounded to this format only after its origin was moved to
+        /// the scene: what hosts use, and tests.
+        ///
+        /// ```
+        /// # static BLOB: &[u8] =
+        /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+        /// use gridel_core::{Fixed, Ray, RayError, Scene};
+        ///
+        /// let scene = Scene::from_bytes(BLOB)?;
+        /// let ray = Ray::<Fixed>::from_f64(scene.bounds(), [0.0; 3], [0.0, 0.0, -2.0], 0.0, 1e9)?;
+        /// assert_eq!(ray.major_axis(), 2);
+        /// let zero = Ray::<Fixed>::from_f64(scene.bounds(), [0.0; 3], [0.0; 3], 0.0, 1e9);
+        /// assert_eq!(zero.err(), Some(RayError::Direction));
+        /// # Ok::<(), Box<dyn std::error::Error>>(())
+        /// ```
+        ///
+        /// # Errors
+        /// As [`Ray::new`].
+        pub fn from_f64(
+            bounds: &UnitBox,
+            origin: [f64; 3],
+            direction: [f64; 3],
+            tmin: f64,
+            tmax: f64,
+        ) -> Result<Self, RayError> {
+            let exact = Ray::<f64>::new(bounds, origin, direction, tmin, tmax)?;
+            Ok(Self {
+                origin: exact.origin.map(|x| N::flush_tiny(N::length_from_f64(x))),
+                slope: exact.slope.map(N::ratio_from_f64),
+                major: exact.major,
+                moved: N::far_from_f64(exact.moved),
+                tmin: N::length_from_f64(exact.tmin),
+                tmax: N::length_from_f64(exact.tmax),
+                unmoved: unmoved(
+                    || origin.map(N::far_from_f64),
+                    [tmin, tmax].map(N::far_from_f64),
+                    exact.holds_start(),
+                ),
+            })
+        }
+    );
 
     /// The axis along which `t` is measured: 0, 1 or 2.
     ///
@@ -294,12 +296,13 @@ impl<N: Arithmetic> Ray<N> {
         Self { tmax, ..*self }
     }
 
-    /// The point at a parameter that is counted inside the kernels.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    pub(crate) fn at(&self, t: N) -> [N; 3] {
-        let along = |axis: usize| self.origin[axis] + t * self.slope[axis];
-        [along(0), along(1), along(2)]
-    }
+    inline_unless_small!(
+        /// The point at a parameter that is counted inside the kernels.
+        pub(crate) fn at(&self, t: N) -> [N; 3] {
+            let along = |axis: usize| self.origin[axis] + t * self.slope[axis];
+            [along(0), along(1), along(2)]
+        }
+    );
 }
 
 #[cfg(test)]

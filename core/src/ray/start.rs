@@ -5,34 +5,35 @@ use crate::format::limits::FARTHEST;
 use crate::format::record::UnitBox;
 use crate::number::{Arithmetic, Format};
 use crate::ray::error::RayError;
-use crate::target::SMALL;
+use crate::target::{SMALL, inline_unless_small};
 use core::cmp::Ordering;
 
-/// How far rays are moved that run up or down one axis, from a coordinate on it: to the plane in which the scene's
-/// box begins, or towards it for hits behind the point.
-#[cfg_attr(not(feature = "small"), inline(always))]
-pub(super) fn way_to_box<N: Arithmetic>(
-    bounds: &UnitBox,
-    origin: N::Wide,
-    (axis, forward): (usize, bool),
-    tmin: N::Wide,
-) -> N::Wide {
-    let zero = N::Wide::default();
-    let [first, last] = pick(bounds.0, axis);
-    // Of what is too far away it may be anything.
-    let to_box = if forward {
-        N::difference(N::from_unit(first).widen(), origin)
-    } else {
-        N::difference(origin, N::from_unit(last).widen())
-    };
-    if to_box > zero {
-        to_box
-    } else if tmin < zero {
-        if tmin > to_box { tmin } else { to_box }
-    } else {
-        zero
+inline_unless_small!(
+    /// How far rays are moved that run up or down one axis, from a coordinate on it: to the plane in which the scene's
+    /// box begins, or towards it for hits behind the point.
+    pub(super) fn way_to_box<N: Arithmetic>(
+        bounds: &UnitBox,
+        origin: N::Wide,
+        (axis, forward): (usize, bool),
+        tmin: N::Wide,
+    ) -> N::Wide {
+        let zero = N::Wide::default();
+        let [first, last] = pick(bounds.0, axis);
+        // Of what is too far away it may be anything.
+        let to_box = if forward {
+            N::difference(N::from_unit(first).widen(), origin)
+        } else {
+            N::difference(origin, N::from_unit(last).widen())
+        };
+        if to_box > zero {
+            to_box
+        } else if tmin < zero {
+            if tmin > to_box { tmin } else { to_box }
+        } else {
+            zero
+        }
     }
-}
+);
 
 /// An interval counted from where a ray was moved to.
 #[inline(always)]
@@ -86,37 +87,38 @@ pub(super) fn near_start<N: Arithmetic>(origin: [N; 3], moved: N, slope: [N; 3])
     [start(0), start(1), start(2)]
 }
 
-/// Where a ray starts that is moved from an origin anywhere, how far that is, and whether it lies within
-/// [`REACH`]: else it meets nothing. `EXACT` says that slopes and lengths are not rounded.
-#[cfg_attr(not(feature = "small"), inline(always))]
-pub(super) fn far_start<N: Arithmetic, const EXACT: bool>(
-    bounds: &UnitBox,
-    origin: [N::Wide; 3],
-    direction: [N::Wide; 3],
-    (slope, major): ([N; 3], usize),
-    moved: N::Wide,
-) -> ([N; 3], N::Wide, bool) {
-    let reach = N::narrow(N::far(REACH));
-    let (start, moved) = if EXACT || N::narrow(moved).abs() < reach {
-        let start = |axis: usize| far_coordinate(origin[axis], moved, slope[axis]);
-        ([start(0), start(1), start(2)], moved)
-    } else {
-        // Rounded slopes and lengths would lose the ray's place.
-        let [first, last] = pick(bounds.0, major);
-        let forward = pick(slope, major) > N::ZERO;
-        let plane = N::from_unit(if forward { first } else { last });
-        let (from, stride) = (pick(origin, major), pick(direction, major));
-        let start = |axis: usize| N::carry(origin[axis], from, plane, direction[axis], stride);
-        let depth = plane.widen() - from;
-        let moved = if forward { depth } else { -depth };
-        ([start(0), start(1), start(2)], moved)
-    };
-    if start.iter().all(|x| x.abs() <= reach) {
-        (start, moved, true)
-    } else {
-        ([N::ZERO; 3], moved, false)
+inline_unless_small!(
+    /// Where a ray starts that is moved from an origin anywhere, how far that is, and whether it lies within
+    /// [`REACH`]: else it meets nothing. `EXACT` says that slopes and lengths are not rounded.
+    pub(super) fn far_start<N: Arithmetic, const EXACT: bool>(
+        bounds: &UnitBox,
+        origin: [N::Wide; 3],
+        direction: [N::Wide; 3],
+        (slope, major): ([N; 3], usize),
+        moved: N::Wide,
+    ) -> ([N; 3], N::Wide, bool) {
+        let reach = N::narrow(N::far(REACH));
+        let (start, moved) = if EXACT || N::narrow(moved).abs() < reach {
+            let start = |axis: usize| far_coordinate(origin[axis], moved, slope[axis]);
+            ([start(0), start(1), start(2)], moved)
+        } else {
+            // Rounded slopes and lengths would lose the ray's place.
+            let [first, last] = pick(bounds.0, major);
+            let forward = pick(slope, major) > N::ZERO;
+            let plane = N::from_unit(if forward { first } else { last });
+            let (from, stride) = (pick(origin, major), pick(direction, major));
+            let start = |axis: usize| N::carry(origin[axis], from, plane, direction[axis], stride);
+            let depth = plane.widen() - from;
+            let moved = if forward { depth } else { -depth };
+            ([start(0), start(1), start(2)], moved)
+        };
+        if start.iter().all(|x| x.abs() <= reach) {
+            (start, moved, true)
+        } else {
+            ([N::ZERO; 3], moved, false)
+        }
     }
-}
+);
 
 /// [`far_start`] of a ray that is to run along its slopes as they are.
 #[inline(always)]

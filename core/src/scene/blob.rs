@@ -5,7 +5,7 @@ use crate::format::record::{Header, Light, Material, UnitBox, View};
 use crate::format::{Effects, Indices, Kind, Structure};
 use crate::geometry::{Geometry, PrimitiveId};
 use crate::simd::SimdLevel;
-use crate::target::InWide;
+use crate::target::{InWide, inline_on_hosts_hint_on_boards};
 
 /// A checked view of a blob: a few hundred bytes that borrow from it.
 ///
@@ -200,31 +200,31 @@ impl<'a> Scene<'a> {
         self.primitive_at(self.space.shapes.place(kind, slot))
     }
 
-    /// The number, in scene-file order, of a primitive that lies somewhere.
-    #[cfg_attr(feature = "wide", inline(always))]
-    #[cfg_attr(not(feature = "wide"), inline)]
-    pub(crate) fn primitive_at(&self, place: PrimitiveId) -> u32 {
-        self.key(place).0
-    }
-
-    /// What decides between hits at the same t: the primitive's number, and between pieces of one
-    /// primitive, kind and slot; so answers do not depend on the structure either.
-    #[cfg_attr(feature = "wide", inline(always))]
-    #[cfg_attr(not(feature = "wide"), inline)]
-    pub(crate) fn key(&self, place: PrimitiveId) -> (u32, u8, u32) {
-        let PrimitiveId { kind, number, .. } = place;
-        let Some(lane) = place.lane() else {
-            return (self.in_slot(kind, number), kind as u8, number);
-        };
-        let clusters = self.space.shapes.clusters();
-        if kind == Kind::Triangle {
-            let members = clusters.strips.members(number);
-            let member = members.map_or(0, |members| members.member(lane));
-            self.member(kind, member, 0)
-        } else {
-            self.member(kind, number << 3 | lane, clusters.triangles())
+    inline_on_hosts_hint_on_boards!(
+        /// The number, in scene-file order, of a primitive that lies somewhere.
+        pub(crate) fn primitive_at(&self, place: PrimitiveId) -> u32 {
+            self.key(place).0
         }
-    }
+    );
+
+    inline_on_hosts_hint_on_boards!(
+        /// What decides between hits at the same t: the primitive's number, and between pieces of one
+        /// primitive, kind and slot; so answers do not depend on the structure either.
+        pub(crate) fn key(&self, place: PrimitiveId) -> (u32, u8, u32) {
+            let PrimitiveId { kind, number, .. } = place;
+            let Some(lane) = place.lane() else {
+                return (self.in_slot(kind, number), kind as u8, number);
+            };
+            let clusters = self.space.shapes.clusters();
+            if kind == Kind::Triangle {
+                let members = clusters.strips.members(number);
+                let member = members.map_or(0, |members| members.member(lane));
+                self.member(kind, member, 0)
+            } else {
+                self.member(kind, number << 3 | lane, clusters.triangles())
+            }
+        }
+    );
 
     /// The key of a member of a cluster, by its number among those of its kind and the number of
     /// members before them.

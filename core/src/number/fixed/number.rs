@@ -18,6 +18,7 @@ use crate::number::fixed::root::scaled_root;
 use crate::number::fixed::vector;
 use crate::number::fixed::wide::Product;
 use crate::number::scalar::Sealed;
+use crate::target::inline_unless_small;
 use core::ops::Mul;
 
 impl Mul for Fixed {
@@ -223,10 +224,11 @@ impl Products for Fixed {
         Self::narrow(origin + depth.times_ratio(step, stride))
     }
 
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    fn from_wide(product: Product) -> Self {
-        saturate(round_off(product.0, RATIO_BITS))
-    }
+    inline_unless_small!(
+        fn from_wide(product: Product) -> Self {
+            saturate(round_off(product.0, RATIO_BITS))
+        }
+    );
 
     #[inline(always)]
     fn wide_scale(wide: Product, ratio: Self) -> Product {

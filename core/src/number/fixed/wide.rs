@@ -4,7 +4,7 @@ use crate::number::fixed::base::wrapping_sums;
 use crate::number::fixed::base::{Fixed, RATIO_BITS, keep, with_sign};
 use crate::number::fixed::halves::{product_unsigned, wide_leading_zeros};
 use crate::number::fixed::reciprocal::reciprocal;
-use crate::target::NARROW_PRODUCTS;
+use crate::target::{NARROW_PRODUCTS, inline_unless_small};
 use core::ops::{Add, Neg, Sub};
 
 /// A product in 64 bits; its operators wrap like those of [`Fixed`].
@@ -88,17 +88,18 @@ impl Product {
         })
     }
 
-    /// [`Products::wide_scale`](crate::number::Products::wide_scale).
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    pub(super) fn scaled(self, ratio: Fixed) -> Self {
-        keep(|| i64::try_from((self.0 as i128 * ratio.0 as i128) >> RATIO_BITS).is_ok());
-        let high = (self.0 >> 32).wrapping_mul(ratio.0 as i64);
-        let low = (self.0 & 0xffff_ffff).wrapping_mul(ratio.0 as i64);
-        // Rounded as a product of two numbers is.
-        let half = (1 << (RATIO_BITS - 1)) + ((self.0 ^ ratio.0 as i64) >> 63);
-        let low = low.wrapping_add(half) >> RATIO_BITS;
-        Self((high << (32 - RATIO_BITS)).wrapping_add(low))
-    }
+    inline_unless_small!(
+        /// [`Products::wide_scale`](crate::number::Products::wide_scale).
+        pub(super) fn scaled(self, ratio: Fixed) -> Self {
+            keep(|| i64::try_from((self.0 as i128 * ratio.0 as i128) >> RATIO_BITS).is_ok());
+            let high = (self.0 >> 32).wrapping_mul(ratio.0 as i64);
+            let low = (self.0 & 0xffff_ffff).wrapping_mul(ratio.0 as i64);
+            // Rounded as a product of two numbers is.
+            let half = (1 << (RATIO_BITS - 1)) + ((self.0 ^ ratio.0 as i64) >> 63);
+            let low = low.wrapping_add(half) >> RATIO_BITS;
+            Self((high << (32 - RATIO_BITS)).wrapping_add(low))
+        }
+    );
 
     /// [`Products::far_over`](crate::number::Products::far_over).
     pub(super) fn over_ratios(self, denominator: Self) -> Self {
