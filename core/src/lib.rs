@@ -5,14 +5,15 @@
 //! the blob once; after that nothing can fail. Firmware can have most of that done by the compiler:
 //! see [`Prevalidated`]. Two things can be asked of a scene:
 //!
-//! - **rays**: [`closest_hit`], [`closest_primitive`] and [`any_hit`], with a [`Ray`] of your own;
+//! - **rays**: [`Scene::closest_hit`] and [`Scene::any_hit`] with a [`Ray`] of your own, or [`closest_hit`],
+//!   [`closest_primitive`] and [`any_hit`] for one structure and for counting;
 //! - **pictures**: a [`Renderer`] gives pixels row by row or for any rectangle, and a
 //!   [`Cursor`](render::Cursor) gives them a bounded number of rays at a time.
 //!
 //! ```
 //! # static BLOB: &[u8] =
 //! #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
-//! use gridel_core::{DualSplit, NoCount, Renderer, Rgb888, Scene, Workspace, closest_hit};
+//! use gridel_core::{NoCount, Renderer, Rgb888, Scene, Workspace};
 //!
 //! let scene = Scene::from_bytes(BLOB)?;
 //! let mut space = Workspace::for_any_scene();
@@ -24,7 +25,7 @@
 //!
 //! let ray = renderer.primary_ray(160, 120)?;
 //! let mut stack = gridel_core::Stack::<32>::new();
-//! if let Some(hit) = closest_hit::<_, DualSplit, _>(&scene, &ray, stack.as_view(), &mut NoCount) {
+//! if let Some(hit) = scene.closest_hit(&ray, stack.as_view()) {
 //!     println!("object {} at {:?}", hit.object, hit.point);
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -6,11 +6,18 @@ pub(crate) const SMALL: bool = cfg!(feature = "small");
 /// Whether the code of the structure `wide`, and of the clusters in its leaves, is in this build.
 pub(crate) const WIDE: bool = cfg!(feature = "wide");
 
-/// A value that only builds with [`WIDE`] hold; it has no size in others.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct InWide<T>([T; WIDE as usize]);
+/// A value that only builds with [`WIDE`] hold.
+pub(crate) type WideOnly<T> = InSomeBuilds<T, { WIDE as usize }>;
 
-impl<T> InWide<T> {
+/// A value that only builds with the code of all structures hold.
+pub(crate) type AllStructuresOnly<T> =
+    InSomeBuilds<T, { cfg!(feature = "all-structures") as usize }>;
+
+/// A value that builds hold for which `COUNT` is 1; it has no size where `COUNT` is 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct InSomeBuilds<T, const COUNT: usize>([T; COUNT]);
+
+impl<T, const COUNT: usize> InSomeBuilds<T, COUNT> {
     #[inline(always)]
     pub(crate) fn new(make: impl Fn() -> T) -> Self {
         Self(core::array::from_fn(|_| make()))

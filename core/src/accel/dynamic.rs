@@ -47,7 +47,7 @@ macro_rules! dynamic {
             type Views<'a> = StructureViews<'a>;
 
             fn needs(space: &Space<'_>) -> Structure {
-                space.chosen
+                space.chosen()
             }
 
             fn walk<N: Number, C: Observer>(
@@ -59,7 +59,7 @@ macro_rules! dynamic {
                 count: &mut C,
                 leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
             ) {
-                match space.chosen {
+                match space.chosen() {
                     $(Structure::$variant => {
                         let cull = <super::$variant as Traverse>::Cull::<N>::new(ray);
                         let views = <super::$variant as Accel>::views(views);

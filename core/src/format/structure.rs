@@ -97,7 +97,6 @@ impl Structure {
     }
 
     /// The structure of a set that answers fastest, by and large; `set` holds their [bits](Self::bit).
-    #[cfg(feature = "all-structures")]
     pub(crate) fn fastest(set: u32) -> Self {
         let first = [Self::Wide, Self::DualSplit, Self::Flagged, Self::Bvh];
         let all = first.into_iter().chain(Self::ALL.into_iter().rev());

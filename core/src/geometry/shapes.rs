@@ -12,7 +12,7 @@ use crate::geometry::triangle::{self, Triangles, Vertices};
 use crate::geometry::{LEAVING, Part, PrimitiveId, Surface};
 use crate::number::Arithmetic;
 use crate::ray::Ray;
-use crate::target::{InWide, WIDE, inline_on_boards, inline_on_hosts};
+use crate::target::{WIDE, WideOnly, inline_on_boards, inline_on_hosts};
 
 macro_rules! registry {
     (
@@ -30,7 +30,7 @@ macro_rules! registry {
             pub(crate) spheres: Spheres<'a>,
             $(pub(crate) $field: &'a [super::$module::$record],)*
             /// Where there are both, the same triangles and spheres lie in clusters as in the arrays above.
-            clusters: InWide<Clusters<'a>>,
+            clusters: WideOnly<Clusters<'a>>,
         }
 
         /// A primitive of any kind, in 1/256 unit.
@@ -124,7 +124,7 @@ macro_rules! registry {
                     } else {
                         &[]
                     },)*
-                    clusters: InWide::new(|| clusters),
+                    clusters: WideOnly::new(|| clusters),
                 })
             }
 

@@ -4,6 +4,8 @@
 //! those that lie in no structure; `hit` is the answer.
 
 mod clusters;
+#[cfg(feature = "all-structures")]
+mod dynamic;
 mod hit;
 mod search;
 mod unbounded;

@@ -17,7 +17,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::target::{InWide, SMALL, inline_on_boards};
+use crate::target::{SMALL, WideOnly, inline_on_boards};
 
 /// The best hit so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +34,7 @@ pub(super) struct Search<'s, 'a, N: Number, K> {
     cull: &'s K,
     pub(super) recip_norm2: N,
     /// The ray as strips are tested with it.
-    pub(super) strip_ray: InWide<StripRay<N>>,
+    pub(super) strip_ray: WideOnly<StripRay<N>>,
     /// No hit beyond this counts.
     pub(super) tmax: N,
     pub(super) best: Option<Candidate<N>>,
@@ -57,7 +57,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             } else {
                 N::ZERO
             },
-            strip_ray: InWide::new(|| StripRay::new(ray, &scene.space.shapes.clusters().strips)),
+            strip_ray: WideOnly::new(|| StripRay::new(ray, &scene.space.shapes.clusters().strips)),
             tmax: ray.tmax,
             best,
         }

@@ -5,7 +5,7 @@ use crate::format::record::{Header, Light, Material, UnitBox, View};
 use crate::format::{Effects, Indices, Kind, Structure};
 use crate::geometry::{Geometry, PrimitiveId};
 use crate::simd::SimdLevel;
-use crate::target::{InWide, inline_on_hosts_hint_on_boards};
+use crate::target::{WideOnly, inline_on_hosts_hint_on_boards};
 
 /// A checked view of a blob: a few hundred bytes that borrow from it.
 ///
@@ -122,33 +122,11 @@ impl<'a> Scene<'a> {
         self.space.holds(structure)
     }
 
-    /// The scene with a structure chosen for [`DynAccel`](crate::accel::DynAccel) to walk, in place of the
-    /// fastest one; `None` if the blob does not hold it.
-    ///
-    /// ```
-    /// # static BLOB: &[u8] =
-    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
-    /// use gridel_core::Structure;
-    ///
-    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
-    /// assert!(scene.choose(Structure::List).is_some());
-    /// assert!(scene.choose(Structure::Grid).is_none());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[cfg(feature = "all-structures")]
-    pub fn choose(&self, structure: Structure) -> Option<Self> {
-        self.holds(structure).then(|| {
-            let mut scene = *self;
-            scene.space.chosen = structure;
-            scene
-        })
-    }
-
     /// Returns the scene with queries through [`Wide`](crate::Wide) at a level of instructions. The
     /// default is portable. Has no effect in a build without the feature `wide`.
     pub fn with_simd(self, simd: SimdLevel) -> Self {
         let mut scene = self;
-        scene.space.simd = InWide::new(|| simd);
+        scene.space.simd = WideOnly::new(|| simd);
         scene
     }
 

@@ -14,7 +14,7 @@ use crate::format::{
 use crate::geometry::Shapes;
 use crate::scene::Scene;
 use crate::simd::SimdLevel;
-use crate::target::InWide;
+use crate::target::{AllStructuresOnly, WideOnly};
 use core::mem::size_of;
 
 /// Largest magnitude of a far coordinate, so that sums and products with ratios stay in 64 bits.
@@ -70,9 +70,8 @@ pub(crate) fn scene<'a>(
             header,
             shapes,
             leaves: sections.records(SectionKind::Leaves)?,
-            #[cfg(feature = "all-structures")]
-            chosen: Structure::fastest(header.structures),
-            simd: InWide::new(SimdLevel::default),
+            chosen: AllStructuresOnly::new(|| Structure::fastest(header.structures)),
+            simd: WideOnly::new(SimdLevel::default),
         },
         structures: StructureViews::read(sections)?,
         view,
