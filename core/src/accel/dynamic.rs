@@ -31,6 +31,23 @@ macro_rules! dynamic {
     )*) => {
         impl Structure {
             /// Hands the structure to a visitor as a type.
+            ///
+            /// ```
+            /// use gridel_core::accel::Accel;
+            /// use gridel_core::{Structure, StructureVisitor};
+            ///
+            /// struct NameOfType;
+            ///
+            /// impl StructureVisitor for NameOfType {
+            ///     type Output = &'static str;
+            ///
+            ///     fn visit<A: Accel>(self) -> &'static str {
+            ///         std::any::type_name::<A>()
+            ///     }
+            /// }
+            ///
+            /// assert!(Structure::Grid.visit(NameOfType).ends_with("Grid"));
+            /// ```
             pub fn visit<V: StructureVisitor>(self, visitor: V) -> V::Output {
                 match self {
                     $(Structure::$variant => visitor.visit::<super::$variant>(),)*

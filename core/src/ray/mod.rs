@@ -63,6 +63,19 @@ impl<N: Arithmetic> Ray<N> {
         /// Origin and interval are lengths in units; the direction is of any length but 0. Hits are
         /// reported for `tmin <= t <= tmax`, in lengths along the major axis; `tmin` may be negative.
         ///
+        /// ```
+        /// # static BLOB: &[u8] =
+        /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+        /// use gridel_core::{Ray, RayError, Scene};
+        ///
+        /// let scene = Scene::from_bytes(BLOB)?;
+        /// let ray = Ray::<f32>::new(scene.bounds(), [0.0; 3], [0.0, 3.0, -4.0], 0.0, 1e9)?;
+        /// assert_eq!(ray.slope(), [0.0, 0.75, -1.0]);
+        /// let nowhere = Ray::<f32>::new(scene.bounds(), [0.0; 3], [0.0; 3], 0.0, 1e9);
+        /// assert_eq!(nowhere.err(), Some(RayError::Direction));
+        /// # Ok::<(), Box<dyn std::error::Error>>(())
+        /// ```
+        ///
         /// # Errors
         /// If the direction is zero, or anything is NaN, or the origin or direction infinite, or the origin
         /// farther than [`FARTHEST`](crate::format::limits::FARTHEST) along an axis, or `tmin > tmax`: see the limits of [`Ray`].
