@@ -91,7 +91,7 @@ pub use format::{Aligned, BlobError, Effects, Kind, Requirements, Structure};
 pub use number::{Fixed, Format};
 pub use observe::count::{Counters, NoCount, Observer};
 pub use observe::event::{Event, RayKind};
-pub use query::{Found, Hit, any_hit, closest_hit, closest_primitive};
+pub use query::{Hit, PrimitiveHit, any_hit, closest_hit, closest_primitive};
 pub use ray::{Pencil, Ray, RayError};
 pub use render::{Renderer, Rgb565, Rgb888, Settings, Workspace};
 pub use scene::{Names, Prevalidated, Scene};

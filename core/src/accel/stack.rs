@@ -61,7 +61,7 @@ pub(in crate::accel) fn pop<C: Observer>(
         }
         if C::ENABLED {
             let (place, enters) = report(&entry);
-            count.event(Event::GivenUp { place, enters });
+            count.event(Event::NodeSkipped { place, enters });
         }
     }
 }

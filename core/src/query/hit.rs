@@ -3,7 +3,7 @@
 use crate::accel::Number;
 use crate::format::Leaf;
 use crate::format::limits::UNBOUNDED;
-use crate::observe::event::Met;
+use crate::observe::event::QueryHit;
 use crate::query::search::Candidate;
 use crate::ray::Ray;
 use crate::scene::Scene;
@@ -11,7 +11,7 @@ use crate::target::inline_on_hosts;
 
 /// Which primitive a ray meets first, and where: all of a hit but its surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Found<N: Number> {
+pub struct PrimitiveHit<N: Number> {
     /// Where on the ray: a length in units along the ray's major axis (see [`Ray`]).
     pub t: N::Wide,
     /// The primitive, counted in scene-file order over all objects.
@@ -19,7 +19,7 @@ pub struct Found<N: Number> {
     pub(super) best: Candidate<N>,
 }
 
-impl<N: Number> Found<N> {
+impl<N: Number> PrimitiveHit<N> {
     inline_on_hosts!(
         /// The whole hit: the point and how the surface lies there. `scene` and `ray` are those of the
         /// query.
@@ -170,8 +170,8 @@ impl<N: Number> Hit<N> {
     }
 
     /// The hit as an event.
-    pub(super) fn met(&self) -> Met {
-        Met {
+    pub(super) fn as_query_hit(&self) -> QueryHit {
+        QueryHit {
             t: N::far_to_f64(self.t),
             point: self.point.map(N::length_to_f64),
             normal: self.normal.map(N::ratio_to_f64),

@@ -10,7 +10,7 @@ mod hit;
 mod search;
 mod unbounded;
 
-pub use hit::{Found, Hit};
+pub use hit::{Hit, PrimitiveHit};
 
 use crate::accel::cull::Culling;
 use crate::accel::stack::StackView;
@@ -48,7 +48,7 @@ inline_on_hosts_hint_on_boards!(
         ray: &Ray<N>,
         stack: &mut StackView,
         count: &mut C,
-    ) -> Option<Found<N>> {
+    ) -> Option<PrimitiveHit<N>> {
         search::<N, A, C, false>(scene, ray, stack, count, false)
     }
 );
@@ -63,7 +63,7 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
     stack: &mut StackView,
     count: &mut C,
     any: bool,
-) -> Option<Found<N>> {
+) -> Option<PrimitiveHit<N>> {
     // Known when the code is compiled, unless one copy of it is to serve both.
     let any = if A::ONE_COPY { any } else { ANY };
     if C::ENABLED {
@@ -73,8 +73,8 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
         return search_all::<N, A, C, ANY>(scene, ray, stack, count, any);
     }
     let best = search_structure::<N, A, C, ANY>(scene, ray, None, stack, count, any)?;
-    Some(Found {
-        t: best.t.widen() + ray.moved,
+    Some(PrimitiveHit {
+        t: best.t.widen() + ray.start_t,
         primitive: scene.primitive_at(best.place),
         best,
     })
@@ -89,7 +89,7 @@ fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(
     stack: &mut StackView,
     count: &mut C,
     any: bool,
-) -> Option<Found<N>> {
+) -> Option<PrimitiveHit<N>> {
     let far = unbounded::nearest(scene, ray, count);
     let end = far.map_or(*ray, |(t, _)| ray.until(t));
     let first = far.map(|(_, place)| Candidate {
@@ -104,9 +104,9 @@ fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(
     };
     let t = match far {
         Some((t, place)) if place == best.place => t,
-        _ => best.t.widen() + ray.moved,
+        _ => best.t.widen() + ray.start_t,
     };
-    Some(Found {
+    Some(PrimitiveHit {
         t,
         primitive: scene.primitive_at(best.place),
         best,
@@ -183,7 +183,7 @@ pub fn closest_hit<N: Number, A: Accel, C: Observer>(
     let found = closest_primitive::<N, A, C>(scene, ray, stack, count);
     let hit = found.and_then(|found| found.hit(scene, ray));
     if C::ENABLED {
-        count.event(Event::Nearest(hit.map(|hit| hit.met())));
+        count.event(Event::Nearest(hit.map(|hit| hit.as_query_hit())));
     }
     hit
 }

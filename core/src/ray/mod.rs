@@ -1,23 +1,24 @@
 //! Rays, in the one form that every kernel uses.
 
 mod error;
+mod given;
 mod pencil;
 mod start;
-mod unmoved;
 
 pub use error::RayError;
+pub(crate) use given::Given;
 pub use pencil::Pencil;
-pub(crate) use unmoved::Unmoved;
 
 use crate::axis::pick;
 use crate::format::record::UnitBox;
 use crate::number::Arithmetic;
 use crate::observe::event::Event;
 use crate::target::{inline_on_hosts, inline_on_hosts_hint_on_boards, inline_unless_small};
+use given::{FarPoint, RayPoint, given};
 use start::{
-    check_interval, check_origin, end_after, far_start, interval, is_near, near_start, way_to_box,
+    check_interval, check_origin, distance_to_box, end_after, far_start, interval, is_near,
+    near_start,
 };
-use unmoved::{FarPlace, Place, unmoved};
 
 /// A half-line with an interval, ready to be traced through one scene.
 ///
@@ -49,11 +50,11 @@ pub struct Ray<N: Arithmetic> {
     pub(crate) origin: [N; 3],
     pub(crate) slope: [N; 3],
     pub(crate) major: usize,
-    /// How far the origin was moved.
-    pub(crate) moved: N::Wide,
+    /// The t of `origin`, as the caller counts it.
+    pub(crate) start_t: N::Wide,
     pub(crate) tmin: N,
     pub(crate) tmax: N,
-    pub(crate) unmoved: Unmoved<N>,
+    pub(crate) given: Given<N>,
 }
 
 impl<N: Arithmetic> Ray<N> {
@@ -90,25 +91,25 @@ impl<N: Arithmetic> Ray<N> {
             let (slope, major) = N::slopes(direction).ok_or(RayError::Direction)?;
             check_interval(tmin, tmax)?;
             let forward = pick(slope, major) > N::ZERO;
-            let moved = way_to_box::<N>(bounds, pick(origin, major), (major, forward), tmin);
-            let single = (origin.map(N::narrow), N::narrow(moved));
-            let (start, moved, within) = if is_near(single.0, major, single.1) {
-                (near_start(single.0, single.1, slope), moved, true)
+            let start_t = distance_to_box::<N>(bounds, pick(origin, major), (major, forward), tmin);
+            let single = (origin.map(N::narrow), N::narrow(start_t));
+            let (start, start_t, within) = if is_near(single.0, major, single.1) {
+                (near_start(single.0, single.1, slope), start_t, true)
             } else {
                 let [x, y, z] = origin;
                 check_origin::<N>(x, y, z)?;
-                far_start::<N, false>(bounds, origin, direction, (slope, major), moved)
+                far_start::<N, false>(bounds, origin, direction, (slope, major), start_t)
             };
-            let unmoved = unmoved(|| origin, [tmin, tmax], within);
-            let [tmin, tmax] = interval(tmin, tmax, moved);
+            let given = given(|| origin, [tmin, tmax], within);
+            let [tmin, tmax] = interval(tmin, tmax, start_t);
             Ok(Self {
                 origin: start,
                 slope,
                 major,
-                moved,
+                start_t,
                 tmin,
                 tmax: if within { tmax } else { -N::ONE },
-                unmoved,
+                given,
             })
         }
     );
@@ -127,16 +128,16 @@ impl<N: Arithmetic> Ray<N> {
             // A place beside the box at most: always near.
             let from = pick(origin, major).widen();
             let zero = N::Wide::default();
-            let moved = way_to_box::<N>(bounds, from, (major, forward), zero);
+            let start_t = distance_to_box::<N>(bounds, from, (major, forward), zero);
             let beside = N::step_beside(N::ZERO);
             Some(Self {
-                unmoved: unmoved(|| origin.map(N::widen), [beside.widen(), tmax], true),
-                origin: near_start(origin, N::narrow(moved), slope),
+                given: given(|| origin.map(N::widen), [beside.widen(), tmax], true),
+                origin: near_start(origin, N::narrow(start_t), slope),
                 slope,
                 major,
-                moved,
-                tmin: if moved > zero { N::ZERO } else { beside },
-                tmax: end_after(tmax, moved),
+                start_t,
+                tmin: if start_t > zero { N::ZERO } else { beside },
+                tmax: end_after(tmax, start_t),
             })
         }
     );
@@ -186,10 +187,10 @@ impl<N: Arithmetic> Ray<N> {
                 origin: exact.origin.map(|x| N::flush_tiny(N::length_from_f64(x))),
                 slope: exact.slope.map(N::ratio_from_f64),
                 major: exact.major,
-                moved: N::far_from_f64(exact.moved),
+                start_t: N::far_from_f64(exact.start_t),
                 tmin: N::length_from_f64(exact.tmin),
                 tmax: N::length_from_f64(exact.tmax),
-                unmoved: unmoved(
+                given: given(
                     || origin.map(N::far_from_f64),
                     [tmin, tmax].map(N::far_from_f64),
                     exact.holds_start(),
@@ -235,7 +236,7 @@ impl<N: Arithmetic> Ray<N> {
     /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
     /// // From far away a ray starts where it comes to the scene's box.
     /// let ray = gridel_core::Ray::<f64>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
-    /// assert_eq!(ray.start()[1] + ray.moved(), 1e6);
+    /// assert_eq!(ray.start()[1] + ray.start_t(), 1e6);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn start(&self) -> [N; 3] {
@@ -243,8 +244,8 @@ impl<N: Arithmetic> Ray<N> {
     }
 
     /// The t of [`start`](Self::start), as the caller counts it.
-    pub fn moved(&self) -> N::Wide {
-        self.moved
+    pub fn start_t(&self) -> N::Wide {
+        self.start_t
     }
 
     /// The interval that counts, from [`start`](Self::start).
@@ -254,39 +255,41 @@ impl<N: Arithmetic> Ray<N> {
 
     /// The interval as the caller gave it, counted from the origin: it can begin before [`start`](Self::start). It counts
     /// for shapes without bounds, and is empty in builds without them.
-    pub fn unmoved_interval(&self) -> [N::Wide; 2] {
+    pub fn given_interval(&self) -> [N::Wide; 2] {
         let none = [N::far(1), N::Wide::default()];
-        self.unmoved.first().map_or(none, |ray| ray.interval)
+        self.given.get().map_or(none, |ray| ray.interval)
     }
 
     /// A place on the ray, and its t as the caller counts it: the ray's [`start`](Self::start), or its origin where
     /// it passes the scene so far away that it has no start.
-    pub fn base(&self) -> ([N::Wide; 3], N::Wide) {
-        let start = self.start_place();
-        self.unmoved.first().map_or(start, |ray| ray.base(start))
+    pub fn reference_point(&self) -> ([N::Wide; 3], N::Wide) {
+        let start = self.start_point();
+        self.given
+            .get()
+            .map_or(start, |ray| ray.reference_point(start))
     }
 
     /// Whether the start is a place on the ray.
     fn holds_start(&self) -> bool {
-        self.unmoved.first().is_none_or(|ray| ray.holds_start)
+        self.given.get().is_none_or(|ray| ray.holds_start)
     }
 
-    fn start_place(&self) -> Place<N> {
-        (self.origin.map(N::widen), self.moved)
+    fn start_point(&self) -> RayPoint<N> {
+        (self.origin.map(N::widen), self.start_t)
     }
 
     /// Where the ray crosses a surface without bounds, given how far from a place on the ray that is.
     pub(crate) fn meet_far(
         &self,
         cross: impl Fn([N::Wide; 3]) -> Option<N::Wide>,
-    ) -> Option<FarPlace<N>> {
-        self.unmoved.first()?.meet(self.start_place(), cross)
+    ) -> Option<FarPoint<N>> {
+        self.given.get()?.meet(self.start_point(), cross)
     }
 
     /// The place at a `t` that is counted from the origin, which can lie anywhere.
-    pub(crate) fn far_place(&self, t: N::Wide) -> Option<[N::Wide; 3]> {
-        let place = self.unmoved.first()?.place(self.start_place(), t);
-        Some(place.coordinates(self.slope))
+    pub(crate) fn far_point(&self, t: N::Wide) -> Option<[N::Wide; 3]> {
+        let point = self.given.get()?.point(self.start_point(), t);
+        Some(point.coordinates(self.slope))
     }
 
     /// A query along this ray, as events report it.
@@ -294,7 +297,7 @@ impl<N: Arithmetic> Ray<N> {
         Event::Query {
             origin: self.origin.map(N::length_to_f64),
             slope: self.slope.map(N::ratio_to_f64),
-            moved: N::far_to_f64(self.moved),
+            start_t: N::far_to_f64(self.start_t),
             interval: [self.tmin, self.tmax].map(N::length_to_f64),
             any,
         }
@@ -305,7 +308,7 @@ impl<N: Arithmetic> Ray<N> {
     pub(crate) fn until(&self, t: N::Wide) -> Self {
         let tmax = self
             .tmax
-            .min(end_after::<N>(t, self.moved).min(N::FAR.half()));
+            .min(end_after::<N>(t, self.start_t).min(N::FAR.half()));
         Self { tmax, ..*self }
     }
 

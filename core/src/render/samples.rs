@@ -52,7 +52,7 @@ impl<N: Number> Samples<N> {
         let seen = self.radiance.displayable();
         self.sum = self.sum.plus(seen);
         if C::ENABLED {
-            count.event(Event::Seen {
+            count.event(Event::SampleFinished {
                 place: Some(place([x, y], self.index, samples)),
                 radiance: seen.to_f64(),
             });

@@ -131,7 +131,7 @@ impl Loop<'_, '_> {
         };
         // A sample without a direction adds no light.
         if C::ENABLED {
-            tracing.count.event(Event::Taken {
+            tracing.count.event(Event::RayStarted {
                 kind,
                 depth: tracing.depth,
                 weight: weight.ratios_to_f64(),

@@ -134,7 +134,7 @@ impl Traverse for DualSplit {
                     break;
                 }
                 if C::ENABLED {
-                    count.event(Event::GivenUp {
+                    count.event(Event::NodeSkipped {
                         place: place(entry.node),
                         enters: <Cull as Culling<N>>::units(entry.near),
                     });
