@@ -132,9 +132,9 @@ impl<N: CullArithmetic> PairCulling<N> for Cull {
 /// The form of rays that walk lists of candidates and cull no boxes: nothing, until a hit lies so
 /// near the side of its primitive's box that the integer form has to tell.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Deferred;
+pub struct NoBoxCulling;
 
-impl<N: CullArithmetic> Culling<N> for Deferred {
+impl<N: CullArithmetic> Culling<N> for NoBoxCulling {
     inline_unless_small!(
         fn new(_: &Ray<N>) -> Self {
             Self

@@ -16,22 +16,22 @@ macro_rules! effects {
         $macro! {
             /// Shadows: light is blocked on its way to a surface. One shadow ray per light and hit.
             SHADOW = 0, "shadow", Shadow in shadow, casts 0,
-                for "a light and an object, unless the scene file turns shadows off";
+                required by "a light and an object, unless the scene file turns shadows off";
             /// Highlights of the lights.
             HIGHLIGHT = 1, "highlight", Highlight in highlight, casts 0,
-                for "a material whose highlight is not 0";
+                required by "a material whose highlight is not 0";
             /// Mirrors: one more ray per hit.
             MIRROR = 2, "mirror", Mirror in mirror, casts 1,
-                for "a material whose mirror is not 0";
+                required by "a material whose mirror is not 0";
             /// Glass: up to two more rays per hit, and shadows through it.
             GLASS = 3, "glass", Glass in glass, casts 2,
-                for "a material whose transmit is not 0";
+                required by "a material whose transmit is not 0";
             /// Glass that absorbs light along the way.
             ABSORPTION = 4, "absorption", Absorption in absorption, casts 0,
-                for "such a material whose absorption is not 0";
+                required by "such a material whose absorption is not 0";
             /// Checkerboards.
             CHECKER = 5, "checker", Checker in checker, casts 0,
-                for "a material whose checker size is above 0";
+                required by "a material whose checker size is above 0";
         }
     };
 }
@@ -62,7 +62,7 @@ macro_rules! sets {
     ($(
         $(#[doc = $doc:literal])*
         $effect:ident = $bit:literal, $name:literal, $type:ident in $module:ident,
-            casts $rays:literal, for $caller:literal;
+            casts $rays:literal, required by $required_by:literal;
     )*) => {
         impl Effects {
             $($(#[doc = $doc])* pub const $effect: Effects = Effects(1 << $bit);)*
@@ -72,7 +72,7 @@ macro_rules! sets {
                 [$((Effects::$effect, $name)),*];
 
             /// What calls for each effect of [`NAMED`](Self::NAMED).
-            pub const CALLERS: [&'static str; Self::NAMED.len()] = [$($caller),*];
+            pub const REQUIRED_BY: [&'static str; Self::NAMED.len()] = [$($required_by),*];
 
             /// All effects that there are.
             pub const ALL: Effects = Effects($(1 << $bit)|*);

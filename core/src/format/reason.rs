@@ -158,7 +158,7 @@ texts! {
         EmptyPack => "it has no sphere",
         PartialPack => "it has fewer than eight spheres, but it is not the last pack",
         RadiusAfterLast => "a radius follows its last sphere",
-        WrongHome => "it does not lead back to its slot",
+        WrongSlotLocation => "it does not lead back to its slot",
         // Cells and candidates.
         WrongPartition => "its gridels are not those of the scene's box",
         KeyOrder => "it does not follow the key before it in its list",

@@ -250,7 +250,7 @@ pub struct DualNode {
     /// axis; zero where there is no carve.
     pub carves: [u32; 2],
     /// Axes, and the children or the leaf: see [`NodeWord`](crate::format::NodeWord).
-    pub way: u32,
+    pub word: u32,
 }
 
 /// How the cylinder cubes partition the scene's box: see `accel::candidates::gridels`.
@@ -359,7 +359,7 @@ pub struct BoundingSphere {
 #[repr(C)]
 pub struct SpherePair {
     /// The left and the right child's.
-    pub balls: [BoundingSphere; 2],
+    pub spheres: [BoundingSphere; 2],
     /// The children: the number of a pair, or that of a leaf with bit 31 set.
     pub children: [u32; 2],
 }

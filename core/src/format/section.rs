@@ -137,7 +137,7 @@ macro_rules! sections {
             Members = 45, "members", "member" of "wide";
             /// For each slot, where the primitive lies in the eight-wide hierarchy: `u32` each. Only where
             /// the blob has other structures.
-            Homes = 46, "homes", "home" of "wide";
+            SlotLocations = 46, "slot-locations", "slot location" of "wide";
             /// The planes of the root of slabs, a word a direction.
             SlabRoot = 47, "slab-root", "direction" of "slabs";
             /// Pairs of slabs: see [`slabs`](crate::accel::hierarchy::slabs).
@@ -147,7 +147,7 @@ macro_rules! sections {
             /// Flagged pairs of slabs.
             FlaggedSlabPairs = 50, "flagged-slab-pairs", "pair" of "flagged-slabs";
             /// [`SpherePair`](crate::format::record::SpherePair)s.
-            BallPairs = 51, "ball-pairs", "pair" of "spheres";
+            SpherePairs = 51, "sphere-pairs", "pair" of "spheres";
             /// One [`GridShape`](crate::format::record::GridShape).
             GridShape = 52, "grid-shape", "" of "";
             /// For each cell of the grid, where its list begins; then where the last one ends (1 to 4 bytes).

@@ -24,7 +24,7 @@ impl LaneHits {
     pub(crate) fn crossing<N: Arithmetic>(&self, recip_norm2: N, lane: usize) -> Crossing<N> {
         let closest = N::length_from_f64(self.closest[lane & 7].into());
         let square = N::length_from_f64(self.square[lane & 7].into());
-        sphere::beside(closest, square.widen(), recip_norm2)
+        sphere::tangent_crossing(closest, square.widen(), recip_norm2)
     }
 }
 

@@ -19,7 +19,7 @@ pub trait Project: Arithmetic {
     }
     /// Where a coordinate, of at most 24 bits, lies as seen so: in floats in steps, in [`Fixed`](crate::Fixed) a
     /// length, and in the direction in which the ray runs.
-    fn project(coordinate: i32, sight: &AxisProjection<Self>) -> Self;
+    fn project(coordinate: i32, axis: &AxisProjection<Self>) -> Self;
     /// How far what is [seen](Self::project) strays from a ray along a minor axis for each step along its
     /// major one, given the slopes there.
     fn shear(slope: Self, major: Self) -> Self;

@@ -6,7 +6,7 @@ use crate::format::range::{At, at_most};
 use crate::format::record::{Header, UnitBox};
 use crate::format::{BlobError, Field, Kind, Leaf, SectionKind, Sections};
 use crate::geometry::Clusters;
-use crate::geometry::primitive::{InScene, Primitive, beneath};
+use crate::geometry::primitive::{InScene, Primitive, offset_inward};
 use crate::geometry::sphere::{self, Spheres};
 use crate::geometry::triangle::{self, Triangles, Vertices};
 use crate::geometry::{LEAVING, Part, PrimitiveId, Surface};
@@ -232,7 +232,7 @@ macro_rules! registry {
                         Some(record) => record.inside(surface, depth),
                         None => surface[0],
                     },)*
-                    _ => beneath(surface[0], surface[1], depth),
+                    _ => offset_inward(surface[0], surface[1], depth),
                 }
             }
         }

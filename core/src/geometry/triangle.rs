@@ -125,7 +125,7 @@ pub(crate) fn is_narrow(sections: &Sections<'_>) -> bool {
 /// (the two minor ones, then the major one), and how far the ray strays for each step of depth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projection<N> {
-    pub(crate) sight: [AxisProjection<N>; 3],
+    pub(crate) axes: [AxisProjection<N>; 3],
     pub(crate) shear: [N; 2],
     major: usize,
 }
@@ -150,11 +150,11 @@ impl<N: Project> Projection<N> {
     pub(crate) fn of<const MAJOR: usize, V: Vertex>(ray: &Ray<N>) -> Self {
         let slope = |role: usize| pick(ray.slope, axis::<MAJOR>(ray.major, role));
         let origin = |role: usize| pick(ray.origin, axis::<MAJOR>(ray.major, role));
-        let sight = |role: usize| N::axis_projection(origin(role), slope(role), V::STEP_BITS);
+        let axis = |role: usize| N::axis_projection(origin(role), slope(role), V::STEP_BITS);
         let depth = N::depth_projection(origin(2), slope(2), V::STEP_BITS);
         let shear = |role: usize| N::shear(slope(role), slope(2));
         Self {
-            sight: [sight(0), sight(1), depth],
+            axes: [axis(0), axis(1), depth],
             shear: [shear(0), shear(1)],
             major: ray.major,
         }
@@ -168,7 +168,7 @@ impl<N: Project> Projection<N> {
         pub(crate) fn meets<const MAJOR: usize, V: Vertex>(&self, a: &V, b: &V, c: &V) -> bool {
             let seen = |vertex: &V, role: usize| {
                 let coordinate = vertex.steps(axis::<MAJOR>(self.major, role));
-                N::project(coordinate, &pick(self.sight, role))
+                N::project(coordinate, &pick(self.axes, role))
             };
             let depth = [seen(a, 2), seen(b, 2), seen(c, 2)];
             let across = |role: usize| {

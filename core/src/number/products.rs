@@ -26,7 +26,7 @@ pub trait Products: Scalar {
     fn difference(a: Self::Wide, b: Self::Wide) -> Self::Wide;
     /// `a - b` of far coordinates, of which `a` is not the smaller, as a length: at most
     /// [`FAR`](crate::number::Scalar::FAR).
-    fn excess(a: Self::Wide, b: Self::Wide) -> Self;
+    fn difference_as_length(a: Self::Wide, b: Self::Wide) -> Self;
     /// Where a line comes to a plane far away, on one axis: `origin + (plane - from) * step / stride`
     /// in twice the precision of a far coordinate. `from` is the origin's coordinate on the plane's own
     /// axis, `step` and `stride` are the direction's on this axis and on that; `stride` is not 0 and

@@ -50,7 +50,7 @@ impl<N: Number, K: Culling<N>> Search<'_, '_, N, K> {
         };
         count.objects(strip.members().count());
         let mut met = self.strip_met(strip);
-        let missed = strip.members().places() & !met;
+        let missed = strip.members().lanes() & !met;
         let id = |place| PrimitiveId::in_cluster(Kind::Triangle, number, place);
         self.observe_missed(missed, id, count);
         while met != 0 {

@@ -155,7 +155,7 @@ impl<N: Number> Hit<N> {
 
     /// Where a ray starts on the normal's side that leads away from the surface and has a t above 0: without
     /// any step where the point lies on the surface exactly.
-    pub(crate) fn beside(&self) -> [N; 3] {
+    pub(crate) fn offset_point(&self) -> [N; 3] {
         if self.is_exact {
             self.point
         } else {

@@ -39,7 +39,7 @@ inline_unless_small!(
 #[inline(always)]
 pub(super) fn interval<N: Arithmetic>(tmin: N::Wide, tmax: N::Wide, start_t: N::Wide) -> [N; 2] {
     let tmin = if tmin > start_t {
-        N::excess(tmin, start_t)
+        N::difference_as_length(tmin, start_t)
     } else {
         N::ZERO
     };
@@ -53,7 +53,7 @@ pub(super) fn end_after<N: Arithmetic>(tmax: N::Wide, start_t: N::Wide) -> N {
     if tmax < start_t {
         -N::ONE
     } else {
-        N::excess(tmax, start_t)
+        N::difference_as_length(tmax, start_t)
     }
 }
 

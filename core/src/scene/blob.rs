@@ -210,7 +210,7 @@ impl<'a> Scene<'a> {
     fn member(&self, kind: Kind, number: u32, before: usize) -> (u32, u8, u32) {
         let clusters = self.space.shapes.clusters();
         let member = clusters.members.get(before + number as usize).unwrap_or(0);
-        if clusters.homes.is_empty() {
+        if clusters.locations.is_empty() {
             (member, kind as u8, number)
         } else {
             (self.in_slot(kind, member), kind as u8, member)

@@ -65,7 +65,7 @@ impl Effect for Checker {
 #[inline(never)]
 fn far_point<N: Number>(ray: &Ray<N>, hit: &Hit<N>, axis: usize, origin: N, size: N) -> N {
     let place = ray.far_point(hit.t).unwrap_or(hit.point.map(N::widen));
-    let is_exact = hit.beside() == hit.point && pick(hit.normal, axis) != N::ZERO;
+    let is_exact = hit.offset_point() == hit.point && pick(hit.normal, axis) != N::ZERO;
     let is_near = N::FORMAT != Format::Fixed || extent(place.map(N::narrow)) < N::FAR.half();
     let point = if is_near || is_exact {
         pick(hit.point, axis).widen()

@@ -91,7 +91,7 @@ pub(crate) fn depart<N: Number>(
     to_light: bool,
 ) -> [N; 3] {
     match (outward, to_light) {
-        (true, true) => hit.beside(),
+        (true, true) => hit.offset_point(),
         (true, false) => hit.outside(),
         _ => hit.inside(scene),
     }

@@ -102,12 +102,18 @@ pub(in crate::accel) trait PairArray: Copy {
     fn volumes(self, pair: Self::Pair, parent: &Self::Volume) -> [Self::Volume; 2];
 
     /// Whether a child's volume lies in its parent's, where a walk relies on that.
-    fn nests(self, _child: &Self::Volume, _parent: &Self::Volume) -> bool {
+    fn child_inside(self, _child: &Self::Volume, _parent: &Self::Volume) -> bool {
         true
     }
 
-    /// See [`Tree::holds`].
-    fn holds(self, space: &Space<'_>, leaf: Leaf, volume: &Self::Volume, path: &Path) -> bool;
+    /// See [`Tree::contains_leaf`].
+    fn contains_leaf(
+        self,
+        space: &Space<'_>,
+        leaf: Leaf,
+        volume: &Self::Volume,
+        path: &Path,
+    ) -> bool;
 }
 
 impl<A: PairArray> Tree for A {
@@ -154,13 +160,13 @@ impl<A: PairArray> Tree for A {
         pair.map_or(Node::leaf(u32::MAX), |pair| pair.child(number, side))
     }
 
-    fn narrow(self, number: u32, side: u32, volume: &mut Self::Volume) {
+    fn enter_child(self, number: u32, side: u32, volume: &mut Self::Volume) {
         if let Some(pair) = self.pair(number as usize) {
             *volume = self.volumes(pair, volume)[(side & 1) as usize];
         }
     }
 
-    fn nests(self, number: u32, parent: &Self::Volume) -> Result<(), Reason> {
+    fn children_inside(self, number: u32, parent: &Self::Volume) -> Result<(), Reason> {
         let Some(pair) = self.pair(number as usize) else {
             return Ok(());
         };
@@ -169,14 +175,14 @@ impl<A: PairArray> Tree for A {
             .iter()
             .zip([Reason::LeftOutside, Reason::RightOutside])
         {
-            if !PairArray::nests(self, child, parent) {
+            if !PairArray::child_inside(self, child, parent) {
                 return Err(reason);
             }
         }
         Ok(())
     }
 
-    fn holds(
+    fn contains_leaf(
         self,
         space: &Space<'_>,
         leaf: Leaf,
@@ -184,7 +190,7 @@ impl<A: PairArray> Tree for A {
         volume: &Self::Volume,
         path: &Path,
     ) -> bool {
-        PairArray::holds(self, space, leaf, volume, path)
+        PairArray::contains_leaf(self, space, leaf, volume, path)
     }
 }
 
@@ -209,11 +215,11 @@ impl<'a, P: BoxPair> PairArray for Pairs<'a, P> {
         pair.boxes(parent)
     }
 
-    fn nests(self, child: &UnitBox, parent: &UnitBox) -> bool {
+    fn child_inside(self, child: &UnitBox, parent: &UnitBox) -> bool {
         parent.contains(child)
     }
 
-    fn holds(self, space: &Space<'_>, leaf: Leaf, volume: &UnitBox, _: &Path) -> bool {
+    fn contains_leaf(self, space: &Space<'_>, leaf: Leaf, volume: &UnitBox, _: &Path) -> bool {
         space.shapes.leaf_inside(leaf, volume)
     }
 }

@@ -7,7 +7,7 @@ use crate::number::Products;
 use crate::number::Scalar;
 use crate::number::fixed::base::LENGTH_BITS;
 use crate::number::fixed::base::RATIO_BITS;
-use crate::number::fixed::base::keep;
+use crate::number::fixed::base::assert_in_range;
 use crate::number::fixed::halves;
 use crate::number::fixed::halves::product;
 use crate::number::fixed::wide::Product;
@@ -37,7 +37,7 @@ impl Project for Fixed {
     #[inline(always)]
     fn depth_projection(origin: Self, slope: Self, bits: u32) -> AxisProjection<Self> {
         let AxisProjection { offset, scale } = Self::axis_projection(origin, slope, bits);
-        keep(|| offset.0.unsigned_abs() < 1 << 30);
+        assert_in_range(|| offset.0.unsigned_abs() < 1 << 30);
         AxisProjection {
             offset: Fixed(offset.0.wrapping_shl(1)),
             scale: scale.wrapping_shl(1),
@@ -45,8 +45,8 @@ impl Project for Fixed {
     }
 
     #[inline(always)]
-    fn project(coordinate: i32, sight: &AxisProjection<Self>) -> Self {
-        Fixed(coordinate.wrapping_mul(sight.scale)) + sight.offset
+    fn project(coordinate: i32, axis: &AxisProjection<Self>) -> Self {
+        Fixed(coordinate.wrapping_mul(axis.scale)) + axis.offset
     }
 
     #[inline(always)]
