@@ -36,7 +36,7 @@ pub trait Culling<N: CullArithmetic>: Copy + core::fmt::Debug + Default + Send +
     fn new(ray: &Ray<N>) -> Self;
     /// The integer form, whose intervals hits are clamped to.
     fn exact(&self, ray: &Ray<N>) -> Cull;
-    /// What stands for a place on the ray in this form, in units, as events report it.
+    /// A place on the ray in units, from its form here: for events.
     fn units(place: i32) -> f64;
     /// Whether t is certain to stay as it is, or below 0 where it is below 0, when it is clamped to
     /// the integer form's interval of a box; where that is cheaper to see than to set up that form.

@@ -13,9 +13,9 @@ pub trait CullArithmetic: Arithmetic {
     /// A length in culling steps, rounded towards zero or down; saturates.
     fn to_cull(self) -> i32;
     /// The culling form of one axis (see [`cull`](crate::accel)): for a slope and the origin's
-    /// coordinate, of at most 2^17 units, the inverse slope in culling steps a unit with 16 fraction
-    /// bits, limited to 2^29, with the sign of the slope; and what that times a plane lacks to the
-    /// step of entry and to that of exit, the margins included.
+    /// coordinate, of at most 2^17 units, the inverse slope in culling steps per unit with 16 fraction
+    /// bits, limited to 2^29, with the sign of the slope; and the offsets from its product with a plane
+    /// to the step of entry and to that of exit, the margins included.
     fn cull_axis(slope: Self, origin: Self) -> CullAxis;
 }
 
@@ -23,11 +23,11 @@ pub trait CullArithmetic: Arithmetic {
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct CullAxis {
-    /// Steps a unit with 16 fraction bits, with the slope's sign.
+    /// Steps per unit with 16 fraction bits, with the slope's sign.
     pub(crate) inverse: i32,
-    /// What a near plane's product lacks to the step of entry.
+    /// The offset from a near plane's product to the step of entry.
     pub(crate) near: i32,
-    /// What a far plane's product lacks to the step of exit.
+    /// The offset from a far plane's product to the step of exit.
     pub(crate) far: i32,
     /// 16 where the ray runs down the axis and the planes of a word change roles, else 0.
     pub(crate) rotation: u32,
@@ -114,7 +114,7 @@ impl CullAxis {
         }
     );
 
-    /// The same to cull with: up to a unit wider, where that is cheaper.
+    /// [`between`](Self::between) or an interval up to a unit wider, whichever is cheaper: for culling.
     #[inline(always)]
     pub(crate) fn around(&self, planes: u32) -> Interval {
         if ROTATES {
@@ -150,7 +150,7 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// What two intervals share.
+    /// The intersection.
     #[inline(always)]
     pub(crate) fn and(self, other: Self) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! What users ask of a number format.
+//! The number formats of queries and renderers.
 
 use crate::accel::cull::{Cull, PairCulling};
 use crate::accel::cull_axis::CullArithmetic;
@@ -6,7 +6,7 @@ use crate::accel::wide::cull::{WideCulling, WideLanes};
 use crate::geometry::Project;
 use crate::number::Fixed;
 
-/// A number format, as queries and renderers take it: `fixed`, `f32` or `f64`.
+/// A number format of queries and renderers: `fixed`, `f32` or `f64`.
 ///
 /// All arithmetic, projection and culling in one bound; see [`number`](crate::number) for the quantities that a
 /// number stands for.

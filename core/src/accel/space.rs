@@ -1,4 +1,4 @@
-//! What all structures of a scene share.
+//! The space that all structures of a scene divide.
 
 use crate::format::record::{Header, UnitBox};
 use crate::format::{BlobError, Leaf, Structure};
@@ -12,7 +12,7 @@ pub struct Space<'a> {
     pub(crate) header: &'a Header,
     pub(crate) shapes: Shapes<'a>,
     pub(crate) leaves: &'a [u32],
-    /// What [`DynAccel`](crate::accel::DynAccel) walks.
+    /// The structure that [`DynAccel`](crate::accel::DynAccel) walks.
     pub(crate) chosen: AllStructuresOnly<Structure>,
     /// The instructions that [`Wide`](crate::Wide) uses.
     pub(crate) simd: WideOnly<SimdLevel>,
@@ -30,7 +30,7 @@ impl<'a> Space<'a> {
         self.header.structures & structure.bit() != 0
     }
 
-    /// What [`DynAccel`](crate::accel::DynAccel) walks.
+    /// The structure that [`DynAccel`](crate::accel::DynAccel) walks.
     #[inline(always)]
     pub(crate) fn chosen(&self) -> Structure {
         self.chosen.get().copied().unwrap_or(Structure::List)

@@ -1,5 +1,5 @@
-//! What light does in a scene, as a set: the scene pays for these and for nothing else. The one place
-//! that names all effects.
+//! Effects: the parts of light transport that a scene uses, as a set. A scene pays only for its effects. All effects
+//! are listed here.
 //!
 //! An effect is a file in [`shade`](crate::shade) and a row in the table below. Its code is a Cargo
 //! feature of the same name.
@@ -38,7 +38,7 @@ macro_rules! effects {
 
 pub(crate) use effects;
 
-/// What to do about a Cargo feature that a scene calls for and that this build lacks.
+/// The advice about a Cargo feature that a scene requires and that this build lacks.
 macro_rules! enable {
     ($feature:literal) => {
         concat!(
@@ -71,7 +71,7 @@ macro_rules! sets {
             pub const NAMED: [(Effects, &'static str); [$($bit),*].len()] =
                 [$((Effects::$effect, $name)),*];
 
-            /// What calls for each effect of [`NAMED`](Self::NAMED).
+            /// The parts of a scene that require each effect of [`NAMED`](Self::NAMED).
             pub const REQUIRED_BY: [&'static str; Self::NAMED.len()] = [$($required_by),*];
 
             /// All effects that there are.

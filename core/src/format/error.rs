@@ -78,7 +78,7 @@ pub enum BlobError {
     OutOfRange {
         /// Where it is.
         location: Location,
-        /// What it says.
+        /// The field.
         field: Field,
         /// The number.
         found: i64,
@@ -89,7 +89,7 @@ pub enum BlobError {
     Invalid {
         /// Which part.
         location: Location,
-        /// What is wrong with it.
+        /// The reason.
         reason: Reason,
     },
 }

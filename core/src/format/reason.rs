@@ -1,4 +1,4 @@
-//! What can be wrong with a blob, each in one plain sentence.
+//! The errors of a blob, each as one plain sentence.
 //!
 //! An error carries a byte of these enumerations. Their texts are reached through `Display` alone, so a
 //! program that prints no error does not hold them.
@@ -117,7 +117,7 @@ texts! {
 }
 
 texts! {
-    /// What is wrong with a part of a blob, where it is not one number that is out of its range.
+    /// The error of a part of a blob, other than a number out of its range.
     Reason {
         // Header and section table.
         UnknownEffects => "it calls for effects that this version of the format does not have",

@@ -234,7 +234,7 @@ pub struct FlaggedPair {
     /// `[axis]`: the inner of the two children's lower sides in the low half, the inner of their
     /// upper sides in the high half.
     pub planes: [u32; 3],
-    /// What the children are, and which child owns each plane: see [`Link`](crate::format::Link).
+    /// The children, and which child owns each plane: see [`Link`](crate::format::Link).
     pub link: u32,
 }
 
@@ -319,7 +319,7 @@ pub struct WideNode {
     /// `[axis][side][child]`: the children's lower sides, then their upper ones. Missing children,
     /// which are the last ones, have a box that nothing meets: [`EMPTY`](Self::EMPTY).
     pub planes: [[[i16; 8]; 2]; 3],
-    /// What the children are: see [`Child`](crate::format::Child).
+    /// The children: see [`Child`](crate::format::Child).
     pub children: [u32; 8],
 }
 
@@ -337,7 +337,7 @@ impl WideNode {
         )
     }
 
-    /// What a child is.
+    /// A child.
     #[inline(always)]
     pub fn child(&self, lane: usize) -> crate::format::Child {
         crate::format::Child(self.children[lane & 7])

@@ -29,7 +29,7 @@ macro_rules! kinds {
                 }
             }
 
-            /// What one of its records is called, and the structure or array that it belongs to.
+            /// The name of one of its records, and of the structure or array that it belongs to.
             /// Empty where there is only one record, and where it belongs to the scene.
             pub const fn record_name(self) -> (&'static str, &'static str) {
                 match self {

@@ -1,4 +1,4 @@
-//! What a shape is that has one form of records.
+//! The trait of shapes that have one form of records.
 
 use crate::format::range::At;
 use crate::format::record::UnitBox;

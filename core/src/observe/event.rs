@@ -1,4 +1,4 @@
-//! What happens to a ray, event by event, for whoever wants its story (see [`Observer::event`]).
+//! Events of rays, reported to an [`Observer::event`].
 //!
 //! Events come from the very code that traces and renders, in the order in which it works. Points,
 //! lengths and t are in units (see [`Number`](crate::accel::Number)), t along the ray's major axis; colours
@@ -61,7 +61,7 @@ pub enum Event {
         /// greater.
         span: [f64; 2],
     },
-    /// What was just tested holds nothing: the ray does not go into it.
+    /// The node that was just tested is empty: the ray does not enter it.
     Empty(NodeId),
     /// A node that was put off is given up, because a hit was found before it.
     NodeSkipped {
@@ -81,7 +81,7 @@ pub enum Event {
         /// Where the line of the ray enters and leaves it, from the query's origin; `None` if it
         /// does not meet it, or was seen to meet it behind the origin before that was computed.
         crossing: Option<[f64; 2]>,
-        /// Whether it is the nearest hit so far.
+        /// True for the nearest hit so far.
         nearest: bool,
     },
     /// The answer of a query for any hit.

@@ -1,4 +1,4 @@
-//! What a query answers: which primitive a ray meets, where, and how its surface lies there.
+//! Answers of queries: the primitive that a ray meets, the point, and the surface there.
 
 use crate::accel::Number;
 use crate::format::Leaf;
@@ -9,7 +9,7 @@ use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::target::inline_on_hosts;
 
-/// Which primitive a ray meets first, and where: all of a hit but its surface.
+/// The first primitive that a ray meets, and its t: a hit without its surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrimitiveHit<N: Number> {
     /// Where on the ray: a length in units along the ray's major axis (see [`Ray`]).

@@ -80,7 +80,7 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
     })
 }
 
-/// The same in a scene that holds shapes without bounds.
+/// The nearest primitive on a ray in a scene with unbounded shapes; see [`search`].
 #[cold]
 #[inline(never)]
 fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(

@@ -1,5 +1,5 @@
-//! What a caller gave before its ray was moved to the scene's box, for shapes without bounds: a ray can meet them
-//! anywhere.
+//! A ray as its caller gave it, before it is moved to the scene's box: for shapes without bounds, which a ray can
+//! meet anywhere.
 
 use crate::format::limits::{FARTHEST_HIT, UNBOUNDED};
 use crate::number::Arithmetic;

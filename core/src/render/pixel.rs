@@ -164,7 +164,7 @@ mod tests {
         assert_eq!(Rgb565::encode([0; 3], None).0, 0);
     }
 
-    /// What is a display value reaches the display as it is.
+    /// A display value reaches the display unchanged.
     #[test]
     fn display_values_come_out_as_they_went_in() {
         for code in 0..=255_u16 {

@@ -7,7 +7,7 @@
 //! Secondary rays start beside the surface, on the side to which they go, at the distance of the
 //! hit's own error bound (see [`Hit::error`]): close enough to lose no contact, and too far to meet
 //! the surface again.
-//! What goes on inside of a solid starts beneath all of its faces (see [`Hit::inside`]).
+//! A ray that goes on inside of a solid starts beneath all of its faces (see [`Hit::inside`]).
 //!
 //! Everything is compiled for a set of effects: what is not in it costs neither code nor time. The loop
 //! names no effect; it calls their list at the places that `shade` lists.
@@ -26,7 +26,7 @@ use crate::shade::{All, Color};
 use core::marker::PhantomData;
 use heapless::{Vec, VecView};
 
-/// What effects add to a ray's state.
+/// The state that effects add to a ray.
 type State<N> = <All as EffectList>::State<N>;
 
 /// A ray that waits for its turn.
@@ -91,7 +91,7 @@ pub struct WorkspaceView<'w, N: Number> {
     pub(super) work: &'w mut VecView<Pending<N>>,
 }
 
-/// What the ray loop needs of the scene and the renderer.
+/// The parts of the scene and the renderer that the ray loop uses.
 pub(super) struct Loop<'s, 'a> {
     pub(super) scene: &'s Scene<'a>,
     pub(super) depth: u8,
@@ -253,7 +253,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         }
     }
 
-    /// What a light adds to a surface that it reaches.
+    /// The radiance that a light adds to a surface that it reaches.
     #[inline(always)]
     fn lit(&mut self, number: u32, light: &Light, surface: &Surface<'_, N>) -> Color<N> {
         let mut state = self.state;

@@ -186,8 +186,8 @@ impl<'a> Scene<'a> {
     );
 
     inline_on_hosts_hint_on_boards!(
-        /// What decides between hits at the same t: the primitive's number, and between pieces of one
-        /// primitive, kind and slot; so answers do not depend on the structure either.
+        /// The order of hits at the same t: by the primitive's number, and between pieces of one primitive by
+        /// kind and slot. So answers do not depend on the structure.
         pub(crate) fn key(&self, place: PrimitiveId) -> (u32, u8, u32) {
             let PrimitiveId { kind, number, .. } = place;
             let Some(lane) = place.lane() else {

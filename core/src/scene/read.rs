@@ -1,4 +1,4 @@
-//! What loading does in constant time: the header, the table, the view, and where everything lies.
+//! The part of loading that takes constant time: it reads the header, the table, the view, and where everything lies.
 
 use crate::accel::StructureViews;
 use crate::accel::space::Space;

@@ -6,7 +6,7 @@ use crate::selftest::checks::{Checks, name};
 use crate::selftest::scene::TinyBlob;
 use crate::{Hit, List, Ray, Scene, Stack, any_hit, closest_hit};
 
-/// What one ray must find.
+/// The expected hit of one ray.
 struct Expected {
     what: &'static str,
     origin: [f64; 3],

@@ -55,7 +55,7 @@ impl<N: Number> Color<N> {
         self.zip(other, |a, b| if a > N::ONE - b { N::ONE } else { a + b })
     }
 
-    /// What a display can show of radiance: each channel limited to 0 to 1.
+    /// Radiance within a display's range: each channel limited to 0 to 1.
     #[inline(always)]
     pub(crate) fn displayable(self) -> Self {
         let white = N::radiance(1 << 20);

@@ -1,4 +1,4 @@
-//! What calls for effects.
+//! The effects that materials and lights require.
 
 use crate::format::Effects;
 use crate::format::record::{Light, Material};

@@ -72,9 +72,9 @@ impl<N: Number> Bounce<N> {
 /// A ray that a hit causes.
 pub(crate) struct Secondary<N: Number> {
     pub(crate) kind: RayKind,
-    /// Of any length.
+    /// The direction, of any length.
     pub(crate) direction: [N; 3],
-    /// Whether it leaves on the side of the geometric normal.
+    /// True if it leaves on the side of the geometric normal.
     pub(crate) outward: bool,
     pub(crate) weight: Color<N>,
 }

@@ -70,7 +70,7 @@ pub trait Simd: Copy {
     /// Eight lanes.
     type F32x8: F32x8;
 
-    /// The same number in every lane.
+    /// A number in every lane.
     fn splat(self, value: f32) -> Self::F32x8;
     /// Numbers from memory.
     fn lanes(self, lanes: &[f32; 8]) -> Self::F32x8;

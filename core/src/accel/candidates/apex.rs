@@ -65,7 +65,7 @@ impl Apex {
     pub const REACH: f64 = 6.0;
     /// Units from the lattice's zero to an apex on an axis, at the most.
     pub const FARTHEST: f64 = 2_097_152.0;
-    /// What stands for the window of a face that has none.
+    /// Stands for the window of a face that has none.
     pub const NO_WINDOW: u16 = u16::MAX;
     /// Most cells along a side of a window.
     pub const MOST_CELLS: u16 = 1024;

@@ -14,9 +14,9 @@ pub(in crate::accel) type Path = [u32];
 pub(in crate::accel) trait Tree: Copy {
     /// The section of its nodes.
     const SECTION: SectionKind;
-    /// What is wrong where [`Self::contains_leaf`] is false.
+    /// The error where [`Self::contains_leaf`] is false.
     const OUTSIDE: Reason = Reason::PrimitiveOutside;
-    /// What holds all that is below a node.
+    /// The volume around everything below a node.
     type Volume: Copy;
 
     /// Proves that nodes lie in breadth-first order and reach so many leaves. Returns the number of

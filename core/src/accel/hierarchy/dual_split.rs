@@ -1,5 +1,5 @@
-//! Dual-split nodes: the idea of the flagged sides taken to its end. A plane that is not worth
-//! testing is not even stored.
+//! Dual-split nodes. A node stores the two planes of its split, and the planes of its own box on up to two axes, chosen
+//! by the builder where they save the most tests.
 //!
 //! A ray comes to a node with the interval in which it runs through the node's *region*: the box
 //! that the planes on the way down have left of the scene's box. A node narrows the region:
@@ -344,7 +344,7 @@ impl<'a> Records<'a> for Views<'a> {
 }
 
 impl Views<'_> {
-    /// What a node's children are; of a node that is not there, a leaf that is not there.
+    /// The word of a node. A missing node has the word of a missing leaf.
     fn word(self, number: u32) -> NodeWord {
         let record = self.0.get(number as usize);
         NodeWord(record.map_or(u32::MAX, |record| record.word))

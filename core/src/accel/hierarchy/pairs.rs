@@ -1,4 +1,4 @@
-//! What hierarchies of pairs share: the walk, and what the check asks of them.
+//! Hierarchies of pairs: their walk, and their part of the check.
 
 use crate::accel::cull::{Culling, PairCulling};
 use crate::accel::cull_axis::Interval;
@@ -89,7 +89,7 @@ impl<P: BoxPair> PairRecord for &P {
 pub(in crate::accel) trait PairArray: Copy {
     /// One of them.
     type Pair: PairRecord;
-    /// What holds all that is below a pair: see [`Tree`].
+    /// The volume around everything below a pair: see [`Tree`].
     type Volume: Copy;
 
     /// How many there are.
@@ -286,7 +286,7 @@ where
         }
     }
 
-    /// The same from a node on, whose box is not tested. For records whose children do not depend on
+    /// Walks from a node on, whose box is not tested. For records whose children do not depend on
     /// their parent's interval.
     #[inline(always)]
     pub(in crate::accel) fn enter<N: Number, K: PairCulling<N>, C: Observer>(
