@@ -39,7 +39,7 @@
 //!
 //! # Memory
 //! The blob stays where it is. The caller owns the two things that are written to: a [`Stack`] of
-//! 12 bytes an entry, whose depth the blob's header states and `from_bytes` proves, and, for
+//! 12 bytes per entry, whose depth the blob's header states and `from_bytes` proves, and, for
 //! pictures, a list of rays that wait (see [`Workspace`]).
 //!
 //! # Units

@@ -8,7 +8,7 @@ use crate::format::limits::work_depth;
 use core::fmt;
 
 /// Hands the table of effects to a macro: constant, bit in the blob, name and Cargo feature, type and
-/// module in `shade`, the most rays that wait after a hit because of it, and what calls for it.
+/// module in `shade`, the most rays that wait after a hit because of it, and what requires it.
 ///
 /// At each place of the ray loop effects act in this order.
 macro_rules! effects {
@@ -42,7 +42,7 @@ pub(crate) use effects;
 macro_rules! enable {
     ($feature:literal) => {
         concat!(
-            "the scene calls for `",
+            "the scene requires `",
             $feature,
             "`: enable that feature of gridel-core"
         )
@@ -53,7 +53,7 @@ pub(crate) use enable;
 
 /// A set of effects.
 ///
-/// The compiler writes into a blob the set that its scene calls for. The ray loop is compiled for
+/// The compiler writes into a blob the set that its scene requires. The ray loop is compiled for
 /// a set given as a constant, and each effect's code can be left out by its Cargo feature.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Effects(pub u32);

@@ -34,7 +34,7 @@ pub struct Header {
     pub checksum: u32,
     /// Acceleration structures that the blob holds: a bit for each [`Structure`](crate::format::Structure).
     pub structures: u32,
-    /// Effects that the scene calls for: see [`Effects`](crate::format::Effects).
+    /// Effects that the scene requires: see [`Effects`](crate::format::Effects).
     pub effects: u32,
     /// Entries that the deepest walk pushes on the traversal stack.
     pub stack_depth: u16,
@@ -137,7 +137,7 @@ pub struct View {
     pub width: u16,
     /// Default height of the picture in pixels.
     pub height: u16,
-    /// Default number of samples a pixel, 1 to 256.
+    /// Default number of samples per pixel, 1 to 256.
     pub samples: u16,
     /// How often a ray may be reflected or refracted, 0 to [`MAX_RAY_DEPTH`](crate::format::limits::MAX_RAY_DEPTH).
     pub depth: u8,
@@ -263,7 +263,7 @@ pub struct Gridels {
     pub low: [i32; 3],
     /// The highest corner.
     pub high: [i32; 3],
-    /// Gridels a length along each axis, with 44 fraction bits more than the length's.
+    /// Gridels per length along each axis, with 44 fraction bits more than the length's.
     pub scale: [u32; 3],
 }
 

@@ -219,7 +219,7 @@ pub(crate) fn cross<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> Option<
 }
 
 inline_unless_small!(
-    /// The normal, of any length: exact but for one rounding a component.
+    /// The normal, of any length: exact but for one rounding per component.
     fn normal<N: Arithmetic>([a, b, c]: [[i32; 3]; 3]) -> [N; 3] {
         let edge = |from: [i32; 3], to: [i32; 3]| {
             let axis = |k: usize| to[k].wrapping_sub(from[k]);

@@ -44,7 +44,7 @@ pub(super) struct Pending<N: Number> {
 /// for every pixel.
 ///
 /// `STACK` must be at least the blob's [stack depth](Scene::stack_depth), `WORK` at least
-/// [`work_depth`](crate::format::limits::work_depth) of the ray depth. It takes 12 bytes an entry of the stack and, in `f32` and
+/// [`work_depth`](crate::format::limits::work_depth) of the ray depth. It takes 12 bytes per entry of the stack and, in `f32` and
 /// `fixed`, 40 bytes a place for a ray.
 #[derive(Debug)]
 pub struct Workspace<N: Number, const STACK: usize, const WORK: usize> {

@@ -87,7 +87,7 @@ impl<'a> Scene<'a> {
         self.space.bounds()
     }
 
-    /// The effects that the scene calls for.
+    /// The effects that the scene requires.
     ///
     /// ```
     /// # static BLOB: &[u8] =

@@ -85,7 +85,7 @@ pub(crate) fn scene<'a>(
     })
 }
 
-/// Proves the ranges of the header's fields, and that this build has what the scene calls for.
+/// Proves the ranges of the header's fields, and that this build has what the scene requires.
 fn check_limits(header: &Header) -> Result<(), BlobError> {
     let header_has = |holds, reason| Location::Header.ensure(holds, reason);
     let unknown = header.effects & !Effects::ALL.0;

@@ -51,12 +51,12 @@ const fn expected(format: Format) -> u32 {
 pub(super) fn matches<N: Number>(checks: &mut Checks<'_>) {
     let blob = TinyBlob::new();
     let Ok(scene) = Scene::from_bytes(blob.bytes()) else {
-        return checks.equal(format_args!("the blob"), "refused", "read");
+        return checks.equal(format_args!("the blob"), "rejected", "read");
     };
     let renderer =
         Renderer::<N, List, { Effects::ALL.0 }>::with_settings(&scene, Settings::of(&scene));
     let Ok(renderer) = renderer else {
-        return checks.equal(format_args!("the renderer"), "refused", "made");
+        return checks.equal(format_args!("the renderer"), "rejected", "made");
     };
     let mut space = Workspace::<N, 0, { work_depth(4) }>::new();
     let mut space = space.as_view();

@@ -65,12 +65,12 @@ macro_rules! places {
             /// True if it acts on light that comes through surfaces.
             const FILTERS: bool = false;
 
-            /// Whether a material calls for it.
+            /// Whether a material requires it.
             fn is_called_by_material(material: &Material) -> bool {
                 false
             }
 
-            /// Whether a light calls for it.
+            /// Whether a light requires it.
             fn is_called_by_light(light: &Light) -> bool {
                 false
             }
@@ -98,10 +98,10 @@ macro_rules! places {
             /// The effects that act on light that comes through surfaces.
             const FILTERING: u32;
 
-            /// The effects that a material calls for.
+            /// The effects that a material requires.
             fn called_by_material(material: &Material) -> Effects;
 
-            /// The effects that a light calls for.
+            /// The effects that a light requires.
             fn called_by_light(light: &Light) -> Effects;
 
             $(

@@ -14,7 +14,7 @@ use crate::shade::Color;
 pub(crate) struct Surface<'h, N: Number> {
     pub(crate) hit: &'h Hit<N>,
     pub(crate) material: &'h Material,
-    /// The effects that the material calls for, asked once per hit.
+    /// The effects that the material requires, asked once per hit.
     pub(crate) called: Effects,
     /// The normal on the side that the ray came from.
     pub(crate) normal: [N; 3],

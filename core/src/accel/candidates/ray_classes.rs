@@ -13,7 +13,7 @@
 //! class's box of places, widened by [`Gridels::REACH`], sweeps while it moves along the major axis
 //! and its sides move by the class's least and greatest slopes. The builder lists what meets that.
 //!
-//! Memory: four bytes a node, and the lists. Cost: a comparison a level, then the list.
+//! Memory: four bytes per node, and the lists. Cost: a comparison per level, then the list.
 
 use crate::accel::candidates::line::Line;
 use crate::accel::candidates::lists::{Candidates, ListSections, look_up};

@@ -28,7 +28,7 @@ use crate::observe::event::{Event, Sides};
 use crate::ray::Ray;
 use heapless::Vec;
 
-/// The octree: one word a node.
+/// The octree: one word per node.
 #[derive(Clone, Copy, Debug)]
 pub enum Octree {}
 

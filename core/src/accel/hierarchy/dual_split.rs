@@ -47,7 +47,7 @@ use core::hint::black_box;
 /// and have too few registers for what it would know, read the form of an axis faster where it lies.
 const FORM_IN_MEMORY: bool = cfg!(target_arch = "arm") && !NARROW_PRODUCTS;
 
-/// A hierarchy of 16 bytes a node, of which a ray tests two to four planes.
+/// A hierarchy of 16 bytes per node; a ray tests two to four planes per node.
 #[derive(Clone, Copy, Debug)]
 pub enum DualSplit {}
 

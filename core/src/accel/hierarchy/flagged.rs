@@ -20,7 +20,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::Sides;
 use crate::ray::Ray;
 
-/// The hierarchy with 16 bytes a pair; six planes are tested a pair.
+/// The hierarchy with 16 bytes per pair; six planes are tested per pair.
 #[derive(Clone, Copy, Debug)]
 pub enum Flagged {}
 

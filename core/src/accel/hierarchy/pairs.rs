@@ -120,7 +120,7 @@ impl<A: PairArray> Tree for A {
     const SECTION: SectionKind = A::Pair::SECTION;
     type Volume = A::Volume;
 
-    /// Proves that there are as many pairs as the leaves call for, in breadth-first order.
+    /// Proves that there are as many pairs as the leaves require, in breadth-first order.
     fn order(self, leaves: usize) -> Result<usize, BlobError> {
         let expected = leaves.saturating_sub(1);
         if self.len() != expected {
