@@ -131,7 +131,8 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
 /// The size that the documentation states, on boards.
 #[cfg(target_pointer_width = "32")]
 const _: () = {
-    use crate::{Fixed, List};
+    use crate::Fixed;
+    use crate::accel::list::List;
     assert!(size_of::<Cursor<'_, '_, '_, f32, List, 0>>() <= 60);
     assert!(size_of::<Cursor<'_, '_, '_, Fixed, List, 0>>() <= 60);
     assert!(size_of::<Cursor<'_, '_, '_, f64, List, 0>>() <= 88);

@@ -1,10 +1,11 @@
 //! Every shape is hit where geometry says.
 
 use crate::accel::Number;
+use crate::accel::list::List;
 use crate::observe::count::NoCount;
 use crate::selftest::checks::{Checks, name};
 use crate::selftest::scene::TinyBlob;
-use crate::{Hit, List, Ray, Scene, Stack, any_hit, closest_hit};
+use crate::{Hit, Ray, Scene, Stack, any_hit, closest_hit};
 
 /// The expected hit of one ray.
 struct Expected {

@@ -1,12 +1,13 @@
 //! Pixels are encoded as the display wants them, and a picture has the same bytes everywhere.
 
 use crate::accel::Number;
+use crate::accel::list::List;
 use crate::format::limits::work_depth;
 use crate::observe::count::NoCount;
 use crate::render::Pixel;
 use crate::selftest::checks::{Checks, FNV_START, hash, name};
 use crate::selftest::scene::TinyBlob;
-use crate::{Effects, Format, List, Renderer, Rgb565, Rgb888, Scene, Settings, Workspace};
+use crate::{Effects, Format, Renderer, Rgb565, Rgb888, Scene, Settings, Workspace};
 
 pub(super) fn encoding(checks: &mut Checks<'_>) {
     // sRGB codes of linear values: IEC 61966-2-1.
