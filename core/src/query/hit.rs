@@ -153,6 +153,33 @@ impl<N: Number> Hit<N> {
         }
     }
 
+    /// Returns the texture coordinates of box mapping: the point's coordinates, in units, on the two axes across the
+    /// normal's largest component.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{Ray, Scene, Stack};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut stack = Stack::<32>::new();
+    /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+    /// let hit = scene.closest_hit(&down, stack.as_view()).expect("a sphere");
+    /// // The normal points up.
+    /// assert_eq!(hit.texture_coordinates(), [hit.point[0], hit.point[2]]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn texture_coordinates(&self) -> [N; 2] {
+        let ([x, y, z], [a, b, c]) = (self.point, self.normal.map(N::abs));
+        if a >= b && a >= c {
+            [y, z]
+        } else if b >= c {
+            [x, z]
+        } else {
+            [x, y]
+        }
+    }
+
     /// Where a ray starts on the normal's side that leads away from the surface and has a t above 0: without
     /// any step where the point lies on the surface exactly.
     pub(crate) fn offset_point(&self) -> [N; 3] {

@@ -182,7 +182,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         };
         let called = All::called_by_material(material);
         All::arrive::<EFFECTS, N, _>(self, &mut state, ray, &hit, material, &mut weight);
-        let normal = if hit.front {
+        let shading_normal = if hit.front {
             hit.normal
         } else {
             hit.normal.map(|x| -x)
@@ -196,7 +196,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             hit: &hit,
             material,
             called,
-            normal,
+            shading_normal,
             direction,
             diffuse: Color::ratios(material.diffuse),
             weight,
@@ -224,12 +224,13 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             return;
         }
         let mut bounce = Bounce {
-            cos_in: -N::from_wide(N::dot(direction, normal)),
+            cos_in: -N::from_wide(N::dot(direction, surface.shading_normal)),
             mirrored: None,
         };
         All::bounce::<EFFECTS, N, _>(self, &mut state, &surface, &mut bounce);
         if let Some(mirrored) = bounce.mirrored {
             // Half the mirrored direction; its length does not matter.
+            let normal = surface.shading_normal;
             let axis = |k: usize| direction[k].half() + bounce.cos_in * normal[k];
             let secondary = Secondary {
                 kind: RayKind::Reflected,
@@ -263,7 +264,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             return Color::BLACK;
         };
         let (to_light, _) = N::normalize(slopes);
-        let cos = N::from_wide(N::dot(surface.normal, to_light));
+        let cos = N::from_wide(N::dot(surface.shading_normal, to_light));
         if C::ENABLED {
             self.count.event(Event::Light {
                 number,

@@ -64,7 +64,7 @@ impl Effect for Glass {
             N::ratio(material.inverse_ior),
             hit.front,
             surface.direction,
-            surface.normal,
+            surface.shading_normal,
             bounce.cos_in,
         );
         if X::Observer::ENABLED {

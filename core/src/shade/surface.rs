@@ -16,8 +16,9 @@ pub(crate) struct Surface<'h, N: Number> {
     pub(crate) material: &'h Material,
     /// The effects that the material requires, asked once per hit.
     pub(crate) called: Effects,
-    /// The normal on the side that the ray came from.
-    pub(crate) normal: [N; 3],
+    /// The normal that lights and secondary rays are computed with, on the side that the ray came from: the geometric
+    /// normal of `hit`, unless an effect changes it.
+    pub(crate) shading_normal: [N; 3],
     /// The ray's direction, with length 1 if an effect in use needs that.
     pub(crate) direction: [N; 3],
     pub(crate) diffuse: Color<N>,
