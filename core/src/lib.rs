@@ -5,14 +5,15 @@
 //! the blob once; after that nothing can fail. Firmware can have most of that done by the compiler:
 //! see [`Prevalidated`]. Two things can be asked of a scene:
 //!
-//! - **rays**: [`closest_hit`], [`closest_primitive`] and [`any_hit`], with a [`Ray`] of your own;
+//! - **rays**: [`Scene::closest_hit`] and [`Scene::any_hit`] with a [`Ray`] of your own, or [`closest_hit`],
+//!   [`closest_primitive`] and [`any_hit`] for one structure and for counting;
 //! - **pictures**: a [`Renderer`] gives pixels row by row or for any rectangle, and a
 //!   [`Cursor`](render::Cursor) gives them a bounded number of rays at a time.
 //!
 //! ```
 //! # static BLOB: &[u8] =
 //! #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
-//! use gridel_core::{DualSplit, NoCount, Renderer, Rgb888, Scene, Workspace, closest_hit};
+//! use gridel_core::{NoCount, Renderer, Rgb888, Scene, Workspace};
 //!
 //! let scene = Scene::from_bytes(BLOB)?;
 //! let mut space = Workspace::for_any_scene();
@@ -24,7 +25,7 @@
 //!
 //! let ray = renderer.primary_ray(160, 120)?;
 //! let mut stack = gridel_core::Stack::<32>::new();
-//! if let Some(hit) = closest_hit::<_, DualSplit, _>(&scene, &ray, stack.as_view(), &mut NoCount) {
+//! if let Some(hit) = scene.closest_hit(&ray, stack.as_view()) {
 //!     println!("object {} at {:?}", hit.object, hit.point);
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -38,7 +39,7 @@
 //!
 //! # Memory
 //! The blob stays where it is. The caller owns the two things that are written to: a [`Stack`] of
-//! 12 bytes an entry, whose depth the blob's header states and `from_bytes` proves, and, for
+//! 12 bytes per entry, whose depth the blob's header states and `from_bytes` proves, and, for
 //! pictures, a list of rays that wait (see [`Workspace`]).
 //!
 //! # Units
@@ -71,26 +72,13 @@ pub mod shared;
 mod simd;
 mod target;
 
-pub use accel::Apex;
-pub use accel::Bvh;
-pub use accel::CylinderCube;
-pub use accel::CylinderCubeEntry;
-pub use accel::CylinderCubeTight;
-pub use accel::DualSplit;
-pub use accel::Flagged;
-pub use accel::FlaggedSlabs;
-pub use accel::Grid;
-pub use accel::Octree;
-pub use accel::RayClasses;
-pub use accel::Slabs;
-pub use accel::Spheres;
-pub use accel::Wide;
-pub use accel::{Accel, List, Number, Stack, StackView, StructureVisitor};
+pub use accel::types::*;
+pub use accel::{Accel, Number, Stack, StackView, StructureVisitor};
 pub use format::{Aligned, BlobError, Effects, Kind, Requirements, Structure};
 pub use number::{Fixed, Format};
 pub use observe::count::{Counters, NoCount, Observer};
 pub use observe::event::{Event, RayKind};
-pub use query::{Found, Hit, any_hit, closest_hit, closest_primitive};
+pub use query::{Hit, PrimitiveHit, any_hit, closest_hit, closest_primitive};
 pub use ray::{Pencil, Ray, RayError};
 pub use render::{Renderer, Rgb565, Rgb888, Settings, Workspace};
 pub use scene::{Names, Prevalidated, Scene};

@@ -1,5 +1,5 @@
-//! What the compiler of blobs shares with this crate, and tests ask. No part of the public interface: it changes
-//! without notice.
+//! Items that the compiler of blobs and the tests share with this crate. Not part of the public interface: they
+//! change without notice.
 
 pub use crate::accel::candidates::ray_classes::{ClassPoint, ClassRange};
 pub use crate::accel::cells::grid::MARGIN;

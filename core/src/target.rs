@@ -6,11 +6,18 @@ pub(crate) const SMALL: bool = cfg!(feature = "small");
 /// Whether the code of the structure `wide`, and of the clusters in its leaves, is in this build.
 pub(crate) const WIDE: bool = cfg!(feature = "wide");
 
-/// A value that only builds with [`WIDE`] hold; it has no size in others.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct InWide<T>([T; WIDE as usize]);
+/// A value that only builds with [`WIDE`] hold.
+pub(crate) type WideOnly<T> = InSomeBuilds<T, { WIDE as usize }>;
 
-impl<T> InWide<T> {
+/// A value that only builds with the code of all structures hold.
+pub(crate) type AllStructuresOnly<T> =
+    InSomeBuilds<T, { cfg!(feature = "all-structures") as usize }>;
+
+/// A value that builds hold for which `COUNT` is 1; it has no size where `COUNT` is 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct InSomeBuilds<T, const COUNT: usize>([T; COUNT]);
+
+impl<T, const COUNT: usize> InSomeBuilds<T, COUNT> {
     #[inline(always)]
     pub(crate) fn new(make: impl Fn() -> T) -> Self {
         Self(core::array::from_fn(|_| make()))
@@ -26,3 +33,44 @@ impl<T> InWide<T> {
 /// without an instruction that compares and swaps.
 pub(crate) const NARROW_PRODUCTS: bool =
     cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
+
+/// Inlines a function into every caller, except in builds for small code, where the compiler decides. For short
+/// functions on the path of most rays.
+macro_rules! inline_unless_small {
+    ($function:item) => {
+        #[cfg_attr(not(feature = "small"), inline(always))]
+        $function
+    };
+}
+
+/// Inlines a function into every caller in builds with [`WIDE`], which are for hosts; on boards the compiler decides.
+/// For functions that hand a ray or a hit on: hosts have the room, and through memory it takes longer.
+macro_rules! inline_on_hosts {
+    ($function:item) => {
+        #[cfg_attr(feature = "wide", inline(always))]
+        $function
+    };
+}
+
+/// As [`inline_on_hosts!`], with a hint to inline on boards.
+macro_rules! inline_on_hosts_hint_on_boards {
+    ($function:item) => {
+        #[cfg_attr(feature = "wide", inline(always))]
+        #[cfg_attr(not(feature = "wide"), inline)]
+        $function
+    };
+}
+
+/// Inlines a function into every caller on boards, and into none in builds with [`WIDE`], which are for hosts. For
+/// functions that hosts call from many places and seldom.
+macro_rules! inline_on_boards {
+    ($function:item) => {
+        #[cfg_attr(feature = "wide", inline(never))]
+        #[cfg_attr(not(feature = "wide"), inline(always))]
+        $function
+    };
+}
+
+pub(crate) use {
+    inline_on_boards, inline_on_hosts, inline_on_hosts_hint_on_boards, inline_unless_small,
+};

@@ -6,7 +6,7 @@ use crate::format::record::UnitBox;
 use crate::geometry::{Crossing, LEAVING, Part, accept};
 use crate::ray::Ray;
 
-/// The same of a crossing that a kernel may have rounded out of the primitive's box.
+/// Accepts a hit as [`accept`] does, of a crossing that a kernel may have rounded out of the primitive's box.
 ///
 /// `t` is clamped to the interval of the primitive's own box, which holds the true one: that never
 /// adds to an error, and makes culling conservative whatever a kernel rounded.

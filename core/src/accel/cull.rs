@@ -28,6 +28,7 @@ use crate::accel::cull_axis::Interval;
 use crate::axis::pick;
 use crate::format::record::{Gridels, Pair, UnitBox, plane_word};
 use crate::ray::Ray;
+use crate::target::inline_unless_small;
 
 /// A form of a ray that culls boxes: [`Cull`] in integers, or lanes of floats where there is SIMD.
 pub trait Culling<N: CullArithmetic>: Copy + core::fmt::Debug + Default + Send + Sync {
@@ -35,7 +36,7 @@ pub trait Culling<N: CullArithmetic>: Copy + core::fmt::Debug + Default + Send +
     fn new(ray: &Ray<N>) -> Self;
     /// The integer form, whose intervals hits are clamped to.
     fn exact(&self, ray: &Ray<N>) -> Cull;
-    /// What stands for a place on the ray in this form, in units, as events report it.
+    /// A place on the ray in units, from its form here: for events.
     fn units(place: i32) -> f64;
     /// Whether t is certain to stay as it is, or below 0 where it is below 0, when it is clamped to
     /// the integer form's interval of a box; where that is cheaper to see than to set up that form.
@@ -71,15 +72,16 @@ pub struct Cull {
 }
 
 impl<N: CullArithmetic> Culling<N> for Cull {
-    /// Costs three divisions and some fifty operations.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    fn new(ray: &Ray<N>) -> Self {
-        let axis = |k: usize| N::cull_axis(ray.slope[k], ray.origin[k]);
-        Self {
-            axes: [axis(0), axis(1), axis(2)],
-            start: ray.tmin.to_cull(),
+    inline_unless_small!(
+        /// Costs three divisions and some fifty operations.
+        fn new(ray: &Ray<N>) -> Self {
+            let axis = |k: usize| N::cull_axis(ray.slope[k], ray.origin[k]);
+            Self {
+                axes: [axis(0), axis(1), axis(2)],
+                start: ray.tmin.to_cull(),
+            }
         }
-    }
+    );
 
     #[inline(always)]
     fn exact(&self, _: &Ray<N>) -> Cull {
@@ -130,13 +132,14 @@ impl<N: CullArithmetic> PairCulling<N> for Cull {
 /// The form of rays that walk lists of candidates and cull no boxes: nothing, until a hit lies so
 /// near the side of its primitive's box that the integer form has to tell.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Deferred;
+pub struct NoBoxCulling;
 
-impl<N: CullArithmetic> Culling<N> for Deferred {
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    fn new(_: &Ray<N>) -> Self {
-        Self
-    }
+impl<N: CullArithmetic> Culling<N> for NoBoxCulling {
+    inline_unless_small!(
+        fn new(_: &Ray<N>) -> Self {
+            Self
+        }
+    );
 
     // Out of line, because hardly any hit comes this far.
     #[inline(never)]
@@ -226,12 +229,13 @@ impl Cull {
         (x | y << 1 | z << 2) >> 4 & 7
     }
 
-    /// The interval of a box, the ray's own aside.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    pub(crate) fn interval(&self, bounds: &UnitBox) -> Interval {
-        let axis = |k: usize| self.axes[k].between(plane_word(bounds.0[k]));
-        axis(0).and(axis(1)).and(axis(2))
-    }
+    inline_unless_small!(
+        /// The interval of a box, the ray's own aside.
+        pub(crate) fn interval(&self, bounds: &UnitBox) -> Interval {
+            let axis = |k: usize| self.axes[k].between(plane_word(bounds.0[k]));
+            axis(0).and(axis(1)).and(axis(2))
+        }
+    );
 }
 
 /// [`Culling::holds`] for float formats: the point lies within 1/8 unit of the box, and rounding

@@ -4,7 +4,7 @@ mod fixed;
 mod float;
 
 use crate::number::Arithmetic;
-use crate::target::NARROW_PRODUCTS;
+use crate::target::{NARROW_PRODUCTS, inline_unless_small};
 
 /// Arithmetic of culling.
 pub trait CullArithmetic: Arithmetic {
@@ -13,9 +13,9 @@ pub trait CullArithmetic: Arithmetic {
     /// A length in culling steps, rounded towards zero or down; saturates.
     fn to_cull(self) -> i32;
     /// The culling form of one axis (see [`cull`](crate::accel)): for a slope and the origin's
-    /// coordinate, of at most 2^17 units, the inverse slope in culling steps a unit with 16 fraction
-    /// bits, limited to 2^29, with the sign of the slope; and what that times a plane lacks to the
-    /// step of entry and to that of exit, the margins included.
+    /// coordinate, of at most 2^17 units, the inverse slope in culling steps per unit with 16 fraction
+    /// bits, limited to 2^29, with the sign of the slope; and the offsets from its product with a plane
+    /// to the step of entry and to that of exit, the margins included.
     fn cull_axis(slope: Self, origin: Self) -> CullAxis;
 }
 
@@ -23,11 +23,11 @@ pub trait CullArithmetic: Arithmetic {
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct CullAxis {
-    /// Steps a unit with 16 fraction bits, with the slope's sign.
+    /// Steps per unit with 16 fraction bits, with the slope's sign.
     pub(crate) inverse: i32,
-    /// What a near plane's product lacks to the step of entry.
+    /// The offset from a near plane's product to the step of entry.
     pub(crate) near: i32,
-    /// What a far plane's product lacks to the step of exit.
+    /// The offset from a far plane's product to the step of exit.
     pub(crate) far: i32,
     /// 16 where the ray runs down the axis and the planes of a word change roles, else 0.
     pub(crate) rotation: u32,
@@ -103,17 +103,18 @@ impl CullAxis {
         [ordered as i16, (ordered >> 16) as i16]
     }
 
-    /// The steps at which the ray enters and leaves between the two planes of a word.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    pub(in crate::accel) fn between(&self, planes: u32) -> Interval {
-        let [near, far] = self.ordered(planes);
-        Interval {
-            near: self.entry(near),
-            far: self.exit(far),
+    inline_unless_small!(
+        /// The steps at which the ray enters and leaves between the two planes of a word.
+        pub(in crate::accel) fn between(&self, planes: u32) -> Interval {
+            let [near, far] = self.ordered(planes);
+            Interval {
+                near: self.entry(near),
+                far: self.exit(far),
+            }
         }
-    }
+    );
 
-    /// The same to cull with: up to a unit wider, where that is cheaper.
+    /// [`between`](Self::between) or an interval up to a unit wider, whichever is cheaper: for culling.
     #[inline(always)]
     pub(crate) fn around(&self, planes: u32) -> Interval {
         if ROTATES {
@@ -123,19 +124,20 @@ impl CullAxis {
         }
     }
 
-    /// Each plane is shifted into the upper half of a word. Below it lies the other one or nothing, so that
-    /// it counts as up to a unit higher. Below another lies the lower half of the given word alone: its
-    /// upper half is where the ray leaves if it runs up the axis, and where it enters if it runs down.
-    /// Either way the interval grows.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    pub(in crate::accel) fn around_by_shifts(&self, planes: u32) -> Interval {
-        let near = planes.wrapping_shl(self.rotation ^ 16);
-        let far = planes.wrapping_shl(self.rotation);
-        Interval {
-            near: self.upper_half(near).wrapping_add(self.near),
-            far: self.upper_half(far).wrapping_add(self.far),
+    inline_unless_small!(
+        /// Each plane is shifted into the upper half of a word. Below it lies the other one or nothing, so that
+        /// it counts as up to a unit higher. Below another lies the lower half of the given word alone: its
+        /// upper half is where the ray leaves if it runs up the axis, and where it enters if it runs down.
+        /// Either way the interval grows.
+        pub(in crate::accel) fn around_by_shifts(&self, planes: u32) -> Interval {
+            let near = planes.wrapping_shl(self.rotation ^ 16);
+            let far = planes.wrapping_shl(self.rotation);
+            Interval {
+                near: self.upper_half(near).wrapping_add(self.near),
+                far: self.upper_half(far).wrapping_add(self.far),
+            }
         }
-    }
+    );
 }
 
 /// The steps at which a ray enters and leaves something; it misses where `near > far`.
@@ -148,7 +150,7 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// What two intervals share.
+    /// The intersection.
     #[inline(always)]
     pub(crate) fn and(self, other: Self) -> Self {
         Self {

@@ -31,6 +31,23 @@ macro_rules! dynamic {
     )*) => {
         impl Structure {
             /// Hands the structure to a visitor as a type.
+            ///
+            /// ```
+            /// use gridel_core::accel::Accel;
+            /// use gridel_core::{Structure, StructureVisitor};
+            ///
+            /// struct NameOfType;
+            ///
+            /// impl StructureVisitor for NameOfType {
+            ///     type Output = &'static str;
+            ///
+            ///     fn visit<A: Accel>(self) -> &'static str {
+            ///         std::any::type_name::<A>()
+            ///     }
+            /// }
+            ///
+            /// assert!(Structure::Grid.visit(NameOfType).ends_with("Grid"));
+            /// ```
             pub fn visit<V: StructureVisitor>(self, visitor: V) -> V::Output {
                 match self {
                     $(Structure::$variant => visitor.visit::<super::$variant>(),)*
@@ -47,7 +64,7 @@ macro_rules! dynamic {
             type Views<'a> = StructureViews<'a>;
 
             fn needs(space: &Space<'_>) -> Structure {
-                space.chosen
+                space.chosen()
             }
 
             fn walk<N: Number, C: Observer>(
@@ -59,7 +76,7 @@ macro_rules! dynamic {
                 count: &mut C,
                 leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
             ) {
-                match space.chosen {
+                match space.chosen() {
                     $(Structure::$variant => {
                         let cull = <super::$variant as Traverse>::Cull::<N>::new(ray);
                         let views = <super::$variant as Accel>::views(views);

@@ -14,10 +14,10 @@ use glam::Vec4;
 /// The culling form of a ray in lanes of `f32`: t in units.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lanes {
-    /// One over the slope, in all lanes, an axis each.
+    /// One over the slope, in all lanes, per axis.
     inverse: [Vec4; 3],
-    /// What products lack to t, for a lower plane in the first two lanes and an upper one in the
-    /// others, an axis each.
+    /// The offsets from products to t, for a lower plane in the first two lanes and an upper one in the
+    /// others, per axis.
     offset: [Vec4; 3],
     start: f32,
 }

@@ -1,4 +1,4 @@
-//! What users ask of a number format.
+//! The number formats of queries and renderers.
 
 use crate::accel::cull::{Cull, PairCulling};
 use crate::accel::cull_axis::CullArithmetic;
@@ -6,7 +6,7 @@ use crate::accel::wide::cull::{WideCulling, WideLanes};
 use crate::geometry::Project;
 use crate::number::Fixed;
 
-/// A number format, as queries and renderers take it: `fixed`, `f32` or `f64`.
+/// A number format of queries and renderers: `fixed`, `f32` or `f64`.
 ///
 /// All arithmetic, projection and culling in one bound; see [`number`](crate::number) for the quantities that a
 /// number stands for.
@@ -36,16 +36,11 @@ impl Number for f64 {
 ///
 /// Cores with SIMD registers take four planes at a time, the others integers. Neither can change
 /// an answer; only how many boxes are visited for nothing may differ, by the width of a margin.
-#[cfg(any(
-    target_arch = "x86_64",
-    target_arch = "aarch64",
-    all(target_arch = "wasm32", target_feature = "simd128")
-))]
-type FloatCulling = crate::accel::lanes::Lanes;
-/// The form in which rays of a float format cull on this machine.
-#[cfg(not(any(
-    target_arch = "x86_64",
-    target_arch = "aarch64",
-    all(target_arch = "wasm32", target_feature = "simd128")
-)))]
-type FloatCulling = Cull;
+type FloatCulling = cfg_select! {
+    any(
+        target_arch = "x86_64",
+        target_arch = "aarch64",
+        all(target_arch = "wasm32", target_feature = "simd128")
+    ) => crate::accel::lanes::Lanes,
+    _ => Cull,
+};

@@ -1,9 +1,9 @@
-//! What a structure keeps in a blob.
+//! The records of a structure in a blob.
 
 use crate::accel::space::Space;
 use crate::format::{BlobError, SectionKind, Sections};
 
-/// What a structure keeps in a blob, and the proof that it is sound.
+/// The records of a structure in a blob, and the proof that they are valid.
 pub(in crate::accel) trait Records<'a>: Copy {
     /// The sections that are this structure's alone.
     const SECTIONS: &'static [SectionKind];

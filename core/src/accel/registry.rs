@@ -16,12 +16,12 @@ pub trait Accel: Traverse {
     fn views<'s, 'a>(views: &'s StructureViews<'a>) -> &'s Self::Views<'a>;
 }
 
-/// What is done with a structure that is chosen while the program runs: see [`Structure::visit`].
+/// Runs code for a structure that is chosen while the program runs: see [`Structure::visit`].
 pub trait StructureVisitor {
-    /// What comes of it.
+    /// The result of the code.
     type Output;
 
-    /// Does it with the structure `A`.
+    /// Runs the code for the structure `A`.
     fn visit<A: Accel>(self) -> Self::Output;
 }
 

@@ -12,7 +12,7 @@ use crate::accel::cull_axis::CullArithmetic;
 use crate::ray::Ray;
 use glam::Vec4;
 
-/// What planes are multiplied with, and what the products lack to t in units; an axis each.
+/// The factors of planes, and the offsets from the products to t in units, per axis.
 pub(super) struct Single {
     /// One over the slope, at least 1 in magnitude; below zero where the ray runs down the axis and
     /// the planes change roles.
@@ -50,7 +50,7 @@ impl Single {
         if t < 0.0 { -1 } else { t.to_bits() as i32 + 1 }
     }
 
-    /// What bits stand for; those of the limit below 0 are no number's.
+    /// The t that bits stand for; -1 for the limit below 0, whose bits are a NaN.
     pub(super) fn units(bits: i32) -> f64 {
         let t = f32::from_bits(bits as u32);
         if t.is_nan() { -1.0 } else { t.into() }

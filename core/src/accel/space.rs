@@ -1,10 +1,10 @@
-//! What all structures of a scene share.
+//! The space that all structures of a scene divide.
 
 use crate::format::record::{Header, UnitBox};
 use crate::format::{BlobError, Leaf, Structure};
 use crate::geometry::Shapes;
 use crate::simd::SimdLevel;
-use crate::target::InWide;
+use crate::target::{AllStructuresOnly, WideOnly};
 
 /// The space that structures divide: the scene's box, its primitives, and the leaves that hierarchies share.
 #[derive(Clone, Copy, Debug)]
@@ -12,11 +12,10 @@ pub struct Space<'a> {
     pub(crate) header: &'a Header,
     pub(crate) shapes: Shapes<'a>,
     pub(crate) leaves: &'a [u32],
-    /// What [`DynAccel`](crate::accel::DynAccel) walks.
-    #[cfg(feature = "all-structures")]
-    pub(crate) chosen: Structure,
+    /// The structure that [`DynAccel`](crate::accel::DynAccel) walks.
+    pub(crate) chosen: AllStructuresOnly<Structure>,
     /// The instructions that [`Wide`](crate::Wide) uses.
-    pub(crate) simd: InWide<SimdLevel>,
+    pub(crate) simd: WideOnly<SimdLevel>,
 }
 
 impl<'a> Space<'a> {
@@ -29,6 +28,12 @@ impl<'a> Space<'a> {
     /// Whether the blob holds a structure.
     pub(crate) fn holds(&self, structure: Structure) -> bool {
         self.header.structures & structure.bit() != 0
+    }
+
+    /// The structure that [`DynAccel`](crate::accel::DynAccel) walks.
+    #[inline(always)]
+    pub(crate) fn chosen(&self) -> Structure {
+        self.chosen.get().copied().unwrap_or(Structure::List)
     }
 
     /// The instructions that [`Wide`](crate::Wide) uses.

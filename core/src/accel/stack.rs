@@ -12,12 +12,12 @@ pub struct Entry {
     pub(in crate::accel) far: i32,
 }
 
-/// The traversal stack, owned by the caller: 12 bytes an entry and one word.
+/// The traversal stack, owned by the caller: 12 bytes per entry and one word.
 ///
 /// `DEPTH` must be at least the blob's [`stack_depth`](crate::Scene::stack_depth), which
 /// [`Scene::from_bytes`](crate::Scene::from_bytes) proves. A smaller stack is never overrun:
 /// queries on it have no hit, and
-/// [`Renderer::check_workspace`](crate::Renderer::check_workspace) refuses it.
+/// [`Renderer::check_workspace`](crate::Renderer::check_workspace) rejects it.
 #[derive(Debug, Default)]
 pub struct Stack<const DEPTH: usize>(Vec<Entry, DEPTH>);
 
@@ -61,7 +61,7 @@ pub(in crate::accel) fn pop<C: Observer>(
         }
         if C::ENABLED {
             let (place, enters) = report(&entry);
-            count.event(Event::GivenUp { place, enters });
+            count.event(Event::NodeSkipped { place, enters });
         }
     }
 }

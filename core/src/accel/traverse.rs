@@ -15,7 +15,7 @@ pub trait Traverse: Send + Sync {
     const STRUCTURE: Structure;
     /// The form in which its rays cull.
     type Cull<N: Number>: Culling<N>;
-    /// What it keeps in a blob.
+    /// Its records in a blob.
     type Views<'a>: Copy;
     /// Whether its leaves can be [clusters](crate::format::cluster): code for these is only compiled
     /// where they are.
@@ -24,7 +24,7 @@ pub trait Traverse: Send + Sync {
     /// per leaf.
     const ONE_COPY: bool = SMALL;
 
-    /// What a scene must hold to be walked.
+    /// The structure that a blob must hold for the walk.
     fn needs(_: &Space<'_>) -> Structure {
         Self::STRUCTURE
     }
@@ -43,7 +43,7 @@ pub trait Traverse: Send + Sync {
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     );
 
-    /// The same for any hit: in any order, up to the first leaf of which `hits` is true.
+    /// Calls `hits` for leaves whose box the ray can meet, in any order, up to the first for which it is true.
     #[expect(clippy::too_many_arguments, reason = "its arguments stay in registers")]
     #[inline(always)]
     fn walk_any<N: Number, C: Observer>(

@@ -138,14 +138,14 @@ impl StripMembers {
 
     /// A bit for each place where there is a triangle.
     #[inline(always)]
-    pub fn places(&self) -> u32 {
+    pub fn lanes(&self) -> u32 {
         from_24(self.corners) >> 18
     }
 
     /// Number of triangles.
     #[inline(always)]
     pub fn count(&self) -> u32 {
-        self.places().count_ones()
+        self.lanes().count_ones()
     }
 
     /// The vertices of a place's triangle in the order of its corners; `None` where the number of
@@ -162,7 +162,7 @@ impl StripMembers {
     /// The number of a place's triangle among the members.
     #[inline(always)]
     pub(crate) fn member(&self, place: u32) -> u32 {
-        let before = self.places() & !(u32::MAX << (place & 31));
+        let before = self.lanes() & !(u32::MAX << (place & 31));
         self.first() + before.count_ones()
     }
 }

@@ -1,5 +1,5 @@
-//! What light does in a scene, as a set: the scene pays for these and for nothing else. The one place
-//! that names all effects.
+//! Effects: the parts of light transport that a scene uses, as a set. A scene pays only for its effects. All effects
+//! are listed here.
 //!
 //! An effect is a file in [`shade`](crate::shade) and a row in the table below. Its code is a Cargo
 //! feature of the same name.
@@ -8,7 +8,7 @@ use crate::format::limits::work_depth;
 use core::fmt;
 
 /// Hands the table of effects to a macro: constant, bit in the blob, name and Cargo feature, type and
-/// module in `shade`, the most rays that wait after a hit because of it, and what calls for it.
+/// module in `shade`, the most rays that wait after a hit because of it, and what requires it.
 ///
 /// At each place of the ray loop effects act in this order.
 macro_rules! effects {
@@ -16,33 +16,33 @@ macro_rules! effects {
         $macro! {
             /// Shadows: light is blocked on its way to a surface. One shadow ray per light and hit.
             SHADOW = 0, "shadow", Shadow in shadow, casts 0,
-                for "a light and an object, unless the scene file turns shadows off";
+                required by "a light and an object, unless the scene file turns shadows off";
             /// Highlights of the lights.
             HIGHLIGHT = 1, "highlight", Highlight in highlight, casts 0,
-                for "a material whose highlight is not 0";
+                required by "a material whose highlight is not 0";
             /// Mirrors: one more ray per hit.
             MIRROR = 2, "mirror", Mirror in mirror, casts 1,
-                for "a material whose mirror is not 0";
+                required by "a material whose mirror is not 0";
             /// Glass: up to two more rays per hit, and shadows through it.
             GLASS = 3, "glass", Glass in glass, casts 2,
-                for "a material whose transmit is not 0";
+                required by "a material whose transmit is not 0";
             /// Glass that absorbs light along the way.
             ABSORPTION = 4, "absorption", Absorption in absorption, casts 0,
-                for "such a material whose absorption is not 0";
+                required by "such a material whose absorption is not 0";
             /// Checkerboards.
             CHECKER = 5, "checker", Checker in checker, casts 0,
-                for "a material whose checker size is above 0";
+                required by "a material whose checker size is above 0";
         }
     };
 }
 
 pub(crate) use effects;
 
-/// What to do about a Cargo feature that a scene calls for and that this build lacks.
+/// The advice about a Cargo feature that a scene requires and that this build lacks.
 macro_rules! enable {
     ($feature:literal) => {
         concat!(
-            "the scene calls for `",
+            "the scene requires `",
             $feature,
             "`: enable that feature of gridel-core"
         )
@@ -53,7 +53,7 @@ pub(crate) use enable;
 
 /// A set of effects.
 ///
-/// The compiler writes into a blob the set that its scene calls for. The ray loop is compiled for
+/// The compiler writes into a blob the set that its scene requires. The ray loop is compiled for
 /// a set given as a constant, and each effect's code can be left out by its Cargo feature.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Effects(pub u32);
@@ -62,7 +62,7 @@ macro_rules! sets {
     ($(
         $(#[doc = $doc:literal])*
         $effect:ident = $bit:literal, $name:literal, $type:ident in $module:ident,
-            casts $rays:literal, for $caller:literal;
+            casts $rays:literal, required by $required_by:literal;
     )*) => {
         impl Effects {
             $($(#[doc = $doc])* pub const $effect: Effects = Effects(1 << $bit);)*
@@ -71,8 +71,8 @@ macro_rules! sets {
             pub const NAMED: [(Effects, &'static str); [$($bit),*].len()] =
                 [$((Effects::$effect, $name)),*];
 
-            /// What calls for each effect of [`NAMED`](Self::NAMED).
-            pub const CALLERS: [&'static str; Self::NAMED.len()] = [$($caller),*];
+            /// The parts of a scene that require each effect of [`NAMED`](Self::NAMED).
+            pub const REQUIRED_BY: [&'static str; Self::NAMED.len()] = [$($required_by),*];
 
             /// All effects that there are.
             pub const ALL: Effects = Effects($(1 << $bit)|*);

@@ -1,10 +1,10 @@
-//! Why a blob was refused, in words that say what to do.
+//! Errors of invalid blobs, in words that say what to do.
 
 use crate::format::section::SectionKind;
 use crate::format::{Effects, Field, Reason, Structure};
 use core::fmt;
 
-/// Why [`Scene::from_bytes`](crate::scene::Scene::from_bytes) refused a blob.
+/// The reason for which [`Scene::from_bytes`](crate::scene::Scene::from_bytes) rejects a blob.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 // A plain tag: a tag that shares a word with a field costs boards two to six percent of their code.
@@ -38,7 +38,7 @@ pub enum BlobError {
         /// The checksum in the header.
         expected: u32,
     },
-    /// The scene calls for effects that this build was compiled without.
+    /// The scene requires effects that this build was compiled without.
     MissingEffects {
         /// The effects.
         missing: Effects,
@@ -78,7 +78,7 @@ pub enum BlobError {
     OutOfRange {
         /// Where it is.
         location: Location,
-        /// What it says.
+        /// The field.
         field: Field,
         /// The number.
         found: i64,
@@ -89,7 +89,7 @@ pub enum BlobError {
     Invalid {
         /// Which part.
         location: Location,
-        /// What is wrong with it.
+        /// The reason.
         reason: Reason,
     },
 }
@@ -181,12 +181,12 @@ impl fmt::Display for BlobError {
             ),
             BlobError::MissingEffects { missing } => write!(
                 f,
-                "the scene calls for the effects {missing}, which this build was compiled without: \
+                "the scene requires the effects {missing}, which this build was compiled without: \
                  enable the Cargo features of the same names in gridel-core"
             ),
             BlobError::MissingPart { missing } => write!(
                 f,
-                "the scene calls for `{missing}`, which this build was compiled without: \
+                "the scene requires `{missing}`, which this build was compiled without: \
                  enable the Cargo feature of the same name in gridel-core"
             ),
             BlobError::MissingStructure { missing, needed_by } => write!(

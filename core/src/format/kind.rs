@@ -71,7 +71,7 @@ macro_rules! kinds {
             }
 
             /// Whether this build holds the kind's code. A blob that holds primitives of a kind
-            /// without code is refused.
+            /// without code is rejected.
             #[inline(always)]
             pub const fn is_available(self) -> bool {
                 match self {

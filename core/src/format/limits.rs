@@ -9,7 +9,7 @@ pub const MAX_LEVELS: usize = 48;
 /// The largest ray depth that a scene can ask for.
 pub const MAX_RAY_DEPTH: usize = 16;
 
-/// Most samples a pixel.
+/// Most samples per pixel.
 pub const MAX_SAMPLES: u16 = 256;
 
 /// Most bytes of a name.

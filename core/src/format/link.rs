@@ -20,7 +20,7 @@ impl Link {
         Self(first_pair | (left_is_leaf as u32) << 24 | (right_is_leaf as u32) << 25)
     }
 
-    /// The same link with owners: bits 0 to 2 for the lower planes of x, y and z, bits 3 to 5 for
+    /// The link with owners: bits 0 to 2 for the lower planes of x, y and z, bits 3 to 5 for
     /// the upper ones; a set bit means the right child.
     pub const fn with_owners(self, owners: u32) -> Self {
         Self(self.0 & 0x03ff_ffff | owners << 26)

@@ -70,7 +70,7 @@ pub struct ClassNode(pub u32);
 impl ClassNode {
     /// The cell of a leaf that has no list.
     pub const NONE: u32 = u32::MAX >> 3;
-    /// What stands for the dimension of a leaf.
+    /// Stands for the dimension of a leaf.
     const LEAF: u32 = 7;
     /// Dimensions of the space of rays.
     pub const DIMENSIONS: usize = 5;

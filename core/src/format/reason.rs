@@ -1,4 +1,4 @@
-//! What can be wrong with a blob, each in one plain sentence.
+//! The errors of a blob, each as one plain sentence.
 //!
 //! An error carries a byte of these enumerations. Their texts are reached through `Display` alone, so a
 //! program that prints no error does not hold them.
@@ -117,11 +117,11 @@ texts! {
 }
 
 texts! {
-    /// What is wrong with a part of a blob, where it is not one number that is out of its range.
+    /// The error of a part of a blob, other than a number out of its range.
     Reason {
         // Header and section table.
-        UnknownEffects => "it calls for effects that this version of the format does not have",
-        UnneededEffects => "it calls for effects that nothing in the scene needs",
+        UnknownEffects => "it requires effects that this version of the format does not have",
+        UnneededEffects => "it requires effects that nothing in the scene needs",
         MissingList => "it does not name the structure list, which every blob holds",
         UnknownStructures => "it names structures that this version of the format does not have",
         OriginNotFinite => "a coordinate of its origin is not finite",
@@ -129,10 +129,10 @@ texts! {
         ReservedBounds => "a side of the scene's box is -32768, which is reserved",
         SpareNotZero => "a spare field is not 0",
         MissingObjectFirst => "it counts several objects, but there is no section object-first",
-        NotPrevalidated => "it calls for a structure that cannot be verified at compile time",
+        NotPrevalidated => "it requires a structure that cannot be verified at compile time",
         // Lights, materials and primitives.
         ZeroDirection => "its direction has length 0",
-        MissingEffect => "it needs an effect that the header does not call for",
+        MissingEffect => "it needs an effect that the header does not require",
         InvertedBox => "its lowest corner lies above its highest one",
         ZeroNormal => "its normal has length 0",
         ZeroAxis => "its axis has length 0",
@@ -158,7 +158,7 @@ texts! {
         EmptyPack => "it has no sphere",
         PartialPack => "it has fewer than eight spheres, but it is not the last pack",
         RadiusAfterLast => "a radius follows its last sphere",
-        WrongHome => "it does not lead back to its slot",
+        WrongSlotLocation => "it does not lead back to its slot",
         // Cells and candidates.
         WrongPartition => "its gridels are not those of the scene's box",
         KeyOrder => "it does not follow the key before it in its list",

@@ -34,7 +34,7 @@ pub struct Header {
     pub checksum: u32,
     /// Acceleration structures that the blob holds: a bit for each [`Structure`](crate::format::Structure).
     pub structures: u32,
-    /// Effects that the scene calls for: see [`Effects`](crate::format::Effects).
+    /// Effects that the scene requires: see [`Effects`](crate::format::Effects).
     pub effects: u32,
     /// Entries that the deepest walk pushes on the traversal stack.
     pub stack_depth: u16,
@@ -137,7 +137,7 @@ pub struct View {
     pub width: u16,
     /// Default height of the picture in pixels.
     pub height: u16,
-    /// Default number of samples a pixel, 1 to 256.
+    /// Default number of samples per pixel, 1 to 256.
     pub samples: u16,
     /// How often a ray may be reflected or refracted, 0 to [`MAX_RAY_DEPTH`](crate::format::limits::MAX_RAY_DEPTH).
     pub depth: u8,
@@ -234,7 +234,7 @@ pub struct FlaggedPair {
     /// `[axis]`: the inner of the two children's lower sides in the low half, the inner of their
     /// upper sides in the high half.
     pub planes: [u32; 3],
-    /// What the children are, and which child owns each plane: see [`Link`](crate::format::Link).
+    /// The children, and which child owns each plane: see [`Link`](crate::format::Link).
     pub link: u32,
 }
 
@@ -250,7 +250,7 @@ pub struct DualNode {
     /// axis; zero where there is no carve.
     pub carves: [u32; 2],
     /// Axes, and the children or the leaf: see [`NodeWord`](crate::format::NodeWord).
-    pub way: u32,
+    pub word: u32,
 }
 
 /// How the cylinder cubes partition the scene's box: see `accel::candidates::gridels`.
@@ -263,7 +263,7 @@ pub struct Gridels {
     pub low: [i32; 3],
     /// The highest corner.
     pub high: [i32; 3],
-    /// Gridels a length along each axis, with 44 fraction bits more than the length's.
+    /// Gridels per length along each axis, with 44 fraction bits more than the length's.
     pub scale: [u32; 3],
 }
 
@@ -319,7 +319,7 @@ pub struct WideNode {
     /// `[axis][side][child]`: the children's lower sides, then their upper ones. Missing children,
     /// which are the last ones, have a box that nothing meets: [`EMPTY`](Self::EMPTY).
     pub planes: [[[i16; 8]; 2]; 3],
-    /// What the children are: see [`Child`](crate::format::Child).
+    /// The children: see [`Child`](crate::format::Child).
     pub children: [u32; 8],
 }
 
@@ -337,7 +337,7 @@ impl WideNode {
         )
     }
 
-    /// What a child is.
+    /// A child.
     #[inline(always)]
     pub fn child(&self, lane: usize) -> crate::format::Child {
         crate::format::Child(self.children[lane & 7])
@@ -359,7 +359,7 @@ pub struct BoundingSphere {
 #[repr(C)]
 pub struct SpherePair {
     /// The left and the right child's.
-    pub balls: [BoundingSphere; 2],
+    pub spheres: [BoundingSphere; 2],
     /// The children: the number of a pair, or that of a leaf with bit 31 set.
     pub children: [u32; 2],
 }

@@ -30,7 +30,7 @@ pub struct Requirements {
     pub stack_depth: usize,
     /// Places for rays that wait: the ray depth and one, or 0 where no ray causes another.
     pub work_depth: usize,
-    /// The effects that the scene calls for.
+    /// The effects that the scene requires.
     pub effects: Effects,
     /// Pixels of a row of the scene's own picture.
     pub width: usize,
@@ -99,8 +99,8 @@ impl Requirements {
         self.structures & structure.bit() != 0
     }
 
-    /// A sentence about a Cargo feature that the scene calls for and that this build lacks. A blob that
-    /// calls for one is refused when it is loaded.
+    /// A sentence about a Cargo feature that the scene requires and that this build lacks. A blob that
+    /// requires one is rejected when it is loaded.
     pub const fn missing(&self) -> Option<&'static str> {
         macro_rules! parts {
             ($($called:expr => $feature:literal,)*) => {

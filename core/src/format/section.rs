@@ -29,8 +29,8 @@ macro_rules! kinds {
                 }
             }
 
-            /// What one of its records is called, and the structure or array that it belongs to.
-            /// Empty where there is only one record, and where it belongs to the scene.
+            /// The name of one of its records, and of the structure or array that it belongs to.
+            /// The first is empty where there is only one record, the second where it belongs to the scene.
             pub const fn record_name(self) -> (&'static str, &'static str) {
                 match self {
                     $(SectionKind::$kind => ($record, $owner),)*
@@ -78,7 +78,7 @@ macro_rules! sections {
             /// [`DualNode`](crate::format::record::DualNode)s.
             DualNodes = 16, "dual-nodes", "node" of "dual-split";
             /// One [`Gridels`](crate::format::record::Gridels): the partition of the cylinder cube.
-            CylinderGridels = 17, "cylinder-gridels", "" of "";
+            CylinderGridels = 17, "cylinder-gridels", "" of "cylinder-cube";
             /// For each pair of gridels, its list (1 to 4 bytes).
             CylinderCells = 18, "cylinder-cells", "cell" of "cylinder-cube";
             /// For each list, its first entry; then the number of entries (1 to 4 bytes).
@@ -86,7 +86,7 @@ macro_rules! sections {
             /// The slots of all lists (1 to 3 bytes).
             CylinderEntries = 20, "cylinder-entries", "entry" of "cylinder-cube";
             /// One [`Gridels`](crate::format::record::Gridels): the partition of the tight cylinder cube.
-            TightGridels = 21, "tight-gridels", "" of "";
+            TightGridels = 21, "tight-gridels", "" of "cylinder-cube-tight";
             /// For each pair of gridels, its list (1 to 4 bytes).
             TightCells = 22, "tight-cells", "cell" of "cylinder-cube-tight";
             /// For each list, its first entry; then the number of entries (1 to 4 bytes).
@@ -108,7 +108,7 @@ macro_rules! sections {
             /// For each entry, the level at which it can begin (1 byte).
             ApexKeys = 31, "apex-keys", "key" of "apex";
             /// One [`Gridels`](crate::format::record::Gridels): the partition of the cube of entry nodes.
-            EntryGridels = 32, "entry-gridels", "" of "";
+            EntryGridels = 32, "entry-gridels", "" of "cylinder-cube-entry";
             /// For each pair of gridels, its list (1 to 4 bytes).
             EntryCells = 33, "entry-cells", "cell" of "cylinder-cube-entry";
             /// For each list, its first entry; then the number of entries (1 to 4 bytes).
@@ -137,7 +137,7 @@ macro_rules! sections {
             Members = 45, "members", "member" of "wide";
             /// For each slot, where the primitive lies in the eight-wide hierarchy: `u32` each. Only where
             /// the blob has other structures.
-            Homes = 46, "homes", "home" of "wide";
+            SlotLocations = 46, "slot-locations", "slot location" of "wide";
             /// The planes of the root of slabs, a word a direction.
             SlabRoot = 47, "slab-root", "direction" of "slabs";
             /// Pairs of slabs: see [`slabs`](crate::accel::hierarchy::slabs).
@@ -147,9 +147,9 @@ macro_rules! sections {
             /// Flagged pairs of slabs.
             FlaggedSlabPairs = 50, "flagged-slab-pairs", "pair" of "flagged-slabs";
             /// [`SpherePair`](crate::format::record::SpherePair)s.
-            BallPairs = 51, "ball-pairs", "pair" of "spheres";
+            SpherePairs = 51, "sphere-pairs", "pair" of "spheres";
             /// One [`GridShape`](crate::format::record::GridShape).
-            GridShape = 52, "grid-shape", "" of "";
+            GridShape = 52, "grid-shape", "" of "grid";
             /// For each cell of the grid, where its list begins; then where the last one ends (1 to 4 bytes).
             GridStarts = 53, "grid-starts", "list" of "grid";
             /// The slots in the cells of the grid (1 to 4 bytes).

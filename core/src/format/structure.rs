@@ -12,10 +12,10 @@ macro_rules! structures {
             /// Every primitive, one after the other.
             List = 0, "list", list in list,
                 if all();
-            /// A bounding volume hierarchy of pairs, 32 bytes each, traversed in the ordinary way.
+            /// A bounding volume hierarchy of pairs, 32 bytes each, with ordinary traversal.
             Bvh = 1, "bvh", bvh in hierarchy::bvh,
                 if feature = "bvh";
-            /// The same hierarchy without the sides that coincide with the parent's, 16 bytes a pair.
+            /// The hierarchy of `bvh` without the sides that coincide with the parent's, 16 bytes per pair.
             Flagged = 2, "flagged", flagged in hierarchy::flagged,
                 if feature = "flagged";
             /// A hierarchy of nodes with a split and at most two carves, 16 bytes each.
@@ -36,14 +36,14 @@ macro_rules! structures {
             /// Lists for classes of rays by origin and direction; rays without one walk `bvh`.
             RayClasses = 8, "ray-classes", ray_classes in candidates::ray_classes,
                 if feature = "ray-classes";
-            /// A hierarchy of eight children a node over strips of triangles and packs of spheres, for
+            /// A hierarchy of eight children per node over strips of triangles and packs of spheres, for
             /// machines with SIMD registers.
             Wide = 9, "wide", wide in wide,
                 if feature = "wide";
             /// A hierarchy of volumes between planes of 3, 7 or 13 directions, with all planes.
             Slabs = 10, "slabs", slabs in hierarchy::slabs,
                 if feature = "slabs";
-            /// The same hierarchy without the planes that coincide with the parent's.
+            /// The hierarchy of `slabs` without the planes that coincide with the parent's.
             FlaggedSlabs = 11, "flagged-slabs", flagged_slabs in hierarchy::flagged_slabs,
                 if feature = "flagged-slabs";
             /// A hierarchy of bounding spheres.
@@ -97,7 +97,6 @@ impl Structure {
     }
 
     /// The structure of a set that answers fastest, by and large; `set` holds their [bits](Self::bit).
-    #[cfg(feature = "all-structures")]
     pub(crate) fn fastest(set: u32) -> Self {
         let first = [Self::Wide, Self::DualSplit, Self::Flagged, Self::Bvh];
         let all = first.into_iter().chain(Self::ALL.into_iter().rev());

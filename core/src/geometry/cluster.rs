@@ -118,7 +118,7 @@ pub(crate) struct Clusters<'a> {
     /// The primitive of each member, or its slot where other structures share the primitives.
     pub(crate) members: Indices<'a>,
     /// Where other structures share the primitives: where each slot lies in the hierarchy.
-    pub(crate) homes: &'a [u32],
+    pub(crate) locations: &'a [u32],
 }
 
 impl<'a> Clusters<'a> {
@@ -127,7 +127,7 @@ impl<'a> Clusters<'a> {
         strips: Strips::S16(&[]),
         packs: Packs::P16(&[]),
         members: Indices::Absent,
-        homes: &[],
+        locations: &[],
     };
 
     pub(crate) fn read(sections: &Sections<'a>, short: bool) -> Result<Self, BlobError> {
@@ -146,7 +146,7 @@ impl<'a> Clusters<'a> {
                 })
             },
             members: Indices::read(sections, SectionKind::Members)?,
-            homes: sections.records(SectionKind::Homes)?,
+            locations: sections.records(SectionKind::SlotLocations)?,
         })
     }
 
@@ -169,7 +169,7 @@ impl<'a> Clusters<'a> {
             low <= lowest && highest <= high
         };
         let mut places = match kind {
-            Kind::Triangle => self.strips.members(cluster).map_or(0, StripMembers::places),
+            Kind::Triangle => self.strips.members(cluster).map_or(0, StripMembers::lanes),
             _ => self.packs.lanes(cluster),
         };
         let mut inside = places != 0;
@@ -202,7 +202,7 @@ impl<'a> Clusters<'a> {
         let strip = last_at_or_before(self.strips.len(), member, first)?;
         let members = self.strips.members(strip)?;
         let place = (0..8).find(|&place| {
-            members.places() >> place & 1 != 0 && members.member(place) as usize == member
+            members.lanes() >> place & 1 != 0 && members.member(place) as usize == member
         })?;
         Some((strip, place))
     }

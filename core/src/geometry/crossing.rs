@@ -1,6 +1,6 @@
 //! Crossings: where the line of a ray enters and leaves a primitive, behind the origin too.
 //!
-//! What of a crossing is a hit is decided here, once for all primitives, in [`accept`].
+//! [`accept`] decides for all primitives which part of a crossing is a hit.
 
 use crate::number::Arithmetic;
 use crate::ray::Ray;

@@ -10,7 +10,7 @@ use crate::simd::{F32x8, Simd};
 
 /// The spheres of a pack that the line of a ray meets, a bit each, and what makes a crossing of them.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Met {
+pub(crate) struct LaneHits {
     pub(crate) lanes: u32,
     /// In units.
     closest: [f32; LANES],
@@ -18,13 +18,13 @@ pub(crate) struct Met {
     square: [f32; LANES],
 }
 
-impl Met {
+impl LaneHits {
     /// The crossing with the sphere in a lane: that of [`sphere::cross`].
     #[inline(always)]
     pub(crate) fn crossing<N: Arithmetic>(&self, recip_norm2: N, lane: usize) -> Crossing<N> {
         let closest = N::length_from_f64(self.closest[lane & 7].into());
         let square = N::length_from_f64(self.square[lane & 7].into());
-        sphere::beside(closest, square.widen(), recip_norm2)
+        sphere::tangent_crossing(closest, square.widen(), recip_norm2)
     }
 }
 
@@ -37,7 +37,7 @@ pub(crate) fn met<N: Arithmetic, S: Simd, P: Pack>(
     ray: &Ray<N>,
     recip_norm2: N,
     pack: &P,
-) -> Met {
+) -> LaneHits {
     // No closures, which need not be inlined.
     let ([x, y, z], rows) = (ray.origin, pack.rows());
     let x = rows.units(simd, 0) - simd.splat(x.to_f32());
@@ -59,7 +59,7 @@ pub(crate) fn met<N: Arithmetic, S: Simd, P: Pack>(
     let radii = pack.radii(simd);
     let farthest = apart[0].abs().max(apart[1].abs()).max(apart[2].abs());
     let square = radii * radii - (apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]);
-    Met {
+    LaneHits {
         // Lanes without a sphere have no radius.
         lanes: farthest.at_most(radii) & simd.splat(0.0).at_most(square) & !radii.zero(),
         closest: closest.to_array(),

@@ -1,4 +1,4 @@
-//! What a shape is that has one form of records.
+//! The trait of shapes that have one form of records.
 
 use crate::format::range::At;
 use crate::format::record::UnitBox;
@@ -48,7 +48,7 @@ pub(crate) trait Primitive: Pod {
     /// A point of a solid near a point of its surface, `depth` beneath all faces; where the solid is thinner,
     /// halfway between them.
     fn inside<N: Arithmetic>(&self, [point, normal]: [[N; 3]; 2], depth: N) -> [N; 3] {
-        beneath(point, normal, depth)
+        offset_inward(point, normal, depth)
     }
 
     /// Proves the ranges of all fields.
@@ -57,7 +57,7 @@ pub(crate) trait Primitive: Pod {
 
 /// The point at a depth along a normal.
 #[inline(always)]
-pub(crate) fn beneath<N: Arithmetic>(point: [N; 3], normal: [N; 3], depth: N) -> [N; 3] {
+pub(crate) fn offset_inward<N: Arithmetic>(point: [N; 3], normal: [N; 3], depth: N) -> [N; 3] {
     let axis = |k: usize| point[k] - depth * normal[k];
     [axis(0), axis(1), axis(2)]
 }

@@ -1,7 +1,7 @@
 //! Where a blob keeps a primitive.
 
 use crate::format::Kind;
-use crate::target::InWide;
+use crate::target::WideOnly;
 
 /// Where a blob keeps a primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,21 +11,21 @@ pub(crate) struct PrimitiveId {
     /// The slot among the records of its kind, or the cluster.
     pub(crate) number: u32,
     /// The lane of a cluster.
-    lane: InWide<Option<u8>>,
+    lane: WideOnly<Option<u8>>,
 }
 
 impl PrimitiveId {
     /// Among the records of its kind.
     #[inline(always)]
     pub(crate) fn in_slot(kind: Kind, number: u32) -> Self {
-        let lane = InWide::new(|| None);
+        let lane = WideOnly::new(|| None);
         Self { kind, number, lane }
     }
 
     /// In a lane of a strip, whose place it is, or of a pack.
     #[inline(always)]
     pub(crate) fn in_cluster(kind: Kind, number: u32, lane: u32) -> Self {
-        let lane = InWide::new(|| Some(lane as u8));
+        let lane = WideOnly::new(|| Some(lane as u8));
         Self { kind, number, lane }
     }
 

@@ -9,25 +9,25 @@ use crate::number::Arithmetic;
 
 /// Arithmetic of vertices that are projected along a ray.
 pub trait Project: Arithmetic {
-    /// How vertices whose coordinates count `2^bits` steps a unit are seen along an axis, from a ray's
+    /// The projection along an axis of vertices whose coordinates count `2^bits` steps per unit, from a ray's
     /// origin and with its slope there.
     fn axis_projection(origin: Self, slope: Self, bits: u32) -> AxisProjection<Self>;
-    /// The same along the ray's major axis, for depths to [`shear_by`](Self::shear_by) over.
+    /// The projection along the ray's major axis, for the depths of [`shear_by`](Self::shear_by).
     #[inline(always)]
     fn depth_projection(origin: Self, slope: Self, bits: u32) -> AxisProjection<Self> {
         Self::axis_projection(origin, slope, bits)
     }
-    /// Where a coordinate, of at most 24 bits, lies as seen so: in floats in steps, in [`Fixed`](crate::Fixed) a
-    /// length, and in the direction in which the ray runs.
-    fn project(coordinate: i32, sight: &AxisProjection<Self>) -> Self;
-    /// How far what is [seen](Self::project) strays from a ray along a minor axis for each step along its
-    /// major one, given the slopes there.
+    /// Projects a coordinate of at most 24 bits: to steps in floats, to a length along the ray's direction in
+    /// [`Fixed`](crate::Fixed).
+    fn project(coordinate: i32, axis: &AxisProjection<Self>) -> Self;
+    /// The shear: how far a [projected](Self::project) point departs from the ray along a minor axis per step along
+    /// its major one, given the slopes there.
     fn shear(slope: Self, major: Self) -> Self;
-    /// How far it strays over a depth, of less than 2^17 units, by the same arithmetic for every
-    /// vertex; in [`Fixed`](crate::Fixed) rounded down.
+    /// The shear over a depth of less than 2^17 units, by the same arithmetic for every vertex; in
+    /// [`Fixed`](crate::Fixed) rounded down.
     fn shear_by(depth: Self, shear: Self) -> Self;
-    /// Whether the triangle of three points of the plane holds the origin, edges included; not if
-    /// all edges lead through it. Whichever way the points run, and always exact.
+    /// Whether the triangle of three points of the plane contains the origin, edges included; not if
+    /// all edges lead through it. Exact for either orientation.
     fn surrounds_origin(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool;
     /// Whether three numbers are certain to be all above or all below zero, where that is cheaper to
     /// see than what comes of it.
@@ -44,11 +44,11 @@ pub trait Project: Arithmetic {
     }
 }
 
-/// How vertices are seen along one axis of a ray: see [`Project::axis_projection`].
+/// The projection of vertices along one axis of a ray: see [`Project::axis_projection`].
 #[derive(Clone, Copy, Debug)]
 pub struct AxisProjection<N> {
-    /// What moves a coordinate, in the measure of what is seen, to where it lies as seen from the origin.
+    /// The offset to the ray's origin, in the unit of projected coordinates.
     pub(crate) offset: N,
-    /// What makes a coordinate a length, with the sign of the slope; for integers.
+    /// The factor that makes a coordinate a length, with the sign of the slope; for integers.
     pub(in crate::geometry) scale: i32,
 }

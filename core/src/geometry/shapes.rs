@@ -6,13 +6,13 @@ use crate::format::range::{At, at_most};
 use crate::format::record::{Header, UnitBox};
 use crate::format::{BlobError, Field, Kind, Leaf, SectionKind, Sections};
 use crate::geometry::Clusters;
-use crate::geometry::primitive::{InScene, Primitive, beneath};
+use crate::geometry::primitive::{InScene, Primitive, offset_inward};
 use crate::geometry::sphere::{self, Spheres};
 use crate::geometry::triangle::{self, Triangles, Vertices};
 use crate::geometry::{LEAVING, Part, PrimitiveId, Surface};
 use crate::number::Arithmetic;
 use crate::ray::Ray;
-use crate::target::{InWide, WIDE};
+use crate::target::{WIDE, WideOnly, inline_on_boards, inline_on_hosts};
 
 macro_rules! registry {
     (
@@ -30,7 +30,7 @@ macro_rules! registry {
             pub(crate) spheres: Spheres<'a>,
             $(pub(crate) $field: &'a [super::$module::$record],)*
             /// Where there are both, the same triangles and spheres lie in clusters as in the arrays above.
-            clusters: InWide<Clusters<'a>>,
+            clusters: WideOnly<Clusters<'a>>,
         }
 
         /// A primitive of any kind, in 1/256 unit.
@@ -124,7 +124,7 @@ macro_rules! registry {
                     } else {
                         &[]
                     },)*
-                    clusters: InWide::new(|| clusters),
+                    clusters: WideOnly::new(|| clusters),
                 })
             }
 
@@ -189,31 +189,31 @@ macro_rules! registry {
                 })
             }
 
-            /// The surface of a primitive that has a record of its own, where a ray meets it.
-            #[cfg_attr(feature = "wide", inline(never))]
-            #[cfg_attr(not(feature = "wide"), inline(always))]
-            fn surface_in_slot<N: Arithmetic>(
-                &self,
-                kind: Kind,
-                index: usize,
-                ray: &Ray<N>,
-                part: Part,
-                point: [N; 3],
-            ) -> Option<Surface<N>> {
-                Some(match kind {
-                    _ if !kind.is_available() => return None,
-                    Kind::Triangle => triangle::surface(self.indexed_triangle(index)?, point),
-                    Kind::Sphere => {
-                        let (center, radius) = self.spheres.get(index)?;
-                        sphere::surface(center, radius, point)
-                    }
-                    // The optimiser needs this guard to leave out the shapes that a build lacks.
-                    $(Kind::$kind if !UNBOUNDED || Kind::$kind.is_available() => {
-                        self.$field.get(index)?.surface(ray, part, point)
-                    })*
-                    _ => return None,
-                })
-            }
+            inline_on_boards!(
+                /// The surface of a primitive that has a record of its own, where a ray meets it.
+                fn surface_in_slot<N: Arithmetic>(
+                    &self,
+                    kind: Kind,
+                    index: usize,
+                    ray: &Ray<N>,
+                    part: Part,
+                    point: [N; 3],
+                ) -> Option<Surface<N>> {
+                    Some(match kind {
+                        _ if !kind.is_available() => return None,
+                        Kind::Triangle => triangle::surface(self.indexed_triangle(index)?, point),
+                        Kind::Sphere => {
+                            let (center, radius) = self.spheres.get(index)?;
+                            sphere::surface(center, radius, point)
+                        }
+                        // The optimiser needs this guard to leave out the shapes that a build lacks.
+                        $(Kind::$kind if !UNBOUNDED || Kind::$kind.is_available() => {
+                            self.$field.get(index)?.surface(ray, part, point)
+                        })*
+                        _ => return None,
+                    })
+                }
+            );
 
             /// A point beneath a point of a primitive's surface: `depth` away from it along the normal, and
             /// in solids beneath all other faces by what is their bound, as far as they are thick enough.
@@ -232,7 +232,7 @@ macro_rules! registry {
                         Some(record) => record.inside(surface, depth),
                         None => surface[0],
                     },)*
-                    _ => beneath(surface[0], surface[1], depth),
+                    _ => offset_inward(surface[0], surface[1], depth),
                 }
             }
         }
@@ -376,35 +376,38 @@ impl<'a> Shapes<'a> {
         })
     }
 
-    /// How a primitive's surface lies where a ray hit it, and whether the ray came from the side to
-    /// which the normal points.
-    #[cfg_attr(feature = "wide", inline(always))]
-    pub(crate) fn surface<N: Arithmetic>(
-        &self,
-        place: PrimitiveId,
-        part: Part,
-        ray: &Ray<N>,
-        point: [N; 3],
-    ) -> Option<(Surface<N>, bool)> {
-        let mut surface = match (place.lane(), place.kind) {
-            (None, kind) => self.surface_in_slot(kind, place.number as usize, ray, part, point)?,
-            (Some(lane), Kind::Triangle) => {
-                triangle::surface(self.clusters().strips.triangle(place.number, lane)?, point)
+    inline_on_hosts!(
+        /// How a primitive's surface lies where a ray hit it, and whether the ray came from the side to
+        /// which the normal points.
+        pub(crate) fn surface<N: Arithmetic>(
+            &self,
+            place: PrimitiveId,
+            part: Part,
+            ray: &Ray<N>,
+            point: [N; 3],
+        ) -> Option<(Surface<N>, bool)> {
+            let mut surface = match (place.lane(), place.kind) {
+                (None, kind) => {
+                    self.surface_in_slot(kind, place.number as usize, ray, part, point)?
+                }
+                (Some(lane), Kind::Triangle) => {
+                    triangle::surface(self.clusters().strips.triangle(place.number, lane)?, point)
+                }
+                (Some(lane), _) => {
+                    let (center, radius) = self.clusters().packs.sphere(place.number, lane)?;
+                    sphere::surface(center, radius, point)
+                }
+            };
+            let against = N::dot(surface.normal, ray.slope) < N::Wide::default();
+            let front = if is_flat(place.kind) {
+                against
+            } else {
+                part & LEAVING == 0
+            };
+            if front != against && is_leveled(place.kind) {
+                surface.normal = surface.level_with(ray);
             }
-            (Some(lane), _) => {
-                let (center, radius) = self.clusters().packs.sphere(place.number, lane)?;
-                sphere::surface(center, radius, point)
-            }
-        };
-        let against = N::dot(surface.normal, ray.slope) < N::Wide::default();
-        let front = if is_flat(place.kind) {
-            against
-        } else {
-            part & LEAVING == 0
-        };
-        if front != against && is_leveled(place.kind) {
-            surface.normal = surface.level_with(ray);
+            Some((surface, front))
         }
-        Some((surface, front))
-    }
+    );
 }

@@ -95,13 +95,17 @@ pub(crate) fn cross<N: Arithmetic>(
     if square < N::Wide::default() {
         return None;
     }
-    Some(beside(closest, square, recip_norm2))
+    Some(tangent_crossing(closest, square, recip_norm2))
 }
 
 /// The crossing whose middle lies at `closest`, with `square` the radius squared less the square of
 /// the line's distance from the centre.
 #[inline(always)]
-pub(crate) fn beside<N: Arithmetic>(closest: N, square: N::Wide, recip_norm2: N) -> Crossing<N> {
+pub(crate) fn tangent_crossing<N: Arithmetic>(
+    closest: N,
+    square: N::Wide,
+    recip_norm2: N,
+) -> Crossing<N> {
     let half = N::root(N::wide_scale(square, recip_norm2));
     Crossing {
         enter: (closest - half, 0),

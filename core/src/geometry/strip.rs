@@ -77,7 +77,7 @@ impl<N: Project> StripRay<N> {
     #[inline(always)]
     pub(crate) fn met<S: Simd, T: Strip>(&self, simd: S, strip: &T) -> u32 {
         if N::FORMAT != Format::F32 {
-            return self.met_one_by_one(strip, strip.members().places());
+            return self.met_one_by_one(strip, strip.members().lanes());
         }
         let (met, doubtful) = self.met_in_lanes(simd, strip);
         if doubtful == 0 {
@@ -89,15 +89,15 @@ impl<N: Project> StripRay<N> {
     /// The places that are met, and those of which lanes cannot say.
     #[inline(always)]
     fn met_in_lanes<S: Simd, T: Strip>(&self, simd: S, strip: &T) -> (u32, u32) {
-        let Projection { sight, shear, .. } = &self.projection;
+        let Projection { axes, shear, .. } = &self.projection;
         // No closures, which need not be inlined.
         let rows = strip.rows();
         let last = rows.measure(simd, axis(self.axes, 2));
-        let depth = last + simd.splat(sight[2].offset.to_f32());
+        let depth = last + simd.splat(axes[2].offset.to_f32());
         let first = rows.measure(simd, axis(self.axes, 0));
-        let right = first + simd.splat(sight[0].offset.to_f32());
+        let right = first + simd.splat(axes[0].offset.to_f32());
         let second = rows.measure(simd, axis(self.axes, 1));
-        let up = second + simd.splat(sight[1].offset.to_f32());
+        let up = second + simd.splat(axes[1].offset.to_f32());
         let x = right + depth * simd.splat(shear[0].to_f32());
         let y = up + depth * simd.splat(shear[1].to_f32());
         let (x1, y1) = (x.next(), y.next());
@@ -109,7 +109,7 @@ impl<N: Project> StripRay<N> {
         let doubtful = side_zero | side_zero >> 1 | across_zero;
         // Of a difference that is not zero.
         let (left, back) = (side.signs(), across.signs());
-        let places = strip.members().places();
+        let places = strip.members().lanes();
         // Round a triangle run two sides and, backwards, the edge across.
         let (met, doubtful) = (
             !(left ^ left >> 1) & (left ^ back) & places,

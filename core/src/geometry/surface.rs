@@ -1,9 +1,9 @@
-//! How a surface lies where it was hit.
+//! The surface at a hit.
 
 use crate::number::Arithmetic;
 use crate::ray::Ray;
 
-/// How a surface lies where it was hit.
+/// The surface at a hit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface<N> {
     /// Outward, or to the front; of length 1.
@@ -18,10 +18,10 @@ pub(crate) struct Surface<N> {
 }
 
 impl<N: Arithmetic> Surface<N> {
-    /// The normal as a ray sees it that only grazes the surface.
+    /// The normal for a ray that grazes the surface, at right angles to the ray.
     ///
-    /// What a ray enters or leaves is known better than the normal, which the point's rounding turns
-    /// where a solid is as thin as an error bound; and a grazing ray's may turn too far by a bit.
+    /// Whether the ray enters or leaves is certain. The normal is not: where a solid is as thin as an error bound,
+    /// rounding of the point turns it, and for a grazing ray a bit is enough to turn it too far.
     #[cold]
     pub(crate) fn level_with(&self, ray: &Ray<N>) -> [N; 3] {
         let turned = N::wide_scale(N::dot(self.normal, ray.slope), N::recip_norm2(ray.slope));

@@ -50,7 +50,7 @@ const _: () = {
 };
 
 /// A point near the surface as seen from the centre.
-struct Place<N> {
+struct TorusPoint<N> {
     /// The way from the axis to the point, in the frame: of length 1.
     outward: [N; 2],
     /// Height along the axis.
@@ -66,14 +66,14 @@ impl Torus {
 
     /// Where a point near the surface lies. On the axis any way across is outward, and on the circle
     /// any way is away from it.
-    fn place<N: Arithmetic>(&self, frame: &Frame<N>, point: [N; 3]) -> Place<N> {
+    fn place<N: Arithmetic>(&self, frame: &Frame<N>, point: [N; 3]) -> TorusPoint<N> {
         let q = |k: usize| point[k] - N::from_lattice(self.center[k]);
         let [major, minor] = self.radii::<N>();
         let bits = N::headroom(major + minor);
         let (y, across) = frame.parts([q(0), q(1), q(2)].map(|x| x.scale_up(bits)));
         let (outward, rho) = unit(across, [N::ONE, N::ZERO]);
         let (away, _) = unit([rho - major.scale_up(bits), y], [N::ONE, N::ZERO]);
-        Place {
+        TorusPoint {
             outward,
             y: y.scale_down(bits),
             away,
@@ -81,7 +81,12 @@ impl Torus {
     }
 
     /// The point at a place whose distance from the circle is changed.
-    fn beside<N: Arithmetic>(&self, frame: &Frame<N>, place: &Place<N>, distance: N) -> [N; 3] {
+    fn offset_point<N: Arithmetic>(
+        &self,
+        frame: &Frame<N>,
+        place: &TorusPoint<N>,
+        distance: N,
+    ) -> [N; 3] {
         let across = N::from_lattice(self.major_radius) + distance * place.away[0];
         let across = place.outward.map(|x| across * x);
         let q = frame.vector(distance * place.away[1], across);
@@ -94,7 +99,7 @@ impl Torus {
     #[cold]
     fn pit<N: Arithmetic>(
         &self,
-        (frame, place): (&Frame<N>, &Place<N>),
+        (frame, place): (&Frame<N>, &TorusPoint<N>),
         error: N,
         toward: [N; 3],
     ) -> Surface<N> {
@@ -175,9 +180,9 @@ impl Primitive for Torus {
             let toward = ray.slope.map(|x| if leaves { x } else { -x });
             return self.pit((&frame, &place), error, toward);
         }
-        let point = self.beside(&frame, &place, minor);
+        let point = self.offset_point(&frame, &place, minor);
         // That of the rounded point, which thin rings far from the lattice's middle turn away from.
-        let Place { outward, away, .. } = self.place(&frame, point);
+        let TorusPoint { outward, away, .. } = self.place(&frame, point);
         let normal = frame.vector(away[1], outward.map(|x| away[0] * x));
         let mut surface = Surface {
             normal: N::normalize(normal).0,
@@ -197,7 +202,7 @@ impl Primitive for Torus {
         let [_, minor] = self.radii::<N>();
         let frame = Frame::new(self.axis);
         let place = self.place(&frame, point);
-        self.beside(&frame, &place, (minor - depth).max(N::ZERO))
+        self.offset_point(&frame, &place, (minor - depth).max(N::ZERO))
     }
 
     fn validate(&self, scene: InScene<'_>) -> Result<(), BlobError> {

@@ -21,6 +21,7 @@ use crate::geometry::{Surface, cross_plane, flat};
 use crate::number::Arithmetic;
 use crate::number::fixed::halves::product;
 use crate::ray::Ray;
+use crate::target::{inline_on_hosts, inline_unless_small};
 
 /// The vertices of all meshes.
 #[derive(Clone, Copy, Debug)]
@@ -124,7 +125,7 @@ pub(crate) fn is_narrow(sections: &Sections<'_>) -> bool {
 /// (the two minor ones, then the major one), and how far the ray strays for each step of depth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projection<N> {
-    pub(crate) sight: [AxisProjection<N>; 3],
+    pub(crate) axes: [AxisProjection<N>; 3],
     pub(crate) shear: [N; 2],
     major: usize,
 }
@@ -149,49 +150,50 @@ impl<N: Project> Projection<N> {
     pub(crate) fn of<const MAJOR: usize, V: Vertex>(ray: &Ray<N>) -> Self {
         let slope = |role: usize| pick(ray.slope, axis::<MAJOR>(ray.major, role));
         let origin = |role: usize| pick(ray.origin, axis::<MAJOR>(ray.major, role));
-        let sight = |role: usize| N::axis_projection(origin(role), slope(role), V::STEP_BITS);
+        let axis = |role: usize| N::axis_projection(origin(role), slope(role), V::STEP_BITS);
         let depth = N::depth_projection(origin(2), slope(2), V::STEP_BITS);
         let shear = |role: usize| N::shear(slope(role), slope(2));
         Self {
-            sight: [sight(0), sight(1), depth],
+            axes: [axis(0), axis(1), depth],
             shear: [shear(0), shear(1)],
             major: ray.major,
         }
     }
 
-    /// Whether a ray whose major axis is `MAJOR` meets a triangle, edges included; not if it is
-    /// seen edge on.
-    ///
-    /// Cost: 9 loads and some 30 multiplications and additions.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    pub(crate) fn meets<const MAJOR: usize, V: Vertex>(&self, a: &V, b: &V, c: &V) -> bool {
-        let seen = |vertex: &V, role: usize| {
-            let coordinate = vertex.steps(axis::<MAJOR>(self.major, role));
-            N::project(coordinate, &pick(self.sight, role))
-        };
-        let depth = [seen(a, 2), seen(b, 2), seen(c, 2)];
-        let across = |role: usize| {
-            let shear = if role == 0 {
-                self.shear[0]
-            } else {
-                self.shear[1]
+    inline_unless_small!(
+        /// Whether a ray whose major axis is `MAJOR` meets a triangle, edges included; not if it is
+        /// seen edge on.
+        ///
+        /// Cost: 9 loads and some 30 multiplications and additions.
+        pub(crate) fn meets<const MAJOR: usize, V: Vertex>(&self, a: &V, b: &V, c: &V) -> bool {
+            let seen = |vertex: &V, role: usize| {
+                let coordinate = vertex.steps(axis::<MAJOR>(self.major, role));
+                N::project(coordinate, &pick(self.axes, role))
             };
-            [
-                seen(a, role) + N::shear_by(depth[0], shear),
-                seen(b, role) + N::shear_by(depth[1], shear),
-                seen(c, role) + N::shear_by(depth[2], shear),
-            ]
-        };
-        let x = across(0);
-        if N::same_sign(x) {
-            return false;
+            let depth = [seen(a, 2), seen(b, 2), seen(c, 2)];
+            let across = |role: usize| {
+                let shear = if role == 0 {
+                    self.shear[0]
+                } else {
+                    self.shear[1]
+                };
+                [
+                    seen(a, role) + N::shear_by(depth[0], shear),
+                    seen(b, role) + N::shear_by(depth[1], shear),
+                    seen(c, role) + N::shear_by(depth[2], shear),
+                ]
+            };
+            let x = across(0);
+            if N::same_sign(x) {
+                return false;
+            }
+            let y = across(1);
+            if N::same_sign(y) {
+                return false;
+            }
+            N::surrounds_origin([x[0], y[0]], [x[1], y[1]], [x[2], y[2]])
         }
-        let y = across(1);
-        if N::same_sign(y) {
-            return false;
-        }
-        N::surrounds_origin([x[0], y[0]], [x[1], y[1]], [x[2], y[2]])
-    }
+    );
 }
 
 /// Where a ray meets the plane of a triangle that it [meets](Projection::meets), and whether it does so
@@ -216,18 +218,19 @@ pub(crate) fn cross<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> Option<
     Some((t, N::is_steep(approach)))
 }
 
-/// The normal, of any length: exact but for one rounding a component.
-#[cfg_attr(not(feature = "small"), inline(always))]
-fn normal<N: Arithmetic>([a, b, c]: [[i32; 3]; 3]) -> [N; 3] {
-    let edge = |from: [i32; 3], to: [i32; 3]| {
-        let axis = |k: usize| to[k].wrapping_sub(from[k]);
-        [axis(0), axis(1), axis(2)]
-    };
-    let (p, q) = (edge(a, b), edge(a, c));
-    // Edges have 25 bits and a sign, so the products have 51.
-    let component = |i: usize, j: usize| product(p[i], q[j]).wrapping_sub(product(p[j], q[i]));
-    N::direction([component(1, 2), component(2, 0), component(0, 1)])
-}
+inline_unless_small!(
+    /// The normal, of any length: exact but for one rounding per component.
+    fn normal<N: Arithmetic>([a, b, c]: [[i32; 3]; 3]) -> [N; 3] {
+        let edge = |from: [i32; 3], to: [i32; 3]| {
+            let axis = |k: usize| to[k].wrapping_sub(from[k]);
+            [axis(0), axis(1), axis(2)]
+        };
+        let (p, q) = (edge(a, b), edge(a, c));
+        // Edges have 25 bits and a sign, so the products have 51.
+        let component = |i: usize, j: usize| product(p[i], q[j]).wrapping_sub(product(p[j], q[i]));
+        N::direction([component(1, 2), component(2, 0), component(0, 1)])
+    }
+);
 
 /// The box of a triangle.
 #[inline(always)]
@@ -240,8 +243,9 @@ pub(crate) fn bounds([a, b, c]: [[i32; 3]; 3]) -> UnitBox {
     )
 }
 
-/// The front is where the corners run counter-clockwise.
-#[cfg_attr(feature = "wide", inline(always))]
-pub(crate) fn surface<N: Arithmetic>(corners: [[i32; 3]; 3], point: [N; 3]) -> Surface<N> {
-    flat::surface(normal(corners), corners[0], point)
-}
+inline_on_hosts!(
+    /// The front is where the corners run counter-clockwise.
+    pub(crate) fn surface<N: Arithmetic>(corners: [[i32; 3]; 3], point: [N; 3]) -> Surface<N> {
+        flat::surface(normal(corners), corners[0], point)
+    }
+);

@@ -263,7 +263,7 @@ macro_rules! float_number {
             }
 
             #[inline(always)]
-            fn excess(a: Self, b: Self) -> Self {
+            fn difference_as_length(a: Self, b: Self) -> Self {
                 (a - b).min(Self::FAR)
             }
 

@@ -1,6 +1,7 @@
 //! Products of two numbers, and coordinates beyond the scene.
 
 use crate::number::scalar::Scalar;
+use crate::target::inline_unless_small;
 
 /// Arithmetic of wide numbers.
 pub trait Products: Scalar {
@@ -25,7 +26,7 @@ pub trait Products: Scalar {
     fn difference(a: Self::Wide, b: Self::Wide) -> Self::Wide;
     /// `a - b` of far coordinates, of which `a` is not the smaller, as a length: at most
     /// [`FAR`](crate::number::Scalar::FAR).
-    fn excess(a: Self::Wide, b: Self::Wide) -> Self;
+    fn difference_as_length(a: Self::Wide, b: Self::Wide) -> Self;
     /// Where a line comes to a plane far away, on one axis: `origin + (plane - from) * step / stride`
     /// in twice the precision of a far coordinate. `from` is the origin's coordinate on the plane's own
     /// axis, `step` and `stride` are the direction's on this axis and on that; `stride` is not 0 and
@@ -37,11 +38,12 @@ pub trait Products: Scalar {
         step: Self::Wide,
         stride: Self::Wide,
     ) -> Self;
-    /// Three products added: `a . b`.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    fn dot(a: [Self; 3], b: [Self; 3]) -> Self::Wide {
-        a[0].wide(b[0]) + a[1].wide(b[1]) + a[2].wide(b[2])
-    }
+    inline_unless_small!(
+        /// Three products added: `a . b`.
+        fn dot(a: [Self; 3], b: [Self; 3]) -> Self::Wide {
+            a[0].wide(b[0]) + a[1].wide(b[1]) + a[2].wide(b[2])
+        }
+    );
     /// A product with a ratio as a single number: undoes one [`wide`](Self::wide) by a ratio; saturates.
     fn from_wide(product: Self::Wide) -> Self;
     /// Product of a `Wide` (length by ratio, or length squared) with a ratio, as the same kind of `Wide`.

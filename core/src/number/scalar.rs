@@ -70,9 +70,9 @@ pub trait Scalar:
     fn div(self, divisor: Self) -> Self {
         Self::rounded(self.quotient(divisor))
     }
-    /// The same before it is rounded, to be compared.
+    /// The quotient of [`div`](Self::div) before it is rounded, for comparisons.
     fn quotient(self, divisor: Self) -> Self::Quotient;
-    /// What [`div`](Self::div) gives.
+    /// Rounds a quotient to the result of [`div`](Self::div).
     fn rounded(quotient: Self::Quotient) -> Self;
     /// e to the power of minus the product of a non-negative length and a coefficient in 1/unit,
     /// given with 32 fraction bits: a ratio in \[0, 1\].

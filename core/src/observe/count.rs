@@ -4,6 +4,32 @@ use crate::observe::event::{Event, RayKind};
 use core::any::Any;
 
 /// Receives counts and events; every method does nothing unless it is overridden.
+///
+/// ```
+/// # static BLOB: &[u8] =
+/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+/// use gridel_core::{DualSplit, Event, Observer, Ray, Scene, Stack, any_hit};
+///
+/// #[derive(Default)]
+/// struct Tested(Vec<u32>);
+///
+/// impl Observer for Tested {
+///     const ENABLED: bool = true;
+///
+///     fn event(&mut self, event: Event) {
+///         if let Event::Candidate { primitive, .. } = event {
+///             self.0.push(primitive);
+///         }
+///     }
+/// }
+///
+/// let scene = Scene::from_bytes(BLOB)?;
+/// let (mut stack, mut tested) = (Stack::<32>::new(), Tested::default());
+/// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+/// any_hit::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut tested);
+/// assert!(tested.0.contains(&9));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Observer {
     /// Whether [`event`](Self::event) is called.
     const ENABLED: bool = false;

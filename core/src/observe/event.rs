@@ -1,4 +1,4 @@
-//! What happens to a ray, event by event, for whoever wants its story (see [`Observer::event`]).
+//! Events of rays, reported to an [`Observer::event`].
 //!
 //! Events come from the very code that traces and renders, in the order in which it works. Points,
 //! lengths and t are in units (see [`Number`](crate::accel::Number)), t along the ray's major axis; colours
@@ -28,7 +28,7 @@ pub enum Event {
     /// not yet taken up.
     ///
     /// [sent]: Event::Sent
-    Taken {
+    RayStarted {
         /// The purpose of the ray.
         kind: RayKind,
         /// How many reflections and refractions led to it.
@@ -44,7 +44,7 @@ pub enum Event {
         /// Its direction; the largest component is 1 or -1.
         slope: [f64; 3],
         /// The t of `origin` as the caller counts it.
-        moved: f64,
+        start_t: f64,
         /// The interval that counts, from `origin`. It is empty where the scene cannot be met.
         interval: [f64; 2],
         /// Whether any hit will do.
@@ -61,10 +61,10 @@ pub enum Event {
         /// greater.
         span: [f64; 2],
     },
-    /// What was just tested holds nothing: the ray does not go into it.
+    /// The node that was just tested is empty: the ray does not enter it.
     Empty(NodeId),
     /// A node that was put off is given up, because a hit was found before it.
-    GivenUp {
+    NodeSkipped {
         /// The part that is given up.
         place: NodeId,
         /// Where the ray would enter it.
@@ -81,13 +81,13 @@ pub enum Event {
         /// Where the line of the ray enters and leaves it, from the query's origin; `None` if it
         /// does not meet it, or was seen to meet it behind the origin before that was computed.
         crossing: Option<[f64; 2]>,
-        /// Whether it is the nearest hit so far.
+        /// True for the nearest hit so far.
         nearest: bool,
     },
     /// The answer of a query for any hit.
     Any(bool),
     /// The answer of a query for the nearest hit.
-    Nearest(Option<Met>),
+    Nearest(Option<QueryHit>),
     /// A light is considered at the hit.
     Light {
         /// Its number.
@@ -142,7 +142,7 @@ pub enum Event {
     /// A mirror or glass was met at the largest depth: what it would show is left black.
     TooDeep,
     /// A sample is done.
-    Seen {
+    SampleFinished {
         /// Its place in 1/256 pixel from the left and from the top of the picture; `None` for a ray
         /// of the caller's own.
         place: Option<[i32; 2]>,
@@ -174,7 +174,7 @@ pub enum Source {
 
 /// The result of a query.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Met {
+pub struct QueryHit {
     /// As the caller counts it.
     pub t: f64,
     /// The point.

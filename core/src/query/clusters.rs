@@ -50,7 +50,7 @@ impl<N: Number, K: Culling<N>> Search<'_, '_, N, K> {
         };
         count.objects(strip.members().count());
         let mut met = self.strip_met(strip);
-        let missed = strip.members().places() & !met;
+        let missed = strip.members().lanes() & !met;
         let id = |place| PrimitiveId::in_cluster(Kind::Triangle, number, place);
         self.observe_missed(missed, id, count);
         while met != 0 {
@@ -68,7 +68,6 @@ impl<N: Number, K: Culling<N>> Search<'_, '_, N, K> {
         };
         match self.scene.space.simd() {
             SimdLevel::Portable => ray.met(Portable, strip),
-            #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
             SimdLevel::Avx2(avx2) => avx2.call(
                 #[inline(always)]
                 |avx2, ray, strip, (), (), ()| ray.met(avx2, strip),

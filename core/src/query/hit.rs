@@ -1,16 +1,17 @@
-//! What a query answers: which primitive a ray meets, where, and how its surface lies there.
+//! Answers of queries: the primitive that a ray meets, the point, and the surface there.
 
 use crate::accel::Number;
 use crate::format::Leaf;
 use crate::format::limits::UNBOUNDED;
-use crate::observe::event::Met;
+use crate::observe::event::QueryHit;
 use crate::query::search::Candidate;
 use crate::ray::Ray;
 use crate::scene::Scene;
+use crate::target::inline_on_hosts;
 
-/// Which primitive a ray meets first, and where: all of a hit but its surface.
+/// The first primitive that a ray meets, and its t: a hit without its surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Found<N: Number> {
+pub struct PrimitiveHit<N: Number> {
     /// Where on the ray: a length in units along the ray's major axis (see [`Ray`]).
     pub t: N::Wide,
     /// The primitive, counted in scene-file order over all objects.
@@ -18,48 +19,49 @@ pub struct Found<N: Number> {
     pub(super) best: Candidate<N>,
 }
 
-impl<N: Number> Found<N> {
-    /// The whole hit: the point and how the surface lies there. `scene` and `ray` are those of the
-    /// query.
-    ///
-    /// ```
-    /// # static BLOB: &[u8] =
-    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
-    /// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_primitive};
-    ///
-    /// let scene = Scene::from_bytes(BLOB)?;
-    /// let mut stack = Stack::<32>::new();
-    /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
-    /// let found = closest_primitive::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
-    /// let hit = found.and_then(|found| found.hit(&scene, &down)).expect("a ball");
-    /// assert_eq!(hit.primitive, 9);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[cfg_attr(feature = "wide", inline(always))]
-    pub fn hit(&self, scene: &Scene<'_>, ray: &Ray<N>) -> Option<Hit<N>> {
-        let best = self.best;
-        let point = ray.at(best.t);
-        let (surface, front) = scene
-            .space
-            .shapes
-            .surface(best.place, best.part, ray, point)?;
-        Some(Hit {
-            t: self.t,
-            point: surface.point,
-            normal: surface.normal,
-            front,
-            object: scene.object(self.primitive),
-            primitive: self.primitive,
-            error: surface.error,
-            is_exact: surface.is_exact,
-            place: Leaf {
-                kind: best.place.kind,
-                first: scene.key(best.place).2,
-                count: 1,
-            }
-            .to_word(),
-        })
-    }
+impl<N: Number> PrimitiveHit<N> {
+    inline_on_hosts!(
+        /// The whole hit: the point and how the surface lies there. `scene` and `ray` are those of the
+        /// query.
+        ///
+        /// ```
+        /// # static BLOB: &[u8] =
+        /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+        /// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_primitive};
+        ///
+        /// let scene = Scene::from_bytes(BLOB)?;
+        /// let mut stack = Stack::<32>::new();
+        /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+        /// let found = closest_primitive::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
+        /// let hit = found.and_then(|found| found.hit(&scene, &down)).expect("a ball");
+        /// assert_eq!(hit.primitive, 9);
+        /// # Ok::<(), Box<dyn std::error::Error>>(())
+        /// ```
+        pub fn hit(&self, scene: &Scene<'_>, ray: &Ray<N>) -> Option<Hit<N>> {
+            let best = self.best;
+            let point = ray.at(best.t);
+            let (surface, front) = scene
+                .space
+                .shapes
+                .surface(best.place, best.part, ray, point)?;
+            Some(Hit {
+                t: self.t,
+                point: surface.point,
+                normal: surface.normal,
+                front,
+                object: scene.object(self.primitive),
+                primitive: self.primitive,
+                error: surface.error,
+                is_exact: surface.is_exact,
+                place: Leaf {
+                    kind: best.place.kind,
+                    first: scene.key(best.place).2,
+                    count: 1,
+                }
+                .to_word(),
+            })
+        }
+    );
 }
 
 /// Where a ray meets a primitive, and how the surface lies there.
@@ -151,9 +153,36 @@ impl<N: Number> Hit<N> {
         }
     }
 
+    /// Returns the texture coordinates of box mapping: the point's coordinates, in units, on the two axes across the
+    /// normal's largest component.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{Ray, Scene, Stack};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut stack = Stack::<32>::new();
+    /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+    /// let hit = scene.closest_hit(&down, stack.as_view()).expect("a sphere");
+    /// // The normal points up.
+    /// assert_eq!(hit.texture_coordinates(), [hit.point[0], hit.point[2]]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn texture_coordinates(&self) -> [N; 2] {
+        let ([x, y, z], [a, b, c]) = (self.point, self.normal.map(N::abs));
+        if a >= b && a >= c {
+            [y, z]
+        } else if b >= c {
+            [x, z]
+        } else {
+            [x, y]
+        }
+    }
+
     /// Where a ray starts on the normal's side that leads away from the surface and has a t above 0: without
     /// any step where the point lies on the surface exactly.
-    pub(crate) fn beside(&self) -> [N; 3] {
+    pub(crate) fn offset_point(&self) -> [N; 3] {
         if self.is_exact {
             self.point
         } else {
@@ -168,8 +197,8 @@ impl<N: Number> Hit<N> {
     }
 
     /// The hit as an event.
-    pub(super) fn met(&self) -> Met {
-        Met {
+    pub(super) fn as_query_hit(&self) -> QueryHit {
+        QueryHit {
             t: N::far_to_f64(self.t),
             point: self.point.map(N::length_to_f64),
             normal: self.normal.map(N::ratio_to_f64),

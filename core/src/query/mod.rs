@@ -4,11 +4,13 @@
 //! those that lie in no structure; `hit` is the answer.
 
 mod clusters;
+#[cfg(feature = "all-structures")]
+mod dynamic;
 mod hit;
 mod search;
 mod unbounded;
 
-pub use hit::{Found, Hit};
+pub use hit::{Hit, PrimitiveHit};
 
 use crate::accel::cull::Culling;
 use crate::accel::stack::StackView;
@@ -18,37 +20,38 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::scene::Scene;
+use crate::target::{inline_on_hosts, inline_on_hosts_hint_on_boards};
 use search::{Candidate, Search};
 
-/// The primitive that a ray meets first in its interval, found through the structure `A`.
-///
-/// Among hits at the same t the one that comes first in the scene file counts, so the answer is the
-/// same whatever the structure. The stack must be as deep as the blob says.
-///
-/// ```
-/// # static BLOB: &[u8] =
-/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
-/// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_primitive};
-///
-/// let scene = Scene::from_bytes(BLOB)?;
-/// let mut stack = Stack::<32>::new();
-/// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
-/// let found = closest_primitive::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
-/// let found = found.expect("a ball");
-/// assert_eq!(scene.object(found.primitive), 9);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-// Hosts have the room; a ray that goes through memory is waited for.
-#[cfg_attr(feature = "wide", inline(always))]
-#[cfg_attr(not(feature = "wide"), inline)]
-pub fn closest_primitive<N: Number, A: Accel, C: Observer>(
-    scene: &Scene<'_>,
-    ray: &Ray<N>,
-    stack: &mut StackView,
-    count: &mut C,
-) -> Option<Found<N>> {
-    search::<N, A, C, false>(scene, ray, stack, count, false)
-}
+inline_on_hosts_hint_on_boards!(
+    /// The primitive that a ray meets first in its interval, found through the structure `A`.
+    ///
+    /// Among hits at the same t the one that comes first in the scene file counts, so the answer is the
+    /// same whatever the structure. The stack must be as deep as the blob says.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_primitive};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut stack = Stack::<32>::new();
+    /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+    /// let found = closest_primitive::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
+    /// let found = found.expect("a ball");
+    /// assert_eq!(scene.object(found.primitive), 9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    // Hosts have the room; a ray that goes through memory is waited for.
+    pub fn closest_primitive<N: Number, A: Accel, C: Observer>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        stack: &mut StackView,
+        count: &mut C,
+    ) -> Option<PrimitiveHit<N>> {
+        search::<N, A, C, false>(scene, ray, stack, count, false)
+    }
+);
 
 /// The nearest primitive on a ray, or with `any` the first that is found.
 // For boards the compiler chooses by itself: less stack, and fewer instructions.
@@ -60,7 +63,7 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
     stack: &mut StackView,
     count: &mut C,
     any: bool,
-) -> Option<Found<N>> {
+) -> Option<PrimitiveHit<N>> {
     // Known when the code is compiled, unless one copy of it is to serve both.
     let any = if A::ONE_COPY { any } else { ANY };
     if C::ENABLED {
@@ -70,14 +73,14 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
         return search_all::<N, A, C, ANY>(scene, ray, stack, count, any);
     }
     let best = search_structure::<N, A, C, ANY>(scene, ray, None, stack, count, any)?;
-    Some(Found {
-        t: best.t.widen() + ray.moved,
+    Some(PrimitiveHit {
+        t: best.t.widen() + ray.start_t,
         primitive: scene.primitive_at(best.place),
         best,
     })
 }
 
-/// The same in a scene that holds shapes without bounds.
+/// The nearest primitive on a ray in a scene with unbounded shapes; see [`search`].
 #[cold]
 #[inline(never)]
 fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(
@@ -86,7 +89,7 @@ fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(
     stack: &mut StackView,
     count: &mut C,
     any: bool,
-) -> Option<Found<N>> {
+) -> Option<PrimitiveHit<N>> {
     let far = unbounded::nearest(scene, ray, count);
     let end = far.map_or(*ray, |(t, _)| ray.until(t));
     let first = far.map(|(_, place)| Candidate {
@@ -101,58 +104,59 @@ fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(
     };
     let t = match far {
         Some((t, place)) if place == best.place => t,
-        _ => best.t.widen() + ray.moved,
+        _ => best.t.widen() + ray.start_t,
     };
-    Some(Found {
+    Some(PrimitiveHit {
         t,
         primitive: scene.primitive_at(best.place),
         best,
     })
 }
 
-/// The best hit among the primitives of a structure, and a first one that was found before.
-#[cfg_attr(feature = "wide", inline(always))]
-fn search_structure<N: Number, A: Accel, C: Observer, const ANY: bool>(
-    scene: &Scene<'_>,
-    ray: &Ray<N>,
-    first: Option<Candidate<N>>,
-    stack: &mut StackView,
-    count: &mut C,
-    any: bool,
-) -> Option<Candidate<N>> {
-    let views = A::views(&scene.structures);
-    let cull = A::Cull::<N>::new(ray);
-    let mut search = Search::new(scene, ray, &cull, first);
-    if ANY {
-        A::walk_any(
-            &scene.space,
-            views,
-            ray,
-            &cull,
-            stack,
-            count,
-            |leaf, count| {
-                search.leaf::<A, C, ANY>(leaf, count);
-                search.best.is_some()
-            },
-        );
-    } else {
-        A::walk(
-            &scene.space,
-            views,
-            ray,
-            &cull,
-            stack,
-            count,
-            |leaf, count| {
-                search.leaf::<A, C, ANY>(leaf, count);
-                let found = A::ONE_COPY && any && search.best.is_some();
-                (!found).then_some(search.tmax)
-            },
-        );
+inline_on_hosts!(
+    /// The best hit among the primitives of a structure, and a first one that was found before.
+    fn search_structure<N: Number, A: Accel, C: Observer, const ANY: bool>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        first: Option<Candidate<N>>,
+        stack: &mut StackView,
+        count: &mut C,
+        any: bool,
+    ) -> Option<Candidate<N>> {
+        let views = A::views(&scene.structures);
+        let cull = A::Cull::<N>::new(ray);
+        let mut search = Search::new(scene, ray, &cull, first);
+        if ANY {
+            A::walk_any(
+                &scene.space,
+                views,
+                ray,
+                &cull,
+                stack,
+                count,
+                |leaf, count| {
+                    search.leaf::<A, C, ANY>(leaf, count);
+                    search.best.is_some()
+                },
+            );
+        } else {
+            A::walk(
+                &scene.space,
+                views,
+                ray,
+                &cull,
+                stack,
+                count,
+                |leaf, count| {
+                    search.leaf::<A, C, ANY>(leaf, count);
+                    let found = A::ONE_COPY && any && search.best.is_some();
+                    (!found).then_some(search.tmax)
+                },
+            );
+        }
+        search.best
     }
-    search.best
-}
+);
 
 /// The first hit of a ray in its interval: [`closest_primitive`] with its surface.
 ///
@@ -179,41 +183,42 @@ pub fn closest_hit<N: Number, A: Accel, C: Observer>(
     let found = closest_primitive::<N, A, C>(scene, ray, stack, count);
     let hit = found.and_then(|found| found.hit(scene, ray));
     if C::ENABLED {
-        count.event(Event::Nearest(hit.map(|hit| hit.met())));
+        count.event(Event::Nearest(hit.map(|hit| hit.as_query_hit())));
     }
     hit
 }
 
-/// Whether a ray meets anything in its interval: whether [`closest_hit`] would find something.
-///
-/// ```
-/// # static BLOB: &[u8] =
-/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
-/// use gridel_core::{Counters, DualSplit, Ray, Scene, Stack, any_hit};
-///
-/// let scene = Scene::from_bytes(BLOB)?;
-/// let (mut stack, mut counters) = (Stack::<32>::new(), Counters::default());
-/// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
-/// assert!(any_hit::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut counters));
-/// assert!(counters.objects > 0);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-// As above.
-#[cfg_attr(feature = "wide", inline(always))]
-pub fn any_hit<N: Number, A: Accel, C: Observer>(
-    scene: &Scene<'_>,
-    ray: &Ray<N>,
-    stack: &mut StackView,
-    count: &mut C,
-) -> bool {
-    let found = if A::ONE_COPY {
-        search::<N, A, C, false>(scene, ray, stack, count, true)
-    } else {
-        search::<N, A, C, true>(scene, ray, stack, count, true)
-    };
-    let any = found.is_some();
-    if C::ENABLED {
-        count.event(Event::Any(any));
+inline_on_hosts!(
+    /// Whether a ray meets anything in its interval: whether [`closest_hit`] would find something.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{Counters, DualSplit, Ray, Scene, Stack, any_hit};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let (mut stack, mut counters) = (Stack::<32>::new(), Counters::default());
+    /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+    /// assert!(any_hit::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut counters));
+    /// assert!(counters.objects > 0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    // As above.
+    pub fn any_hit<N: Number, A: Accel, C: Observer>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        stack: &mut StackView,
+        count: &mut C,
+    ) -> bool {
+        let found = if A::ONE_COPY {
+            search::<N, A, C, false>(scene, ray, stack, count, true)
+        } else {
+            search::<N, A, C, true>(scene, ray, stack, count, true)
+        };
+        let any = found.is_some();
+        if C::ENABLED {
+            count.event(Event::Any(any));
+        }
+        any
     }
-    any
-}
+);

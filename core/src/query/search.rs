@@ -17,7 +17,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::target::{InWide, SMALL};
+use crate::target::{SMALL, WideOnly, inline_on_boards};
 
 /// The best hit so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +34,7 @@ pub(super) struct Search<'s, 'a, N: Number, K> {
     cull: &'s K,
     pub(super) recip_norm2: N,
     /// The ray as strips are tested with it.
-    pub(super) strip_ray: InWide<StripRay<N>>,
+    pub(super) strip_ray: WideOnly<StripRay<N>>,
     /// No hit beyond this counts.
     pub(super) tmax: N,
     pub(super) best: Option<Candidate<N>>,
@@ -57,7 +57,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             } else {
                 N::ZERO
             },
-            strip_ray: InWide::new(|| StripRay::new(ray, &scene.space.shapes.clusters().strips)),
+            strip_ray: WideOnly::new(|| StripRay::new(ray, &scene.space.shapes.clusters().strips)),
             tmax: ray.tmax,
             best,
         }
@@ -86,19 +86,19 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         self.consider_in_box(crossing, bounds, place);
     }
 
-    /// Commits a hit in the interval that is left, unless an earlier primitive is met at the same t.
-    // Out of line on hosts, where many places come here and few rays.
-    #[cfg_attr(feature = "wide", inline(never))]
-    #[cfg_attr(not(feature = "wide"), inline(always))]
-    fn commit(&mut self, (t, part): (N, Part), place: PrimitiveId) {
-        // No hit lies beyond the best one, so this one is nearer, or as near.
-        let tie = self.best.filter(|best| t >= best.t);
-        if tie.is_some_and(|best| self.scene.key(best.place) <= self.scene.key(place)) {
-            return;
+    inline_on_boards!(
+        /// Commits a hit in the interval that is left, unless an earlier primitive is met at the same t.
+        // Out of line on hosts, where many places come here and few rays.
+        fn commit(&mut self, (t, part): (N, Part), place: PrimitiveId) {
+            // No hit lies beyond the best one, so this one is nearer, or as near.
+            let tie = self.best.filter(|best| t >= best.t);
+            if tie.is_some_and(|best| self.scene.key(best.place) <= self.scene.key(place)) {
+                return;
+            }
+            self.tmax = t;
+            self.best = Some(Candidate { t, place, part });
         }
-        self.tmax = t;
-        self.best = Some(Candidate { t, place, part });
-    }
+    );
 
     /// Reports a primitive after its test, and after it was considered if it was met.
     #[inline(always)]

@@ -20,7 +20,7 @@ pub(super) fn nearest<N: Number, C: Observer>(
     count: &mut C,
 ) -> Option<(N::Wide, PrimitiveId)> {
     let mut best: Option<(N::Wide, PrimitiveId)> = None;
-    let [tmin, tmax] = ray.unmoved_interval();
+    let [tmin, tmax] = ray.given_interval();
     let mut consider = |t: Option<N::Wide>, place: PrimitiveId, count: &mut C| {
         let hit = t.filter(|&t| t >= tmin && t <= tmax);
         if let Some(t) = hit
@@ -35,7 +35,7 @@ pub(super) fn nearest<N: Number, C: Observer>(
             count.event(Event::Candidate {
                 kind: place.kind,
                 primitive: scene.primitive_at(place),
-                crossing: t.map(|t| [N::far_to_f64(t - ray.moved); 2]),
+                crossing: t.map(|t| [N::far_to_f64(t - ray.start_t); 2]),
                 nearest: best.is_some_and(|best| best.1 == place),
             });
         }

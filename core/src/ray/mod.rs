@@ -1,22 +1,24 @@
 //! Rays, in the one form that every kernel uses.
 
 mod error;
+mod given;
 mod pencil;
 mod start;
-mod unmoved;
 
 pub use error::RayError;
+pub(crate) use given::Given;
 pub use pencil::Pencil;
-pub(crate) use unmoved::Unmoved;
 
 use crate::axis::pick;
 use crate::format::record::UnitBox;
 use crate::number::Arithmetic;
 use crate::observe::event::Event;
+use crate::target::{inline_on_hosts, inline_on_hosts_hint_on_boards, inline_unless_small};
+use given::{FarPoint, RayPoint, given};
 use start::{
-    check_interval, check_origin, end_after, far_start, interval, is_near, near_start, way_to_box,
+    check_interval, check_origin, distance_to_box, end_after, far_start, interval, is_near,
+    near_start,
 };
-use unmoved::{FarPlace, Place, unmoved};
 
 /// A half-line with an interval, ready to be traced through one scene.
 ///
@@ -48,84 +50,97 @@ pub struct Ray<N: Arithmetic> {
     pub(crate) origin: [N; 3],
     pub(crate) slope: [N; 3],
     pub(crate) major: usize,
-    /// How far the origin was moved.
-    pub(crate) moved: N::Wide,
+    /// The t of `origin`, as the caller counts it.
+    pub(crate) start_t: N::Wide,
     pub(crate) tmin: N,
     pub(crate) tmax: N,
-    pub(crate) unmoved: Unmoved<N>,
+    pub(crate) given: Given<N>,
 }
 
 impl<N: Arithmetic> Ray<N> {
-    /// A ray through a scene whose box is `bounds` (see [`Scene::bounds`](crate::Scene::bounds)).
-    ///
-    /// Origin and interval are lengths in units; the direction is of any length but 0. Hits are
-    /// reported for `tmin <= t <= tmax`, in lengths along the major axis; `tmin` may be negative.
-    ///
-    /// # Errors
-    /// If the direction is zero, or anything is NaN, or the origin or direction infinite, or the origin
-    /// farther than [`FARTHEST`](crate::format::limits::FARTHEST) along an axis, or `tmin > tmax`: see the limits of [`Ray`].
-    // Hosts have the room; through memory a ray would cost as much again.
-    #[cfg_attr(feature = "wide", inline(always))]
-    #[cfg_attr(not(feature = "wide"), inline)]
-    pub fn new(
-        bounds: &UnitBox,
-        origin: [N::Wide; 3],
-        direction: [N::Wide; 3],
-        tmin: N::Wide,
-        tmax: N::Wide,
-    ) -> Result<Self, RayError> {
-        let (slope, major) = N::slopes(direction).ok_or(RayError::Direction)?;
-        check_interval(tmin, tmax)?;
-        let forward = pick(slope, major) > N::ZERO;
-        let moved = way_to_box::<N>(bounds, pick(origin, major), (major, forward), tmin);
-        let single = (origin.map(N::narrow), N::narrow(moved));
-        let (start, moved, within) = if is_near(single.0, major, single.1) {
-            (near_start(single.0, single.1, slope), moved, true)
-        } else {
-            let [x, y, z] = origin;
-            check_origin::<N>(x, y, z)?;
-            far_start::<N, false>(bounds, origin, direction, (slope, major), moved)
-        };
-        let unmoved = unmoved(|| origin, [tmin, tmax], within);
-        let [tmin, tmax] = interval(tmin, tmax, moved);
-        Ok(Self {
-            origin: start,
-            slope,
-            major,
-            moved,
-            tmin,
-            tmax: if within { tmax } else { -N::ONE },
-            unmoved,
-        })
-    }
+    inline_on_hosts_hint_on_boards!(
+        /// A ray through a scene whose box is `bounds` (see [`Scene::bounds`](crate::Scene::bounds)).
+        ///
+        /// Origin and interval are lengths in units; the direction is of any length but 0. Hits are
+        /// reported for `tmin <= t <= tmax`, in lengths along the major axis; `tmin` may be negative.
+        ///
+        /// ```
+        /// # static BLOB: &[u8] =
+        /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+        /// use gridel_core::{Ray, RayError, Scene};
+        ///
+        /// let scene = Scene::from_bytes(BLOB)?;
+        /// let ray = Ray::<f32>::new(scene.bounds(), [0.0; 3], [0.0, 3.0, -4.0], 0.0, 1e9)?;
+        /// assert_eq!(ray.slope(), [0.0, 0.75, -1.0]);
+        /// let nowhere = Ray::<f32>::new(scene.bounds(), [0.0; 3], [0.0; 3], 0.0, 1e9);
+        /// assert_eq!(nowhere.err(), Some(RayError::Direction));
+        /// # Ok::<(), Box<dyn std::error::Error>>(())
+        /// ```
+        ///
+        /// # Errors
+        /// If the direction is zero, or anything is NaN, or the origin or direction infinite, or the origin
+        /// farther than [`FARTHEST`](crate::format::limits::FARTHEST) along an axis, or `tmin > tmax`: see the limits of [`Ray`].
+        // Hosts have the room; through memory a ray would cost as much again.
+        pub fn new(
+            bounds: &UnitBox,
+            origin: [N::Wide; 3],
+            direction: [N::Wide; 3],
+            tmin: N::Wide,
+            tmax: N::Wide,
+        ) -> Result<Self, RayError> {
+            let (slope, major) = N::slopes(direction).ok_or(RayError::Direction)?;
+            check_interval(tmin, tmax)?;
+            let forward = pick(slope, major) > N::ZERO;
+            let start_t = distance_to_box::<N>(bounds, pick(origin, major), (major, forward), tmin);
+            let single = (origin.map(N::narrow), N::narrow(start_t));
+            let (start, start_t, within) = if is_near(single.0, major, single.1) {
+                (near_start(single.0, single.1, slope), start_t, true)
+            } else {
+                let [x, y, z] = origin;
+                check_origin::<N>(x, y, z)?;
+                far_start::<N, false>(bounds, origin, direction, (slope, major), start_t)
+            };
+            let given = given(|| origin, [tmin, tmax], within);
+            let [tmin, tmax] = interval(tmin, tmax, start_t);
+            Ok(Self {
+                origin: start,
+                slope,
+                major,
+                start_t,
+                tmin,
+                tmax: if within { tmax } else { -N::ONE },
+                given,
+            })
+        }
+    );
 
-    /// A ray from a place in the scene, as hits give places, with all `t` up to `tmax` but 0, where it
-    /// meets what it starts on. `None` if the direction is zero.
-    #[cfg_attr(feature = "wide", inline(always))]
-    #[cfg_attr(not(feature = "wide"), inline)]
-    pub(crate) fn from_inside(
-        bounds: &UnitBox,
-        origin: [N; 3],
-        direction: [N::Wide; 3],
-        tmax: N::Wide,
-    ) -> Option<Self> {
-        let (slope, major) = N::slopes(direction)?;
-        let forward = pick(slope, major) > N::ZERO;
-        // A place beside the box at most: always near.
-        let from = pick(origin, major).widen();
-        let zero = N::Wide::default();
-        let moved = way_to_box::<N>(bounds, from, (major, forward), zero);
-        let beside = N::step_beside(N::ZERO);
-        Some(Self {
-            unmoved: unmoved(|| origin.map(N::widen), [beside.widen(), tmax], true),
-            origin: near_start(origin, N::narrow(moved), slope),
-            slope,
-            major,
-            moved,
-            tmin: if moved > zero { N::ZERO } else { beside },
-            tmax: end_after(tmax, moved),
-        })
-    }
+    inline_on_hosts_hint_on_boards!(
+        /// A ray from a place in the scene, as hits give places, with all `t` up to `tmax` but 0, where it
+        /// meets what it starts on. `None` if the direction is zero.
+        pub(crate) fn from_inside(
+            bounds: &UnitBox,
+            origin: [N; 3],
+            direction: [N::Wide; 3],
+            tmax: N::Wide,
+        ) -> Option<Self> {
+            let (slope, major) = N::slopes(direction)?;
+            let forward = pick(slope, major) > N::ZERO;
+            // A place beside the box at most: always near.
+            let from = pick(origin, major).widen();
+            let zero = N::Wide::default();
+            let start_t = distance_to_box::<N>(bounds, from, (major, forward), zero);
+            let beside = N::step_beside(N::ZERO);
+            Some(Self {
+                given: given(|| origin.map(N::widen), [beside.widen(), tmax], true),
+                origin: near_start(origin, N::narrow(start_t), slope),
+                slope,
+                major,
+                start_t,
+                tmin: if start_t > zero { N::ZERO } else { beside },
+                tmax: end_after(tmax, start_t),
+            })
+        }
+    );
 
     /// [`from_inside`](Self::from_inside) of a place that can lie far outside of the scene's box, on a shape without
     /// bounds.
@@ -141,47 +156,48 @@ impl<N: Arithmetic> Ray<N> {
         Self::new(bounds, origin.map(N::widen), direction, beside, tmax).ok()
     }
 
-    /// A ray given in double precision, rounded to this format only after its origin was moved to
-    /// the scene: what hosts use, and tests.
-    ///
-    /// ```
-    /// # static BLOB: &[u8] =
-    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
-    /// use gridel_core::{Fixed, Ray, RayError, Scene};
-    ///
-    /// let scene = Scene::from_bytes(BLOB)?;
-    /// let ray = Ray::<Fixed>::from_f64(scene.bounds(), [0.0; 3], [0.0, 0.0, -2.0], 0.0, 1e9)?;
-    /// assert_eq!(ray.major_axis(), 2);
-    /// let zero = Ray::<Fixed>::from_f64(scene.bounds(), [0.0; 3], [0.0; 3], 0.0, 1e9);
-    /// assert_eq!(zero.err(), Some(RayError::Direction));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
-    /// # Errors
-    /// As [`Ray::new`].
-    #[cfg_attr(feature = "wide", inline(always))]
-    pub fn from_f64(
-        bounds: &UnitBox,
-        origin: [f64; 3],
-        direction: [f64; 3],
-        tmin: f64,
-        tmax: f64,
-    ) -> Result<Self, RayError> {
-        let exact = Ray::<f64>::new(bounds, origin, direction, tmin, tmax)?;
-        Ok(Self {
-            origin: exact.origin.map(|x| N::flush_tiny(N::length_from_f64(x))),
-            slope: exact.slope.map(N::ratio_from_f64),
-            major: exact.major,
-            moved: N::far_from_f64(exact.moved),
-            tmin: N::length_from_f64(exact.tmin),
-            tmax: N::length_from_f64(exact.tmax),
-            unmoved: unmoved(
-                || origin.map(N::far_from_f64),
-                [tmin, tmax].map(N::far_from_f64),
-                exact.holds_start(),
-            ),
-        })
-    }
+    inline_on_hosts!(
+        /// A ray given in double precision, rounded to this format only after its origin was moved to
+        /// the scene: what hosts use, and tests.
+        ///
+        /// ```
+        /// # static BLOB: &[u8] =
+        /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+        /// use gridel_core::{Fixed, Ray, RayError, Scene};
+        ///
+        /// let scene = Scene::from_bytes(BLOB)?;
+        /// let ray = Ray::<Fixed>::from_f64(scene.bounds(), [0.0; 3], [0.0, 0.0, -2.0], 0.0, 1e9)?;
+        /// assert_eq!(ray.major_axis(), 2);
+        /// let zero = Ray::<Fixed>::from_f64(scene.bounds(), [0.0; 3], [0.0; 3], 0.0, 1e9);
+        /// assert_eq!(zero.err(), Some(RayError::Direction));
+        /// # Ok::<(), Box<dyn std::error::Error>>(())
+        /// ```
+        ///
+        /// # Errors
+        /// As [`Ray::new`].
+        pub fn from_f64(
+            bounds: &UnitBox,
+            origin: [f64; 3],
+            direction: [f64; 3],
+            tmin: f64,
+            tmax: f64,
+        ) -> Result<Self, RayError> {
+            let exact = Ray::<f64>::new(bounds, origin, direction, tmin, tmax)?;
+            Ok(Self {
+                origin: exact.origin.map(|x| N::flush_tiny(N::length_from_f64(x))),
+                slope: exact.slope.map(N::ratio_from_f64),
+                major: exact.major,
+                start_t: N::far_from_f64(exact.start_t),
+                tmin: N::length_from_f64(exact.tmin),
+                tmax: N::length_from_f64(exact.tmax),
+                given: given(
+                    || origin.map(N::far_from_f64),
+                    [tmin, tmax].map(N::far_from_f64),
+                    exact.holds_start(),
+                ),
+            })
+        }
+    );
 
     /// The axis along which `t` is measured: 0, 1 or 2.
     ///
@@ -220,7 +236,7 @@ impl<N: Arithmetic> Ray<N> {
     /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
     /// // From far away a ray starts where it comes to the scene's box.
     /// let ray = gridel_core::Ray::<f64>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
-    /// assert_eq!(ray.start()[1] + ray.moved(), 1e6);
+    /// assert_eq!(ray.start()[1] + ray.start_t(), 1e6);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn start(&self) -> [N; 3] {
@@ -228,8 +244,8 @@ impl<N: Arithmetic> Ray<N> {
     }
 
     /// The t of [`start`](Self::start), as the caller counts it.
-    pub fn moved(&self) -> N::Wide {
-        self.moved
+    pub fn start_t(&self) -> N::Wide {
+        self.start_t
     }
 
     /// The interval that counts, from [`start`](Self::start).
@@ -239,39 +255,41 @@ impl<N: Arithmetic> Ray<N> {
 
     /// The interval as the caller gave it, counted from the origin: it can begin before [`start`](Self::start). It counts
     /// for shapes without bounds, and is empty in builds without them.
-    pub fn unmoved_interval(&self) -> [N::Wide; 2] {
+    pub fn given_interval(&self) -> [N::Wide; 2] {
         let none = [N::far(1), N::Wide::default()];
-        self.unmoved.first().map_or(none, |ray| ray.interval)
+        self.given.get().map_or(none, |ray| ray.interval)
     }
 
     /// A place on the ray, and its t as the caller counts it: the ray's [`start`](Self::start), or its origin where
     /// it passes the scene so far away that it has no start.
-    pub fn base(&self) -> ([N::Wide; 3], N::Wide) {
-        let start = self.start_place();
-        self.unmoved.first().map_or(start, |ray| ray.base(start))
+    pub fn reference_point(&self) -> ([N::Wide; 3], N::Wide) {
+        let start = self.start_point();
+        self.given
+            .get()
+            .map_or(start, |ray| ray.reference_point(start))
     }
 
     /// Whether the start is a place on the ray.
     fn holds_start(&self) -> bool {
-        self.unmoved.first().is_none_or(|ray| ray.holds_start)
+        self.given.get().is_none_or(|ray| ray.holds_start)
     }
 
-    fn start_place(&self) -> Place<N> {
-        (self.origin.map(N::widen), self.moved)
+    fn start_point(&self) -> RayPoint<N> {
+        (self.origin.map(N::widen), self.start_t)
     }
 
     /// Where the ray crosses a surface without bounds, given how far from a place on the ray that is.
     pub(crate) fn meet_far(
         &self,
         cross: impl Fn([N::Wide; 3]) -> Option<N::Wide>,
-    ) -> Option<FarPlace<N>> {
-        self.unmoved.first()?.meet(self.start_place(), cross)
+    ) -> Option<FarPoint<N>> {
+        self.given.get()?.meet(self.start_point(), cross)
     }
 
     /// The place at a `t` that is counted from the origin, which can lie anywhere.
-    pub(crate) fn far_place(&self, t: N::Wide) -> Option<[N::Wide; 3]> {
-        let place = self.unmoved.first()?.place(self.start_place(), t);
-        Some(place.coordinates(self.slope))
+    pub(crate) fn far_point(&self, t: N::Wide) -> Option<[N::Wide; 3]> {
+        let point = self.given.get()?.point(self.start_point(), t);
+        Some(point.coordinates(self.slope))
     }
 
     /// A query along this ray, as events report it.
@@ -279,7 +297,7 @@ impl<N: Arithmetic> Ray<N> {
         Event::Query {
             origin: self.origin.map(N::length_to_f64),
             slope: self.slope.map(N::ratio_to_f64),
-            moved: N::far_to_f64(self.moved),
+            start_t: N::far_to_f64(self.start_t),
             interval: [self.tmin, self.tmax].map(N::length_to_f64),
             any,
         }
@@ -290,16 +308,17 @@ impl<N: Arithmetic> Ray<N> {
     pub(crate) fn until(&self, t: N::Wide) -> Self {
         let tmax = self
             .tmax
-            .min(end_after::<N>(t, self.moved).min(N::FAR.half()));
+            .min(end_after::<N>(t, self.start_t).min(N::FAR.half()));
         Self { tmax, ..*self }
     }
 
-    /// The point at a parameter that is counted inside the kernels.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    pub(crate) fn at(&self, t: N) -> [N; 3] {
-        let along = |axis: usize| self.origin[axis] + t * self.slope[axis];
-        [along(0), along(1), along(2)]
-    }
+    inline_unless_small!(
+        /// The point at a parameter that is counted inside the kernels.
+        pub(crate) fn at(&self, t: N) -> [N; 3] {
+            let along = |axis: usize| self.origin[axis] + t * self.slope[axis];
+            [along(0), along(1), along(2)]
+        }
+    );
 }
 
 #[cfg(test)]

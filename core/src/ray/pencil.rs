@@ -5,10 +5,10 @@ use crate::format::record::UnitBox;
 use crate::number::Arithmetic;
 use crate::ray::Ray;
 use crate::ray::error::RayError;
+use crate::ray::given::given;
 use crate::ray::start::{
-    check_origin, far_start, far_start_along, is_near, near_start, way_to_box,
+    check_origin, distance_to_box, far_start, far_start_along, is_near, near_start,
 };
-use crate::ray::unmoved::unmoved;
 
 /// All rays without end from one point: what they share is computed once.
 ///
@@ -24,7 +24,7 @@ enum Origin<N: Arithmetic> {
     Near {
         origin: [N; 3],
         /// How far rays are moved to the box: `[axis][0 down it, 1 up it]`.
-        moved: [[N; 2]; 3],
+        start_t: [[N; 2]; 3],
     },
     Far {
         origin: [N::Wide; 3],
@@ -57,18 +57,22 @@ impl<N: Arithmetic> Pencil<N> {
     /// The rays from a point that is no farther than [`FARTHEST`](crate::format::limits::FARTHEST).
     pub(crate) fn of(bounds: &UnitBox, origin: [N::Wide; 3]) -> Self {
         let zero = N::Wide::default();
-        let moved = [0, 1, 2].map(|axis| {
-            [false, true]
-                .map(|forward| way_to_box::<N>(bounds, pick(origin, axis), (axis, forward), zero))
+        let start_t = [0, 1, 2].map(|axis| {
+            [false, true].map(|forward| {
+                distance_to_box::<N>(bounds, pick(origin, axis), (axis, forward), zero)
+            })
         });
-        let single = (origin.map(N::narrow), moved.map(|ways| ways.map(N::narrow)));
+        let single = (
+            origin.map(N::narrow),
+            start_t.map(|ways| ways.map(N::narrow)),
+        );
         let near = |axis: usize| {
             let [down, up] = pick(single.1, axis);
             is_near(single.0, axis, down) && is_near(single.0, axis, up)
         };
         Self(if near(0) && near(1) && near(2) {
-            let (origin, moved) = single;
-            Origin::Near { origin, moved }
+            let (origin, start_t) = single;
+            Origin::Near { origin, start_t }
         } else {
             Origin::Far {
                 origin,
@@ -97,8 +101,8 @@ impl<N: Arithmetic> Pencil<N> {
     #[inline(always)]
     pub fn ray(&self, direction: [N::Wide; 3]) -> Result<Ray<N>, RayError> {
         let (slope, major) = N::slopes(direction).ok_or(RayError::Direction)?;
-        let toward = |bounds: &UnitBox, origin: &[N::Wide; 3], moved: N::Wide| {
-            far_start::<N, false>(bounds, *origin, direction, (slope, major), moved)
+        let toward = |bounds: &UnitBox, origin: &[N::Wide; 3], start_t: N::Wide| {
+            far_start::<N, false>(bounds, *origin, direction, (slope, major), start_t)
         };
         Ok(self.ray_from(slope, major, toward))
     }
@@ -106,8 +110,8 @@ impl<N: Arithmetic> Pencil<N> {
     /// The ray along slopes, given with their major axis.
     #[inline(always)]
     pub(crate) fn ray_along(&self, slope: [N; 3], major: usize) -> Ray<N> {
-        let along = |bounds: &UnitBox, origin: &[N::Wide; 3], moved: N::Wide| {
-            far_start_along(bounds, *origin, (slope, major), moved)
+        let along = |bounds: &UnitBox, origin: &[N::Wide; 3], start_t: N::Wide| {
+            far_start_along(bounds, *origin, (slope, major), start_t)
         };
         self.ray_from(slope, major, along)
     }
@@ -122,15 +126,16 @@ impl<N: Arithmetic> Pencil<N> {
     ) -> Ray<N> {
         let forward = pick(slope, major) > N::ZERO;
         let zero = N::Wide::default();
-        let (start, moved, within) = match &self.0 {
-            Origin::Near { origin, moved } => {
-                let [down, up] = pick(*moved, major);
-                let moved = if forward { up } else { down };
-                (near_start(*origin, moved, slope), moved.widen(), true)
+        let (start, start_t, within) = match &self.0 {
+            Origin::Near { origin, start_t } => {
+                let [down, up] = pick(*start_t, major);
+                let start_t = if forward { up } else { down };
+                (near_start(*origin, start_t, slope), start_t.widen(), true)
             }
             Origin::Far { origin, bounds } => {
-                let moved = way_to_box::<N>(bounds, pick(*origin, major), (major, forward), zero);
-                far(bounds, origin, moved)
+                let start_t =
+                    distance_to_box::<N>(bounds, pick(*origin, major), (major, forward), zero);
+                far(bounds, origin, start_t)
             }
         };
         let origin = || match &self.0 {
@@ -141,10 +146,10 @@ impl<N: Arithmetic> Pencil<N> {
             origin: start,
             slope,
             major,
-            moved,
+            start_t,
             tmin: N::ZERO,
             tmax: if within { N::FAR } else { -N::ONE },
-            unmoved: unmoved(origin, [zero, N::far(i64::MAX)], within),
+            given: given(origin, [zero, N::far(i64::MAX)], within),
         }
     }
 }

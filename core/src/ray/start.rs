@@ -5,54 +5,55 @@ use crate::format::limits::FARTHEST;
 use crate::format::record::UnitBox;
 use crate::number::{Arithmetic, Format};
 use crate::ray::error::RayError;
-use crate::target::SMALL;
+use crate::target::{SMALL, inline_unless_small};
 use core::cmp::Ordering;
 
-/// How far rays are moved that run up or down one axis, from a coordinate on it: to the plane in which the scene's
-/// box begins, or towards it for hits behind the point.
-#[cfg_attr(not(feature = "small"), inline(always))]
-pub(super) fn way_to_box<N: Arithmetic>(
-    bounds: &UnitBox,
-    origin: N::Wide,
-    (axis, forward): (usize, bool),
-    tmin: N::Wide,
-) -> N::Wide {
-    let zero = N::Wide::default();
-    let [first, last] = pick(bounds.0, axis);
-    // Of what is too far away it may be anything.
-    let to_box = if forward {
-        N::difference(N::from_unit(first).widen(), origin)
-    } else {
-        N::difference(origin, N::from_unit(last).widen())
-    };
-    if to_box > zero {
-        to_box
-    } else if tmin < zero {
-        if tmin > to_box { tmin } else { to_box }
-    } else {
-        zero
+inline_unless_small!(
+    /// How far rays are moved that run up or down one axis, from a coordinate on it: to the plane in which the scene's
+    /// box begins, or towards it for hits behind the point.
+    pub(super) fn distance_to_box<N: Arithmetic>(
+        bounds: &UnitBox,
+        origin: N::Wide,
+        (axis, forward): (usize, bool),
+        tmin: N::Wide,
+    ) -> N::Wide {
+        let zero = N::Wide::default();
+        let [first, last] = pick(bounds.0, axis);
+        // Of what is too far away it may be anything.
+        let to_box = if forward {
+            N::difference(N::from_unit(first).widen(), origin)
+        } else {
+            N::difference(origin, N::from_unit(last).widen())
+        };
+        if to_box > zero {
+            to_box
+        } else if tmin < zero {
+            if tmin > to_box { tmin } else { to_box }
+        } else {
+            zero
+        }
     }
-}
+);
 
 /// An interval counted from where a ray was moved to.
 #[inline(always)]
-pub(super) fn interval<N: Arithmetic>(tmin: N::Wide, tmax: N::Wide, moved: N::Wide) -> [N; 2] {
-    let tmin = if tmin > moved {
-        N::excess(tmin, moved)
+pub(super) fn interval<N: Arithmetic>(tmin: N::Wide, tmax: N::Wide, start_t: N::Wide) -> [N; 2] {
+    let tmin = if tmin > start_t {
+        N::difference_as_length(tmin, start_t)
     } else {
         N::ZERO
     };
-    [tmin, end_after(tmax, moved)]
+    [tmin, end_after(tmax, start_t)]
 }
 
 /// The end of an interval, counted likewise.
 #[inline(always)]
-pub(super) fn end_after<N: Arithmetic>(tmax: N::Wide, moved: N::Wide) -> N {
+pub(super) fn end_after<N: Arithmetic>(tmax: N::Wide, start_t: N::Wide) -> N {
     // An interval that ends before it starts holds no hit.
-    if tmax < moved {
+    if tmax < start_t {
         -N::ONE
     } else {
-        N::excess(tmax, moved)
+        N::difference_as_length(tmax, start_t)
     }
 }
 
@@ -64,59 +65,60 @@ const REACH: i64 = (3 * i16::MAX as i64) << 13;
 /// Whether every ray that is moved so far along its major axis starts within [`REACH`]: slopes are at
 /// most 1, and along its major axis a ray moves to the box. Never for numbers that are saturated.
 #[inline(always)]
-pub(super) fn is_near<N: Arithmetic>(origin: [N; 3], major: usize, moved: N) -> bool {
-    let (reach, moved) = (N::narrow(N::far(REACH)), moved.abs());
+pub(super) fn is_near<N: Arithmetic>(origin: [N; 3], major: usize, start_t: N) -> bool {
+    let (reach, start_t) = (N::narrow(N::far(REACH)), start_t.abs());
     let within = |axis: usize| {
         let reach = if axis == major {
-            reach + moved
+            reach + start_t
         } else {
-            reach - moved
+            reach - start_t
         };
         origin[axis].abs() < reach
     };
     // What is taken for far comes out the same, and needs less code. Twice the reach is a number; more
     // need not be.
-    !SMALL && moved < reach && within(0) && within(1) && within(2)
+    !SMALL && start_t < reach && within(0) && within(1) && within(2)
 }
 
 /// Where a ray starts that is moved from an origin [near](is_near) the scene.
 #[inline(always)]
-pub(super) fn near_start<N: Arithmetic>(origin: [N; 3], moved: N, slope: [N; 3]) -> [N; 3] {
-    let start = |axis: usize| N::flush_tiny(origin[axis] + moved * slope[axis]);
+pub(super) fn near_start<N: Arithmetic>(origin: [N; 3], start_t: N, slope: [N; 3]) -> [N; 3] {
+    let start = |axis: usize| N::flush_tiny(origin[axis] + start_t * slope[axis]);
     [start(0), start(1), start(2)]
 }
 
-/// Where a ray starts that is moved from an origin anywhere, how far that is, and whether it lies within
-/// [`REACH`]: else it meets nothing. `EXACT` says that slopes and lengths are not rounded.
-#[cfg_attr(not(feature = "small"), inline(always))]
-pub(super) fn far_start<N: Arithmetic, const EXACT: bool>(
-    bounds: &UnitBox,
-    origin: [N::Wide; 3],
-    direction: [N::Wide; 3],
-    (slope, major): ([N; 3], usize),
-    moved: N::Wide,
-) -> ([N; 3], N::Wide, bool) {
-    let reach = N::narrow(N::far(REACH));
-    let (start, moved) = if EXACT || N::narrow(moved).abs() < reach {
-        let start = |axis: usize| far_coordinate(origin[axis], moved, slope[axis]);
-        ([start(0), start(1), start(2)], moved)
-    } else {
-        // Rounded slopes and lengths would lose the ray's place.
-        let [first, last] = pick(bounds.0, major);
-        let forward = pick(slope, major) > N::ZERO;
-        let plane = N::from_unit(if forward { first } else { last });
-        let (from, stride) = (pick(origin, major), pick(direction, major));
-        let start = |axis: usize| N::carry(origin[axis], from, plane, direction[axis], stride);
-        let depth = plane.widen() - from;
-        let moved = if forward { depth } else { -depth };
-        ([start(0), start(1), start(2)], moved)
-    };
-    if start.iter().all(|x| x.abs() <= reach) {
-        (start, moved, true)
-    } else {
-        ([N::ZERO; 3], moved, false)
+inline_unless_small!(
+    /// Where a ray starts that is moved from an origin anywhere, how far that is, and whether it lies within
+    /// [`REACH`]: else it meets nothing. `EXACT` says that slopes and lengths are not rounded.
+    pub(super) fn far_start<N: Arithmetic, const EXACT: bool>(
+        bounds: &UnitBox,
+        origin: [N::Wide; 3],
+        direction: [N::Wide; 3],
+        (slope, major): ([N; 3], usize),
+        start_t: N::Wide,
+    ) -> ([N; 3], N::Wide, bool) {
+        let reach = N::narrow(N::far(REACH));
+        let (start, start_t) = if EXACT || N::narrow(start_t).abs() < reach {
+            let start = |axis: usize| far_coordinate(origin[axis], start_t, slope[axis]);
+            ([start(0), start(1), start(2)], start_t)
+        } else {
+            // Rounded slopes and lengths would lose the ray's place.
+            let [first, last] = pick(bounds.0, major);
+            let forward = pick(slope, major) > N::ZERO;
+            let plane = N::from_unit(if forward { first } else { last });
+            let (from, stride) = (pick(origin, major), pick(direction, major));
+            let start = |axis: usize| N::carry(origin[axis], from, plane, direction[axis], stride);
+            let depth = plane.widen() - from;
+            let start_t = if forward { depth } else { -depth };
+            ([start(0), start(1), start(2)], start_t)
+        };
+        if start.iter().all(|x| x.abs() <= reach) {
+            (start, start_t, true)
+        } else {
+            ([N::ZERO; 3], start_t, false)
+        }
     }
-}
+);
 
 /// [`far_start`] of a ray that is to run along its slopes as they are.
 #[inline(always)]
@@ -124,21 +126,21 @@ pub(super) fn far_start_along<N: Arithmetic>(
     bounds: &UnitBox,
     origin: [N::Wide; 3],
     (slope, major): ([N; 3], usize),
-    moved: N::Wide,
+    start_t: N::Wide,
 ) -> ([N; 3], N::Wide, bool) {
     let direction = slope.map(N::widen);
     if N::FORMAT == Format::Fixed {
-        far_start::<N, true>(bounds, origin, direction, (slope, major), moved)
+        far_start::<N, true>(bounds, origin, direction, (slope, major), start_t)
     } else {
-        far_start::<N, false>(bounds, origin, direction, (slope, major), moved)
+        far_start::<N, false>(bounds, origin, direction, (slope, major), start_t)
     }
 }
 
 /// One coordinate of a start, in a register: through memory all three would burden near rays too.
 #[cold]
 #[inline(never)]
-fn far_coordinate<N: Arithmetic>(origin: N::Wide, moved: N::Wide, slope: N) -> N {
-    N::flush_tiny(N::narrow(origin + N::wide_scale(moved, slope)))
+fn far_coordinate<N: Arithmetic>(origin: N::Wide, start_t: N::Wide, slope: N) -> N {
+    N::flush_tiny(N::narrow(origin + N::wide_scale(start_t, slope)))
 }
 
 /// An error unless every coordinate of an origin is a number of at most [`FARTHEST`].

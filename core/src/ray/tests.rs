@@ -42,12 +42,12 @@ fn same_start<N: Arithmetic>(origin: [f64; 3], direction: [f64; 3], tmin: f64) {
     };
     let forward = pick(slope, major) > N::ZERO;
     let tmin = N::far_from_f64(tmin);
-    let moved = way_to_box::<N>(&bounds, pick(origin, major), (major, forward), tmin);
-    let single = (origin.map(N::narrow), N::narrow(moved));
+    let start_t = distance_to_box::<N>(&bounds, pick(origin, major), (major, forward), tmin);
+    let single = (origin.map(N::narrow), N::narrow(start_t));
     if is_near(single.0, major, single.1) {
         let near = near_start(single.0, single.1, slope);
-        let far = far_start::<N, false>(&bounds, origin, direction, (slope, major), moved);
-        assert_eq!((near, moved, true), far);
+        let far = far_start::<N, false>(&bounds, origin, direction, (slope, major), start_t);
+        assert_eq!((near, start_t, true), far);
     }
 }
 

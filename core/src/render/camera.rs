@@ -30,11 +30,11 @@ pub(crate) fn resolves<N: Number>(view: &View, height: u16) -> bool {
 pub(crate) struct Camera<N: Number> {
     eye: Pencil<N>,
     forward: [N::Wide; 3],
-    /// What half a subpixel to the right adds.
+    /// The change over half a subpixel to the right.
     right: [N::Wide; 3],
-    /// What half a subpixel upwards adds.
+    /// The change over half a subpixel upwards.
     up: [N::Wide; 3],
-    /// Of the picture, in subpixels.
+    /// The picture's width in subpixels.
     width: i32,
     height: i32,
 }

@@ -99,7 +99,7 @@ impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> Cursor<'r, 's, 'a, N, 
 }
 
 impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFFECTS> {
-    /// The same rectangle, rendered a few rays at a time: see [`Cursor`].
+    /// Starts to render a rectangle a few rays at a time: see [`Cursor`].
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -128,10 +128,11 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     }
 }
 
-/// What the documentation promises; a board is where it matters.
+/// The size that the documentation states, on boards.
 #[cfg(target_pointer_width = "32")]
 const _: () = {
-    use crate::{Fixed, List};
+    use crate::Fixed;
+    use crate::accel::list::List;
     assert!(size_of::<Cursor<'_, '_, '_, f32, List, 0>>() <= 60);
     assert!(size_of::<Cursor<'_, '_, '_, Fixed, List, 0>>() <= 60);
     assert!(size_of::<Cursor<'_, '_, '_, f64, List, 0>>() <= 88);

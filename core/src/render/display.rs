@@ -63,6 +63,43 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
     /// buffer; what lies outside of the picture or of the display is not traced. To draw
     /// elsewhere, give a translated display.
     ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use embedded_graphics_core::Pixel;
+    /// use embedded_graphics_core::pixelcolor::Rgb565;
+    /// use embedded_graphics_core::prelude::{DrawTarget, OriginDimensions, Size};
+    /// use gridel_core::{NoCount, Renderer, Scene, Workspace};
+    ///
+    /// /// Counts pixels in place of showing them.
+    /// struct Display(usize);
+    ///
+    /// impl OriginDimensions for Display {
+    ///     fn size(&self) -> Size {
+    ///         Size::new(16, 8)
+    ///     }
+    /// }
+    ///
+    /// impl DrawTarget for Display {
+    ///     type Color = Rgb565;
+    ///     type Error = core::convert::Infallible;
+    ///
+    ///     fn draw_iter<I: IntoIterator<Item = Pixel<Rgb565>>>(&mut self, pixels: I) -> Result<(), Self::Error> {
+    ///         self.0 += pixels.into_iter().count();
+    ///         Ok(())
+    ///     }
+    /// }
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let renderer = Renderer::new(&scene)?;
+    /// let mut space = Workspace::for_any_scene();
+    /// let mut display = Display(0);
+    /// let whole = embedded_graphics_core::primitives::Rectangle::new(Default::default(), display.size());
+    /// renderer.draw(&whole, &mut display, &mut space.as_view(), &mut NoCount)?;
+    /// assert_eq!(display.0, 16 * 8);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// Those of the display.
     pub fn draw<D, C>(

@@ -2,7 +2,7 @@
 //!
 //! All in integers, so that every number format shares it.
 
-/// Linear radiance with 16 bits a channel: 65535 is display white.
+/// Linear radiance with 16 bits per channel: 65535 is display white.
 pub(crate) type Linear = [u16; 3];
 
 /// A pixel in a display's own form.
@@ -20,7 +20,7 @@ pub trait Pixel: Copy + Default {
     fn encode(linear: [u16; 3], dither: Option<[u16; 2]>) -> Self;
 }
 
-/// Eight bits a channel: red, green, blue.
+/// Eight bits per channel: red, green, blue.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(transparent)]
 pub struct Rgb888(pub [u8; 3]);
@@ -164,7 +164,7 @@ mod tests {
         assert_eq!(Rgb565::encode([0; 3], None).0, 0);
     }
 
-    /// What is a display value reaches the display as it is.
+    /// A display value reaches the display unchanged.
     #[test]
     fn display_values_come_out_as_they_went_in() {
         for code in 0..=255_u16 {

@@ -70,7 +70,7 @@ pub enum RenderError {
     Depth(u8),
     /// The blob does not hold the structure.
     Structure(Structure),
-    /// The scene calls for effects that the renderer was not compiled for.
+    /// The scene requires effects that the renderer was not compiled for.
     Effects(Effects),
     /// The pixels are too narrow for the number format to tell their directions apart. (Code of the
     /// feature `small` is without this check.)
@@ -97,7 +97,7 @@ impl fmt::Display for RenderError {
             RenderError::Samples(samples) => {
                 write!(
                     f,
-                    "{samples} samples a pixel are not possible: ask for 1 to {MAX_SAMPLES}"
+                    "{samples} samples per pixel are not possible: ask for 1 to {MAX_SAMPLES}"
                 )
             }
             RenderError::Depth(depth) => {
@@ -113,7 +113,7 @@ impl fmt::Display for RenderError {
             ),
             RenderError::Effects(effects) => write!(
                 f,
-                "the scene calls for the effects {effects}, which the renderer's type leaves out"
+                "the scene requires the effects {effects}, which the renderer's type leaves out"
             ),
             RenderError::Resolution(format) => write!(
                 f,
@@ -168,7 +168,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     /// ```
     ///
     /// # Errors
-    /// If a setting is out of its range, the blob lacks the structure, the scene calls for an effect that
+    /// If a setting is out of its range, the blob lacks the structure, the scene requires an effect that
     /// is not in `EFFECTS`, or the number format cannot tell the pixels' directions apart.
     pub fn with_settings(scene: &'s Scene<'a>, settings: Settings) -> Result<Self, RenderError> {
         let Settings {

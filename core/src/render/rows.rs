@@ -66,7 +66,7 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
         while !tracing.step::<N, A, C, EFFECTS>(0, camera, &mut radiance, space, count) {}
         let seen = radiance.displayable();
         if C::ENABLED {
-            count.event(Event::Seen {
+            count.event(Event::SampleFinished {
                 place: None,
                 radiance: seen.to_f64(),
             });

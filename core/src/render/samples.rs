@@ -12,9 +12,9 @@ use core::hint::black_box;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Samples<N: Number> {
     index: u16,
-    /// Of the samples before this one.
+    /// The sum of the samples before this one.
     sum: Color<N>,
-    /// What this sample's rays have brought.
+    /// The radiance of this sample so far.
     radiance: Color<N>,
 }
 
@@ -52,7 +52,7 @@ impl<N: Number> Samples<N> {
         let seen = self.radiance.displayable();
         self.sum = self.sum.plus_displayable(seen);
         if C::ENABLED {
-            count.event(Event::Seen {
+            count.event(Event::SampleFinished {
                 place: Some(place([x, y], self.index, samples)),
                 radiance: seen.to_f64(),
             });

@@ -7,7 +7,7 @@
 //! Secondary rays start beside the surface, on the side to which they go, at the distance of the
 //! hit's own error bound (see [`Hit::error`]): close enough to lose no contact, and too far to meet
 //! the surface again.
-//! What goes on inside of a solid starts beneath all of its faces (see [`Hit::inside`]).
+//! A ray that goes on inside of a solid starts beneath all of its faces (see [`Hit::inside`]).
 //!
 //! Everything is compiled for a set of effects: what is not in it costs neither code nor time. The loop
 //! names no effect; it calls their list at the places that `shade` lists.
@@ -26,7 +26,7 @@ use crate::shade::{All, Color};
 use core::marker::PhantomData;
 use heapless::{Vec, VecView};
 
-/// What effects add to a ray's state.
+/// The state that effects add to a ray.
 type State<N> = <All as EffectList>::State<N>;
 
 /// A ray that waits for its turn.
@@ -44,7 +44,7 @@ pub(super) struct Pending<N: Number> {
 /// for every pixel.
 ///
 /// `STACK` must be at least the blob's [stack depth](Scene::stack_depth), `WORK` at least
-/// [`work_depth`](crate::format::limits::work_depth) of the ray depth. It takes 12 bytes an entry of the stack and, in `f32` and
+/// [`work_depth`](crate::format::limits::work_depth) of the ray depth. It takes 12 bytes per entry of the stack and, in `f32` and
 /// `fixed`, 40 bytes a place for a ray.
 #[derive(Debug)]
 pub struct Workspace<N: Number, const STACK: usize, const WORK: usize> {
@@ -91,7 +91,7 @@ pub struct WorkspaceView<'w, N: Number> {
     pub(super) work: &'w mut VecView<Pending<N>>,
 }
 
-/// What the ray loop needs of the scene and the renderer.
+/// The parts of the scene and the renderer that the ray loop uses.
 pub(super) struct Loop<'s, 'a> {
     pub(super) scene: &'s Scene<'a>,
     pub(super) depth: u8,
@@ -131,7 +131,7 @@ impl Loop<'_, '_> {
         };
         // A sample without a direction adds no light.
         if C::ENABLED {
-            tracing.count.event(Event::Taken {
+            tracing.count.event(Event::RayStarted {
                 kind,
                 depth: tracing.depth,
                 weight: weight.ratios_to_f64(),
@@ -182,7 +182,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         };
         let called = All::called_by_material(material);
         All::arrive::<EFFECTS, N, _>(self, &mut state, ray, &hit, material, &mut weight);
-        let normal = if hit.front {
+        let shading_normal = if hit.front {
             hit.normal
         } else {
             hit.normal.map(|x| -x)
@@ -196,7 +196,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             hit: &hit,
             material,
             called,
-            normal,
+            shading_normal,
             direction,
             diffuse: Color::ratios(material.diffuse),
             weight,
@@ -224,12 +224,13 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             return;
         }
         let mut bounce = Bounce {
-            cos_in: -N::from_wide(N::dot(direction, normal)),
+            cos_in: -N::from_wide(N::dot(direction, surface.shading_normal)),
             mirrored: None,
         };
         All::bounce::<EFFECTS, N, _>(self, &mut state, &surface, &mut bounce);
         if let Some(mirrored) = bounce.mirrored {
             // Half the mirrored direction; its length does not matter.
+            let normal = surface.shading_normal;
             let axis = |k: usize| direction[k].half() + bounce.cos_in * normal[k];
             let secondary = Secondary {
                 kind: RayKind::Reflected,
@@ -258,7 +259,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         }
     }
 
-    /// What a light adds to a surface that it reaches.
+    /// The radiance that a light adds to a surface that it reaches.
     #[inline(always)]
     fn lit(&mut self, number: u32, light: &Light, surface: &Surface<'_, N>) -> Color<N> {
         let mut state = self.state;
@@ -268,7 +269,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             return Color::BLACK;
         };
         let (to_light, _) = N::normalize(slopes);
-        let cos = N::from_wide(N::dot(surface.normal, to_light));
+        let cos = N::from_wide(N::dot(surface.shading_normal, to_light));
         if C::ENABLED {
             self.count.event(Event::Light {
                 number,

@@ -5,7 +5,7 @@ use crate::format::record::{Header, Light, Material, UnitBox, View};
 use crate::format::{Effects, Indices, Kind, Structure};
 use crate::geometry::{Geometry, PrimitiveId};
 use crate::simd::SimdLevel;
-use crate::target::InWide;
+use crate::target::{WideOnly, inline_on_hosts_hint_on_boards};
 
 /// A checked view of a blob: a few hundred bytes that borrow from it.
 ///
@@ -87,7 +87,7 @@ impl<'a> Scene<'a> {
         self.space.bounds()
     }
 
-    /// The effects that the scene calls for.
+    /// The effects that the scene requires.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -122,33 +122,11 @@ impl<'a> Scene<'a> {
         self.space.holds(structure)
     }
 
-    /// The scene with a structure chosen for [`DynAccel`](crate::accel::DynAccel) to walk, in place of the
-    /// fastest one; `None` if the blob does not hold it.
-    ///
-    /// ```
-    /// # static BLOB: &[u8] =
-    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
-    /// use gridel_core::Structure;
-    ///
-    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
-    /// assert!(scene.choose(Structure::List).is_some());
-    /// assert!(scene.choose(Structure::Grid).is_none());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[cfg(feature = "all-structures")]
-    pub fn choose(&self, structure: Structure) -> Option<Self> {
-        self.holds(structure).then(|| {
-            let mut scene = *self;
-            scene.space.chosen = structure;
-            scene
-        })
-    }
-
     /// Returns the scene with queries through [`Wide`](crate::Wide) at a level of instructions. The
     /// default is portable. Has no effect in a build without the feature `wide`.
     pub fn with_simd(self, simd: SimdLevel) -> Self {
         let mut scene = self;
-        scene.space.simd = InWide::new(|| simd);
+        scene.space.simd = WideOnly::new(|| simd);
         scene
     }
 
@@ -200,31 +178,31 @@ impl<'a> Scene<'a> {
         self.primitive_at(self.space.shapes.place(kind, slot))
     }
 
-    /// The number, in scene-file order, of a primitive that lies somewhere.
-    #[cfg_attr(feature = "wide", inline(always))]
-    #[cfg_attr(not(feature = "wide"), inline)]
-    pub(crate) fn primitive_at(&self, place: PrimitiveId) -> u32 {
-        self.key(place).0
-    }
-
-    /// What decides between hits at the same t: the primitive's number, and between pieces of one
-    /// primitive, kind and slot; so answers do not depend on the structure either.
-    #[cfg_attr(feature = "wide", inline(always))]
-    #[cfg_attr(not(feature = "wide"), inline)]
-    pub(crate) fn key(&self, place: PrimitiveId) -> (u32, u8, u32) {
-        let PrimitiveId { kind, number, .. } = place;
-        let Some(lane) = place.lane() else {
-            return (self.in_slot(kind, number), kind as u8, number);
-        };
-        let clusters = self.space.shapes.clusters();
-        if kind == Kind::Triangle {
-            let members = clusters.strips.members(number);
-            let member = members.map_or(0, |members| members.member(lane));
-            self.member(kind, member, 0)
-        } else {
-            self.member(kind, number << 3 | lane, clusters.triangles())
+    inline_on_hosts_hint_on_boards!(
+        /// The number, in scene-file order, of a primitive that lies somewhere.
+        pub(crate) fn primitive_at(&self, place: PrimitiveId) -> u32 {
+            self.key(place).0
         }
-    }
+    );
+
+    inline_on_hosts_hint_on_boards!(
+        /// The order of hits at the same t: by the primitive's number, and between pieces of one primitive by
+        /// kind and slot. So answers do not depend on the structure.
+        pub(crate) fn key(&self, place: PrimitiveId) -> (u32, u8, u32) {
+            let PrimitiveId { kind, number, .. } = place;
+            let Some(lane) = place.lane() else {
+                return (self.in_slot(kind, number), kind as u8, number);
+            };
+            let clusters = self.space.shapes.clusters();
+            if kind == Kind::Triangle {
+                let members = clusters.strips.members(number);
+                let member = members.map_or(0, |members| members.member(lane));
+                self.member(kind, member, 0)
+            } else {
+                self.member(kind, number << 3 | lane, clusters.triangles())
+            }
+        }
+    );
 
     /// The key of a member of a cluster, by its number among those of its kind and the number of
     /// members before them.
@@ -232,7 +210,7 @@ impl<'a> Scene<'a> {
     fn member(&self, kind: Kind, number: u32, before: usize) -> (u32, u8, u32) {
         let clusters = self.space.shapes.clusters();
         let member = clusters.members.get(before + number as usize).unwrap_or(0);
-        if clusters.homes.is_empty() {
+        if clusters.locations.is_empty() {
             (member, kind as u8, number)
         } else {
             (self.in_slot(kind, member), kind as u8, member)

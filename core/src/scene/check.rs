@@ -82,7 +82,7 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
         at.ensure(uncalled == Effects::NONE, Reason::MissingEffect)?;
         called = called.with(material.effects());
     }
-    // Without objects lights call for nothing.
+    // Without objects lights require nothing.
     if header.objects > 0 {
         let lights = scene.lights.iter();
         called = lights.fold(called, |called, light| called.with(light.effects()));

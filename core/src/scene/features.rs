@@ -5,7 +5,7 @@ use crate::geometry::triangle::Triangles;
 use crate::scene::Scene;
 
 impl Scene<'_> {
-    /// The Cargo features of this crate that the scene calls for, beside that of its structure:
+    /// The Cargo features of this crate that the scene requires, beside that of its structure:
     /// the kinds of its primitives, how they are stored, whether its colours are display values, and its effects.
     ///
     /// ```

@@ -31,7 +31,7 @@ impl<'a> Scene<'a> {
     /// ```
     ///
     /// # Errors
-    /// If anything of this fails to hold, or the scene calls for an effect, or holds a kind of
+    /// If anything of this fails to hold, or the scene requires an effect, or holds a kind of
     /// primitive, that this build was compiled without. Shortcomings of the scene itself (no lights, no objects) are no errors.
     pub fn from_bytes(blob: &'a [u8]) -> Result<Self, BlobError> {
         let header = read::header(blob)?;
@@ -59,7 +59,7 @@ impl<'a> Scene<'a> {
     ///
     /// # Errors
     /// If the slice is not aligned, or the header, the section table or the view is not as it must
-    /// be, or this build lacks what the scene calls for.
+    /// be, or this build lacks what the scene requires.
     pub fn prevalidated(blob: Prevalidated<'a>) -> Result<Self, BlobError> {
         let header = read::header(blob.blob)?;
         let sections = Sections::read(blob.blob, header.section_count)?;

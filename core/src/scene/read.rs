@@ -1,4 +1,4 @@
-//! What loading does in constant time: the header, the table, the view, and where everything lies.
+//! The part of loading that takes constant time: it reads the header, the table, the view, and where everything lies.
 
 use crate::accel::StructureViews;
 use crate::accel::space::Space;
@@ -14,7 +14,7 @@ use crate::format::{
 use crate::geometry::Shapes;
 use crate::scene::Scene;
 use crate::simd::SimdLevel;
-use crate::target::InWide;
+use crate::target::{AllStructuresOnly, WideOnly};
 use core::mem::size_of;
 
 /// Largest magnitude of a far coordinate, so that sums and products with ratios stay in 64 bits.
@@ -70,9 +70,8 @@ pub(crate) fn scene<'a>(
             header,
             shapes,
             leaves: sections.records(SectionKind::Leaves)?,
-            #[cfg(feature = "all-structures")]
-            chosen: Structure::fastest(header.structures),
-            simd: InWide::new(SimdLevel::default),
+            chosen: AllStructuresOnly::new(|| Structure::fastest(header.structures)),
+            simd: WideOnly::new(SimdLevel::default),
         },
         structures: StructureViews::read(sections)?,
         view,
@@ -86,7 +85,7 @@ pub(crate) fn scene<'a>(
     })
 }
 
-/// Proves the ranges of the header's fields, and that this build has what the scene calls for.
+/// Proves the ranges of the header's fields, and that this build has what the scene requires.
 fn check_limits(header: &Header) -> Result<(), BlobError> {
     let header_has = |holds, reason| Location::Header.ensure(holds, reason);
     let unknown = header.effects & !Effects::ALL.0;

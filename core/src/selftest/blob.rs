@@ -1,4 +1,4 @@
-//! `from_bytes` reads what was written and refuses what was damaged.
+//! `from_bytes` reads what was written and rejects what was damaged.
 
 use crate::format::checksum;
 use crate::format::record::Header;
@@ -38,18 +38,18 @@ pub(super) fn reads(checks: &mut Checks<'_>) {
     checks.equal(format_args!("triangle"), scene.triangle(0), Some(corners));
 }
 
-pub(super) fn refuses(checks: &mut Checks<'_>) {
+pub(super) fn rejects(checks: &mut Checks<'_>) {
     let mut blob = TinyBlob::new();
     let length = blob.bytes().len();
     for cut in 0..length {
-        let refused = Scene::from_bytes(&blob.bytes()[..cut]).is_err();
-        checks.equal(format_args!("cut to {cut} bytes, refused"), refused, true);
+        let rejected = Scene::from_bytes(&blob.bytes()[..cut]).is_err();
+        checks.equal(format_args!("cut to {cut} bytes, rejected"), rejected, true);
     }
     for bit in 0..8 * length {
         let flip = |blob: &mut TinyBlob| blob.bytes_mut()[bit / 8] ^= 1 << (bit % 8);
         flip(&mut blob);
-        let refused = Scene::from_bytes(blob.bytes()).is_err();
-        checks.equal(format_args!("bit {bit} flipped, refused"), refused, true);
+        let rejected = Scene::from_bytes(blob.bytes()).is_err();
+        checks.equal(format_args!("bit {bit} flipped, rejected"), rejected, true);
         flip(&mut blob);
     }
     let misaligned = Scene::from_bytes(&blob.bytes()[1..]).err();

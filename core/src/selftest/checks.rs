@@ -4,7 +4,7 @@ use crate::accel::Number;
 use core::ffi::CStr;
 use core::fmt;
 
-/// What the tests want of the machine that runs them.
+/// The machine that runs the tests.
 pub trait Host {
     /// Prints a line.
     fn print(&mut self, line: fmt::Arguments<'_>);

@@ -1,12 +1,13 @@
 //! Every shape is hit where geometry says.
 
 use crate::accel::Number;
+use crate::accel::list::List;
 use crate::observe::count::NoCount;
 use crate::selftest::checks::{Checks, name};
 use crate::selftest::scene::TinyBlob;
-use crate::{Hit, List, Ray, Scene, Stack, any_hit, closest_hit};
+use crate::{Hit, Ray, Scene, Stack, any_hit, closest_hit};
 
-/// What one ray must find.
+/// The expected hit of one ray.
 struct Expected {
     what: &'static str,
     origin: [f64; 3],
@@ -137,14 +138,14 @@ const RATIO: f64 = 1.0 / 65_536.0;
 pub(super) fn every_shape<N: Number>(checks: &mut Checks<'_>) {
     let blob = TinyBlob::new();
     let Ok(scene) = Scene::from_bytes(blob.bytes()) else {
-        return checks.equal(format_args!("the blob"), "refused", "read");
+        return checks.equal(format_args!("the blob"), "rejected", "read");
     };
     let mut stack = Stack::<0>::new();
     for ray in &RAYS {
         let [tmin, tmax] = ray.interval;
         let traced = Ray::<N>::from_f64(scene.bounds(), ray.origin, ray.direction, tmin, tmax);
         let Ok(traced) = traced else {
-            checks.equal(format_args!("ray to the {}", ray.what), "refused", "made");
+            checks.equal(format_args!("ray to the {}", ray.what), "rejected", "made");
             continue;
         };
         let (stack, count) = (stack.as_view(), &mut NoCount);
@@ -158,10 +159,10 @@ pub(super) fn every_shape<N: Number>(checks: &mut Checks<'_>) {
         compare(checks, ray, found);
     }
     let none = [0.0; 3];
-    let refused = Ray::<N>::from_f64(scene.bounds(), none, none, 0.0, 1.0).is_err();
+    let rejected = Ray::<N>::from_f64(scene.bounds(), none, none, 0.0, 1.0).is_err();
     checks.equal(
-        format_args!("a ray without direction is refused"),
-        refused,
+        format_args!("a ray without direction is rejected"),
+        rejected,
         true,
     );
 }

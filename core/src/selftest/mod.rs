@@ -37,7 +37,7 @@ const CASES: [Case; 16] = [
     ("all formats: slopes and unit vectors", numbers::vectors),
     ("all formats: the same bits as everywhere", numbers::bits),
     ("blob: reads what was written", blob::reads),
-    ("blob: refuses every damage", blob::refuses),
+    ("blob: rejects every damage", blob::rejects),
     ("blob: errors teach", blob::explains),
     (
         "fixed: hits of every shape",

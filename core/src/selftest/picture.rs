@@ -1,12 +1,13 @@
 //! Pixels are encoded as the display wants them, and a picture has the same bytes everywhere.
 
 use crate::accel::Number;
+use crate::accel::list::List;
 use crate::format::limits::work_depth;
 use crate::observe::count::NoCount;
 use crate::render::Pixel;
 use crate::selftest::checks::{Checks, FNV_START, hash, name};
 use crate::selftest::scene::TinyBlob;
-use crate::{Effects, Format, List, Renderer, Rgb565, Rgb888, Scene, Settings, Workspace};
+use crate::{Effects, Format, Renderer, Rgb565, Rgb888, Scene, Settings, Workspace};
 
 pub(super) fn encoding(checks: &mut Checks<'_>) {
     // sRGB codes of linear values: IEC 61966-2-1.
@@ -51,12 +52,12 @@ const fn expected(format: Format) -> u32 {
 pub(super) fn matches<N: Number>(checks: &mut Checks<'_>) {
     let blob = TinyBlob::new();
     let Ok(scene) = Scene::from_bytes(blob.bytes()) else {
-        return checks.equal(format_args!("the blob"), "refused", "read");
+        return checks.equal(format_args!("the blob"), "rejected", "read");
     };
     let renderer =
         Renderer::<N, List, { Effects::ALL.0 }>::with_settings(&scene, Settings::of(&scene));
     let Ok(renderer) = renderer else {
-        return checks.equal(format_args!("the renderer"), "refused", "made");
+        return checks.equal(format_args!("the renderer"), "rejected", "made");
     };
     let mut space = Workspace::<N, 0, { work_depth(4) }>::new();
     let mut space = space.as_view();

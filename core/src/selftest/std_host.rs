@@ -1,4 +1,4 @@
-//! What a host with an operating system offers.
+//! A machine with an operating system, as a host of the tests.
 
 use crate::selftest::Host;
 use core::ffi::CStr;

@@ -42,7 +42,7 @@ impl Effect for Checker {
         let parity = (0..3).fold(0, |parity, axis| {
             let origin = length(material.checker_origin[axis]);
             let place = if hit.is_unbounded() {
-                far_place(ray, hit, axis, origin, size)
+                far_point(ray, hit, axis, origin, size)
             } else {
                 hit.point[axis] - origin
             };
@@ -63,9 +63,9 @@ impl Effect for Checker {
 /// reach.
 #[cold]
 #[inline(never)]
-fn far_place<N: Number>(ray: &Ray<N>, hit: &Hit<N>, axis: usize, origin: N, size: N) -> N {
-    let place = ray.far_place(hit.t).unwrap_or(hit.point.map(N::widen));
-    let is_exact = hit.beside() == hit.point && pick(hit.normal, axis) != N::ZERO;
+fn far_point<N: Number>(ray: &Ray<N>, hit: &Hit<N>, axis: usize, origin: N, size: N) -> N {
+    let place = ray.far_point(hit.t).unwrap_or(hit.point.map(N::widen));
+    let is_exact = hit.offset_point() == hit.point && pick(hit.normal, axis) != N::ZERO;
     let is_near = N::FORMAT != Format::Fixed || extent(place.map(N::narrow)) < N::FAR.half();
     let point = if is_near || is_exact {
         pick(hit.point, axis).widen()

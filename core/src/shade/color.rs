@@ -1,6 +1,7 @@
 //! Three channels of radiance, or of the ratios that it is weighted with.
 
 use crate::accel::Number;
+use crate::target::inline_unless_small;
 
 /// Red, green and blue.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,17 +29,19 @@ impl<N: Number> Color<N> {
         Self([join(a, d), join(b, e), join(c, f)])
     }
 
-    /// Channel by channel; one of the two holds ratios.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    pub(crate) fn times(self, ratios: Self) -> Self {
-        self.zip(ratios, |a, b| a * b)
-    }
+    inline_unless_small!(
+        /// Channel by channel; one of the two holds ratios.
+        pub(crate) fn times(self, ratios: Self) -> Self {
+            self.zip(ratios, |a, b| a * b)
+        }
+    );
 
-    /// All channels by one ratio.
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    pub(crate) fn scaled(self, ratio: N) -> Self {
-        Self(self.0.map(|channel| channel * ratio))
-    }
+    inline_unless_small!(
+        /// All channels by one ratio.
+        pub(crate) fn scaled(self, ratio: N) -> Self {
+            Self(self.0.map(|channel| channel * ratio))
+        }
+    );
 
     /// The sum of two radiances.
     #[inline(always)]
@@ -58,7 +61,7 @@ impl<N: Number> Color<N> {
         self.zip(other, |a, b| if a > N::ONE - b { N::ONE } else { a + b })
     }
 
-    /// What a display can show of radiance: each channel limited to 0 to 1.
+    /// Radiance within a display's range: each channel limited to 0 to 1.
     #[inline(always)]
     pub(crate) fn displayable(self) -> Self {
         let white = N::radiance(1 << 20);

@@ -49,8 +49,8 @@ macro_rules! places {
         /// An effect.
         #[allow(unused_variables, reason = "most effects do nothing at most places")]
         pub(crate) trait Effect {
-            /// What the effect adds to a ray's state, `()` for nothing. The rays that a hit causes begin
-            /// with what the state is after [`surface`](Self::surface).
+            /// The state that the effect adds to a ray, `()` for none. The rays that a hit causes begin
+            /// with the state after [`surface`](Self::surface).
             type State<N: Number>: Copy + Debug + Default;
 
             /// The effect, as sets hold it.
@@ -59,18 +59,18 @@ macro_rules! places {
             /// Whether rays wait because of it.
             const CASTS: bool = Effects::CASTING.contains(Self::EFFECT);
 
-            /// Whether it needs the direction of a ray with length 1.
+            /// True if it needs the direction of a ray with length 1.
             const NEEDS_DIRECTION: bool = false;
 
-            /// Whether it acts on light that comes through surfaces.
+            /// True if it acts on light that comes through surfaces.
             const FILTERS: bool = false;
 
-            /// Whether a material calls for it.
+            /// Whether a material requires it.
             fn is_called_by_material(material: &Material) -> bool {
                 false
             }
 
-            /// Whether a light calls for it.
+            /// Whether a light requires it.
             fn is_called_by_light(light: &Light) -> bool {
                 false
             }
@@ -98,10 +98,10 @@ macro_rules! places {
             /// The effects that act on light that comes through surfaces.
             const FILTERING: u32;
 
-            /// The effects that a material calls for.
+            /// The effects that a material requires.
             fn called_by_material(material: &Material) -> Effects;
 
-            /// The effects that a light calls for.
+            /// The effects that a light requires.
             fn called_by_light(light: &Light) -> Effects;
 
             $(

@@ -64,7 +64,7 @@ impl Effect for Glass {
             N::ratio(material.inverse_ior),
             hit.front,
             surface.direction,
-            surface.normal,
+            surface.shading_normal,
             bounce.cos_in,
         );
         if X::Observer::ENABLED {
@@ -84,7 +84,7 @@ impl Effect for Glass {
     }
 }
 
-/// What a glass surface does with a ray.
+/// The split of a ray at a glass surface.
 struct Split<N> {
     /// The part that is reflected; 1 is total internal reflection.
     reflected: N,

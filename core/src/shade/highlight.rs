@@ -35,7 +35,7 @@ impl Effect for Highlight {
         // Halfway between the light and where the ray came from.
         let axis = |k: usize| lighting.to_light[k].half() - surface.direction[k].half();
         let (halfway, _) = N::normalize([axis(0), axis(1), axis(2)]);
-        let cos = N::from_wide(N::dot(surface.normal, halfway))
+        let cos = N::from_wide(N::dot(surface.shading_normal, halfway))
             .max(N::ZERO)
             .min(N::ONE);
         let strength = power(cos, material.shininess);

@@ -1,4 +1,4 @@
-//! What calls for effects.
+//! The effects that materials and lights require.
 
 use crate::format::Effects;
 use crate::format::record::{Light, Material};
@@ -6,14 +6,14 @@ use crate::shade::All;
 use crate::shade::effect::EffectList;
 
 impl Material {
-    /// The effects that this material calls for.
+    /// The effects that this material requires.
     pub fn effects(&self) -> Effects {
         All::called_by_material(self)
     }
 }
 
 impl Light {
-    /// The effects that this light calls for in a scene with objects, unless the scene turns them off.
+    /// The effects that this light requires in a scene with objects, unless the scene turns them off.
     pub fn effects(&self) -> Effects {
         All::called_by_light(self)
     }

@@ -31,7 +31,7 @@ macro_rules! list {
     ($(
         $(#[doc = $doc:literal])*
         $effect:ident = $bit:literal, $name:literal, $type:ident in $module:ident,
-            casts $rays:literal, for $caller:literal;
+            casts $rays:literal, required by $required_by:literal;
     )*) => {
         $(mod $module;)*
 

@@ -40,10 +40,10 @@ impl Effect for Shadow {
     }
 }
 
-/// What part of a light arrives.
+/// The part of a light that arrives at a surface.
 ///
-/// Opaque things let nothing through. Light goes straight on through the others, and loses at every
-/// surface what their effects say.
+/// Opaque objects let no light through. Light goes straight on through the others, and their effects reduce it at
+/// every surface.
 fn through<'s, N: Number, X: Tracer<'s, N>>(
     tracer: &mut X,
     lighting: &Lighting<'_, N>,

@@ -14,10 +14,11 @@ use crate::shade::Color;
 pub(crate) struct Surface<'h, N: Number> {
     pub(crate) hit: &'h Hit<N>,
     pub(crate) material: &'h Material,
-    /// The effects that the material calls for, asked once per hit.
+    /// The effects that the material requires, asked once per hit.
     pub(crate) called: Effects,
-    /// The normal on the side that the ray came from.
-    pub(crate) normal: [N; 3],
+    /// The normal that lights and secondary rays are computed with, on the side that the ray came from: the geometric
+    /// normal of `hit`, unless an effect changes it.
+    pub(crate) shading_normal: [N; 3],
     /// The ray's direction, with length 1 if an effect in use needs that.
     pub(crate) direction: [N; 3],
     pub(crate) diffuse: Color<N>,
@@ -72,9 +73,9 @@ impl<N: Number> Bounce<N> {
 /// A ray that a hit causes.
 pub(crate) struct Secondary<N: Number> {
     pub(crate) kind: RayKind,
-    /// Of any length.
+    /// The direction, of any length.
     pub(crate) direction: [N; 3],
-    /// Whether it leaves on the side of the geometric normal.
+    /// True if it leaves on the side of the geometric normal.
     pub(crate) outward: bool,
     pub(crate) weight: Color<N>,
 }
@@ -91,7 +92,7 @@ pub(crate) fn depart<N: Number>(
     to_light: bool,
 ) -> [N; 3] {
     match (outward, to_light) {
-        (true, true) => hit.beside(),
+        (true, true) => hit.offset_point(),
         (true, false) => hit.outside(),
         _ => hit.inside(scene),
     }

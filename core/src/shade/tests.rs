@@ -38,6 +38,8 @@ with_mocks! {
     Pane = 23,
     ToneMap = 24,
     Trail = 25,
+    Bump = 26,
+    Print = 27,
 }
 
 /// Moves the eye past the scene.
@@ -258,6 +260,44 @@ impl Effect for Trail {
     }
 }
 
+/// Takes the normal for shading away.
+pub(crate) struct Bump;
+
+impl Effect for Bump {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects(Self::BITS);
+
+    fn surface<'s, N: Number, X: Tracer<'s, N>>(
+        _: &mut X,
+        (): &mut (),
+        _: &Ray<N>,
+        surface: &mut Surface<'_, N>,
+    ) {
+        surface.shading_normal = [N::ZERO; 3];
+    }
+}
+
+/// Paints surfaces green where their second texture coordinate is above 0, and black elsewhere.
+pub(crate) struct Print;
+
+impl Effect for Print {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects(Self::BITS);
+
+    fn surface<'s, N: Number, X: Tracer<'s, N>>(
+        _: &mut X,
+        (): &mut (),
+        _: &Ray<N>,
+        surface: &mut Surface<'_, N>,
+    ) {
+        let [_, v] = surface.hit.texture_coordinates();
+        let green = if v > N::ZERO { N::ONE } else { N::ZERO };
+        surface.diffuse = Color([N::ZERO, green, N::ZERO]);
+    }
+}
+
 /// The pixels of the tiny scene, with one sample each, and the rays that they take.
 type Picture = (Vec<[u16; 3]>, Counters);
 
@@ -338,6 +378,26 @@ fn surface_mock_tints_diffuse_light() {
         let tinted = red == 0 && green > 0 && blue == 0;
         assert!(tinted || with == background && with == without, "{with:?}");
     }
+}
+
+#[test]
+fn surface_mock_changes_the_normal_that_lights_are_computed_with() {
+    let (without_lights, _) = picture::<f32, { TRUE | Matt::BITS }>(0);
+    let (found, _) = picture::<f32, { TRUE | Bump::BITS }>(0);
+    assert_eq!(found, without_lights);
+}
+
+#[test]
+fn surface_mock_paints_by_texture_coordinates() {
+    let background = background();
+    let (pixels, _) = picture::<f32, { TRUE | Print::BITS | Matt::BITS }>(0);
+    let mut count = [0; 2];
+    for pixel in pixels.into_iter().filter(|&pixel| pixel != background) {
+        let [red, green, blue] = pixel;
+        assert_eq!([red, blue], [0, 0]);
+        count[usize::from(green > 0)] += 1;
+    }
+    assert!(count[0] > 5 && count[1] > 5, "{count:?}");
 }
 
 #[test]

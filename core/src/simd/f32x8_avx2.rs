@@ -1,7 +1,7 @@
 //! Eight lanes in one register of AVX2.
 
 use crate::simd::{F32x8, Simd};
-use gridel_x86::Avx2;
+pub use gridel_x86::Avx2;
 
 impl Simd for Avx2 {
     type F32x8 = gridel_x86::F32x8;

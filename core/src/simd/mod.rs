@@ -7,14 +7,17 @@
 //! [`Simd::call`] compiles it for them: every function that the kernel calls must be inlined into it.
 
 #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
-mod f32x8_avx2;
+#[path = "f32x8_avx2.rs"]
+mod avx2;
+#[cfg(not(all(feature = "avx2", target_arch = "x86_64")))]
+#[path = "without_avx2.rs"]
+mod avx2;
 mod f32x8_portable;
 
+pub use avx2::Avx2;
 pub use f32x8_portable::Portable;
 
 use core::ops::{Add, Mul, Sub};
-#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
-use gridel_x86::Avx2;
 
 /// The instructions that queries through [`Wide`](crate::Wide) use. No bit of an answer depends on
 /// them.
@@ -23,20 +26,14 @@ pub enum SimdLevel {
     /// Those that the program is built for, four lanes at a time.
     #[default]
     Portable,
-    /// AVX2, eight lanes at a time.
-    #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+    /// AVX2, eight lanes at a time; only in builds for x86-64 with the feature `avx2`.
     Avx2(Avx2),
 }
 
-#[cfg(feature = "avx2")]
 impl SimdLevel {
     /// The fastest level of this processor.
     pub fn detect() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if let Some(avx2) = Avx2::detect() {
-            return Self::Avx2(avx2);
-        }
-        Self::Portable
+        Avx2::detect().map_or(Self::Portable, Self::Avx2)
     }
 
     /// All levels of this processor, the portable one first.
@@ -44,14 +41,11 @@ impl SimdLevel {
         let best = Some(Self::detect()).filter(|best| *best != Self::Portable);
         core::iter::once(Self::Portable).chain(best)
     }
-}
 
-impl SimdLevel {
     /// The name that command lines and tables use.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Portable => "portable",
-            #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
             Self::Avx2(_) => "avx2",
         }
     }
@@ -65,7 +59,6 @@ macro_rules! with_simd {
                 let $simd = $crate::simd::Portable;
                 $body
             }
-            #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
             $crate::simd::SimdLevel::Avx2($simd) => $body,
         }
     };
@@ -77,7 +70,7 @@ pub trait Simd: Copy {
     /// Eight lanes.
     type F32x8: F32x8;
 
-    /// The same number in every lane.
+    /// A number in every lane.
     fn splat(self, value: f32) -> Self::F32x8;
     /// Numbers from memory.
     fn lanes(self, lanes: &[f32; 8]) -> Self::F32x8;

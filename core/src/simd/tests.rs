@@ -1,4 +1,4 @@
-use crate::simd::{F32x8, Portable, Simd};
+use crate::simd::{Avx2, F32x8, Portable, Simd};
 
 const NUMBERS: [f32; 8] = [1.5, -0.0, 0.0, -3.25, 1e-40, f32::MAX, -1e30, 7.0];
 
@@ -6,8 +6,7 @@ const NUMBERS: [f32; 8] = [1.5, -0.0, 0.0, -3.25, 1e-40, f32::MAX, -1e30, 7.0];
 macro_rules! every_level {
     ($function:ident) => {
         $function(Portable);
-        #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
-        if let Some(avx2) = gridel_x86::Avx2::detect() {
+        if let Some(avx2) = Avx2::detect() {
             $function(avx2);
             // Compiled for the instructions, too.
             avx2.call(

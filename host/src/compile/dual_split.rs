@@ -70,7 +70,7 @@ pub fn lay_out(root: &mut Node) -> Vec<DualNode> {
                     DualNode {
                         split: plane_word([boxes[1].0[axis][0], boxes[0].0[axis][1]]),
                         carves,
-                        way: NodeWord::new(next_node - 2, axis as u32, axes).0,
+                        word: NodeWord::new(next_node - 2, axis as u32, axes).0,
                     }
                 }
                 _ => {
@@ -78,7 +78,7 @@ pub fn lay_out(root: &mut Node) -> Vec<DualNode> {
                     DualNode {
                         split: 0,
                         carves,
-                        way: NodeWord::new(next_leaf - 1, NodeWord::NONE, axes).0,
+                        word: NodeWord::new(next_leaf - 1, NodeWord::NONE, axes).0,
                     }
                 }
             });

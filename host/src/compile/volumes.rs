@@ -109,13 +109,13 @@ impl<'t> Tree<'t> {
             .into_par_iter()
             .zip(&self.flat.pairs)
             .map(|(children, pair)| SpherePair {
-                balls: children
+                spheres: children
                     .each_ref()
                     .map(|child| enclosing(&self.reaches[range(child)])),
                 children: pair.children,
             })
             .collect();
-        section(SectionKind::BallPairs, &pairs)
+        section(SectionKind::SpherePairs, &pairs)
     }
 }
 
@@ -191,7 +191,7 @@ fn enclosing(reaches: &[Reach]) -> BoundingSphere {
     let center = best_center.round().to_array().map(|x| x as i16);
     // From below what is needed up to what is: the proof's own words decide.
     let mut radius = best.floor().clamp(0.0, f64::from(u16::MAX)) as u16;
-    while radius < u16::MAX && !reaches.iter().all(|reach| reach.in_ball(center, radius)) {
+    while radius < u16::MAX && !reaches.iter().all(|reach| reach.in_sphere(center, radius)) {
         radius += 1;
     }
     BoundingSphere { center, radius }

@@ -146,7 +146,7 @@ impl Observer for Recorder {
             Event::Tested { .. }
             | Event::Empty(_)
             | Event::Opened(_)
-            | Event::GivenUp { .. }
+            | Event::NodeSkipped { .. }
             | Event::Candidate { crossing: None, .. } => {
                 self.steps += 1;
                 if self.steps > MOST_STEPS {

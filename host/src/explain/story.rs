@@ -3,7 +3,7 @@
 use super::Subject;
 use super::walk::{Given, Walk};
 use crate::trace::Frame;
-use gridel_core::observe::event::{Met, Source};
+use gridel_core::observe::event::{QueryHit, Source};
 use gridel_core::{Event, Format, RayKind, Scene};
 use serde::Serialize;
 
@@ -147,7 +147,7 @@ impl Story {
         let mut story = Story::default();
         let mut teller = Teller::new(scene, format, subject);
         for event in events {
-            if let Event::Seen { place, radiance } = *event {
+            if let Event::SampleFinished { place, radiance } = *event {
                 story.samples.push(teller.finish(place, radiance));
             } else {
                 teller.take(event);
@@ -202,7 +202,7 @@ impl<'t> Teller<'t> {
 
     fn take(&mut self, event: &Event) {
         match *event {
-            Event::Taken {
+            Event::RayStarted {
                 kind,
                 depth,
                 weight,
@@ -319,7 +319,7 @@ impl Ray {
 }
 
 impl Hit {
-    fn of(frame: &Frame, walk: &Walk, met: &Met) -> Self {
+    fn of(frame: &Frame, walk: &Walk, met: &QueryHit) -> Self {
         let (distance, error) = (walk.distance(met.t), frame.length(met.error));
         Self {
             distance,

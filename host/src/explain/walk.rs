@@ -194,7 +194,7 @@ impl Walk {
         let &Event::Query {
             origin: start,
             slope,
-            moved,
+            start_t: moved,
             interval,
             any,
         } = event
@@ -289,7 +289,7 @@ impl Walk {
                 }
                 return;
             }
-            Event::GivenUp { place, enters } => Step::GivenUp {
+            Event::NodeSkipped { place, enters } => Step::GivenUp {
                 place: name(place),
                 enters: enters * ray.scale,
                 hit: ray.limit * ray.scale,

@@ -46,13 +46,13 @@ pub struct RoundedRay {
 
 impl RoundedRay {
     pub fn of<N: Number>(ray: &Ray<N>) -> Self {
-        let (start, moved) = ray.base();
+        let (start, moved) = ray.reference_point();
         let moved = N::far_to_f64(moved);
         Self {
             start: start.map(N::far_to_f64),
             slope: ray.slope().map(N::ratio_to_f64),
             interval: ray.interval().map(N::length_to_f64),
-            far_interval: ray.unmoved_interval().map(|t| N::far_to_f64(t) - moved),
+            far_interval: ray.given_interval().map(|t| N::far_to_f64(t) - moved),
             moved,
         }
     }

@@ -128,10 +128,10 @@ impl Parts {
                         }
                     })
                 }
-                kind if kind == SectionKind::BallPairs as u16 => {
+                kind if kind == SectionKind::SpherePairs as u16 => {
                     section.each(|pair: &mut SpherePair| {
-                        for ball in &mut pair.balls {
-                            (ball.center, ball.radius) = ([0; 3], u16::MAX);
+                        for sphere in &mut pair.spheres {
+                            (sphere.center, sphere.radius) = ([0; 3], u16::MAX);
                         }
                     })
                 }

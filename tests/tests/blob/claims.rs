@@ -128,7 +128,7 @@ fn strip_vertices_that_wrap_are_refused_or_in_no_triangle() {
     assert!(refused > 3 * strips.count, "{refused}");
 }
 
-/// Homes lead to slots, so they need records in them.
+/// Slot locations lead to slots, so they need records in them.
 #[test]
 fn homes_of_triangles_without_records_are_refused() {
     let triangles = scenes::sheet(3);
@@ -143,7 +143,7 @@ fn homes_of_triangles_without_records_are_refused() {
     };
     let shared = compile(&scene, &shared).expect("compiles").blob;
     works(&shared.scene().expect("a scene"), 20);
-    assert!(section(shared.bytes(), SectionKind::Homes).1.count > 0);
+    assert!(section(shared.bytes(), SectionKind::SlotLocations).1.count > 0);
     // The same without the pairs, the leaves and the triangles' records and slots.
     let mut base = Base::of(shared.bytes());
     base.remove(&[
@@ -153,7 +153,7 @@ fn homes_of_triangles_without_records_are_refused() {
     ]);
     base.header().structures = Structure::List.bit() | Structure::Wide.bit();
     base.header().longest_leaf = 0;
-    for kind in [SectionKind::Order, SectionKind::Homes] {
+    for kind in [SectionKind::Order, SectionKind::SlotLocations] {
         base.drop_first(kind, 18);
     }
     // Then nothing proves that the triangles' members are primitives.
@@ -164,5 +164,5 @@ fn homes_of_triangles_without_records_are_refused() {
         base.header().stack_bytes = 12 * depth as u32;
         base.sealed().scene().is_err()
     });
-    assert!(refused, "homes without records were accepted");
+    assert!(refused, "slot locations without records were accepted");
 }

@@ -59,7 +59,7 @@ fn emitted_modules_run_or_do_not_compile() {
 
     outgrown(
         &features[..features.len() - 1],
-        "the scene calls for `shadow`: enable that feature",
+        "the scene requires `shadow`: enable that feature",
     );
     emitted.budget = Some((scene.blob.bytes().len() as u64 - 1, discovery));
     write(&emitted.module(), &scene);

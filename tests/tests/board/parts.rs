@@ -165,7 +165,7 @@ pub fn outgrown() -> [(&'static str, Compiled); 6] {
     [
         ("the blob calls for effects beyond EFFECTS", mirrors),
         ("the blob's picture has another size", wider),
-        ("the scene calls for `box`", compile("box", cuboid)),
+        ("the scene requires `box`", compile("box", cuboid)),
         (
             "the blob does not hold the structure of Accel",
             through(Structure::Flagged),

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod boards;
+mod format;
 mod keys;
 mod limits;
 mod memory;
@@ -11,7 +12,7 @@ mod pictures;
 mod times;
 mod variables;
 
-use gridel_core::{Effects, Structure};
+use gridel_core::Structure;
 use gridel_host::compile::{Options, compile};
 use gridel_tests::bounds::{CROSSING, NORMAL, markdown};
 use gridel_tests::scenes;
@@ -66,17 +67,6 @@ fn the_formats_dump_is_what_the_compiler_writes() {
             .map(|byte| u8::from_str_radix(byte, 16).expect("a byte"))
     });
     assert!(dump.eq(compiled.blob.bytes().iter().copied()));
-}
-
-/// The format's page lists the effects as the core declares them.
-#[test]
-fn format_lists_every_effect() {
-    let mut table = String::from("| bit | effect | called for by |\n|---|---|---|\n");
-    for ((effect, name), caller) in Effects::NAMED.into_iter().zip(Effects::CALLERS) {
-        let bit = effect.0.trailing_zeros();
-        table += &format!("| {bit} | {name} | {caller} |\n");
-    }
-    holds_table("core/FORMAT.md", "effects", &table);
 }
 
 /// `GRIDEL_BLESS=1` writes the tables anew.

@@ -54,7 +54,7 @@ fn native_starts<N: Number>() {
             .fold(0.0_f64, |most, x| most.max(x.abs().to_f64()));
         let steps = apart / step(N::FORMAT, 32_768.0);
         // Of a ray from near by, the way to the box is rounded with its slope.
-        let is_far = N::far_to_f64(ray.moved()) > 3.0 * 32_767.0;
+        let is_far = N::far_to_f64(ray.start_t()) > 3.0 * 32_767.0;
         let most = if is_far { 2.0 } else { 5.0 };
         assert!(
             steps <= most,
@@ -63,7 +63,7 @@ fn native_starts<N: Number>() {
         if is_far {
             worst = worst.max(steps);
         }
-        let (t, exact) = (N::far_to_f64(ray.moved()), moved.to_f64());
+        let (t, exact) = (N::far_to_f64(ray.start_t()), moved.to_f64());
         assert!((t - exact).abs() <= step(N::FORMAT, exact), "{t} {exact}");
     }
     assert!(within > 10_000, "{within}");

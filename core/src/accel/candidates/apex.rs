@@ -41,7 +41,7 @@
 
 use crate::accel::candidates::line::Line;
 use crate::accel::candidates::lists::{Candidates, ListSections, look_up};
-use crate::accel::cull::{Culling, Deferred};
+use crate::accel::cull::{Culling, NoBoxCulling};
 use crate::accel::hierarchy::bvh::Bvh;
 use crate::accel::hierarchy::pairs::Pairs;
 use crate::accel::number::Number;
@@ -65,7 +65,7 @@ impl Apex {
     pub const REACH: f64 = 6.0;
     /// Units from the lattice's zero to an apex on an axis, at the most.
     pub const FARTHEST: f64 = 2_097_152.0;
-    /// What stands for the window of a face that has none.
+    /// Stands for the window of a face that has none.
     pub const NO_WINDOW: u16 = u16::MAX;
     /// Most cells along a side of a window.
     pub const MOST_CELLS: u16 = 1024;
@@ -80,7 +80,7 @@ impl Apex {
 impl Traverse for Apex {
     const STRUCTURE: Structure = Structure::Apex;
     type Views<'a> = Views<'a>;
-    type Cull<N: Number> = Deferred;
+    type Cull<N: Number> = NoBoxCulling;
 
     // Once, and not for every set of effects that the ray loop is compiled for.
     #[inline(never)]
@@ -88,22 +88,22 @@ impl Traverse for Apex {
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
-        _: &Deferred,
+        _: &NoBoxCulling,
         stack: &mut StackView,
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
         let held = views;
         let mut tmax = ray.tmax;
-        if let Some(way) = held.way(ray) {
-            look_up(way.cell, count);
-            let mut end = if way.outward {
-                way.level(tmax.to_cull())
+        if let Some(window) = held.look_up_window(ray) {
+            look_up(window.cell, count);
+            let mut end = if window.outward {
+                window.level(tmax.to_cull())
             } else {
-                way.level(ray.tmin.to_cull())
+                window.level(ray.tmin.to_cull())
             };
             let mut cut = false;
-            held.lists.ascend(way.cell, end, |slot| {
+            held.lists.ascend(window.cell, end, |slot| {
                 let single = space.shapes.single(slot);
                 if single.count == 0 {
                     cut = true;
@@ -112,8 +112,8 @@ impl Traverse for Apex {
                 let limit = leaf(single, count)?;
                 if limit < tmax {
                     tmax = limit;
-                    if way.outward {
-                        end = way.level(tmax.to_cull());
+                    if window.outward {
+                        end = window.level(tmax.to_cull());
                     }
                 }
                 Some(end)
@@ -129,7 +129,7 @@ impl Traverse for Apex {
 }
 
 /// How a ray lies to an apex.
-struct Way<'a> {
+struct WindowLookup<'a> {
     window: &'a ApexWindow,
     cell: u32,
     /// Whether the ray runs away from the apex.
@@ -138,7 +138,7 @@ struct Way<'a> {
     apex: i32,
 }
 
-impl Way<'_> {
+impl WindowLookup<'_> {
     /// A level that is not below that of a place on the ray.
     #[inline(always)]
     fn level(&self, step: i32) -> u8 {
@@ -207,14 +207,15 @@ pub struct Views<'a> {
 impl<'a> Views<'a> {
     /// The apex that a ray starts from or runs to, if it has a list there.
     #[inline(always)]
-    fn way<N: Number>(&self, ray: &Ray<N>) -> Option<Way<'a>> {
+    fn look_up_window<N: Number>(&self, ray: &Ray<N>) -> Option<WindowLookup<'a>> {
         let line = Line::of(ray);
-        self.way_along(&line).or_else(|| self.way_past(ray, &line))
+        self.look_up_direction(&line)
+            .or_else(|| self.look_up_point(ray, &line))
     }
 
     /// The direction in which a ray runs.
     #[inline(always)]
-    fn way_along(&self, line: &Line) -> Option<Way<'a>> {
+    fn look_up_direction(&self, line: &Line) -> Option<WindowLookup<'a>> {
         let along = |direction: &&ApexDirection| {
             let near = |axis: usize| {
                 let beside = pick(line.slope, axis).wrapping_sub(pick(direction.slope, axis));
@@ -228,7 +229,7 @@ impl<'a> Views<'a> {
         // Within 2^19 units.
         let at = |axis: usize| (line.at(axis, t) >> 5) as i32;
         let [first, second] = Gridels::across(line.major);
-        Some(Way {
+        Some(WindowLookup {
             window,
             cell: window.cell([at(first), at(second)])?,
             outward: false,
@@ -238,7 +239,7 @@ impl<'a> Views<'a> {
 
     /// The point that a ray starts from or runs to.
     #[inline(always)]
-    fn way_past<N: Number>(&self, ray: &Ray<N>, line: &Line) -> Option<Way<'a>> {
+    fn look_up_point<N: Number>(&self, ray: &Ray<N>, line: &Line) -> Option<WindowLookup<'a>> {
         let major = line.major;
         let across = Gridels::across(major);
         let rises = line.ascends(major);
@@ -271,7 +272,7 @@ impl<'a> Views<'a> {
                 if outward { slope } else { slope.wrapping_neg() }
             };
             if let Some(cell) = window.cell([slope(across[0]), slope(across[1])]) {
-                return Some(Way {
+                return Some(WindowLookup {
                     window,
                     cell,
                     outward,

@@ -12,7 +12,7 @@
 
 use crate::accel::candidates::gridel_table::Table;
 use crate::accel::candidates::lists::{ListSections, look_up};
-use crate::accel::cull::Deferred;
+use crate::accel::cull::NoBoxCulling;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
@@ -29,7 +29,7 @@ pub enum CylinderCube {}
 impl Traverse for CylinderCube {
     const STRUCTURE: Structure = Structure::CylinderCube;
     type Views<'a> = Views<'a>;
-    type Cull<N: Number> = Deferred;
+    type Cull<N: Number> = NoBoxCulling;
 
     // Once, and not for every set of effects that the ray loop is compiled for.
     #[inline(never)]
@@ -37,7 +37,7 @@ impl Traverse for CylinderCube {
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
-        _: &Deferred,
+        _: &NoBoxCulling,
         _: &mut StackView,
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,

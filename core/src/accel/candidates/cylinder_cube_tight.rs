@@ -11,7 +11,7 @@
 
 use crate::accel::candidates::gridel_table::{Table, along};
 use crate::accel::candidates::lists::{ListSections, look_up};
-use crate::accel::cull::Deferred;
+use crate::accel::cull::NoBoxCulling;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
@@ -28,7 +28,7 @@ pub enum CylinderCubeTight {}
 impl Traverse for CylinderCubeTight {
     const STRUCTURE: Structure = Structure::CylinderCubeTight;
     type Views<'a> = Views<'a>;
-    type Cull<N: Number> = Deferred;
+    type Cull<N: Number> = NoBoxCulling;
 
     // Once, and not for every set of effects that the ray loop is compiled for.
     #[inline(never)]
@@ -36,7 +36,7 @@ impl Traverse for CylinderCubeTight {
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
-        _: &Deferred,
+        _: &NoBoxCulling,
         _: &mut StackView,
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,

@@ -1,5 +1,4 @@
-//! What the cylinder cubes share: a table of lists over pairs of gridels, and the walk along a sorted
-//! list.
+//! The table of the cylinder cubes: a list for each pair of gridels, and the walk along a sorted list.
 
 use crate::accel::candidates::gridels::{Levels, Passage};
 use crate::accel::candidates::lists::{Candidates, ListSections};
@@ -9,7 +8,7 @@ use crate::format::record::Gridels;
 use crate::format::{BlobError, Location, Reason, SectionKind, Sections};
 use crate::ray::Ray;
 
-/// What the cylinder cubes keep: a partition, and a list for every pair of gridels.
+/// The records of a cylinder cube: a partition, and a list for every pair of gridels.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::accel) struct Table<'a> {
     pub(in crate::accel) gridels: Option<&'a Gridels>,

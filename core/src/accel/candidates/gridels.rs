@@ -22,7 +22,7 @@
 //! gridels, each widened by that. A list that holds all primitives whose boxes, widened by
 //! [`Gridels::SPARE`], meet that hull is complete, in every number format.
 
-use crate::accel::candidates::line::{Line, Through};
+use crate::accel::candidates::line::{BoxCrossing, Line};
 use crate::accel::number::Number;
 use crate::axis::pick;
 use crate::format::record::{Gridels, UnitBox};
@@ -108,7 +108,7 @@ impl Gridels {
     #[inline(always)]
     pub fn passage<N: Number>(&self, ray: &Ray<N>) -> Option<Passage> {
         let line = Line::of(ray);
-        let Through {
+        let BoxCrossing {
             enter,
             leave,
             from,

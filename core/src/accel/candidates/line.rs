@@ -54,7 +54,7 @@ impl Line {
 
     /// Where the line enters and leaves a box, given by two corners; `None` if it passes it by.
     #[inline(always)]
-    pub(in crate::accel) fn through(&self, low: [i32; 3], high: [i32; 3]) -> Option<Through> {
+    pub(in crate::accel) fn through(&self, low: [i32; 3], high: [i32; 3]) -> Option<BoxCrossing> {
         let major = self.major;
         let (first, last) = if self.ascends(major) {
             (pick(low, major), pick(high, major))
@@ -63,7 +63,7 @@ impl Line {
         };
         let (at_first, at_last) = (self.reach(first), self.reach(last));
         let length = at_last.saturating_sub(at_first);
-        let mut through = Through {
+        let mut crossing = BoxCrossing {
             enter: at_first,
             leave: at_last,
             from: major,
@@ -80,25 +80,25 @@ impl Line {
             };
             let slope = i64::from(pick(self.slope, axis).unsigned_abs());
             if before > 0 {
-                let later = at_first.saturating_add(way(before, slope, length)?);
-                if later > through.enter {
-                    (through.enter, through.from) = (later, axis);
+                let later = at_first.saturating_add(advance(before, slope, length)?);
+                if later > crossing.enter {
+                    (crossing.enter, crossing.from) = (later, axis);
                 }
             }
             if after > 0 {
-                let sooner = at_last.saturating_sub(way(after, slope, length)?);
-                if sooner < through.leave {
-                    (through.leave, through.to) = (sooner, axis);
+                let sooner = at_last.saturating_sub(advance(after, slope, length)?);
+                if sooner < crossing.leave {
+                    (crossing.leave, crossing.to) = (sooner, axis);
                 }
             }
         }
-        (through.enter < through.leave).then_some(through)
+        (crossing.enter < crossing.leave).then_some(crossing)
     }
 }
 
 /// The way of a line through a box.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::accel) struct Through {
+pub(in crate::accel) struct BoxCrossing {
     /// The parameters at which it enters and leaves.
     pub(in crate::accel) enter: i32,
     pub(in crate::accel) leave: i32,
@@ -109,10 +109,10 @@ pub(in crate::accel) struct Through {
 
 /// How far along the major axis a line moves by `aside`; `None` if that is more than `most`.
 #[inline(always)]
-fn way(aside: i64, slope: i64, most: i32) -> Option<i32> {
+fn advance(aside: i64, slope: i64, most: i32) -> Option<i32> {
     let scaled = aside << 30;
     if scaled > slope.saturating_mul(most.into()) {
         return None;
     }
-    scaled.checked_div(slope).map(|way| way as i32)
+    scaled.checked_div(slope).map(|steps| steps as i32)
 }

@@ -13,11 +13,11 @@
 //! class's box of places, widened by [`Gridels::REACH`], sweeps while it moves along the major axis
 //! and its sides move by the class's least and greatest slopes. The builder lists what meets that.
 //!
-//! Memory: four bytes a node, and the lists. Cost: a comparison a level, then the list.
+//! Memory: four bytes per node, and the lists. Cost: a comparison per level, then the list.
 
 use crate::accel::candidates::line::Line;
 use crate::accel::candidates::lists::{Candidates, ListSections, look_up};
-use crate::accel::cull::{Culling, Deferred};
+use crate::accel::cull::{Culling, NoBoxCulling};
 use crate::accel::hierarchy::bvh::Bvh;
 use crate::accel::hierarchy::pairs::Pairs;
 use crate::accel::number::Number;
@@ -127,7 +127,7 @@ impl ClassPoint {
 impl Traverse for RayClasses {
     const STRUCTURE: Structure = Structure::RayClasses;
     type Views<'a> = Views<'a>;
-    type Cull<N: Number> = Deferred;
+    type Cull<N: Number> = NoBoxCulling;
 
     // Once, and not for every set of effects that the ray loop is compiled for.
     #[inline(never)]
@@ -135,7 +135,7 @@ impl Traverse for RayClasses {
         space: &Space<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
-        _: &Deferred,
+        _: &NoBoxCulling,
         stack: &mut StackView,
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,

@@ -1,4 +1,4 @@
-//! What the grid and the octree share: the scene's box divided into cells, and the cells' lists.
+//! The scene's box divided into cells, and the cells' lists, for the grid and the octree.
 //!
 //! On every axis the box has equal divisions, whose planes are computed anew from their numbers, so
 //! that no error accumulates: `plane(i) = lowest + floor(i * pitch / 2^16)`, where the pitch is the

@@ -28,7 +28,7 @@ use crate::observe::event::{Event, Sides};
 use crate::ray::Ray;
 use heapless::Vec;
 
-/// The octree: one word a node.
+/// The octree: one word per node.
 #[derive(Clone, Copy, Debug)]
 pub enum Octree {}
 
@@ -38,9 +38,9 @@ pub const MOST_LEVELS: u32 = 6;
 /// Where a node lies: its first division on each axis, six bits each, and the level above the leaves
 /// of the finest division.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Place(u32);
+struct CellId(u32);
 
-impl Place {
+impl CellId {
     const fn root(levels: u32) -> Self {
         Self(levels << 24)
     }
@@ -128,7 +128,7 @@ impl Traverse for Octree {
         let mut tester = Tester::new(space, held.lists, leaf);
         // The children's order along the ray: on every axis the side that it comes from first.
         let from = cull.descending();
-        let (mut number, mut place) = (0_u32, Place::root(held.levels));
+        let (mut number, mut place) = (0_u32, CellId::root(held.levels));
         stack.clear();
         loop {
             if C::ENABLED {
@@ -192,7 +192,7 @@ impl Traverse for Octree {
             });
             let Some(entry) = next else { return };
             number = entry.node;
-            place = Place(entry.far as u32);
+            place = CellId(entry.far as u32);
         }
     }
 }
@@ -210,7 +210,7 @@ fn node_id(number: u32) -> event::NodeId {
 fn halves(
     cull: &Cull,
     divisions: &[Divisions; 3],
-    place: Place,
+    place: CellId,
     ray: Interval,
 ) -> [[Interval; 2]; 3] {
     let size = 1 << place.level();
@@ -267,8 +267,8 @@ impl<'a> Records<'a> for Views<'a> {
         let reach = reach(space, self.divisions(space), 0);
         let section = SectionKind::OctreeSlots;
         let (mut pairs, mut lists) = (0, 0);
-        let mut waiting: Vec<(u32, Place), { 8 * MOST_LEVELS as usize }> = Vec::new();
-        let mut current = (!self.nodes.is_empty()).then_some((0, Place::root(self.levels)));
+        let mut waiting: Vec<(u32, CellId), { 8 * MOST_LEVELS as usize }> = Vec::new();
+        let mut current = (!self.nodes.is_empty()).then_some((0, CellId::root(self.levels)));
         while let Some((number, place)) = current {
             let node = OctreeNode(self.nodes.get(number as usize).copied().unwrap_or(u32::MAX));
             if !node.is_leaf() {

@@ -18,7 +18,7 @@ fn ray<N: Number>(origin: [f64; 3], point: [f64; 3]) -> Option<Ray<N>> {
     Ray::from_f64(&WORLD, origin, [way(0), way(1), way(2)], 0.0, 1e9).ok()
 }
 
-/// What is not clamped would stay as it is if it were.
+/// A crossing that is not clamped equals the clamped one.
 fn is_in_its_box<N: Number>(ray: &Ray<N>, crossing: Crossing<N>, bounds: UnitBox) {
     let cull = <Cull as Culling<N>>::new(ray);
     let mut tmax = N::FAR;

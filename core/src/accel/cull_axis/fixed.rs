@@ -5,7 +5,7 @@ use crate::accel::cull_axis::CullAxis;
 use crate::number::Fixed;
 use crate::number::fixed::base::LENGTH_BITS;
 use crate::number::fixed::base::RATIO_BITS;
-use crate::number::fixed::base::keep;
+use crate::number::fixed::base::assert_in_range;
 use crate::number::fixed::base::saturate;
 use crate::number::fixed::halves::leading_zeros;
 use crate::number::fixed::halves::product;
@@ -40,7 +40,7 @@ impl CullArithmetic for Fixed {
             steepness
         };
         let offset = (product(origin.0, inverse) >> (16 + LENGTH_BITS)) as i32;
-        keep(|| offset.unsigned_abs() <= 1 << 30);
+        assert_in_range(|| offset.unsigned_abs() <= 1 << 30);
         let (back, margin) = (offset.wrapping_neg(), (steepness >> 18).wrapping_add(3));
         CullAxis::new(
             inverse,

@@ -13,7 +13,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::Sides;
 use crate::ray::Ray;
 
-/// The hierarchy with 32 bytes a pair; twelve planes are tested a pair.
+/// The hierarchy with 32 bytes per pair; twelve planes are tested per pair.
 #[derive(Clone, Copy, Debug)]
 pub enum Bvh {}
 

@@ -14,9 +14,9 @@ pub(in crate::accel) type Path = [u32];
 pub(in crate::accel) trait Tree: Copy {
     /// The section of its nodes.
     const SECTION: SectionKind;
-    /// What is wrong where [`Self::holds`] is false.
+    /// The error where [`Self::contains_leaf`] is false.
     const OUTSIDE: Reason = Reason::PrimitiveOutside;
-    /// What holds all that is below a node.
+    /// The volume around everything below a node.
     type Volume: Copy;
 
     /// Proves that nodes lie in breadth-first order and reach so many leaves. Returns the number of
@@ -34,16 +34,16 @@ pub(in crate::accel) trait Tree: Copy {
 
     /// Turns the volume of a node that has children into that of one of them, in place: boards copy
     /// volumes by a call.
-    fn narrow(self, number: u32, side: u32, volume: &mut Self::Volume);
+    fn enter_child(self, number: u32, side: u32, volume: &mut Self::Volume);
 
     /// Proves that the volumes of both children lie in their parent's, where a walk relies on that.
     #[inline(always)]
-    fn nests(self, _number: u32, _parent: &Self::Volume) -> Result<(), Reason> {
+    fn children_inside(self, _number: u32, _parent: &Self::Volume) -> Result<(), Reason> {
         Ok(())
     }
 
     /// Whether the volumes that lead to the leaf that a node is hold its primitives.
-    fn holds(
+    fn contains_leaf(
         self,
         space: &Space<'_>,
         leaf: Leaf,
@@ -75,7 +75,7 @@ pub(in crate::accel) fn check_tree<T: Tree>(
         match tree.leaf(node) {
             None => {
                 let number = node.number();
-                if let Err(reason) = tree.nests(number, &volume) {
+                if let Err(reason) = tree.children_inside(number, &volume) {
                     return Err(Location::Record(T::SECTION, number as usize).invalid(reason));
                 }
                 // The depth was proved to fit.
@@ -83,7 +83,7 @@ pub(in crate::accel) fn check_tree<T: Tree>(
             }
             Some(leaf) => {
                 let leaf = space.leaf(leaf);
-                if !leaf.is_some_and(|leaf| tree.holds(space, leaf, node, &volume, &path)) {
+                if !leaf.is_some_and(|leaf| tree.contains_leaf(space, leaf, node, &volume, &path)) {
                     return Err(outside::<T>(node, &path));
                 }
                 while path.last().is_some_and(|step| step & 1 == 1) {
@@ -95,7 +95,7 @@ pub(in crate::accel) fn check_tree<T: Tree>(
                 *step |= 1;
                 volume = *root;
                 for &mut step in above {
-                    tree.narrow(step >> 1, step & 1, &mut volume);
+                    tree.enter_child(step >> 1, step & 1, &mut volume);
                 }
             }
         }
@@ -104,7 +104,7 @@ pub(in crate::accel) fn check_tree<T: Tree>(
             return Ok(depth);
         };
         let (number, side) = (step >> 1, step & 1);
-        tree.narrow(number, side, &mut volume);
+        tree.enter_child(number, side, &mut volume);
         node = tree.child(number, side);
     }
 }

@@ -1,5 +1,5 @@
-//! Dual-split nodes: the idea of the flagged sides taken to its end. A plane that is not worth
-//! testing is not even stored.
+//! Dual-split nodes. A node stores the two planes of its split, and the planes of its own box on up to two axes, chosen
+//! by the builder where they save the most tests.
 //!
 //! A ray comes to a node with the interval in which it runs through the node's *region*: the box
 //! that the planes on the way down have left of the scene's box. A node narrows the region:
@@ -47,7 +47,7 @@ use core::hint::black_box;
 /// and have too few registers for what it would know, read the form of an axis faster where it lies.
 const FORM_IN_MEMORY: bool = cfg!(target_arch = "arm") && !NARROW_PRODUCTS;
 
-/// A hierarchy of 16 bytes a node, of which a ray tests two to four planes.
+/// A hierarchy of 16 bytes per node; a ray tests two to four planes per node.
 #[derive(Clone, Copy, Debug)]
 pub enum DualSplit {}
 
@@ -134,7 +134,7 @@ impl Traverse for DualSplit {
                     break;
                 }
                 if C::ENABLED {
-                    count.event(Event::GivenUp {
+                    count.event(Event::NodeSkipped {
                         place: place(entry.node),
                         enters: <Cull as Culling<N>>::units(entry.near),
                     });
@@ -191,7 +191,7 @@ fn visit<C: Observer>(
     cull: &Cull,
     count: &mut C,
 ) -> Next {
-    match NodeWord(record.way).kind() {
+    match NodeWord(record.word).kind() {
         _ if SMALL => visit_kind::<ANY, ANY, C>(record, number, interval, cull, count),
         0 => visit_kind::<0, 0, C>(record, number, interval, cull, count),
         1 => visit_kind::<1, 0, C>(record, number, interval, cull, count),
@@ -223,9 +223,9 @@ fn visit_kind<const SPLIT: usize, const CARVE: usize, C: Observer>(
     cull: &Cull,
     count: &mut C,
 ) -> Next {
-    let way = NodeWord(record.way);
+    let word = NodeWord(record.word);
     let first = if CARVE == ANY {
-        way.first_carve()
+        word.first_carve()
     } else {
         CARVE
     };
@@ -234,7 +234,7 @@ fn visit_kind<const SPLIT: usize, const CARVE: usize, C: Observer>(
         if interval.near > interval.far {
             return Next::Nothing;
         }
-        let second = way.second_carve();
+        let second = word.second_carve();
         if let Some(form) = cull.axes.get(second) {
             carve_ray(form, second, record.carves[1], number, interval, count);
             if interval.near > interval.far {
@@ -242,10 +242,10 @@ fn visit_kind<const SPLIT: usize, const CARVE: usize, C: Observer>(
             }
         }
     }
-    let axis = if SPLIT == ANY { way.split() } else { SPLIT };
+    let axis = if SPLIT == ANY { word.split() } else { SPLIT };
     match cull.axes.get(axis) {
         Some(form) => split(record, interval, form, count),
-        None => Next::Leaf(way.number()),
+        None => Next::Leaf(word.number()),
     }
 }
 
@@ -275,8 +275,8 @@ fn split<C: Observer>(
     form: &CullAxis,
     count: &mut C,
 ) -> Next {
-    let (planes, way) = (record.split, NodeWord(record.way));
-    let first = way.number();
+    let (planes, word) = (record.split, NodeWord(record.word));
+    let first = word.number();
     let Interval {
         near: enter,
         far: leave,
@@ -299,7 +299,7 @@ fn split<C: Observer>(
             };
             count.event(Event::Tested {
                 place: place(child),
-                sides: sides(way.split(), planes),
+                sides: sides(word.split(), planes),
                 span: Cull::span(Interval { near, far }),
             });
         }
@@ -344,10 +344,10 @@ impl<'a> Records<'a> for Views<'a> {
 }
 
 impl Views<'_> {
-    /// What a node's children are; of a node that is not there, a leaf that is not there.
-    fn way(self, number: u32) -> NodeWord {
+    /// The word of a node. A missing node has the word of a missing leaf.
+    fn word(self, number: u32) -> NodeWord {
         let record = self.0.get(number as usize);
-        NodeWord(record.map_or(u32::MAX, |record| record.way))
+        NodeWord(record.map_or(u32::MAX, |record| record.word))
     }
 }
 
@@ -366,21 +366,21 @@ impl Tree for Views<'_> {
     }
 
     fn leaf(self, node: Node) -> Option<u32> {
-        let way = self.way(node.number());
-        (way.split() == NodeWord::NONE as usize).then_some(way.number())
+        let word = self.word(node.number());
+        (word.split() == NodeWord::NONE as usize).then_some(word.number())
     }
 
     fn child(self, number: u32, side: u32) -> Node {
-        Node::pair(self.way(number).number().wrapping_add(side))
+        Node::pair(self.word(number).number().wrapping_add(side))
     }
 
     #[inline(always)]
-    fn narrow(self, number: u32, side: u32, region: &mut UnitBox) {
+    fn enter_child(self, number: u32, side: u32, region: &mut UnitBox) {
         let Some(record) = self.0.get(number as usize) else {
             return;
         };
         carve(region, record);
-        if let Some(sides) = region.0.get_mut(NodeWord(record.way).split()) {
+        if let Some(sides) = region.0.get_mut(NodeWord(record.word).split()) {
             if side == 0 {
                 sides[1] = sides[1].min((record.split >> 16) as i16);
             } else {
@@ -390,7 +390,14 @@ impl Tree for Views<'_> {
     }
 
     #[inline(always)]
-    fn holds(self, space: &Space<'_>, leaf: Leaf, node: Node, parent: &UnitBox, _: &Path) -> bool {
+    fn contains_leaf(
+        self,
+        space: &Space<'_>,
+        leaf: Leaf,
+        node: Node,
+        parent: &UnitBox,
+        _: &Path,
+    ) -> bool {
         let mut region = *parent;
         if let Some(record) = self.0.get(node.number() as usize) {
             carve(&mut region, record);
@@ -401,7 +408,11 @@ impl Tree for Views<'_> {
 
 /// Cuts a region down to a node's carves.
 fn carve(region: &mut UnitBox, record: &DualNode) {
-    for (axis, planes) in NodeWord(record.way).carves().into_iter().zip(record.carves) {
+    for (axis, planes) in NodeWord(record.word)
+        .carves()
+        .into_iter()
+        .zip(record.carves)
+    {
         if let Some(sides) = region.0.get_mut(axis) {
             sides[0] = sides[0].max(planes as i16);
             sides[1] = sides[1].min((planes >> 16) as i16);
@@ -422,13 +433,13 @@ fn check_order(nodes: &[DualNode], leaves: usize) -> Result<usize, BlobError> {
     }
     let mut order = Order::new(SECTION, nodes.len());
     for (index, record) in nodes.iter().enumerate() {
-        let way = NodeWord(record.way);
-        let [first, second] = way.carves();
-        let unused = record.way >> 30 != 0 || first == 3 && second != 3;
+        let word = NodeWord(record.word);
+        let [first, second] = word.carves();
+        let unused = record.word >> 30 != 0 || first == 3 && second != 3;
         if unused {
             return Err(Location::Record(SECTION, index).invalid(Reason::UnusedBits));
         }
-        order.dual(way)?;
+        order.dual(word)?;
     }
     order.levels()
 }

@@ -1,10 +1,10 @@
-//! The hierarchy with flagged sides (the paper, section 2.2), taken to storage.
+//! The hierarchy with flagged sides (the paper, section 2.2). Sides that coincide with the parent's are neither
+//! stored nor tested.
 //!
-//! Of the twelve sides of two children at least six coincide with their parent's: on each of the
-//! parent's six sides at least one child touches it. The paper flags such sides and does not test
-//! them. Here they are not even stored: a pair keeps, for each side of the parent, the plane of
-//! the child that does *not* touch it, and one bit that says which child that is (its owner). A ray
-//! brings its interval in the parent and narrows it by six planes instead of twelve.
+//! Two children have twelve sides. At least six of them coincide with their parent's, because at least one child
+//! touches each of the parent's six sides. The paper flags such sides and does not test them. A pair stores, for
+//! each side of the parent, the plane of the child that does *not* touch it, and one bit that says which child that
+//! is (its owner). A ray starts from its interval in the parent and narrows it by six planes instead of twelve.
 
 use crate::accel::cull::{Cull, PairCulling};
 use crate::accel::cull_axis::Interval;
@@ -20,7 +20,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::Sides;
 use crate::ray::Ray;
 
-/// The hierarchy with 16 bytes a pair; six planes are tested a pair.
+/// The hierarchy with 16 bytes per pair; six planes are tested per pair.
 #[derive(Clone, Copy, Debug)]
 pub enum Flagged {}
 

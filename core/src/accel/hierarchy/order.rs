@@ -87,12 +87,12 @@ impl Order {
 
     /// Takes the current node, which has a split or is a leaf.
     #[inline(always)]
-    pub(in crate::accel) const fn dual(&mut self, way: NodeWord) -> Result<(), BlobError> {
-        let is_leaf = way.split() == NodeWord::NONE as usize;
-        if let Err(error) = self.child(is_leaf, way.number()) {
+    pub(in crate::accel) const fn dual(&mut self, word: NodeWord) -> Result<(), BlobError> {
+        let is_leaf = word.split() == NodeWord::NONE as usize;
+        if let Err(error) = self.child(is_leaf, word.number()) {
             return Err(error);
         }
-        if !is_leaf && let Err(error) = self.child(false, way.number().wrapping_add(1)) {
+        if !is_leaf && let Err(error) = self.child(false, word.number().wrapping_add(1)) {
             return Err(error);
         }
         self.end(!is_leaf)

@@ -1,4 +1,4 @@
-//! What hierarchies of pairs share: the walk, and what the check asks of them.
+//! Hierarchies of pairs: their walk, and their part of the check.
 
 use crate::accel::cull::{Culling, PairCulling};
 use crate::accel::cull_axis::Interval;
@@ -89,7 +89,7 @@ impl<P: BoxPair> PairRecord for &P {
 pub(in crate::accel) trait PairArray: Copy {
     /// One of them.
     type Pair: PairRecord;
-    /// What holds all that is below a pair: see [`Tree`].
+    /// The volume around everything below a pair: see [`Tree`].
     type Volume: Copy;
 
     /// How many there are.
@@ -102,19 +102,25 @@ pub(in crate::accel) trait PairArray: Copy {
     fn volumes(self, pair: Self::Pair, parent: &Self::Volume) -> [Self::Volume; 2];
 
     /// Whether a child's volume lies in its parent's, where a walk relies on that.
-    fn nests(self, _child: &Self::Volume, _parent: &Self::Volume) -> bool {
+    fn child_inside(self, _child: &Self::Volume, _parent: &Self::Volume) -> bool {
         true
     }
 
-    /// See [`Tree::holds`].
-    fn holds(self, space: &Space<'_>, leaf: Leaf, volume: &Self::Volume, path: &Path) -> bool;
+    /// See [`Tree::contains_leaf`].
+    fn contains_leaf(
+        self,
+        space: &Space<'_>,
+        leaf: Leaf,
+        volume: &Self::Volume,
+        path: &Path,
+    ) -> bool;
 }
 
 impl<A: PairArray> Tree for A {
     const SECTION: SectionKind = A::Pair::SECTION;
     type Volume = A::Volume;
 
-    /// Proves that there are as many pairs as the leaves call for, in breadth-first order.
+    /// Proves that there are as many pairs as the leaves require, in breadth-first order.
     fn order(self, leaves: usize) -> Result<usize, BlobError> {
         let expected = leaves.saturating_sub(1);
         if self.len() != expected {
@@ -154,13 +160,13 @@ impl<A: PairArray> Tree for A {
         pair.map_or(Node::leaf(u32::MAX), |pair| pair.child(number, side))
     }
 
-    fn narrow(self, number: u32, side: u32, volume: &mut Self::Volume) {
+    fn enter_child(self, number: u32, side: u32, volume: &mut Self::Volume) {
         if let Some(pair) = self.pair(number as usize) {
             *volume = self.volumes(pair, volume)[(side & 1) as usize];
         }
     }
 
-    fn nests(self, number: u32, parent: &Self::Volume) -> Result<(), Reason> {
+    fn children_inside(self, number: u32, parent: &Self::Volume) -> Result<(), Reason> {
         let Some(pair) = self.pair(number as usize) else {
             return Ok(());
         };
@@ -169,14 +175,14 @@ impl<A: PairArray> Tree for A {
             .iter()
             .zip([Reason::LeftOutside, Reason::RightOutside])
         {
-            if !PairArray::nests(self, child, parent) {
+            if !PairArray::child_inside(self, child, parent) {
                 return Err(reason);
             }
         }
         Ok(())
     }
 
-    fn holds(
+    fn contains_leaf(
         self,
         space: &Space<'_>,
         leaf: Leaf,
@@ -184,7 +190,7 @@ impl<A: PairArray> Tree for A {
         volume: &Self::Volume,
         path: &Path,
     ) -> bool {
-        PairArray::holds(self, space, leaf, volume, path)
+        PairArray::contains_leaf(self, space, leaf, volume, path)
     }
 }
 
@@ -209,11 +215,11 @@ impl<'a, P: BoxPair> PairArray for Pairs<'a, P> {
         pair.boxes(parent)
     }
 
-    fn nests(self, child: &UnitBox, parent: &UnitBox) -> bool {
+    fn child_inside(self, child: &UnitBox, parent: &UnitBox) -> bool {
         parent.contains(child)
     }
 
-    fn holds(self, space: &Space<'_>, leaf: Leaf, volume: &UnitBox, _: &Path) -> bool {
+    fn contains_leaf(self, space: &Space<'_>, leaf: Leaf, volume: &UnitBox, _: &Path) -> bool {
         space.shapes.leaf_inside(leaf, volume)
     }
 }
@@ -280,7 +286,7 @@ where
         }
     }
 
-    /// The same from a node on, whose box is not tested. For records whose children do not depend on
+    /// Walks from a node on, whose box is not tested. For records whose children do not depend on
     /// their parent's interval.
     #[inline(always)]
     pub(in crate::accel) fn enter<N: Number, K: PairCulling<N>, C: Observer>(

@@ -27,9 +27,9 @@ const SLAB_ABOUT_SPHERE: i64 = 1;
 /// By how much a slab is wider than a box: on the steepest directions two axes reach 16.3 units each
 /// and count by half.
 const SLAB_ABOUT_BOX: i64 = 17;
-/// By how much a ball is larger than what it holds: a unit for the hit and one for the ball's test.
+/// The margin of a bounding sphere around its primitives: a unit for the hit and one for the sphere's test.
 const BALL_ABOUT_SPHERE: i64 = 2;
-/// The diagonal of 16.3, 16.3 and 4 units, and one for the ball's test.
+/// The diagonal of 16.3, 16.3 and 4 units, and one for the sphere's test.
 const BALL_ABOUT_BOX: i64 = 25;
 
 /// The smallest integer whose square is at least this.
@@ -79,8 +79,8 @@ impl Reach {
         ]
     }
 
-    /// Whether a ball holds all of it: centre and radius in units.
-    pub fn in_ball(&self, center: [i16; 3], radius: u16) -> bool {
+    /// Returns whether a sphere, given by centre and radius in units, contains all of it.
+    pub fn in_sphere(&self, center: [i16; 3], radius: u16) -> bool {
         let radius = i64::from(radius) << 8;
         let squared = |apart: [i64; 3]| apart.iter().map(|x| x * x).sum::<i64>();
         let center = center.map(|x| i64::from(x) << 8);
@@ -130,13 +130,13 @@ mod tests {
     }
 
     #[test]
-    fn balls_hold_what_they_must() {
+    fn spheres_contain_primitives_with_a_margin() {
         let sphere = Reach::Sphere([256, 512, -768], 256 * 100);
-        assert!(sphere.in_ball([1, 2, -3], 102));
-        assert!(!sphere.in_ball([1, 2, -3], 101));
-        assert!(!sphere.in_ball([1, 2, 9], 102));
+        assert!(sphere.in_sphere([1, 2, -3], 102));
+        assert!(!sphere.in_sphere([1, 2, -3], 101));
+        assert!(!sphere.in_sphere([1, 2, 9], 102));
         let bounds = Reach::Box(UnitBox([[-30, 30], [-40, 40], [0, 0]]));
-        assert!(bounds.in_ball([0; 3], 75));
-        assert!(!bounds.in_ball([0; 3], 74));
+        assert!(bounds.in_sphere([0; 3], 75));
+        assert!(!bounds.in_sphere([0; 3], 74));
     }
 }

@@ -124,14 +124,14 @@ impl<'a, const FLAGGED: bool> PairArray for SlabPairs<'a, FLAGGED> {
         pair.volumes(parent)
     }
 
-    fn nests(self, child: &Volume, parent: &Volume) -> bool {
+    fn child_inside(self, child: &Volume, parent: &Volume) -> bool {
         let mut slabs = parent.iter().zip(child).take(self.root.len());
         slabs.all(|(outer, inner)| {
             outer[0] <= inner[0] && inner[0] <= inner[1] && inner[1] <= outer[1]
         })
     }
 
-    fn holds(self, space: &Space<'_>, leaf: Leaf, volume: &Volume, _: &Path) -> bool {
+    fn contains_leaf(self, space: &Space<'_>, leaf: Leaf, volume: &Volume, _: &Path) -> bool {
         leaf.slots().into_iter().all(|index| {
             Reach::of(&space.shapes, leaf.kind, index).is_some_and(|reach| {
                 let mut slabs = DIRECTIONS.iter().zip(volume).take(self.root.len());

@@ -1,13 +1,13 @@
-//! Bounding spheres, called balls here, because spheres are primitives.
+//! Bounding spheres.
 //!
-//! A ball is met where the ray passes its centre no farther than its radius. Its interval is taken
-//! from the point of the ray that is nearest to the centre, a radius back and forth: a little longer
-//! than the chord, and without a square root.
+//! The interval of a bounding sphere is taken from the point of the ray that is nearest to its centre, a radius
+//! back and forth: a little longer than the chord, and without a square root. It is empty where the ray passes the
+//! centre farther away than the radius.
 //!
-//! Balls of children need not lie in their parents' (a tight ball about many is not about their
-//! balls), so what is proved of a blob is that every primitive lies in the ball of each node above
-//! it, with room to spare (see [`Reach`]). Then a hit's point is in all of these balls, at no more
-//! than a radius from the ray's nearest point, and no ball above it is passed over.
+//! A child's sphere need not lie in its parent's: a tight sphere around primitives does not contain the tight
+//! spheres around parts of them. So a blob is proved to hold every primitive in the sphere of each node above it,
+//! with a margin (see [`Reach`]). Then a hit's point lies in all of these spheres, at most a radius from the ray's
+//! nearest point, and no node above it is skipped.
 
 use crate::accel::cull::{Cull, PairCulling};
 use crate::accel::cull_axis::Interval;
@@ -25,7 +25,7 @@ use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
 use crate::observe::count::Observer;
 use crate::ray::Ray;
 
-/// The hierarchy of bounding spheres; no plane is tested below the root, but two balls a pair.
+/// The hierarchy of bounding spheres; no plane is tested below the root, but two spheres per pair.
 #[derive(Clone, Copy, Debug)]
 pub enum Spheres {}
 
@@ -45,8 +45,8 @@ impl Traverse for Spheres {
     ) {
         let recip_norm2 = N::recip_norm2(ray.slope);
         let start = cull.start();
-        let meet = |ball: BoundingSphere, limit: i32| {
-            let whole = interval(ray, recip_norm2, ball);
+        let meet = |sphere: BoundingSphere, limit: i32| {
+            let whole = interval(ray, recip_norm2, sphere);
             Interval {
                 near: whole.near.max(start),
                 far: whole.far.min(limit),
@@ -57,22 +57,22 @@ impl Traverse for Spheres {
             pairs: views.0,
             root: |limit| PairCulling::<N>::root(cull, space.bounds(), limit),
             root_planes: 6,
-            narrow: |pair: &SpherePair, _, limit| pair.balls.map(|ball| meet(ball, limit)),
+            narrow: |pair: &SpherePair, _, limit| pair.spheres.map(|sphere| meet(sphere, limit)),
         };
         walk.run::<N, Cull, C>(ray.tmax, stack, count, leaf);
     }
 }
 
-/// The interval of a ball; empty where the ray passes it by.
+/// The interval of a bounding sphere; empty where the ray misses it.
 #[inline(always)]
-fn interval<N: Number>(ray: &Ray<N>, recip_norm2: N, ball: BoundingSphere) -> Interval {
+fn interval<N: Number>(ray: &Ray<N>, recip_norm2: N, sphere: BoundingSphere) -> Interval {
     const NOWHERE: Interval = Interval { near: 1, far: 0 };
-    let axis = |k: usize| N::from_unit(ball.center[k]) - ray.origin[k];
+    let axis = |k: usize| N::from_unit(sphere.center[k]) - ray.origin[k];
     let relative = [axis(0), axis(1), axis(2)];
     let closest = N::from_wide(N::wide_scale(N::dot(relative, ray.slope), recip_norm2));
     let axis = |k: usize| relative[k] - closest * ray.slope[k];
     let apart = [axis(0), axis(1), axis(2)];
-    let radius = N::from_lattice(i32::from(ball.radius) << 8);
+    let radius = N::from_lattice(i32::from(sphere.radius) << 8);
     // The box first, so that squares stay in range.
     if !(apart[0].abs() <= radius && apart[1].abs() <= radius && apart[2].abs() <= radius) {
         return NOWHERE;
@@ -81,7 +81,7 @@ fn interval<N: Number>(ray: &Ray<N>, recip_norm2: N, ball: BoundingSphere) -> In
         return NOWHERE;
     }
     // Steps are half units; one for the rounding of each conversion.
-    let (middle, reach) = (closest.to_cull(), 2 * i32::from(ball.radius) + 1);
+    let (middle, reach) = (closest.to_cull(), 2 * i32::from(sphere.radius) + 1);
     Interval {
         near: middle - reach,
         far: middle + reach + 1,
@@ -93,7 +93,7 @@ fn interval<N: Number>(ray: &Ray<N>, recip_norm2: N, ball: BoundingSphere) -> In
 pub struct Views<'a>(pub(in crate::accel) &'a [SpherePair]);
 
 impl PairRecord for &SpherePair {
-    const SECTION: SectionKind = SectionKind::BallPairs;
+    const SECTION: SectionKind = SectionKind::SpherePairs;
 
     #[inline(always)]
     fn planes(&self) -> u32 {
@@ -107,11 +107,11 @@ impl PairRecord for &SpherePair {
 }
 
 impl<'a> Records<'a> for Views<'a> {
-    const SECTIONS: &'static [SectionKind] = &[SectionKind::BallPairs];
+    const SECTIONS: &'static [SectionKind] = &[SectionKind::SpherePairs];
     const USES_LEAVES: bool = true;
 
     fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
-        Ok(Self(sections.records(SectionKind::BallPairs)?))
+        Ok(Self(sections.records(SectionKind::SpherePairs)?))
     }
 
     fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
@@ -139,14 +139,14 @@ impl<'a> PairArray for &'a [SpherePair] {
 
     /// At most [`MAX_LEVELS`](crate::format::limits::MAX_LEVELS) spheres are asked about each primitive;
     /// for the root the scene's box is tested.
-    fn holds(self, space: &Space<'_>, leaf: Leaf, (): &(), path: &Path) -> bool {
+    fn contains_leaf(self, space: &Space<'_>, leaf: Leaf, (): &(), path: &Path) -> bool {
         leaf.slots().into_iter().all(|index| {
             Reach::of(&space.shapes, leaf.kind, index).is_some_and(|reach| {
                 path.iter().all(|&step| {
                     let pair = self.get((step >> 1) as usize);
                     pair.is_some_and(|pair| {
-                        let ball = pair.balls[(step & 1) as usize];
-                        reach.in_ball(ball.center, ball.radius)
+                        let sphere = pair.spheres[(step & 1) as usize];
+                        reach.in_sphere(sphere.center, sphere.radius)
                     })
                 })
             })

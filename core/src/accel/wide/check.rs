@@ -17,7 +17,7 @@ use heapless::Vec;
 pub(super) fn check(nodes: &[WideNode], space: &Space<'_>) -> Result<usize, BlobError> {
     check_members(space)?;
     check_order(nodes, space)?;
-    check_homes(nodes, space)?;
+    check_slot_locations(nodes, space)?;
     check_boxes(nodes, space)
 }
 
@@ -49,7 +49,7 @@ fn check_members(space: &Space<'_>) -> Result<(), BlobError> {
         };
         let first = members.first() as usize;
         follows(section, strip, Field::FirstMember, first, next)?;
-        let mut places = (0..8).filter(|place| members.places() >> place & 1 != 0);
+        let mut places = (0..8).filter(|place| members.lanes() >> place & 1 != 0);
         if places.any(|place| members.corners(place).is_none()) {
             return Err(wrong(section, strip, Reason::UnknownArrangement));
         }
@@ -96,8 +96,8 @@ fn check_members(space: &Space<'_>) -> Result<(), BlobError> {
             });
         }
     }
-    // Homes lead to members, where there are any.
-    let own = clusters.homes.is_empty();
+    // Slot locations lead to members, where there are any.
+    let own = clusters.locations.is_empty();
     for index in 0..clusters.members.len() * usize::from(own) {
         let primitive = clusters.members.get(index).unwrap_or(u32::MAX).into();
         At { section, index }.within(Field::Primitive, primitive, 0, most as i64 - 1)?;
@@ -171,7 +171,7 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
     let mut next_sparse = full_packs;
     let mut others = [0; Kind::ALL.len()];
     // Where other structures share the slots, these are in the order of theirs.
-    let own_order = space.shapes.clusters().homes.is_empty();
+    let own_order = space.shapes.clusters().locations.is_empty();
     for (index, node) in nodes.iter().enumerate() {
         let mut ended = false;
         for lane in 0..LANES {
@@ -257,12 +257,12 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
 }
 
 /// Proves, where other structures share the primitives, that the hierarchy holds each of them once:
-/// every slot has a home that leads back to it, and there are as many homes as places.
-fn check_homes(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
-    let section = SectionKind::Homes;
+/// every slot has a location that leads back to it, and there are as many locations as places.
+fn check_slot_locations(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
+    let section = SectionKind::SlotLocations;
     let (shapes, clusters) = (&space.shapes, space.shapes.clusters());
-    let homes = clusters.homes;
-    if homes.is_empty() {
+    let locations = clusters.locations;
+    if locations.is_empty() {
         // Then the clusters' are the only triangles and spheres.
         for (section, kind) in [
             (SectionKind::Triangles, Kind::Triangle),
@@ -282,21 +282,21 @@ fn check_homes(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
     check_records(space)?;
     let bounded = || Kind::ALL.into_iter().filter(|kind| kind.is_bounded());
     let slots = bounded().map(|kind| shapes.records(kind)).sum();
-    if homes.len() != slots {
+    if locations.len() != slots {
         return Err(BlobError::Count {
             section,
-            found: homes.len(),
+            found: locations.len(),
             expected: slots,
         });
     }
-    let mut rest = homes.iter().enumerate();
+    let mut rest = locations.iter().enumerate();
     for kind in bounded() {
-        for (slot, (index, &home)) in (0..shapes.records(kind) as u32).zip(rest.by_ref()) {
-            let (cluster, lane) = (home >> 3, home & 7);
+        for (slot, (index, &location)) in (0..shapes.records(kind) as u32).zip(rest.by_ref()) {
+            let (cluster, lane) = (location >> 3, location & 7);
             let leads_back = match kind {
                 Kind::Triangle => {
                     let members = clusters.strips.members(cluster);
-                    members.is_some_and(|it| it.places() >> lane & 1 != 0)
+                    members.is_some_and(|it| it.lanes() >> lane & 1 != 0)
                         && clusters.triangle_member(cluster, lane) == Some(slot)
                         && clusters.strips.triangle(cluster, lane) == shapes.triangle(slot as usize)
                 }
@@ -312,12 +312,12 @@ fn check_homes(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
                         first: slot,
                         count: 1,
                     };
-                    let node = nodes.get(home as usize);
+                    let node = nodes.get(location as usize);
                     node.is_some_and(|node| node.children.contains(&leaf.to_word()))
                 }
             };
             if !leads_back {
-                return Err(wrong(section, index, Reason::WrongHome));
+                return Err(wrong(section, index, Reason::WrongSlotLocation));
             }
         }
     }

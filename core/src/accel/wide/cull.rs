@@ -29,11 +29,11 @@ pub trait WideCulling<N: CullArithmetic>: Culling<N> {
 /// The culling form of a ray in eight lanes of `f32`: t in units.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WideLanes {
-    /// One over the slope, an axis each.
+    /// One over the slope, per axis.
     inverse: Vec4,
-    /// What the near plane's product lacks to t; and the ray's start.
+    /// The offsets from the near planes' products to t; and the ray's start.
     near: Vec4,
-    /// What the far plane's product lacks to t.
+    /// The offsets from the far planes' products to t.
     far: Vec4,
     /// A bit for each axis that the ray runs down: a node's upper row has the near planes there.
     descends: u32,

@@ -61,7 +61,7 @@ impl<'a> Records<'a> for Views<'a> {
         SectionKind::Strips,
         SectionKind::Packs,
         SectionKind::Members,
-        SectionKind::Homes,
+        SectionKind::SlotLocations,
         SectionKind::Radii,
     ];
     const USES_LEAVES: bool = false;

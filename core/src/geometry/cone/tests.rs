@@ -9,7 +9,7 @@ use crate::ray::Ray;
 
 const WORLD: UnitBox = UnitBox([[-32_767, 32_767]; 3]);
 
-/// What `core/ACCURACY.md` promises, in steps.
+/// The bound of `core/ACCURACY.md`, in steps.
 const BOUND: f64 = 8.0;
 
 /// Steele, Lea and Flood's SplitMix64.

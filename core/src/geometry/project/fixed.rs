@@ -7,12 +7,11 @@ use crate::number::Products;
 use crate::number::Scalar;
 use crate::number::fixed::base::LENGTH_BITS;
 use crate::number::fixed::base::RATIO_BITS;
-use crate::number::fixed::base::keep;
+use crate::number::fixed::base::assert_in_range;
 use crate::number::fixed::halves;
 use crate::number::fixed::halves::product;
 use crate::number::fixed::wide::Product;
-use crate::target::NARROW_PRODUCTS;
-use crate::target::SMALL;
+use crate::target::{NARROW_PRODUCTS, SMALL, inline_unless_small};
 /// [`Project::surrounds_origin`](crate::geometry::Project::surrounds_origin) by the sides on which the edges leave the origin, where they differ: those that
 /// lead through it are on neither.
 fn surround_by_sides(sides: [i64; 3]) -> bool {
@@ -38,7 +37,7 @@ impl Project for Fixed {
     #[inline(always)]
     fn depth_projection(origin: Self, slope: Self, bits: u32) -> AxisProjection<Self> {
         let AxisProjection { offset, scale } = Self::axis_projection(origin, slope, bits);
-        keep(|| offset.0.unsigned_abs() < 1 << 30);
+        assert_in_range(|| offset.0.unsigned_abs() < 1 << 30);
         AxisProjection {
             offset: Fixed(offset.0.wrapping_shl(1)),
             scale: scale.wrapping_shl(1),
@@ -46,8 +45,8 @@ impl Project for Fixed {
     }
 
     #[inline(always)]
-    fn project(coordinate: i32, sight: &AxisProjection<Self>) -> Self {
-        Fixed(coordinate.wrapping_mul(sight.scale)) + sight.offset
+    fn project(coordinate: i32, axis: &AxisProjection<Self>) -> Self {
+        Fixed(coordinate.wrapping_mul(axis.scale)) + axis.offset
     }
 
     #[inline(always)]
@@ -62,24 +61,25 @@ impl Project for Fixed {
         Fixed((product(depth.0, shear.0) >> 32) as i32)
     }
 
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    fn surrounds_origin(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool {
-        if NARROW_PRODUCTS && let Some(surround) = halves::surround(a, b, c) {
-            return surround;
+    inline_unless_small!(
+        fn surrounds_origin(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool {
+            if NARROW_PRODUCTS && let Some(surround) = halves::surround(a, b, c) {
+                return surround;
+            }
+            let cross = |a: [Self; 2], b: [Self; 2]| (a[0].wide(b[1]) - a[1].wide(b[0])).0;
+            let (u, v) = (cross(b, c), cross(c, a));
+            // Few triangles come further. Where an upper half is not 0, neither is the whole.
+            let (upper_u, upper_v) = ((u >> 32) as i32, (v >> 32) as i32);
+            if upper_u ^ upper_v < 0 && upper_u != 0 && upper_v != 0 {
+                return false;
+            }
+            let w = cross(a, b);
+            if (u ^ v | u ^ w) < 0 {
+                return surround_by_sides([u, v, w]);
+            }
+            u | v | w != 0
         }
-        let cross = |a: [Self; 2], b: [Self; 2]| (a[0].wide(b[1]) - a[1].wide(b[0])).0;
-        let (u, v) = (cross(b, c), cross(c, a));
-        // Few triangles come further. Where an upper half is not 0, neither is the whole.
-        let (upper_u, upper_v) = ((u >> 32) as i32, (v >> 32) as i32);
-        if upper_u ^ upper_v < 0 && upper_u != 0 && upper_v != 0 {
-            return false;
-        }
-        let w = cross(a, b);
-        if (u ^ v | u ^ w) < 0 {
-            return surround_by_sides([u, v, w]);
-        }
-        u | v | w != 0
-    }
+    );
 
     #[inline(always)]
     fn same_sign(v: [Self; 3]) -> bool {

@@ -51,8 +51,8 @@ macro_rules! project {
             }
 
             #[inline(always)]
-            fn project(coordinate: i32, sight: &AxisProjection<Self>) -> Self {
-                coordinate as $float + sight.offset
+            fn project(coordinate: i32, axis: &AxisProjection<Self>) -> Self {
+                coordinate as $float + axis.offset
             }
 
             #[inline(always)]

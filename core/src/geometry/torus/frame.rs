@@ -26,7 +26,7 @@ impl<N: Arithmetic> Frame<N> {
         }
     }
 
-    /// The same, of numbers that are rounded to the format at every step.
+    /// The frame of an axis, rounded to the format at every step.
     fn rounded(axis: [i32; 3]) -> Self {
         let [x, y, z] = axis.map(i32::unsigned_abs);
         let axis = divided(N::direction(axis.map(i64::from)));
@@ -47,7 +47,7 @@ impl<N: Arithmetic> Frame<N> {
         }
     }
 
-    /// What a vector is along the axis and across it.
+    /// The components of a vector along the axis and across it.
     pub(super) fn parts(&self, v: [N; 3]) -> (N, [N; 2]) {
         let along = |unit: [N; 3]| N::from_wide(N::dot(v, unit));
         (along(self.axis), self.across.map(along))

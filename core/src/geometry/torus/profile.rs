@@ -48,7 +48,7 @@ struct Point<N> {
     x: N,
     y: N,
     rho: N,
-    /// What lies beyond the circle: `rho - R`.
+    /// The distance beyond the circle: `rho - R`.
     beyond: N,
 }
 

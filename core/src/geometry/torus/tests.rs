@@ -9,7 +9,7 @@ use crate::ray::Ray;
 
 const WORLD: UnitBox = UnitBox([[-32_767, 32_767]; 3]);
 
-/// What `core/ACCURACY.md` promises, in steps.
+/// The bound of `core/ACCURACY.md`, in steps.
 const BOUND: f64 = 8.0;
 
 /// Steele, Lea and Flood's SplitMix64.
@@ -36,7 +36,7 @@ impl Random {
         2.0 * self.unit() - 1.0
     }
 
-    /// Of any magnitude between two.
+    /// A number of any magnitude between two.
     fn magnitude(&mut self, least: f64, most: f64) -> f64 {
         least * (most / least).powf(self.unit())
     }
@@ -473,7 +473,7 @@ fn rays_that_leave_a_torus_do_not_meet_it_from_inside() {
     leave_all::<f64>();
 }
 
-/// What went wrong once in `fixed`: a tangent to a thin ring along its inside, where the walk took a slope
+/// A fault of `fixed` that is mended: a tangent to a thin ring along its inside, where the walk took a slope
 /// that rounding hardly touches for one that it may hide, and gave up half way.
 #[test]
 fn a_tangent_along_the_inside_of_a_thin_ring_is_met() {

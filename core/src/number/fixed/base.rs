@@ -14,7 +14,7 @@ pub struct Fixed(pub i32);
 /// Nothing, or with the feature `strict-ranges` a panic where a kernel left the range that its
 /// documentation says it keeps.
 #[inline(always)]
-pub(crate) fn keep(in_range: impl FnOnce() -> bool) {
+pub(crate) fn assert_in_range(in_range: impl FnOnce() -> bool) {
     if cfg!(feature = "strict-ranges") {
         assert!(in_range(), "a number left its range");
     }
@@ -65,7 +65,7 @@ macro_rules! wrapping_sums {
             type Output = Self;
             #[inline(always)]
             fn add(self, other: Self) -> Self {
-                keep(|| self.0.checked_add(other.0).is_some());
+                assert_in_range(|| self.0.checked_add(other.0).is_some());
                 Self(self.0.wrapping_add(other.0))
             }
         }
@@ -74,7 +74,7 @@ macro_rules! wrapping_sums {
             type Output = Self;
             #[inline(always)]
             fn sub(self, other: Self) -> Self {
-                keep(|| self.0.checked_sub(other.0).is_some());
+                assert_in_range(|| self.0.checked_sub(other.0).is_some());
                 Self(self.0.wrapping_sub(other.0))
             }
         }
@@ -83,7 +83,7 @@ macro_rules! wrapping_sums {
             type Output = Self;
             #[inline(always)]
             fn neg(self) -> Self {
-                keep(|| self.0.checked_neg().is_some());
+                assert_in_range(|| self.0.checked_neg().is_some());
                 Self(self.0.wrapping_neg())
             }
         }

@@ -14,7 +14,7 @@ pub(crate) const fn product(a: i32, b: i32) -> i64 {
     }
 }
 
-/// The same without signs.
+/// A product of unsigned numbers in 64 bits.
 #[inline(always)]
 pub(super) const fn product_unsigned(a: u32, b: u32) -> u64 {
     if NARROW_PRODUCTS {
@@ -39,7 +39,7 @@ const fn product_of_halves(a: i32, b: i32) -> i64 {
     (high as i64) << 32 | ((other as u32) << 16 | low & 0xffff) as i64
 }
 
-/// The same without signs.
+/// Four unsigned products of halves; see [`product_of_halves`].
 #[inline(always)]
 const fn product_of_halves_unsigned(a: u32, b: u32) -> u64 {
     let (a_high, a_low) = (a >> 16, a & 0xffff);

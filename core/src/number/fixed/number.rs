@@ -8,7 +8,7 @@ use crate::number::Products;
 use crate::number::Scalar;
 use crate::number::Vectors;
 use crate::number::fixed::base::{
-    LENGTH_BITS, RADIANCE_BITS, RATIO_BITS, keep, round_off, saturate, with_sign,
+    LENGTH_BITS, RADIANCE_BITS, RATIO_BITS, assert_in_range, round_off, saturate, with_sign,
 };
 use crate::number::fixed::exponential::exp_neg;
 use crate::number::fixed::halves::product;
@@ -18,6 +18,7 @@ use crate::number::fixed::root::scaled_root;
 use crate::number::fixed::vector;
 use crate::number::fixed::wide::Product;
 use crate::number::scalar::Sealed;
+use crate::target::inline_unless_small;
 use core::ops::Mul;
 
 impl Mul for Fixed {
@@ -25,7 +26,7 @@ impl Mul for Fixed {
     #[inline(always)]
     fn mul(self, ratio: Self) -> Self {
         let product = round_off(product(self.0, ratio.0), RATIO_BITS);
-        keep(|| i32::try_from(product).is_ok());
+        assert_in_range(|| i32::try_from(product).is_ok());
         Self(product as i32)
     }
 }
@@ -107,7 +108,7 @@ impl Convert for Fixed {
 
     #[inline(always)]
     fn radiance_sum(self, other: Self) -> Self {
-        keep(|| self.0 >= 0 && other.0 >= 0);
+        assert_in_range(|| self.0 >= 0 && other.0 >= 0);
         let sum = self.0.wrapping_add(other.0);
         Fixed(if sum < 0 { i32::MAX } else { sum })
     }
@@ -210,10 +211,10 @@ impl Products for Fixed {
     }
 
     #[inline(always)]
-    fn excess(a: Product, b: Product) -> Self {
+    fn difference_as_length(a: Product, b: Product) -> Self {
         // Without a sign every difference has room.
-        let excess = a.0.wrapping_sub(b.0) as u64;
-        Fixed(excess.min(i32::MAX as u64) as i32)
+        let difference = a.0.wrapping_sub(b.0) as u64;
+        Fixed(difference.min(i32::MAX as u64) as i32)
     }
 
     #[cold]
@@ -223,10 +224,11 @@ impl Products for Fixed {
         Self::narrow(origin + depth.times_ratio(step, stride))
     }
 
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    fn from_wide(product: Product) -> Self {
-        saturate(round_off(product.0, RATIO_BITS))
-    }
+    inline_unless_small!(
+        fn from_wide(product: Product) -> Self {
+            saturate(round_off(product.0, RATIO_BITS))
+        }
+    );
 
     #[inline(always)]
     fn wide_scale(wide: Product, ratio: Self) -> Product {
@@ -298,7 +300,7 @@ impl Vectors for Fixed {
 
     #[inline(always)]
     fn scale_up(self, bits: u32) -> Self {
-        keep(|| self.0.unsigned_abs().leading_zeros() > bits);
+        assert_in_range(|| self.0.unsigned_abs().leading_zeros() > bits);
         Fixed(self.0.wrapping_shl(bits))
     }
 

@@ -151,7 +151,7 @@ proptest! {
         prop_assert!(!met || !beside(0) && !beside(1));
     }
 
-    /// What a ray sees of a vertex does not depend on which way axes run.
+    /// The projection of a vertex does not depend on the direction of axes.
     #[test]
     fn projections_are_mirrored(
         vertex in -(1_i32 << 23)..1_i32 << 23, depth in -(1_i32 << 23)..1_i32 << 23,

@@ -7,22 +7,24 @@ use crate::number::fixed::halves::{leading_zeros, product_unsigned, wide_leading
 use crate::number::fixed::reciprocal::reciprocal;
 use crate::number::fixed::root::nearest_root;
 use crate::number::fixed::wide::Product;
+use crate::target::inline_unless_small;
 
-/// `v >> bits` on the magnitude, so that rounding does not depend on the sign.
-#[cfg_attr(not(feature = "small"), inline(always))]
-const fn shift_magnitude(v: i64, bits: i32) -> i32 {
-    let magnitude = v.unsigned_abs();
-    let shifted = if bits >= 0 {
-        magnitude >> (bits & 63)
-    } else {
-        magnitude << (bits.wrapping_neg() & 63)
-    } as i32;
-    if v < 0 {
-        shifted.wrapping_neg()
-    } else {
-        shifted
+inline_unless_small!(
+    /// `v >> bits` on the magnitude, so that rounding does not depend on the sign.
+    const fn shift_magnitude(v: i64, bits: i32) -> i32 {
+        let magnitude = v.unsigned_abs();
+        let shifted = if bits >= 0 {
+            magnitude >> (bits & 63)
+        } else {
+            magnitude << (bits.wrapping_neg() & 63)
+        } as i32;
+        if v < 0 {
+            shifted.wrapping_neg()
+        } else {
+            shifted
+        }
     }
-}
+);
 
 /// Undoes the shift of [`shift_magnitude`], rounded down.
 #[inline(always)]
@@ -67,18 +69,19 @@ pub(super) fn direction(v: [i64; 3]) -> [Fixed; 3] {
     v.map(|component| Fixed(shift_magnitude(component, bits)))
 }
 
-/// [`Vectors::slopes`](crate::number::Vectors::slopes).
-#[cfg_attr(not(feature = "small"), inline(always))]
-pub(super) fn slopes(v: [Product; 3]) -> Option<([Fixed; 3], usize)> {
-    let v = v.map(|product| product.0);
-    let narrow = v.map(|component| component as i32);
-    let same = |k: usize| i64::from(narrow[k]) == v[k] && narrow[k] != i32::MIN;
-    if same(0) && same(1) && same(2) {
-        slopes_of_narrow(narrow)
-    } else {
-        slopes_of_wide(v)
+inline_unless_small!(
+    /// [`Vectors::slopes`](crate::number::Vectors::slopes).
+    pub(super) fn slopes(v: [Product; 3]) -> Option<([Fixed; 3], usize)> {
+        let v = v.map(|product| product.0);
+        let narrow = v.map(|component| component as i32);
+        let same = |k: usize| i64::from(narrow[k]) == v[k] && narrow[k] != i32::MIN;
+        if same(0) && same(1) && same(2) {
+            slopes_of_narrow(narrow)
+        } else {
+            slopes_of_wide(v)
+        }
     }
-}
+);
 
 /// [`Vectors::slopes_of`](crate::number::Vectors::slopes_of).
 #[inline(always)]
@@ -92,56 +95,58 @@ fn slopes_of_wide(v: [i64; 3]) -> Option<([Fixed; 3], usize)> {
     slopes_of_narrow(v.map(|component| shift_magnitude(component, bits)))
 }
 
-/// [`Vectors::slopes`](crate::number::Vectors::slopes) of a vector of at most 31 bits and a sign.
-#[cfg_attr(not(feature = "small"), inline(always))]
-fn slopes_of_narrow(v: [i32; 3]) -> Option<([Fixed; 3], usize)> {
-    let [x, y, z] = v.map(i32::unsigned_abs);
-    let (largest, axis) = if x >= y && x >= z {
-        (x, 0)
-    } else if y >= z {
-        (y, 1)
-    } else {
-        (z, 2)
-    };
-    if largest == 0 {
-        return None;
-    }
-    let up = leading_zeros(largest).wrapping_sub(1) & 31;
-    let inverse = reciprocal(largest << up);
-    let minor = |component: i32| {
-        let scaled = component.unsigned_abs().wrapping_shl(up);
-        let magnitude = (product_unsigned(scaled, inverse) >> 31) as u32;
-        let magnitude = magnitude.min(1 << RATIO_BITS) as i32;
-        Fixed(if component < 0 {
-            magnitude.wrapping_neg()
+inline_unless_small!(
+    /// [`Vectors::slopes`](crate::number::Vectors::slopes) of a vector of at most 31 bits and a sign.
+    fn slopes_of_narrow(v: [i32; 3]) -> Option<([Fixed; 3], usize)> {
+        let [x, y, z] = v.map(i32::unsigned_abs);
+        let (largest, axis) = if x >= y && x >= z {
+            (x, 0)
+        } else if y >= z {
+            (y, 1)
         } else {
-            magnitude
-        })
-    };
-    let one = |component: i32| {
-        if component < 0 {
-            -Fixed::ONE
-        } else {
-            Fixed::ONE
+            (z, 2)
+        };
+        if largest == 0 {
+            return None;
         }
-    };
-    let slopes = match axis {
-        0 => [one(v[0]), minor(v[1]), minor(v[2])],
-        1 => [minor(v[0]), one(v[1]), minor(v[2])],
-        _ => [minor(v[0]), minor(v[1]), one(v[2])],
-    };
-    Some((slopes, axis))
-}
+        let up = leading_zeros(largest).wrapping_sub(1) & 31;
+        let inverse = reciprocal(largest << up);
+        let minor = |component: i32| {
+            let scaled = component.unsigned_abs().wrapping_shl(up);
+            let magnitude = (product_unsigned(scaled, inverse) >> 31) as u32;
+            let magnitude = magnitude.min(1 << RATIO_BITS) as i32;
+            Fixed(if component < 0 {
+                magnitude.wrapping_neg()
+            } else {
+                magnitude
+            })
+        };
+        let one = |component: i32| {
+            if component < 0 {
+                -Fixed::ONE
+            } else {
+                Fixed::ONE
+            }
+        };
+        let slopes = match axis {
+            0 => [one(v[0]), minor(v[1]), minor(v[2])],
+            1 => [minor(v[0]), one(v[1]), minor(v[2])],
+            _ => [minor(v[0]), minor(v[1]), one(v[2])],
+        };
+        Some((slopes, axis))
+    }
+);
 
-/// [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2).
-#[cfg_attr(not(feature = "small"), inline(always))]
-pub(super) fn recip_norm2(d: [Fixed; 3]) -> Fixed {
-    // d . d has 60 fraction bits: as 29, 1 to 3 lies in [2^29, 2^31).
-    let norm2 = (Fixed::dot(d, d).0 >> 31) as u32;
-    let up = norm2.leading_zeros().saturating_sub(1);
-    // 2^61 over 2^29 to 2^31 is 2^32 to 2^30; a ratio has 30 bits.
-    Fixed((reciprocal(norm2 << (up & 1)) >> (2 - (up & 1))) as i32)
-}
+inline_unless_small!(
+    /// [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2).
+    pub(super) fn recip_norm2(d: [Fixed; 3]) -> Fixed {
+        // d . d has 60 fraction bits: as 29, 1 to 3 lies in [2^29, 2^31).
+        let norm2 = (Fixed::dot(d, d).0 >> 31) as u32;
+        let up = norm2.leading_zeros().saturating_sub(1);
+        // 2^61 over 2^29 to 2^31 is 2^32 to 2^30; a ratio has 30 bits.
+        Fixed((reciprocal(norm2 << (up & 1)) >> (2 - (up & 1))) as i32)
+    }
+);
 
 /// [`Vectors::normalize`](crate::number::Vectors::normalize).
 pub(super) fn normalize(v: [Fixed; 3]) -> ([Fixed; 3], Fixed) {

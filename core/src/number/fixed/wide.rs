@@ -1,10 +1,10 @@
 //! Wide numbers: products in 64 bits, and what they are multiplied with and divided by.
 
 use crate::number::fixed::base::wrapping_sums;
-use crate::number::fixed::base::{Fixed, RATIO_BITS, keep, with_sign};
+use crate::number::fixed::base::{Fixed, RATIO_BITS, assert_in_range, with_sign};
 use crate::number::fixed::halves::{product_unsigned, wide_leading_zeros};
 use crate::number::fixed::reciprocal::reciprocal;
-use crate::target::NARROW_PRODUCTS;
+use crate::target::{NARROW_PRODUCTS, inline_unless_small};
 use core::ops::{Add, Neg, Sub};
 
 /// A product in 64 bits; its operators wrap like those of [`Fixed`].
@@ -68,7 +68,7 @@ impl Product {
     // Only cameras are set up with it.
     #[inline(never)]
     pub(super) fn div(self, divisor: i32) -> Self {
-        keep(|| divisor > 0 && divisor < 1 << 24);
+        assert_in_range(|| divisor > 0 && divisor < 1 << 24);
         let divisor = divisor.unsigned_abs();
         // Byte by byte, in 32 bits: cores without a division in 64 would need a kilobyte for one.
         let (mut quotient, mut rest) = (0_u64, 0_u32);
@@ -88,17 +88,20 @@ impl Product {
         })
     }
 
-    /// [`Products::wide_scale`](crate::number::Products::wide_scale).
-    #[cfg_attr(not(feature = "small"), inline(always))]
-    pub(super) fn scaled(self, ratio: Fixed) -> Self {
-        keep(|| i64::try_from((self.0 as i128 * ratio.0 as i128) >> RATIO_BITS).is_ok());
-        let high = (self.0 >> 32).wrapping_mul(ratio.0 as i64);
-        let low = (self.0 & 0xffff_ffff).wrapping_mul(ratio.0 as i64);
-        // Rounded as a product of two numbers is.
-        let half = (1 << (RATIO_BITS - 1)) + ((self.0 ^ ratio.0 as i64) >> 63);
-        let low = low.wrapping_add(half) >> RATIO_BITS;
-        Self((high << (32 - RATIO_BITS)).wrapping_add(low))
-    }
+    inline_unless_small!(
+        /// [`Products::wide_scale`](crate::number::Products::wide_scale).
+        pub(super) fn scaled(self, ratio: Fixed) -> Self {
+            assert_in_range(|| {
+                i64::try_from((self.0 as i128 * ratio.0 as i128) >> RATIO_BITS).is_ok()
+            });
+            let high = (self.0 >> 32).wrapping_mul(ratio.0 as i64);
+            let low = (self.0 & 0xffff_ffff).wrapping_mul(ratio.0 as i64);
+            // Rounded as a product of two numbers is.
+            let half = (1 << (RATIO_BITS - 1)) + ((self.0 ^ ratio.0 as i64) >> 63);
+            let low = low.wrapping_add(half) >> RATIO_BITS;
+            Self((high << (32 - RATIO_BITS)).wrapping_add(low))
+        }
+    );
 
     /// [`Products::far_over`](crate::number::Products::far_over).
     pub(super) fn over_ratios(self, denominator: Self) -> Self {
@@ -157,7 +160,7 @@ impl Product {
         let coarse = product_unsigned((dividend >> 31) as u32, inverse as u32) >> 31;
         let rest = product_unsigned(coarse as u32, divisor as u32);
         let rest = dividend.wrapping_sub(rest) as i64;
-        keep(|| rest.unsigned_abs() < 1 << 37);
+        assert_in_range(|| rest.unsigned_abs() < 1 << 37);
         let fine = (rest >> 8).wrapping_mul(inverse as i64);
         let fine = fine.wrapping_add(1 << 53) >> 54;
         with_sign(coarse.wrapping_add(fine as u64), sign)

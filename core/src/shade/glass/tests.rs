@@ -109,7 +109,7 @@ proptest! {
         judge::<f64>(k, entering, sin)?;
     }
 
-    /// What passes one piece of glass and then another passed both (F11).
+    /// Light that passes one piece of glass and then another passed both (F11).
     #[test]
     fn absorption_multiplies(coefficient: u32, a in 0.0..30_000.0_f64, b in 0.0..30_000.0_f64) {
         fn judge<N: Number>(coefficient: u32, a: f64, b: f64) -> Result<(), TestCaseError> {

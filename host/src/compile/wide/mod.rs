@@ -63,7 +63,7 @@ pub struct Wide {
     /// The primitives that are in no cluster, in the order of their slots, kind by kind.
     pub slots: [Vec<u32>; Kind::ALL.len()],
     /// Where other structures share the primitives: for each slot, where it lies in the hierarchy.
-    homes: Vec<u32>,
+    locations: Vec<u32>,
     /// Where other structures share the primitives: for each kind, the slot of each primitive.
     shared: Option<[Vec<u32>; Kind::ALL.len()]>,
     pub stack_depth: usize,
@@ -181,8 +181,8 @@ impl Wide {
             Item::Strip(number) => {
                 for (place, triangle) in strips[number].triangles.iter().enumerate() {
                     if let &Some(triangle) = triangle {
-                        let home = self.strips.len() << 3 | place;
-                        self.set_home(Kind::Triangle, triangle, home);
+                        let location = self.strips.len() << 3 | place;
+                        self.set_location(Kind::Triangle, triangle, location);
                     }
                 }
                 self.strips.push(strips[number].clone());
@@ -198,7 +198,7 @@ impl Wide {
                     packs.len() - 1
                 };
                 for (lane, &sphere) in pack.spheres.iter().enumerate() {
-                    self.set_home(Kind::Sphere, sphere, number << 3 | lane);
+                    self.set_location(Kind::Sphere, sphere, number << 3 | lane);
                 }
                 cluster(Kind::Sphere, number)
             }
@@ -207,7 +207,7 @@ impl Wide {
                 slots.push(index);
                 let own = slots.len() as u32 - 1;
                 let first = self.slot(kind, index).unwrap_or(own);
-                self.set_home(kind, index, self.nodes.len());
+                self.set_location(kind, index, self.nodes.len());
                 Leaf {
                     kind,
                     first,
@@ -223,15 +223,15 @@ impl Wide {
         Some(shared[kind as usize][index as usize])
     }
 
-    fn set_home(&mut self, kind: Kind, index: u32, home: usize) {
+    fn set_location(&mut self, kind: Kind, index: u32, location: usize) {
         let (Some(shared), Some(slot)) = (&self.shared, self.slot(kind, index)) else {
             return;
         };
         let before = shared[..kind as usize].iter().map(Vec::len);
         let place = before.sum::<usize>() + slot as usize;
         let all = shared.iter().map(Vec::len).sum();
-        self.homes.resize(all, 0);
-        self.homes[place] = home as u32;
+        self.locations.resize(all, 0);
+        self.locations[place] = location as u32;
     }
 
     /// Primitives of the fullest cluster or leaf.
@@ -308,7 +308,7 @@ impl Wide {
             strips,
             packs,
             indices(SectionKind::Members, &members, 2),
-            section(SectionKind::Homes, &self.homes),
+            section(SectionKind::SlotLocations, &self.locations),
             section(SectionKind::Radii, &radii),
         ]
     }

@@ -58,19 +58,19 @@ pub(super) fn hierarchies() -> Errors {
         it.change(SectionKind::DualNodes, number, forge)
     };
     errors.reason("node 0 of dual-split", Reason::UnusedBits, |it| {
-        dual(it, 0, &|it| it.way |= 1 << 30)
+        dual(it, 0, &|it| it.word |= 1 << 30)
     });
     let nodes = errors.base.records(SectionKind::DualNodes);
     let mut base = errors.base.clone();
     let mut node = |number| base.record::<DualNode>(SectionKind::DualNodes, number);
-    let leaf = (0..nodes).find(|&number| node(number).way >> 24 & 3 == 3);
+    let leaf = (0..nodes).find(|&number| node(number).word >> 24 & 3 == 3);
     let leaf = leaf.expect("a leaf");
     let place = format!("node {leaf} of dual-split");
     errors.reason(&place, Reason::PrimitiveOutsideRegion, |it| {
         dual(it, leaf, &|it| {
             // Cut down to nothing on the x axis.
-            it.way &= !(15 << 26);
-            it.way |= 3 << 28;
+            it.word &= !(15 << 26);
+            it.word |= 3 << 28;
             it.carves[0] = 0x8000_7fff;
         })
     });
@@ -197,8 +197,8 @@ pub(super) fn wide_hierarchies() -> Errors {
         })
     });
     let mut shared = everything();
-    shared.reason("home 0 of wide", Reason::WrongHome, |it| {
-        it.set(SectionKind::Homes, 0, u32::MAX)
+    shared.reason("slot location 0 of wide", Reason::WrongSlotLocation, |it| {
+        it.set(SectionKind::SlotLocations, 0, u32::MAX)
     });
     errors.reasons.append(&mut shared.reasons);
     errors.failures.append(&mut shared.failures);

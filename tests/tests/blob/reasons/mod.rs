@@ -188,7 +188,7 @@ fn errors_say_what_is_wrong_and_where() {
     );
     let unused = |it: &mut Base| {
         it.change(SectionKind::DualNodes, 2, |it: &mut DualNode| {
-            it.way |= 1 << 31
+            it.word |= 1 << 31
         })
     };
     assert_eq!(

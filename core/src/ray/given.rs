@@ -1,16 +1,16 @@
-//! What a caller gave before its ray was moved to the scene's box, for shapes without bounds: a ray can meet them
-//! anywhere.
+//! A ray as its caller gave it, before it is moved to the scene's box: for shapes without bounds, which a ray can
+//! meet anywhere.
 
 use crate::format::limits::{FARTHEST_HIT, UNBOUNDED};
 use crate::number::Arithmetic;
-use core::array::from_fn;
+use crate::target::InSomeBuilds;
 
 /// A ray before it is moved to the scene's box: one, or none in builds without shapes that need it.
-pub(crate) type Unmoved<N> = [UnmovedRay<N>; UNBOUNDED as usize];
+pub(crate) type Given<N> = InSomeBuilds<GivenRay<N>, { UNBOUNDED as usize }>;
 
 /// A ray's origin and interval before the ray is moved to the scene's box.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct UnmovedRay<N: Arithmetic> {
+pub(crate) struct GivenRay<N: Arithmetic> {
     origin: [N::Wide; 3],
     pub(super) interval: [N::Wide; 2],
     /// Whether the ray's start is a place on it. It is none where the ray passes the scene far away.
@@ -18,16 +18,16 @@ pub(crate) struct UnmovedRay<N: Arithmetic> {
 }
 
 /// A place on a ray, and its t, counted from the origin.
-pub(super) type Place<N> = (
+pub(super) type RayPoint<N> = (
     [<N as crate::number::Scalar>::Wide; 3],
     <N as crate::number::Scalar>::Wide,
 );
 
 /// Where a ray meets a shape without bounds, counted from a place on the ray that is not far away.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FarPlace<N: Arithmetic> {
-    base: [N::Wide; 3],
-    /// The t of `base`, counted from the origin.
+pub(crate) struct FarPoint<N: Arithmetic> {
+    reference: [N::Wide; 3],
+    /// The t of `reference`, counted from the origin.
     at: N::Wide,
     /// The t from there.
     rest: N::Wide,
@@ -35,21 +35,21 @@ pub(crate) struct FarPlace<N: Arithmetic> {
 
 /// Asks for the origin only where it is kept.
 #[inline(always)]
-pub(super) fn unmoved<N: Arithmetic>(
+pub(super) fn given<N: Arithmetic>(
     origin: impl Fn() -> [N::Wide; 3],
     interval: [N::Wide; 2],
     holds_start: bool,
-) -> Unmoved<N> {
-    from_fn(|_| UnmovedRay {
+) -> Given<N> {
+    Given::new(|| GivenRay {
         origin: origin(),
         interval,
         holds_start,
     })
 }
 
-impl<N: Arithmetic> UnmovedRay<N> {
+impl<N: Arithmetic> GivenRay<N> {
     /// The ray's start if that is a place on it, and else its origin.
-    pub(super) fn base(&self, start: Place<N>) -> Place<N> {
+    pub(super) fn reference_point(&self, start: RayPoint<N>) -> RayPoint<N> {
         if self.holds_start {
             start
         } else {
@@ -63,41 +63,53 @@ impl<N: Arithmetic> UnmovedRay<N> {
     /// crossing is, and a ray that begins beside a surface stays beside it.
     pub(super) fn meet(
         &self,
-        start: Place<N>,
+        start: RayPoint<N>,
         cross: impl Fn([N::Wide; 3]) -> Option<N::Wide>,
-    ) -> Option<FarPlace<N>> {
-        let from = |(base, at): Place<N>| {
-            let rest = cross(base)?;
-            Some(FarPlace::<N> { base, at, rest })
+    ) -> Option<FarPoint<N>> {
+        let from = |(reference, at): RayPoint<N>| {
+            let rest = cross(reference)?;
+            Some(FarPoint::<N> {
+                reference,
+                at,
+                rest,
+            })
         };
         let first = from((self.origin, N::Wide::default()))?;
-        let second = from(self.base(start))?;
+        let second = from(self.reference_point(start))?;
         let is_nearer = magnitude::<N>(second.rest) < magnitude::<N>(first.rest);
         let nearer = if is_nearer { second } else { first };
         (magnitude::<N>(nearer.rest) < N::far(FARTHEST_HIT)).then_some(nearer)
     }
 
     /// The place at a `t` that is counted from the origin.
-    pub(super) fn place(&self, start: Place<N>, t: N::Wide) -> FarPlace<N> {
-        let (base, at) = self.base(start);
+    pub(super) fn point(&self, start: RayPoint<N>, t: N::Wide) -> FarPoint<N> {
+        let (reference, at) = self.reference_point(start);
         if magnitude::<N>(t - at) < magnitude::<N>(t) {
             let rest = t - at;
-            FarPlace { base, at, rest }
+            FarPoint {
+                reference,
+                at,
+                rest,
+            }
         } else {
-            let (base, at, rest) = (self.origin, N::Wide::default(), t);
-            FarPlace { base, at, rest }
+            let (reference, at, rest) = (self.origin, N::Wide::default(), t);
+            FarPoint {
+                reference,
+                at,
+                rest,
+            }
         }
     }
 }
 
-impl<N: Arithmetic> FarPlace<N> {
+impl<N: Arithmetic> FarPoint<N> {
     /// Counted from the origin.
     pub(crate) fn t(&self) -> N::Wide {
         self.at + self.rest
     }
 
     pub(crate) fn coordinates(&self, slope: [N; 3]) -> [N::Wide; 3] {
-        let [x, y, z] = self.base;
+        let [x, y, z] = self.reference;
         let along = |from: N::Wide, slope: N| from + N::wide_scale(self.rest, slope);
         [along(x, slope[0]), along(y, slope[1]), along(z, slope[2])]
     }

@@ -1,0 +1,71 @@
+//! Queries through the structure that is chosen while the program runs.
+
+use crate::accel::{DynAccel, Number, StackView};
+use crate::format::Structure;
+use crate::observe::count::NoCount;
+use crate::query::{self, Hit};
+use crate::ray::Ray;
+use crate::scene::Scene;
+use crate::target::AllStructuresOnly;
+
+/// Queries through the fastest structure of the blob, or the one that was [chosen](Scene::choose).
+impl Scene<'_> {
+    /// Returns the first hit of a ray in its interval, or `None`. `stack` needs
+    /// [`stack_depth`](Scene::stack_depth) entries. [`closest_hit`](crate::closest_hit) is the form for one structure,
+    /// and for counting.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{Ray, Scene, Stack};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut stack = Stack::<32>::new();
+    /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+    /// let hit = scene.closest_hit(&down, stack.as_view()).expect("a sphere");
+    /// assert!(hit.front && hit.normal[1] > 0.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn closest_hit<N: Number>(&self, ray: &Ray<N>, stack: &mut StackView) -> Option<Hit<N>> {
+        query::closest_hit::<N, DynAccel, _>(self, ray, stack, &mut NoCount)
+    }
+
+    /// Returns whether a ray meets anything in its interval. `stack` needs [`stack_depth`](Scene::stack_depth)
+    /// entries. [`any_hit`](crate::any_hit) is the form for one structure, and for counting.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{Ray, Scene, Stack};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut stack = Stack::<32>::new();
+    /// let up = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, 1.0, 0.0], 0.0, 1e9)?;
+    /// assert!(!scene.any_hit(&up, stack.as_view()));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn any_hit<N: Number>(&self, ray: &Ray<N>, stack: &mut StackView) -> bool {
+        query::any_hit::<N, DynAccel, _>(self, ray, stack, &mut NoCount)
+    }
+
+    /// Returns the scene with a structure chosen in place of the fastest one, for queries here and for
+    /// [`DynAccel`]; `None` if the blob does not hold it.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::Structure;
+    ///
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// assert!(scene.choose(Structure::List).is_some());
+    /// assert!(scene.choose(Structure::Grid).is_none());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn choose(&self, structure: Structure) -> Option<Self> {
+        self.holds(structure).then(|| {
+            let mut scene = *self;
+            scene.space.chosen = AllStructuresOnly::new(|| structure);
+            scene
+        })
+    }
+}
