@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod boards;
+mod changelog;
 mod keys;
 mod limits;
 mod memory;
