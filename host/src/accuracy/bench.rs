@@ -164,6 +164,7 @@ impl<'s> Bench<'s> {
         if !self.blobs.contains_key(&key) {
             let mut scene = self.scene.clone();
             scene.render.cutoff = setting.cutoff;
+            [scene.render.width, scene.render.height] = self.size.map(u32::from);
             let options = compile::Options {
                 structures: vec![self.structure],
                 lattice_bits: setting.lattice_bits,

@@ -99,7 +99,13 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         lattice_bits: lattice_bits.unwrap_or(default.compiling.lattice_bits),
         ..default.compiling
     })?;
-    let imported = import(path, &arguments.aim.aimed(&arguments.scene_options))?;
+    let imported = import(
+        path,
+        &arguments
+            .aim
+            .aimed(&arguments.scene_options)
+            .sized(Some(arguments.size)),
+    )?;
     if let Some(folder) = &arguments.plot {
         std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
     }

@@ -80,7 +80,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let source = Source::to_trace(
         &arguments.input,
-        &arguments.aim.aimed(&arguments.scene_options),
+        &arguments
+            .aim
+            .aimed(&arguments.scene_options)
+            .sized(arguments.picture.size),
         &arguments.with,
         Structure::DualSplit,
     )?;

@@ -128,7 +128,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let format = check_outputs(arguments)?;
     let source = Source::to_trace(
         &arguments.input,
-        &arguments.aim.aimed(&arguments.scene_options),
+        &arguments
+            .aim
+            .aimed(&arguments.scene_options)
+            .sized(arguments.picture.size),
         &arguments.with,
         Structure::Wide,
     )?;

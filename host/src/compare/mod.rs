@@ -28,6 +28,7 @@ use crate::render::OPAQUE;
 use crate::scene;
 use gridel_core::{Effects, Fixed, Format, Number, Scene, Settings, Structure};
 use options::Contender;
+use std::borrow::Cow;
 use std::time::Duration;
 
 /// Compares structures on a scene. Calls `progress` with a description of each step.
@@ -39,6 +40,13 @@ pub fn compare(
     options: &Options<'_>,
     progress: &dyn Fn(&str),
 ) -> Result<Comparison, CompareError> {
+    let mut scene = Cow::Borrowed(scene);
+    if scene.camera.is_none() {
+        // A supplied camera shows the scene in a picture of this shape.
+        let render = &mut scene.to_mut().render;
+        [render.width, render.height] = options.size.map(u32::from);
+    }
+    let scene = &*scene;
     match options.format {
         Format::Fixed => compare_in::<Fixed>(scene, options, progress),
         Format::F32 => compare_in::<f32>(scene, options, progress),

@@ -88,13 +88,17 @@ impl Serialize for LeftOut {
     }
 }
 
+/// Returns the shapes that make up the extent of a scene: the bounded ones, or all if none is bounded.
+pub fn in_extent(scene: &Scene) -> impl Iterator<Item = &Shape> + Clone {
+    let shapes = scene.objects.iter().map(|object| &object.shape);
+    let none_bounded = !shapes.clone().any(Shape::is_bounded);
+    shapes.filter(move |shape| none_bounded || shape.is_bounded())
+}
+
 /// The box of everything in a scene that has one, or else of points of what has none; a point for an empty one.
 pub fn extent(scene: &Scene) -> (DVec3, DVec3) {
     let nowhere = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    let shapes = || scene.objects.iter().map(|object| &object.shape);
-    let none_bounded = !shapes().any(Shape::is_bounded);
-    let counted = shapes().filter(|shape| none_bounded || shape.is_bounded());
-    let [lowest, highest] = counted
+    let [lowest, highest] = in_extent(scene)
         .map(Shape::bounds)
         .fold(nowhere, |[low, high], [lowest, highest]| {
             [low.min(lowest), high.max(highest)]

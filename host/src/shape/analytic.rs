@@ -171,6 +171,10 @@ pub trait Analytic: Geometric + Sized {
     /// Returns the box, as its lowest and its highest corner.
     fn bounds(&self) -> [DVec3; 2];
 
+    /// Returns the largest `point.dot(direction)` over all points of the shape: its support function. An unbounded
+    /// shape counts as its point.
+    fn support(&self, direction: DVec3) -> f64;
+
     /// Returns the normals of flat parts, with lengths of twice their areas.
     fn faces(&self) -> Vec<DVec3> {
         Vec::new()

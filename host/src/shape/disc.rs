@@ -100,6 +100,10 @@ impl Analytic for Disc {
         [self.center - reach, self.center + reach]
     }
 
+    fn support(&self, direction: DVec3) -> f64 {
+        self.center.dot(direction) + self.radius * unit(self.normal).cross(direction).length()
+    }
+
     fn faces(&self) -> Vec<DVec3> {
         vec![unit(self.normal) * (2.0 * std::f64::consts::PI * self.radius * self.radius)]
     }

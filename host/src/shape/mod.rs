@@ -229,6 +229,16 @@ impl Shape {
         })
     }
 
+    /// Returns the largest `point.dot(direction)` over all points: the support function. An unbounded shape counts as
+    /// its point; a mesh without triangles has minus infinity.
+    pub(crate) fn support(&self, direction: DVec3) -> f64 {
+        of_shape!(self, it => it.support(direction), Self::Mesh { vertices, triangles } => {
+            let corners = triangles.iter().flatten();
+            let along = corners.map(|&corner| vertices[corner as usize].dot(direction));
+            along.fold(f64::NEG_INFINITY, f64::max)
+        })
+    }
+
     /// Its middle; `None` for a mesh.
     pub(crate) fn middle(&self) -> Option<DVec3> {
         let [(first, _), (last, _)] =

@@ -103,6 +103,10 @@ impl Analytic for Plane {
         [self.point; 2]
     }
 
+    fn support(&self, direction: DVec3) -> f64 {
+        self.point.dot(direction)
+    }
+
     fn transformed(&self, by: &DAffine3) -> Result<Self, Misfit> {
         orientation(by.matrix3)?;
         // What is at right angles to the plane stays so.

@@ -124,6 +124,11 @@ impl Analytic for Torus {
         [self.center - reach, self.center + reach]
     }
 
+    fn support(&self, direction: DVec3) -> f64 {
+        let circle = self.major_radius * direction::unit(self.axis).cross(direction).length();
+        self.center.dot(direction) + circle + self.minor_radius * direction.length()
+    }
+
     /// As far as their circles and their minor radii. Circles are at most
     /// as far apart as their centres, their radii and the ends of their axes, of the smaller radius's length.
     ///

@@ -50,7 +50,7 @@ pub struct TraceOptions {
 pub struct PictureOptions {
     /// Size of the whole picture, such as 640x480 [default: that of the scene]
     #[arg(long, value_name = "WxH", value_parser = size)]
-    size: Option<[u16; 2]>,
+    pub size: Option<[u16; 2]>,
 
     /// Samples per pixel, 1 to 256 [default: that of the scene]
     #[arg(

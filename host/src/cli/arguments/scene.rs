@@ -101,6 +101,14 @@ impl SceneOptions {
     }
 }
 
+impl SceneOptions {
+    /// The same options for a picture of another size, if one is given.
+    pub fn sized(mut self, size: Option<[u16; 2]>) -> Self {
+        self.view.size = size;
+        self
+    }
+}
+
 impl From<GeometryOptions> for SceneOptions {
     fn from(geometry: GeometryOptions) -> Self {
         Self {

@@ -19,6 +19,10 @@ pub struct ViewOptions {
     #[arg(skip)]
     pub target: Option<DVec3>,
 
+    /// Size of the picture, which a camera that Gridel supplies shows the scene in.
+    #[arg(skip)]
+    pub size: Option<[u16; 2]>,
+
     /// Point this direction up [default: the file's, or y; z for STL and NFF]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     up: Option<DVec3>,
@@ -45,12 +49,15 @@ impl ViewOptions {
         ]
     }
 
-    /// Changes the scene's camera and background.
+    /// Changes the scene's camera and background, and the size of its picture.
     ///
     /// # Errors
     /// If the camera would look nowhere, or along the direction that points up.
     pub fn apply(&self, scene: &mut Scene) -> Result<(), Failure> {
         scene.background = self.background.or(scene.background);
+        if let Some([width, height]) = self.size {
+            (scene.render.width, scene.render.height) = (width.into(), height.into());
+        }
         let [camera @ .., _] = self.given();
         if camera.iter().all(|(given, _)| !given) {
             return Ok(());
