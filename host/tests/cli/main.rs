@@ -15,6 +15,7 @@ mod names;
 mod options;
 mod pipe;
 mod plane;
+mod readme;
 mod render;
 mod sample;
 #[cfg(feature = "shell")]

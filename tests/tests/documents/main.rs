@@ -3,6 +3,8 @@
 mod accuracy;
 mod boards;
 mod changelog;
+mod contributing;
+mod features;
 mod keys;
 mod limits;
 mod memory;

@@ -1,4 +1,4 @@
-//! The ways to build a hierarchy: the paper's, its foils, and the best there is time for offline.
+//! Builders of hierarchies: the paper's, simple ones to compare with, and the best for a compiler that has time.
 //!
 //! | file | builders |
 //! |---|---|
