@@ -1,4 +1,4 @@
-//! Renders row by row for a display on an SPI bus: two bytes a pixel, the upper one first, in
+//! Renders row by row for a display on an SPI bus: two bytes per pixel, the upper one first, in
 //! chunks that a DMA channel sends while the next one is rendered.
 //!
 //! ```text
@@ -108,7 +108,7 @@ impl Panel {
         let file = std::fs::File::create(path)?;
         let mut encoder = png::Encoder::new(file, self.width as u32, self.height as u32);
         encoder.set_color(png::ColorType::Rgb);
-        // As displays widen their colours: the upper bits again below.
+        // As displays widen their colors: the upper bits again below.
         let wide = |code: u16, bits: u32| (code << (8 - bits) | code >> (2 * bits - 8)) as u8;
         let pixels = self.memory.iter().flat_map(|&Rgb565(pixel)| {
             let (red, green, blue) = (pixel >> 11, pixel >> 5 & 63, pixel & 31);

@@ -9,7 +9,7 @@ use std::fmt;
 use std::io::{self, BufRead, Read, Write};
 use std::ops::Range;
 
-/// One part: rows of a picture, three bytes a pixel.
+/// One part: rows of a picture, three bytes per pixel.
 #[derive(Clone, Debug)]
 pub struct Part {
     width: u32,

@@ -350,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn hostile_headers_are_refused() {
+    fn hostile_headers_are_rejected() {
         let nested = format!("{}1{}", "(".repeat(5000), ")".repeat(5000));
         for shape in [
             nested.as_str(),

@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::str::FromStr;
 
-/// All that decides the colours of a picture's pixels, beside their place and the picture's size.
+/// All that decides the colors of a picture's pixels, beside their place and the picture's size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Making {
     /// Checksum of the blob.
@@ -136,11 +136,11 @@ pub fn hash(pixels: &[[u16; 3]]) -> String {
 /// How a picture is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureFormat {
-    /// PNG, 8 bits a channel, sRGB.
+    /// PNG, 8 bits per channel, sRGB.
     Png,
-    /// The binary portable pixmap `P6`, 8 bits a channel, sRGB.
+    /// The binary portable pixmap `P6`, 8 bits per channel, sRGB.
     Ppm,
-    /// Two bytes a pixel, little-endian, without a header: 5 bits of red (the uppermost), 6 of
+    /// Two bytes per pixel, little-endian, without a header: 5 bits of red (the uppermost), 6 of
     /// green, 5 of blue, sRGB.
     Rgb565,
 }

@@ -91,7 +91,7 @@ fn compare_one<N: Number>(
     tally: &mut Tally,
 ) -> Option<[f64; 3]> {
     let Some(ready) = ray.ready::<N>(scene) else {
-        panic!("{name}: {ray:?} is refused");
+        panic!("{name}: {ray:?} is rejected");
     };
     tally.rays += 1;
     let (mut plain_work, mut flagged_work) = (Counters::default(), Counters::default());

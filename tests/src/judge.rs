@@ -72,7 +72,7 @@ pub fn verdict<N: Number>(
 ) -> Option<Verdict<N>> {
     let ray = UnitRay::new(origin, slope);
     let Some(ready) = ray.ready::<N>(scene) else {
-        panic!("{ray:?} is refused");
+        panic!("{ray:?} is rejected");
     };
     assert_eq!(
         ready.slope().map(N::ratio_to_f64),

@@ -44,7 +44,7 @@ pub fn blob_with_inside(scene: &Scene, lattice_bits: u8) -> Option<Blob> {
     }
 }
 
-/// A blob with every structure, the cylinder cubes with a number of gridels a side.
+/// A blob with every structure, the cylinder cubes with a number of gridels per side.
 pub fn blob_with_gridels(scene: &Scene, lattice_bits: u8, gridels: u32) -> Blob {
     blob_with_tables(scene, lattice_bits, gridels, 1 << 24)
 }

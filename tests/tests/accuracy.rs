@@ -99,7 +99,7 @@ fn the_same_picture_has_no_error() {
     assert!((errors.ssim - 1.0).abs() < 1e-9, "{}", errors.ssim);
 }
 
-/// The instructions a ray are those of the recorded pictures.
+/// The instructions per ray are those of the recorded pictures.
 #[test]
 fn boards_are_the_recorded_ones() {
     let text = std::fs::read_to_string(scenes::fixture_folder().join("recorded/board.json"));
@@ -123,7 +123,7 @@ fn boards_are_the_recorded_ones() {
             let reference = bench.reference(1).expect("a reference");
             let (point, _) = bench.measure(&setting, &reference).expect("a point");
             let found = instructions / point.cost.rays as f64;
-            eprintln!("{build}: {found:.0} instructions a ray");
+            eprintln!("{build}: {found:.0} instructions per ray");
             assert!(
                 (found / per_ray - 1.0).abs() < 0.15,
                 "{build}: {found} {per_ray}"

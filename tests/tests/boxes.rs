@@ -354,7 +354,7 @@ fn any_number_of_the_same_primitive() {
 
 /// A number that is none, anywhere in a scene (A13): an error that says so, and no blob.
 #[test]
-fn numbers_that_are_none_are_refused() {
+fn nan_is_rejected() {
     let shapes = |bad: f64| {
         let v = |k: usize| {
             let mut v = DVec3::new(1.0, 2.0, 3.0);

@@ -325,7 +325,7 @@ fn mirrors_do_not_matter() {
     }
 }
 
-/// Cells that would take too much memory are refused with the figure; where none are asked for,
+/// Cells that would take too much memory are rejected with the figure; where none are asked for,
 /// there are fewer.
 #[test]
 fn memory_is_bounded() {
@@ -341,9 +341,9 @@ fn memory_is_bounded() {
         ..Options::default()
     };
     let few = scenes::of((0..10).map(big));
-    let refused = compile(&few, &options(Some([1024; 3]))).expect_err("12 GiB of cells");
-    let CompileError::OverBudget { needed, budget, .. } = refused else {
-        panic!("{refused}");
+    let rejected = compile(&few, &options(Some([1024; 3]))).expect_err("12 GiB of cells");
+    let CompileError::OverBudget { needed, budget, .. } = rejected else {
+        panic!("{rejected}");
     };
     assert!(needed > 12 << 30 && budget == 256 << 20);
     // All in every cell.

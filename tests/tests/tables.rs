@@ -1,4 +1,4 @@
-//! The paper's tables, as counts: what each structure tests a ray, over the rays of three pictures.
+//! The paper's tables, as counts: what each structure tests per ray, over the rays of three pictures.
 //!
 //! Of each scene about as many objects as the paper's: a glass chessboard and two crystals in place
 //! of molecules. `fixtures/recorded/structures.json` holds what was counted last, beside the paper's
@@ -118,7 +118,7 @@ fn counted(name: &str, scene: &scene::Scene, size: u16, grid: Option<[u32; 3]>) 
     for row in &comparison.rows {
         assert_eq!(row.wrong, None, "{name}, {}", row.name);
     }
-    assert!(comparison.refused.is_empty(), "{name}");
+    assert!(comparison.rejected.is_empty(), "{name}");
     comparison
 }
 

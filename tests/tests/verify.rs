@@ -141,7 +141,7 @@ fn cuboid(min: [f64; 3], max: [f64; 3]) -> Shape {
 /// A ray that starts inside of several solids leaves them where they end, be it at one place or at
 /// several; and reporting the later one is wrong.
 #[test]
-fn what_a_ray_leaves_is_judged_as_fairly_as_what_it_enters() {
+fn surfaces_that_a_ray_leaves_are_judged_as_those_it_enters() {
     // All share the face x = 1; one of them reaches further on the other sides.
     let boxes = [
         cuboid([-1.0; 3], [1.0; 3]),

@@ -337,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn frontier_goes_by_rays_and_tests_where_times_tell_nothing() {
+    fn frontier_goes_by_rays_and_tests_where_times_are_noise() {
         let fewer = Setting { depth: 5, ..BASE };
         let more = |seconds| point(BASE, 0.1, seconds, 100);
         let less = |seconds| point(fewer, 0.1, seconds, 90);

@@ -8,7 +8,7 @@ use std::fs::File;
 use std::io::{self, BufReader, Write};
 use std::path::Path;
 
-/// A picture in sRGB, three bytes a pixel, row by row.
+/// A picture in sRGB, three bytes per pixel, row by row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
     pub size: [u32; 2],

@@ -116,12 +116,12 @@ impl Manifest {
             text: source.text().to_owned(),
             checks,
         };
-        manifest.refuse_lost_files()?;
+        manifest.reject_lost_files()?;
         Ok(manifest)
     }
 
-    /// Refuses references that are also something else, which recording a picture would destroy.
-    fn refuse_lost_files(&self) -> Result<(), SceneError> {
+    /// Rejects references that are also something else, which recording a picture would destroy.
+    fn reject_lost_files(&self) -> Result<(), SceneError> {
         let others: BTreeSet<_> = self.sources().map(place).collect();
         let mut pictures = self.references();
         match pictures.find(|picture| others.contains(&place(&picture.path))) {

@@ -7,7 +7,7 @@ use super::arguments::{
 use super::effects::CalledFor;
 use super::failure::Failure;
 use super::input::is_standard;
-use super::output::{Content, check_extension, json, print_about, prove, refuse_same, write_files};
+use super::output::{Content, check_extension, json, print_about, prove, reject_same, write_files};
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Format, Scene, Structure};
@@ -134,12 +134,12 @@ const NAMED: usize = 5;
 
 /// Builds a blob and reports on it.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    refuse_same(&arguments.scene, &arguments.output)?;
+    reject_same(&arguments.scene, &arguments.output)?;
     check_extension(&arguments.output, &["gridel", "bin"], "blob")?;
     if is_standard(&arguments.output) {
         prove(&arguments.output)?;
     } else {
-        refuse_foreign(&arguments.output, "blob", is_blob)?;
+        reject_foreign(&arguments.output, "blob", is_blob)?;
     }
     if let Some(folder) = &arguments.emit_rust {
         if folder.exists() && !folder.is_dir() {
@@ -148,8 +148,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 "give the folder that the module and its blob lie in; it need not exist",
             ));
         }
-        refuse_foreign(&folder.join(emit::BLOB), "blob", is_blob)?;
-        refuse_foreign(
+        reject_foreign(&folder.join(emit::BLOB), "blob", is_blob)?;
+        reject_foreign(
             &folder.join(emit::MODULE),
             "module of Gridel",
             emit::is_module,
@@ -242,8 +242,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     print_about(&arguments.output, report)
 }
 
-/// Refuses to write over a file of another sort, such as the buffer of a glTF scene, or a program's own.
-fn refuse_foreign(
+/// Rejects to write over a file of another sort, such as the buffer of a glTF scene, or a program's own.
+fn reject_foreign(
     path: &Path,
     sort: &str,
     is_one: impl Fn(&Path) -> io::Result<bool>,

@@ -175,9 +175,9 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         ));
     }
     // Of all structures some may not fit; one that was asked for must.
-    match comparison.refused.first() {
-        Some(refused) if !arguments.accel.is_empty() => Err(Failure::refused(
-            refused.why.clone(),
+    match comparison.rejected.first() {
+        Some(rejected) if !arguments.accel.is_empty() => Err(Failure::rejected(
+            rejected.why.clone(),
             "give it a larger `--budget`, or fewer cells",
         )),
         _ => Ok(()),

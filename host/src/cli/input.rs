@@ -1,4 +1,4 @@
-//! The scene or blob that a verb reads: a file, or standard input, which is written `-`.
+//! The scene or blob that a command reads: a file, or standard input, which is written `-`.
 //!
 //! Standard input is called `<stdin>` in messages, and is read once, whole. Files that a scene from there
 //! names lie in the current folder, as those of a scene file there do.

@@ -5,7 +5,7 @@ use super::arguments::{self, PictureOptions, SceneOptions, TraceOptions};
 use super::failure::Failure;
 use super::input::is_standard;
 use super::output::{
-    Content, Warned, json, print_about, prove, refuse_same, unsupported, write_files,
+    Content, Warned, json, print_about, prove, reject_same, unsupported, write_files,
 };
 use super::progress::Progress;
 use super::source::Source;
@@ -210,12 +210,12 @@ fn check_outputs(arguments: &Arguments) -> Result<PictureFormat, Failure> {
     let format = stream
         .or(PictureFormat::of(output))
         .ok_or_else(|| unsupported(output, "image", ".png, .ppm or .rgb565"))?;
-    refuse_same(&arguments.input, output)?;
+    reject_same(&arguments.input, output)?;
     if let Some(heat_map) = &arguments.heat_map {
         if PictureFormat::of(heat_map) != Some(PictureFormat::Png) {
             return Err(unsupported(heat_map, "heat map", ".png"));
         }
-        refuse_same(&arguments.input, heat_map)?;
+        reject_same(&arguments.input, heat_map)?;
         if place(heat_map) == place(output) {
             return Err(Failure::usage(
                 format!("picture and heat map are both {}", output.display()),

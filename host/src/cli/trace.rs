@@ -5,7 +5,7 @@ use super::failure::Failure;
 use super::input::{is_standard, standard_input};
 use super::names::{NameTable, hits_by_name, most_hit};
 use super::output::{
-    Content, Warned, check_extension, json, print_about, prove, refuse_inputs, refuse_same,
+    Content, Warned, check_extension, json, print_about, prove, reject_inputs, reject_same,
     write_files,
 };
 use super::progress::Progress;
@@ -126,8 +126,8 @@ struct Tests {
 
 /// Traces rays and writes what they hit.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    refuse_same(&arguments.input, &arguments.output)?;
-    refuse_same(&arguments.rays, &arguments.output)?;
+    reject_same(&arguments.input, &arguments.output)?;
+    reject_same(&arguments.rays, &arguments.output)?;
     check_extension(&arguments.output, &["npy"], "hits")?;
     prove(&arguments.output)?;
     if let Some(None) = arguments.names
@@ -139,7 +139,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     if let Some(Some(path)) = &arguments.names {
-        refuse_inputs(
+        reject_inputs(
             [
                 arguments.input.as_path(),
                 arguments.rays.as_path(),

@@ -19,12 +19,12 @@ pub struct Comparison {
     pub listed: usize,
     pub rows: Vec<Row>,
     /// Structures whose tables do not fit their budget.
-    pub refused: Vec<Refused>,
+    pub rejected: Vec<Rejected>,
 }
 
 /// A structure that was not built.
 #[derive(Clone, Debug, Serialize)]
-pub struct Refused {
+pub struct Rejected {
     pub structure: &'static str,
     /// With the bytes that it would take.
     pub why: String,

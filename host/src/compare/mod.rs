@@ -14,7 +14,7 @@ mod options;
 
 pub use crate::measure::rays::{Work, Works};
 pub use charts::charts;
-pub use comparison::{Comparison, RayCounts, Refused, Row};
+pub use comparison::{Comparison, RayCounts, Rejected, Row};
 pub use findings::findings;
 pub use growth::{Growth, Step, growth, growth_steps};
 pub use judge::Wrong;
@@ -72,12 +72,12 @@ fn compare_in<N: Number>(
     progress("casting the picture's rays");
     let picture_rays = PictureRays::<N>::of(&flagged.compiled.blob.scene()?, settings)?;
     let mut built = Vec::new();
-    let mut refused = Vec::new();
+    let mut rejected = Vec::new();
     for contender in options.contenders() {
         progress(&format!("building {}", contender.0.name()));
         match build(contender) {
             Err(CompareError::Compile(error @ CompileError::OverBudget { .. })) => {
-                refused.push(Refused {
+                rejected.push(Rejected {
                     structure: contender.0.name(),
                     why: error.to_string(),
                 });
@@ -141,7 +141,7 @@ fn compare_in<N: Number>(
         },
         listed: verdict.listed,
         rows,
-        refused,
+        rejected,
     })
 }
 

@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_flat_is_not_seen_from_its_edge() {
+    fn flat_scenes_are_not_seen_from_their_edge() {
         let floor = scene([0.0, 1.0, 0.0], [4.0, 1.0, 4.0], Up::Y);
         let camera = framing(&floor, None);
         assert!(looks(&camera, DVec3::NEG_Y));

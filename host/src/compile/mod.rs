@@ -346,7 +346,7 @@ impl Hierarchies {
     }
 }
 
-/// Counts what the cylinder cube of a scene takes, with a number of gridels a side (1 to 64). Builds
+/// Counts what the cylinder cube of a scene takes, with a number of gridels per side (1 to 64). Builds
 /// nothing, so it takes time and no memory.
 ///
 /// # Errors

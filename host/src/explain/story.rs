@@ -7,7 +7,7 @@ use gridel_core::observe::event::{Met, Source};
 use gridel_core::{Event, Format, RayKind, Scene};
 use serde::Serialize;
 
-/// A pixel, or a ray of one's own, explained. Colours are linear, 1 being display white.
+/// A pixel, or a ray of one's own, explained. Colors are linear, 1 being display white.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Story {
     /// From the picture's upper left corner; `None` for a ray of one's own.
@@ -19,9 +19,9 @@ pub struct Story {
     /// Structure.
     pub accel: &'static str,
     pub samples: Vec<Sample>,
-    /// The pixel's linear colour; 65535 is white.
+    /// The pixel's linear color; 65535 is white.
     pub linear: [u16; 3],
-    /// The pixel's colour in sRGB, as displays take it.
+    /// The pixel's color in sRGB, as displays take it.
     pub srgb: [u8; 3],
 }
 

@@ -2,7 +2,7 @@
 //!
 //! All coordinates are `f64` scene units in one right-handed world space: importers bake the
 //! transforms of groups and instances into the geometry, so that nothing downstream knows of
-//! them. Colours are linear RGB, 1.0 being full display white, unless [`Scene::display_values`] says
+//! them. Colors are linear RGB, 1.0 being full display white, unless [`Scene::display_values`] says
 //! otherwise.
 
 mod access;

@@ -4,7 +4,7 @@ use super::place::Place;
 use crate::shape::{Shape, parallel};
 use glam::DVec3;
 
-/// A linear RGB colour; components at or above 0, 1.0 being display white.
+/// A linear RGB color; components at or above 0, 1.0 being display white.
 pub type Color = [f64; 3];
 
 /// Everything a scene file says.
@@ -18,10 +18,10 @@ pub struct Scene {
     /// What a ray that meets nothing sees; without one it is black, or light if there is no camera
     /// either.
     pub background: Option<Color>,
-    /// Whether colours and lights are display values, which are added up and shown as they are: what
+    /// Whether colors and lights are display values, which are added up and shown as they are: what
     /// ray tracers did before pictures were encoded. Linear without.
     pub display_values: bool,
-    /// Light that reaches every surface from everywhere, multiplied with its diffuse colour.
+    /// Light that reaches every surface from everywhere, multiplied with its diffuse color.
     pub ambient: Color,
     /// Point and directional lights.
     pub lights: Vec<Light>,
@@ -105,7 +105,7 @@ pub struct Material {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Diffuse {
     Plain(Color),
-    /// Cubes of edge `size` (scene units, above 0) in two alternating colours, aligned with the axes;
+    /// Cubes of edge `size` (scene units, above 0) in two alternating colors, aligned with the axes;
     /// a corner of the pattern lies at `origin`.
     Checker {
         even: Color,

@@ -16,7 +16,7 @@ pub struct MoleculeOptions {
 pub enum MoleculeStyle {
     /// Atoms as spheres of their van der Waals radius.
     SpaceFilling,
-    /// Small spheres, and bonds as cylinders in the colours of the atoms at their ends.
+    /// Small spheres, and bonds as cylinders in the colors of the atoms at their ends.
     BallAndStick,
 }
 

@@ -1,7 +1,7 @@
 //! Reads PLY, binary and text: the vertices and faces of a mesh.
 //!
 //! Faces are cut into triangles, and triangle strips (the element `tristrips`, where -1 ends a
-//! strip) into theirs. Colours, normals, textures and elements of other names are ignored, with a
+//! strip) into theirs. Colors, normals, textures and elements of other names are ignored, with a
 //! warning each.
 
 use super::importer::{Importer, Input, stem};
@@ -113,8 +113,8 @@ const IGNORED: [(&[&str], &str, &str); 2] = [
             "diffuse_green",
             "diffuse_blue",
         ],
-        "colour",
-        "the surface has one colour",
+        "color",
+        "the surface has one color",
     ),
     (&["nx", "ny", "nz"], "normal", "the surface is shaded flat"),
 ];
@@ -140,7 +140,7 @@ fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
                 is_reported = [false; IGNORED.len()];
             }
             ["comment", "TextureFile", ..] => {
-                let sentence = "textures are not drawn; the plain colours are used";
+                let sentence = "textures are not drawn; the plain colors are used";
                 warnings.add_times(place, 1, sentence);
             }
             ["property", .., name] if ["vertex", "face"].contains(&&*element) && count > 0 => {
@@ -159,7 +159,7 @@ fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
     }
 }
 
-/// Refuses a number of elements that the file cannot hold: each takes a byte at least.
+/// Rejects a number of elements that the file cannot hold: each takes a byte at least.
 fn announced(path: &Path, element: &ElementDef, bytes: usize) -> Result<(), SceneError> {
     if element.count <= bytes && (!element.properties.is_empty() || element.count == 0) {
         return Ok(());

@@ -9,7 +9,7 @@
 use glam::DVec3;
 use robust::{Coord, orient2d};
 
-/// Concave polygons beyond this many vertices are refused: clipping ears takes quadratic time,
+/// Concave polygons beyond this many vertices are rejected: clipping ears takes quadratic time,
 /// which for the worst outlines of this size, those that cross themselves, is half a second.
 pub(super) const MAX_CONCAVE: usize = 4_096;
 

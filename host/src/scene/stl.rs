@@ -5,7 +5,7 @@
 //!
 //! Every solid of a text file is an object. Vertices are shared by their coordinates, so that
 //! triangles meet without a gap. Normals are passed over, since the order of the corners says the
-//! same, and so are the colours that some programs put into binary files, with a warning.
+//! same, and so are the colors that some programs put into binary files, with a warning.
 
 use super::importer::{Importer, Input, stem};
 use super::text::{Source, Warnings, check_encoding};
@@ -92,7 +92,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
 fn binary(path: &Path, bytes: &[u8], mut warnings: Warnings) -> Result<Imported, SceneError> {
     let count = announced(bytes).unwrap_or_default() as usize;
     let mut soup = Soup::default();
-    let mut coloured = 0;
+    let mut colored = 0;
     for (number, triangle) in bytes[HEAD..].chunks_exact(TRIANGLE).take(count).enumerate() {
         let mut corners = [DVec3::ZERO; 3];
         // The normal comes first.
@@ -111,12 +111,12 @@ fn binary(path: &Path, bytes: &[u8], mut warnings: Warnings) -> Result<Imported,
             }
         }
         soup.push(corners);
-        coloured += usize::from(triangle[48..] != [0; 2]);
+        colored += usize::from(triangle[48..] != [0; 2]);
     }
-    if coloured > 0 {
-        let sentence = "the attributes of a triangle, which some programs use for its colour, are \
-                        ignored; the surface has one colour";
-        warnings.add_times(Place::of(path), coloured, sentence);
+    if colored > 0 {
+        let sentence = "the attributes of a triangle, which some programs use for its color, are \
+                        ignored; the surface has one color";
+        warnings.add_times(Place::of(path), colored, sentence);
     }
     let objects = soup
         .object(stem(path), Place::of(path))

@@ -23,7 +23,7 @@ fn folder() -> Folder {
 }
 
 #[test]
-fn what_a_single_repeat_cannot_tell_is_not_told() {
+fn single_repeat_reports_no_spread() {
     let folder = folder();
     let text = folder.done(&SMALL);
     let line = text

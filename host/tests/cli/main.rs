@@ -1,4 +1,4 @@
-//! The program as its users see it: verbs, files, exit codes.
+//! The program as its users see it: commands, files, exit codes.
 
 mod program;
 

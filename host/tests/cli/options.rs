@@ -1,10 +1,10 @@
-//! Options that would change nothing are refused, and never ignored.
+//! Options that would change nothing are rejected, and never ignored.
 
 use crate::program::Folder;
 
 /// What each structure alone takes, where it is not built.
 #[test]
-fn options_of_structures_that_are_not_built_are_refused() {
+fn options_of_structures_that_are_not_built_are_rejected() {
     let folder = Folder::with_quick();
     let fails = |arguments: &[&str], words: &[&str]| folder.fails(2, arguments, words);
     let build = ["build", "quick.toml", "-o", "new.gridel"];
@@ -76,9 +76,9 @@ fn options_of_structures_that_are_not_built_are_refused() {
     fails(&accuracy, &["--quality is for wide"]);
 }
 
-/// What scene files take, given with a blob; what a verb has no use for is no option of it.
+/// What scene files take, given with a blob; what a command has no use for is no option of it.
 #[test]
-fn options_that_a_verb_cannot_use_are_refused() {
+fn options_that_a_command_cannot_use_are_rejected() {
     let folder = Folder::with_quick();
     let fails = |arguments: &[&str], words: &[&str]| folder.fails(2, arguments, words);
     fails(
@@ -116,10 +116,10 @@ fn options_that_a_verb_cannot_use_are_refused() {
     let help = folder.done(&["accuracy", "--help"]);
     assert!(!help.contains("--lattice-bits"), "{help}");
     // Verbs that want a scene file say so of a blob.
-    for verb in ["compare", "accuracy"] {
+    for command in ["compare", "accuracy"] {
         folder.fails(
             1,
-            &[verb, "quick.gridel"],
+            &[command, "quick.gridel"],
             &["is a blob already, not a scene file"],
         );
     }

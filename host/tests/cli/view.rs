@@ -212,12 +212,12 @@ fn up_and_angle_alone_leave_the_whole_scene_in_view() {
 }
 
 #[test]
-fn cameras_that_cannot_be_and_flags_for_blobs_are_refused() {
+fn cameras_that_cannot_be_and_flags_for_blobs_are_rejected() {
     let folder = Folder::with_quick();
     folder.write("a.obj", cuboid().as_bytes());
     let render = |options: &[&str], words: &[&str]| {
-        let verb = ["render", "a.obj", "-o", "a.png"];
-        folder.fails(2, &[&verb[..], options].concat(), words);
+        let command = ["render", "a.obj", "-o", "a.png"];
+        folder.fails(2, &[&command[..], options].concat(), words);
     };
     render(&["--eye", "1,2"], &["write three numbers with commas"]);
     render(&["--fov", "180"], &["above 0 and below 180"]);

@@ -3,7 +3,7 @@
 //! | program | what it does |
 //! |---|---|
 //! | `picture` | renders the scene's picture into a file of the host, and counts what it and single rays cost |
-//! | `primary` | traces one ray a pixel and counts the hits |
+//! | `primary` | traces one ray per pixel and counts the hits |
 //! | `casts` | casts rays of its own, without a camera, and counts the hits |
 //! | `everywhere` | renders in every number format through every structure |
 //! | `emitted` | renders from what `gridel build --emit-rust` wrote |

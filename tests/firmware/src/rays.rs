@@ -33,7 +33,7 @@ pub enum Until {
 }
 
 impl Rays {
-    /// Traces a ray a pixel of a row, and what follows from it.
+    /// Traces a ray per pixel of a row, and what follows from it.
     pub fn row(
         &mut self,
         until: Until,

@@ -45,7 +45,7 @@ struct Line {
     contender: String,
     bytes_a_primitive: f64,
     build_seconds: f64,
-    /// Of each kind of rays: millions a second, and how many answers are wrong.
+    /// Of each kind of rays: millions per second, and how many answers are wrong.
     rates: Vec<f64>,
     wrong: Vec<usize>,
     /// Of the rays at the seams of a closed mesh.

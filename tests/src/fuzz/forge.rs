@@ -1,6 +1,6 @@
 //! A forger of blobs, which knows header, sections and records.
 //!
-//! Bits flipped at random are nearly always refused. A forgery worth loading changes one field to a
+//! Bits flipped at random are nearly always rejected. A forgery worth loading changes one field to a
 //! value that means something, or changes fields that belong together, and states what follows from
 //! that in the header, too.
 

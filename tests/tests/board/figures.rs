@@ -92,6 +92,6 @@ pub fn loading_takes_less_than_40_instructions_a_byte() {
         };
         let most = if build.ends_with("grid") { 60.0 } else { 40.0 };
         let spent = load as f64 / bytes as f64;
-        assert!(spent < most, "{build}: {spent:.1} instructions a byte");
+        assert!(spent < most, "{build}: {spent:.1} instructions per byte");
     }
 }

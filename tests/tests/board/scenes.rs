@@ -53,7 +53,7 @@ pub const PAPERS: [&str; 3] = ["paper-150", "paper-2800", "paper-27000"];
 /// The smaller crystal, seen from so near that it fills the picture.
 pub const CLOSE: &str = "paper-2800-close";
 
-/// One of these scenes, with some structures; the cylinder cubes with so many gridels a side.
+/// One of these scenes, with some structures; the cylinder cubes with so many gridels per side.
 pub fn paper(name: &'static str, structures: &[Structure], gridels: Option<u32>) -> Compiled {
     let mut scene = match name {
         "paper-150" => load(&fixture_path("glass-chess")),
@@ -201,7 +201,7 @@ impl Compiled {
         scene.features().collect()
     }
 
-    /// The picture as the host renders it: three bytes a pixel.
+    /// The picture as the host renders it: three bytes per pixel.
     pub fn picture(&self, format: Format) -> Vec<u8> {
         self.picture_through(Structure::DualSplit, format)
     }

@@ -5,7 +5,7 @@
 //! takes. The bound holds because nothing is called through a pointer that was handed on and nothing
 //! recurses: both are demanded here. Relocations show whose address is taken and where. Only code may
 //! take one, and counts as calling it: small code loads the address of what it calls more than twice,
-//! and calls the register. What calls a register without having taken an address is refused.
+//! and calls the register. What calls a register without having taken an address is rejected.
 
 use object::elf::{
     R_ARM_ABS32, R_ARM_MOVT_ABS, R_ARM_MOVW_ABS_NC, R_ARM_THM_MOVT_ABS, R_ARM_THM_MOVW_ABS_NC,

@@ -73,7 +73,7 @@ fn reasons_are_true() {
 
 /// A light that has no direction, because it lies where the ray to it would start, is reported, too.
 #[test]
-fn a_light_at_the_point_itself_is_told() {
+fn light_at_the_point_itself_is_reported() {
     let mut scene = scenes::of([Shape::Box(Cuboid {
         min: glam::DVec3::splat(-1.0),
         max: glam::DVec3::ONE,

@@ -70,7 +70,7 @@ fn hits_lie_on_their_rays(story: &Story, about: &dyn Fn() -> String) -> (usize, 
 
 /// The origin in a story is the ray's own, wherever the kernels start, and distances count from it.
 #[test]
-fn explain_tells_points_that_lie_on_the_ray_as_given() {
+fn explain_gives_points_that_lie_on_the_given_ray() {
     let blob = scenes::blob(&scenes::soup(13, 150, 0.3), 24);
     let scene = blob.scene().expect("a scene");
     let frame = Frame::of(&scene);
@@ -120,7 +120,7 @@ fn explain_tells_points_that_lie_on_the_ray_as_given() {
 
 /// Rays from the camera, through glass and off mirrors lie on the lines of their stories, too.
 #[test]
-fn explain_tells_points_that_lie_on_the_rays_of_pixels() {
+fn explain_gives_points_that_lie_on_the_rays_of_pixels() {
     for (name, scene) in scenes::fixtures() {
         let blob = scenes::blob(&scene, 24);
         let view = blob.scene().expect("a scene");

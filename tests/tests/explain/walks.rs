@@ -9,7 +9,7 @@ use std::collections::HashMap;
 
 /// Whether a hierarchy culls in integers or in lanes, it reports where a ray is in the same units.
 #[test]
-fn spans_are_told_in_units() {
+fn spans_are_reported_in_units() {
     let blob = scenes::blob(&scenes::soup(12, 120, 0.1), 24);
     let scene = blob.scene().expect("a scene");
     let unit = Frame::of(&scene).length(1.0);
@@ -67,7 +67,7 @@ fn spans(walk: &Walk) -> HashMap<&str, Vec<[f64; 2]>> {
 
 /// Places that are reported as culled are not opened; all others are opened or given up.
 #[test]
-fn what_is_told_is_what_is_done() {
+fn reported_walks_are_the_walks_of_queries() {
     let path = scenes::fixture_folder().join("glass-chess.toml");
     let blob = scenes::blob(&scenes::read(&path), 24);
     let scene = blob.scene().expect("a scene");

@@ -1,4 +1,4 @@
-//! Options that several verbs have, and how their values are written.
+//! Options that several commands have, and how their values are written.
 //!
 //! | file | what it holds |
 //! |---|---|

@@ -25,7 +25,7 @@ pub fn scene_long_help() -> String {
     )
 }
 
-/// How a scene file is read and compiled, for verbs that make pictures of it.
+/// How a scene file is read and compiled, for commands that make pictures of it.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Options for scene files")]
 pub struct SceneOptions {
@@ -170,7 +170,7 @@ impl MoleculeOptions {
     }
 }
 
-/// The option `--target` of verbs that take no board.
+/// The option `--target` of commands that take no board.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for scene files")]
 pub struct Aim {

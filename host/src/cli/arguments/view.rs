@@ -15,7 +15,7 @@ pub struct ViewOptions {
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     eye: Option<DVec3>,
 
-    /// What the option `Aim` holds, or `--target` of a verb that takes boards, too.
+    /// What the option `Aim` holds, or `--target` of a command that takes boards, too.
     #[arg(skip)]
     pub target: Option<DVec3>,
 
@@ -31,7 +31,7 @@ pub struct ViewOptions {
     #[arg(long, value_name = "DEG", value_parser = degrees, allow_hyphen_values = true)]
     fov: Option<f64>,
 
-    /// Show this linear colour where nothing is, 1 being display white [default: the file's, else black;
+    /// Show this linear color where nothing is, 1 being display white [default: the file's, else black;
     /// light grey for a file without a camera]
     #[arg(long, value_name = "R,G,B", value_parser = color, allow_hyphen_values = true)]
     background: Option<Color>,
@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn vectors_colours_and_angles_are_finite_and_in_range() {
+    fn vectors_colors_and_angles_are_finite_and_in_range() {
         assert_eq!(vector("1, -2,3e2"), Ok(DVec3::new(1.0, -2.0, 300.0)));
         for wrong in ["", "1,2", "1,2,3,4", "1,2,a", "1,2,nan", "inf,0,0", "1 2 3"] {
             assert!(vector(wrong).is_err(), "{wrong}");
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_given_is_the_scenes() {
+    fn options_that_are_not_given_keep_the_scenes_view() {
         let mut scene = Scene::default();
         ViewOptions::default().apply(&mut scene).unwrap();
         assert_eq!(scene, Scene::default());
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn cameras_that_look_nowhere_are_refused() {
+    fn cameras_that_look_nowhere_are_rejected() {
         for (eye, target, up) in [
             ([1.0; 3], [1.0; 3], [0.0, 1.0, 0.0]),
             ([0.0; 3], [0.0, 5.0, 0.0], [0.0, -2.0, 0.0]),

@@ -9,7 +9,7 @@
 //! | `reinsertion.rs` | swept, then improved by taking subtrees out and putting them back |
 //! | `tree.rs` | the tree that all but the first build, and how it becomes a hierarchy |
 //!
-//! All are bounded: none takes more than `O(n log n)` steps a level or pass, some hundred bytes a
+//! All are bounded: none takes more than `O(n log n)` steps per level or pass, some hundred bytes per
 //! primitive, and [`MAX_LEVELS`](gridel_core::format::limits::MAX_LEVELS) levels: below where a
 //! tree would be deeper, its subtrees are halved instead.
 

@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn measured_program_is_told_exactly() {
+    fn measured_program_is_reported_exactly() {
         let report = report(&programs(&BOARDS[0], &PARTS, &PROFILES), 128 << 10);
         assert!(report.measured);
         assert_eq!(bytes(&report.flash, CODE), Some(30_300));

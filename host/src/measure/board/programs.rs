@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 
 /// The figures that the tests recorded.
 const RECORDED: &str = include_str!("programs.json");
-/// Forms of storage and of colours that programs have code for, or have not.
+/// Forms of storage and of colors that programs have code for, or have not.
 const FORMS: [&str; 3] = ["wide-lattice", "wide-indices", "display-values"];
 
 /// Bytes of a linked program.
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn program_that_was_built_is_told_exactly() {
+    fn program_that_was_built_is_reported_exactly() {
         let programs = programs(&[(&["sphere"], 1000), (&["sphere", "shadow"], 1200)]);
         let known = code(&programs, &["shadow", "sphere"]);
         assert_eq!(known.map(|it| (it.bytes, it.measured)), Some((1200, true)));

@@ -3,7 +3,7 @@
 //!
 //! Each set of triangles of each node becomes an object, in the order of the nodes; a mesh that
 //! several nodes share is copied. Meshes stand as they are at rest: skins, morph targets and
-//! animations are ignored, and so are normals, textures and vertex colours. A warning names
+//! animations are ignored, and so are normals, textures and vertex colors. A warning names
 //! those of them that a file has. Images are never read, wherever they lie.
 
 mod buffers;
@@ -145,11 +145,11 @@ impl Importer<'_> {
         );
         self.warn_of(
             with(Semantic::Colors(0)),
-            "COLOR_0 of a primitive is ignored; its surface has its material's colour",
+            "COLOR_0 of a primitive is ignored; its surface has its material's color",
         );
         self.warn_of(
             document.textures().len(),
-            "textures are not drawn; the plain colours are used",
+            "textures are not drawn; the plain colors are used",
         );
         self.warn_of(
             document.animations().len() + document.skins().len(),

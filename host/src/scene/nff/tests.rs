@@ -139,7 +139,7 @@ fn faults_name_line_and_cause() {
     );
     assert_eq!(
         fault("l 1 2 3 4\n"),
-        "t.nff:1: a light has a position (3 numbers) or a position and a colour (6), not 4 numbers"
+        "t.nff:1: a light has a position (3 numbers) or a position and a color (6), not 4 numbers"
     );
     assert_eq!(
         fault("f 1 1 1 1 0\n"),

@@ -227,7 +227,7 @@ fn imported(objects: &[Object]) -> u64 {
     objects.iter().map(|object| primitives(&object.shape)).sum()
 }
 
-/// How many primitives a shape is; vertices that no triangle uses weigh as triangles would.
+/// Returns how many primitives a shape is; vertices that no triangle uses weigh as triangles would.
 pub(super) fn primitives(shape: &Shape) -> u64 {
     match shape {
         Shape::Mesh {

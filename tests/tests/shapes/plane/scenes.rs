@@ -119,7 +119,7 @@ fn scenes_of_planes_alone_work() {
 }
 
 #[test]
-fn a_plane_that_is_too_far_away_or_not_finite_is_refused() {
+fn a_plane_that_is_too_far_away_or_not_finite_is_rejected() {
     let speck = Shape::Sphere(Sphere {
         center: DVec3::ZERO,
         radius: 0.99,
