@@ -7,7 +7,7 @@
 use glam::DVec3;
 use gridel_host::blob::Blob;
 use gridel_host::compile::{CompileError, Options, compile};
-use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Place, Scene, Shape};
+use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Scene, Shape, SourceSpan};
 use gridel_host::shape::{Cuboid, Sphere};
 use std::error::Error;
 
@@ -22,7 +22,7 @@ pub fn scene() -> Scene {
         name: name.into(),
         material,
         shape,
-        place: Place::default(),
+        place: SourceSpan::default(),
     };
     let floor = Shape::Box(Cuboid {
         min: DVec3::new(-4.0, -0.5, -4.0),

@@ -1,12 +1,12 @@
 //! Traces rays of the user's own through a blob.
 
 mod carry;
+mod direction_scale;
 mod rejection;
-mod stride;
 mod unit_ray;
 
+pub use direction_scale::DirectionScale;
 pub use rejection::{Rejection, Rejections};
-pub use stride::Stride;
 pub use unit_ray::UnitRay;
 
 use glam::DVec3;
@@ -176,7 +176,7 @@ fn through<N: Number, A: Accel, C: Observer>(
 const BATCH: usize = 16;
 
 /// A ray that is ready to be traced, or why it is not.
-type Ready<N> = Result<(Ray<N>, Stride), Rejection>;
+type Ready<N> = Result<(Ray<N>, DirectionScale), Rejection>;
 
 /// Finds whether each ray meets anything.
 fn any_of_each<N: Number, A: Accel, C: Observer>(
@@ -239,14 +239,14 @@ fn closest_of_each<N: Number, A: Accel, C: Observer>(
             batch.iter().zip(&met).zip(&mut hits[first..]).enumerate()
         {
             let found = ready.as_ref().map_err(|why| *why);
-            let found = found.and_then(|(ray, stride)| {
+            let found = found.and_then(|(ray, direction_scale)| {
                 // Inlined, it computes what is used here, and nothing else.
                 let Some(found) = met.and_then(|met| met.hit(scene, ray)) else {
                     return Ok(SceneHit::MISS);
                 };
                 let error = || found.error.length_to_f64();
                 Ok(SceneHit {
-                    t: stride.multiple(N::far_to_f64(found.t), error)?,
+                    t: direction_scale.multiple(N::far_to_f64(found.t), error)?,
                     object: found.object,
                     primitive: found.primitive,
                     normal: found.normal.map(|x| x.ratio_to_f64() as f32),
@@ -306,8 +306,14 @@ impl Frame {
     /// A ray in scene units, from one in units.
     pub fn scene_ray(&self, ray: &UnitRay) -> SceneRay {
         let direction = DVec3::from_array(ray.direction);
-        let (stride, _) = Stride::of(direction, self.unit, self.per_unit);
-        let along = |t: f64| if t == 0.0 { 0.0 } else { stride.nearest(t) };
+        let (direction_scale, _) = DirectionScale::of(direction, self.unit, self.per_unit);
+        let along = |t: f64| {
+            if t == 0.0 {
+                0.0
+            } else {
+                direction_scale.nearest(t)
+            }
+        };
         SceneRay {
             origin: self.place(ray.origin),
             tmin: along(ray.tmin),
@@ -335,21 +341,22 @@ impl Frame {
         &self,
         scene: &Scene<'_>,
         ray: &SceneRay,
-    ) -> Result<(Ray<N>, Stride), Rejection> {
+    ) -> Result<(Ray<N>, DirectionScale), Rejection> {
         // Multiples of the direction become lengths along its largest component.
-        let (mut stride, direction) = Stride::of(ray.direction, self.unit, self.per_unit);
+        let (mut direction_scale, direction) =
+            DirectionScale::of(ray.direction, self.unit, self.per_unit);
         let mut start = Start {
             origin: (ray.origin - self.origin) * self.per_unit,
-            tmin: stride.length(ray.tmin),
-            tmax: stride.length(ray.tmax),
+            tmin: direction_scale.length(ray.tmin),
+            tmax: direction_scale.length(ray.tmax),
             begin: 0.0,
         };
         // Here only numbers are chosen: a ray that is chosen goes through memory, and is waited for.
         if start.origin.abs().max_element() > carry::FAR {
             start = self.far_start::<N>(scene, ray, start, direction)?;
-            stride.begin_at(start.begin);
+            direction_scale.begin_at(start.begin);
         }
-        Ok((start.ray(scene, direction)?, stride))
+        Ok((start.ray(scene, direction)?, direction_scale))
     }
 
     /// The start of a ray from an origin far from the scene.

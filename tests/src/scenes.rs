@@ -5,7 +5,9 @@ use glam::DVec3;
 use gridel_core::Structure;
 use gridel_host::blob::Blob;
 use gridel_host::compile::{CompileError, Options, compile};
-use gridel_host::scene::{Camera, Material, MoleculeOptions, Object, Place, Scene, Shape, load};
+use gridel_host::scene::{
+    Camera, Material, MoleculeOptions, Object, Scene, Shape, SourceSpan, load,
+};
 use gridel_host::shape::{Cone, Cuboid, Disc, Sphere};
 use std::path::{Path, PathBuf};
 
@@ -15,7 +17,7 @@ pub fn of(shapes: impl IntoIterator<Item = Shape>) -> Scene {
         name: String::from("thing"),
         material: 0,
         shape,
-        place: Place::default(),
+        place: SourceSpan::default(),
     });
     Scene {
         materials: vec![Material::default()],

@@ -1,6 +1,6 @@
 //! Measures what a manifest asks for.
 
-use super::board::{self, Ran};
+use super::board::{self, BoardRun};
 use super::explained::explained;
 use super::image::Image;
 use super::manifest::{Check, Manifest, Reference};
@@ -289,12 +289,12 @@ impl Run<'_> {
         let ran = board::run(self.manifest, board, blob);
         let figures = board.budget.iter();
         let broken = match &ran {
-            Ran::Printed(..) => None,
-            Ran::NotRun(why) => Some(Outcome::NotRun(why.clone())),
-            Ran::Failed(why) => Some(Outcome::Failed(why.clone())),
+            BoardRun::Printed(..) => None,
+            BoardRun::NotRun(why) => Some(Outcome::NotRun(why.clone())),
+            BoardRun::Failed(why) => Some(Outcome::Failed(why.clone())),
         };
         let mut printed = None;
-        if let Ran::Printed(figures, picture) = ran {
+        if let BoardRun::Printed(figures, picture) = ran {
             printed = Some((figures, picture));
         }
         for (name, &most) in figures {

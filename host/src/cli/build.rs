@@ -7,7 +7,9 @@ use super::arguments::{
 use super::effects::CalledFor;
 use super::failure::Failure;
 use super::input::is_standard;
-use super::output::{Content, check_extension, json, print_about, prove, reject_same, write_files};
+use super::output::{
+    Content, check_extension, check_writable, json, print_about, reject_same, write_files,
+};
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Format, Scene, Structure};
@@ -137,7 +139,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     reject_same(&arguments.scene, &arguments.output)?;
     check_extension(&arguments.output, &["gridel", "bin"], "blob")?;
     if is_standard(&arguments.output) {
-        prove(&arguments.output)?;
+        check_writable(&arguments.output)?;
     } else {
         reject_foreign(&arguments.output, "blob", is_blob)?;
     }
@@ -168,7 +170,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             && arguments.emit_rust.is_none(),
         ..compile::Options::default()
     })?;
-    let scene_options = arguments.target.aimed(&arguments.scene_options)?;
+    let scene_options = arguments.target.with_target(&arguments.scene_options)?;
     let source = Source::compile(&arguments.scene, &scene_options, compiling)?;
     let scene = source.scene()?;
     let target = arguments.target.target();

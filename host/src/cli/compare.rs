@@ -1,6 +1,6 @@
 //! `gridel compare`: structures side by side on a scene's own rays.
 
-use super::arguments::Aim;
+use super::arguments::TargetPoint;
 use super::arguments::{
     self, SceneOptions, StructureOptions, check_hierarchy, distinct, scene_help, scene_long_help,
 };
@@ -70,7 +70,7 @@ pub struct Arguments {
     scene_options: SceneOptions,
 
     #[command(flatten)]
-    aim: Aim,
+    target_point: TargetPoint,
 }
 
 #[derive(Serialize)]
@@ -102,8 +102,8 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
     let imported = import(
         path,
         &arguments
-            .aim
-            .aimed(&arguments.scene_options)
+            .target_point
+            .with_target(&arguments.scene_options)
             .sized(Some(arguments.size)),
     )?;
     if let Some(folder) = &arguments.plot {

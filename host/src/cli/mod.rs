@@ -80,7 +80,7 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
     let program = Program::parse();
     failure::break_lines_at_spaces();
     // Without a handler an interrupt would only leave a temporary file behind.
-    let _ = ctrlc::set_handler(|| gridel_host::output::abandon(130));
+    let _ = ctrlc::set_handler(|| gridel_host::output::exit_removing_unfinished(130));
     if let Err(cause) = gridel_host::simd::from_environment() {
         return failure::Failure::usage(cause, "unset the variable for the fastest").report();
     }

@@ -40,11 +40,11 @@ fn write_standard(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Resul
 }
 
 /// Proves that a file can be written, before any work that it shall hold.
-pub fn prove(path: &Path) -> Result<(), Failure> {
+pub fn check_writable(path: &Path) -> Result<(), Failure> {
     if is_standard(path) {
         return reject_terminal();
     }
-    output::prove(path).map_err(|error| Failure::writing(path, &error))
+    output::check_writable(path).map_err(|error| Failure::writing(path, &error))
 }
 
 /// What a file of [`write_files`] is to hold.

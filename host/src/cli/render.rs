@@ -1,18 +1,18 @@
 //! `gridel render`: a picture of a scene.
 
-use super::arguments::Aim;
+use super::arguments::TargetPoint;
 use super::arguments::{self, PictureOptions, SceneOptions, TraceOptions};
 use super::failure::Failure;
 use super::input::is_standard;
 use super::output::{
-    Content, Warned, json, print_about, prove, reject_same, unsupported, write_files,
+    Content, Warned, check_writable, json, print_about, reject_same, unsupported, write_files,
 };
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Counters, Scene, Settings, Structure};
 use gridel_host::output::place;
-use gridel_host::picture::{Making, PictureFormat};
+use gridel_host::picture::{PictureFormat, RenderMetadata};
 use gridel_host::render::{Job, Picture, render};
 use gridel_host::report::HeatMap;
 use gridel_host::resolution::Unresolved;
@@ -74,7 +74,7 @@ pub struct Arguments {
     scene_options: SceneOptions,
 
     #[command(flatten)]
-    aim: Aim,
+    target_point: TargetPoint,
 }
 
 /// Pixels that are held at once.
@@ -129,8 +129,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::to_trace(
         &arguments.input,
         &arguments
-            .aim
-            .aimed(&arguments.scene_options)
+            .target_point
+            .with_target(&arguments.scene_options)
             .sized(arguments.picture.size),
         &arguments.with,
         Structure::Wide,
@@ -161,8 +161,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         )
     })?;
 
-    let making = Making::of(&scene, &job);
-    let write_picture: Content<'_> = &|out| format.write(out, &picture, &making);
+    let metadata = RenderMetadata::of(&scene, &job);
+    let write_picture: Content<'_> = &|out| format.write(out, &picture, &metadata);
     let heat_map = match &arguments.heat_map {
         Some(path) => {
             let map = HeatMap::of(&picture);
@@ -224,7 +224,7 @@ fn check_outputs(arguments: &Arguments) -> Result<PictureFormat, Failure> {
         }
     }
     for path in [output].into_iter().chain(&arguments.heat_map) {
-        prove(path)?;
+        check_writable(path)?;
     }
     Ok(format)
 }

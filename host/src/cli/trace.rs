@@ -5,8 +5,8 @@ use super::failure::Failure;
 use super::input::{is_standard, standard_input};
 use super::names::{NameTable, hits_by_name, most_hit};
 use super::output::{
-    Content, Warned, check_extension, json, print_about, prove, reject_inputs, reject_same,
-    write_files,
+    Content, Warned, check_extension, check_writable, json, print_about, reject_inputs,
+    reject_same, write_files,
 };
 use super::progress::Progress;
 use super::source::Source;
@@ -129,7 +129,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     reject_same(&arguments.input, &arguments.output)?;
     reject_same(&arguments.rays, &arguments.output)?;
     check_extension(&arguments.output, &["npy"], "hits")?;
-    prove(&arguments.output)?;
+    check_writable(&arguments.output)?;
     if let Some(None) = arguments.names
         && arguments.any
     {
@@ -149,7 +149,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "a file of this command",
         )?;
         check_extension(path, &["json"], "names")?;
-        prove(path)?;
+        check_writable(path)?;
         if is_standard(path) {
             return Err(Failure::usage(
                 "names cannot go to standard output, where the report goes",

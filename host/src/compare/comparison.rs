@@ -1,6 +1,6 @@
 //! How contenders compare.
 
-use super::judge::Wrong;
+use super::judge::Mismatch;
 use crate::measure::rays::Works;
 use serde::Serialize;
 
@@ -60,7 +60,7 @@ pub struct Row {
     /// The traversal stack on a 32-bit board.
     pub stack_bytes: usize,
     /// What the answers are worth: `None` where all are the list's.
-    pub wrong: Option<Wrong>,
+    pub wrong: Option<Mismatch>,
     /// `None` where the answers are wrong.
     pub work: Option<Works>,
 }

@@ -17,7 +17,7 @@ pub use charts::charts;
 pub use comparison::{Comparison, RayCounts, Rejected, Row};
 pub use findings::findings;
 pub use growth::{Growth, Step, growth, growth_steps};
-pub use judge::Wrong;
+pub use judge::Mismatch;
 pub use options::{CompareError, Options};
 
 use crate::compile::{self, Builder, CompileError, Compiled, compile};
@@ -196,7 +196,7 @@ impl Built {
         &self,
         scene: &Scene<'_>,
         list: &Self,
-        wrong: Option<Wrong>,
+        wrong: Option<Mismatch>,
         work: Option<Works>,
         options: &Options<'_>,
     ) -> Row {

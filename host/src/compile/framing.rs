@@ -79,7 +79,7 @@ pub fn framing(scene: &Scene, fov_degrees: Option<f64>) -> Camera {
 mod tests {
     use super::*;
     use crate::compile::primitives::extent;
-    use crate::scene::{Material, Object, Place, Shape, Up};
+    use crate::scene::{Material, Object, Shape, SourceSpan, Up};
     use crate::shape::Cuboid;
 
     fn scene(min: [f64; 3], max: [f64; 3], up: Up) -> Scene {
@@ -88,7 +88,7 @@ mod tests {
             name: String::from("box"),
             material: 0,
             shape: Shape::Box(Cuboid { min, max }),
-            place: Place::default(),
+            place: SourceSpan::default(),
         };
         Scene {
             materials: vec![Material::default()],

@@ -16,9 +16,9 @@ mod importer;
 mod model;
 pub(crate) mod molecule;
 mod options;
-mod place;
 mod polygon;
 mod size;
+mod source_span;
 #[cfg(test)]
 mod test_scenes;
 mod text;
@@ -29,8 +29,8 @@ pub use error::SceneError;
 pub use importer::Importer;
 pub use model::{Camera, Color, Diffuse, Light, Material, Object, RenderSettings, Scene, Up};
 pub use options::{ImportOptions, Imported, MoleculeOptions, MoleculeStyle};
-pub use place::Place;
 pub use size::MOST_INPUT;
+pub use source_span::SourceSpan;
 
 use access::Access;
 use importer::Importers;

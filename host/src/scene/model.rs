@@ -1,6 +1,6 @@
 //! The scene as data.
 
-use super::place::Place;
+use super::source_span::SourceSpan;
 use crate::shape::{Shape, parallel};
 use glam::DVec3;
 
@@ -124,7 +124,7 @@ pub struct Object {
     pub material: usize,
     pub shape: Shape,
     /// Where the scene file says so, for messages.
-    pub place: Place,
+    pub place: SourceSpan,
 }
 
 /// Rendering defaults; the command line overrides them.

@@ -10,7 +10,7 @@ use super::polygon::{self, MAX_CONCAVE};
 use super::size::Size;
 use super::text::{Source, Warnings};
 use super::words::Words;
-use super::{Imported, Material, Object, Place, Scene, SceneError, Shape, Up};
+use super::{Imported, Material, Object, Scene, SceneError, Shape, SourceSpan, Up};
 use glam::DVec3;
 
 pub(super) const IMPORTER: Importer = Importer {
@@ -106,7 +106,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
                 vertices,
                 triangles,
             },
-            place: Place::of(&source.path),
+            place: SourceSpan::of(&source.path),
         }],
         ..Scene::default()
     };

@@ -9,7 +9,7 @@
 
 use super::importer::{Importer, Input, stem};
 use super::text::{Source, Warnings, check_encoding};
-use super::{Imported, Material, Object, Place, Scene, SceneError, Shape, Up};
+use super::{Imported, Material, Object, Scene, SceneError, Shape, SourceSpan, Up};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::path::Path;
@@ -70,7 +70,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
             let more = found - length(count);
             let mut warnings = Warnings::default();
             let sentence = format!("{more} bytes behind the last triangle are ignored");
-            warnings.add_times(Place::of(path), 1, sentence);
+            warnings.add_times(SourceSpan::of(path), 1, sentence);
             binary(path, &bytes, warnings)
         }
         Some(count) => Err(SceneError::new(
@@ -116,10 +116,10 @@ fn binary(path: &Path, bytes: &[u8], mut warnings: Warnings) -> Result<Imported,
     if colored > 0 {
         let sentence = "the attributes of a triangle, which some programs use for its color, are \
                         ignored; the surface has one color";
-        warnings.add_times(Place::of(path), colored, sentence);
+        warnings.add_times(SourceSpan::of(path), colored, sentence);
     }
     let objects = soup
-        .object(stem(path), Place::of(path))
+        .object(stem(path), SourceSpan::of(path))
         .into_iter()
         .collect();
     scene(path, objects, warnings.into_sentences())
@@ -236,7 +236,7 @@ impl Soup {
     }
 
     /// The mesh of the triangles, if there are any.
-    fn object(self, name: String, place: Place) -> Option<Object> {
+    fn object(self, name: String, place: SourceSpan) -> Option<Object> {
         let shape = Shape::Mesh {
             vertices: self.vertices,
             triangles: self.triangles,

@@ -115,7 +115,7 @@ pub struct Answer {
 
 /// Why an answer is wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Wrong {
+pub enum Mismatch {
     /// The primitive is not met, or not there.
     NotThere,
     /// Another primitive is met before.
@@ -163,7 +163,7 @@ impl Judge {
         format: Format,
         ray: &RoundedRay,
         answer: Option<Answer>,
-    ) -> Result<(), Wrong> {
+    ) -> Result<(), Mismatch> {
         let line = ray.line();
         let met = answer.and_then(|answer| self.solid(answer.primitive));
         let [tmin, tmax] = ray.interval_of(met.is_none_or(Solid::is_bounded));
@@ -172,12 +172,12 @@ impl Judge {
         if let Some(answer) = answer {
             let pieces = || self.pieces(answer.primitive);
             let step = pieces().map(|solid| ray.step(format, answer.t, solid));
-            let off = STEPS * step.reduce(f64::max).ok_or(Wrong::NotThere)?;
+            let off = STEPS * step.reduce(f64::max).ok_or(Mismatch::NotThere)?;
             let there = pieces().any(|solid| {
                 Crossings::new(solid, &line, off).may_be_met_at(&Real::of(answer.t), &begin)
             });
             if !there || answer.t < tmin - off || answer.t > tmax + off {
-                return Err(Wrong::NotThere);
+                return Err(Mismatch::NotThere);
             }
             // Hits count from the ray's own start, which rounds once more.
             end = Some(answer.t - off);
@@ -201,7 +201,7 @@ impl Judge {
                 met => met,
             };
             if let Some(t) = met.filter(|t| *t < end) {
-                return Err(Wrong::Missed {
+                return Err(Mismatch::Missed {
                     primitive: *primitive,
                     t: t.to_f64(),
                 });

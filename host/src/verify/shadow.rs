@@ -1,6 +1,6 @@
 //! Contact shadows: what lies in the dark by `f64`, and what another format says of it.
 
-use super::check::{Fault, Promise, ask, depart};
+use super::check::{Fault, Property, ask, depart};
 use super::judge::{RoundedRay, step};
 use crate::shape::Solid;
 use crate::shape::random::Random;
@@ -127,7 +127,7 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
             return None;
         }
         Some(Fault {
-            promise: Promise::Shadows,
+            property: Property::Shadows,
             format: N::FORMAT,
             structure: Structure::List,
             what: format!(

@@ -303,7 +303,7 @@ fn ball() -> Workload {
             vertices,
             triangles,
         },
-        place: scene::Place::default(),
+        place: scene::SourceSpan::default(),
     });
     Workload::of(BALL, scene)
 }

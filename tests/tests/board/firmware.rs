@@ -4,7 +4,7 @@ use crate::elf::Elf;
 use crate::scenes::{Compiled, repository};
 use gridel_core::{Format, Structure};
 use gridel_host::measure::board::Board;
-use gridel_host::measure::board::programs::{Place, Profile};
+use gridel_host::measure::board::programs::{Profile, ProgramKey};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -157,7 +157,7 @@ impl<'b> Build<'b> {
     }
 
     /// The board, and what it computes in and through.
-    pub fn place(&self) -> Place<'b> {
+    pub fn place(&self) -> ProgramKey<'b> {
         (self.board, self.format, self.structure)
     }
 

@@ -5,7 +5,7 @@ use crate::scenes::{Compiled, compile_with, small};
 use glam::DVec3;
 use gridel_core::{Kind, Structure};
 use gridel_host::compile::Options;
-use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Place, Scene, Shape};
+use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Scene, Shape, SourceSpan};
 use gridel_host::shape::{Cuboid, Sphere};
 use gridel_tests::shapes::examples;
 
@@ -225,7 +225,7 @@ fn object(shape: Shape) -> Object {
         name: String::from("thing"),
         material: 0,
         shape,
-        place: Place::default(),
+        place: SourceSpan::default(),
     }
 }
 

@@ -11,7 +11,7 @@ use crate::scenes::{self, Compiled, repository};
 use gridel_core::{Format, Structure};
 use gridel_host::measure::board::Board;
 use gridel_host::measure::board::programs::{
-    Footprint, Place, Profile, Programs, parts as all_parts,
+    Footprint, Profile, ProgramKey, Programs, parts as all_parts,
 };
 use gridel_host::measure::board::{MemoryReport, Target};
 use std::path::PathBuf;
@@ -50,7 +50,7 @@ pub struct Linked(Vec<LinkedProgram>);
 
 struct LinkedProgram {
     name: String,
-    place: Place<'static>,
+    place: ProgramKey<'static>,
     parts: Vec<String>,
     profile: Profile,
     footprint: Footprint,

@@ -7,7 +7,7 @@ use gridel_host::blob::Blob;
 use gridel_host::compile::{self, Options};
 use gridel_host::render::{Job, render};
 use gridel_host::sample;
-use gridel_host::scene::{self, Camera, Light, Material, Object, Place, Scene, Shape};
+use gridel_host::scene::{self, Camera, Light, Material, Object, Scene, Shape, SourceSpan};
 use gridel_tests::scenes::from_its_corner;
 use std::env;
 use std::f64::consts::TAU;
@@ -144,7 +144,7 @@ pub fn torus_mesh() -> Compiled {
                     .collect(),
                 triangles: cells.flat_map(|(ring, step)| faces(ring, step)).collect(),
             },
-            place: Place::default(),
+            place: SourceSpan::default(),
         }],
         ..Scene::default()
     };

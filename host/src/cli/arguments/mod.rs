@@ -14,7 +14,9 @@ mod target;
 mod values;
 mod view;
 
-pub use scene::{Aim, GeometryOptions, ImportOptions, SceneOptions, scene_help, scene_long_help};
+pub use scene::{
+    GeometryOptions, ImportOptions, SceneOptions, TargetPoint, scene_help, scene_long_help,
+};
 pub use structures::{StructureOptions, check_hierarchy, check_quality};
 pub use target::TargetOptions;
 pub use values::{

@@ -173,15 +173,15 @@ impl MoleculeOptions {
 /// The option `--target` of commands that take no board.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for scene files")]
-pub struct Aim {
+pub struct TargetPoint {
     /// Look at this point [default: the file's, or the middle of the scene]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     target: Option<DVec3>,
 }
 
-impl Aim {
+impl TargetPoint {
     /// The options for scene files, with this point.
-    pub fn aimed(&self, options: &SceneOptions) -> SceneOptions {
+    pub fn with_target(&self, options: &SceneOptions) -> SceneOptions {
         let mut options = options.clone();
         options.view.target = self.target;
         options

@@ -49,7 +49,7 @@ impl TargetOptions {
     ///
     /// # Errors
     /// If two boards or two points were given.
-    pub fn aimed(&self, options: &SceneOptions) -> Result<SceneOptions, Failure> {
+    pub fn with_target(&self, options: &SceneOptions) -> Result<SceneOptions, Failure> {
         let mut points = self.target.iter().filter_map(BoardOrPoint::point);
         let boards = self.target.iter().filter_map(BoardOrPoint::board);
         if points.clone().count() > 1 || boards.count() > 1 {

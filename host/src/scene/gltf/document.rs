@@ -2,7 +2,7 @@
 
 use super::container::{self, Container};
 use crate::scene::text::Warnings;
-use crate::scene::{Place, SceneError};
+use crate::scene::{SourceSpan, SceneError};
 use gltf::Document;
 use gltf::json::camera::Type;
 use gltf::json::validation::{Checked, Error, Validate};
@@ -89,7 +89,7 @@ fn leave_out_shapeless(path: &Path, root: &mut Root, warnings: &mut Warnings) {
     }
     if let Some((mesh, part)) = first {
         let sentence = format!("mesh {mesh}, primitive {part} has no positions; it is left out");
-        warnings.add_times(Place::of(path), count, sentence);
+        warnings.add_times(SourceSpan::of(path), count, sentence);
     }
 }
 

@@ -16,7 +16,7 @@ mod view;
 use super::importer::{Importer as Entry, Input};
 use super::size::Size;
 use super::text::Warnings;
-use super::{Imported, Object, Place, Scene, SceneError, Shape, Up};
+use super::{Imported, Object, SourceSpan, Scene, SceneError, Shape, Up};
 use buffers::{Buffers, MOST};
 use glam::{DMat4, DQuat, DVec3};
 use gltf::mesh::Mode;
@@ -67,7 +67,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     drop(bytes);
     let mut importer = Importer {
         path,
-        place: Place::of(path),
+        place: SourceSpan::of(path),
         buffers: Buffers::read(path, &document, blob, access)?,
         scene: Scene::default(),
         materials: HashMap::new(),
@@ -103,7 +103,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
 /// What a file has come to so far.
 struct Importer<'a> {
     path: &'a Path,
-    place: Place,
+    place: SourceSpan,
     buffers: Buffers<'a>,
     scene: Scene,
     /// Materials in use, by their number in the file; the default has none.

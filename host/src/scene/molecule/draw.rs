@@ -2,7 +2,7 @@
 
 use super::element::Element;
 use super::parsed::Site;
-use crate::scene::{Diffuse, Material, MoleculeStyle, Object, Place, Shape};
+use crate::scene::{Diffuse, Material, MoleculeStyle, Object, Shape, SourceSpan};
 use crate::shape::{Cone, Sphere};
 use std::collections::HashMap;
 
@@ -15,7 +15,7 @@ const STICK: f64 = 0.15;
 pub(crate) struct BoundingSphere {
     pub(crate) site: Site,
     pub(crate) name: String,
-    pub(crate) place: Place,
+    pub(crate) place: SourceSpan,
 }
 
 /// Makes spheres of atoms, one object each, and then two half cylinders of each bond, in the

@@ -300,9 +300,9 @@ fn pictures_are_as_bright_as_the_databases_own() {
         };
         let picture = crate::render::render(&scene, &job, &|| ()).unwrap();
         let mut encoded = Vec::new();
-        let making = crate::picture::Making::of(&scene, &job);
+        let metadata = crate::picture::RenderMetadata::of(&scene, &job);
         crate::picture::PictureFormat::Ppm
-            .write(&mut encoded, &picture, &making)
+            .write(&mut encoded, &picture, &metadata)
             .unwrap();
         let found = means(&encoded[encoded.len() - 3 * 256 * 256..]);
         println!("{name}: {found:.1?} for {expected:.1?}");
@@ -349,9 +349,9 @@ fn display_values_are_shown_as_they_are() {
         };
         let picture = crate::render::render(&scene, &job, &|| ()).unwrap();
         let mut encoded = Vec::new();
-        let making = crate::picture::Making::of(&scene, &job);
+        let metadata = crate::picture::RenderMetadata::of(&scene, &job);
         let ppm = crate::picture::PictureFormat::Ppm;
-        ppm.write(&mut encoded, &picture, &making).unwrap();
+        ppm.write(&mut encoded, &picture, &metadata).unwrap();
         let row = &encoded[encoded.len() - 3 * 64..];
         for code in [row[3 * 20], row[3 * 60]] {
             assert!((127..=128).contains(&code), "{}: {row:?}", format.name());

@@ -34,7 +34,7 @@ impl Cost {
 }
 
 /// What the census found.
-pub(super) struct Taken {
+pub(super) struct Usage {
     /// How many objects the scene's own list comes to.
     pub(super) objects: usize,
     /// About groups that the scene does not use.
@@ -69,7 +69,7 @@ impl<'c> Census<'c> {
     }
 
     /// Proves it for a scene.
-    pub(super) fn take(mut self, items: &'c [Item]) -> Result<Taken, SceneError> {
+    pub(super) fn take(mut self, items: &'c [Item]) -> Result<Usage, SceneError> {
         let objects = self.items(items, 0)?.size.objects;
         let used = |name: &String| self.known.contains_key(name.as_str());
         let unused: Vec<_> = self.groups.iter().filter(|(name, _)| !used(name)).collect();
@@ -82,7 +82,7 @@ impl<'c> Census<'c> {
             self.items(&group.items, 1)?;
             self.open.pop();
         }
-        Ok(Taken {
+        Ok(Usage {
             objects: objects as usize,
             warnings,
         })

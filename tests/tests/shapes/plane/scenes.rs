@@ -158,7 +158,7 @@ fn verify_holds_scenes_with_planes_to_every_promise() {
         }];
         let blob = scenes::blob(&scene, 24);
         let report = verify(&blob.scene().expect("a scene"), 3000, &|| ());
-        assert_eq!(report.broken(), 0, "{:#?}", report.promises);
+        assert_eq!(report.broken(), 0, "{:#?}", report.properties);
     }
 }
 
