@@ -25,7 +25,7 @@ pub const CHUNK: usize = 128;
 /// A buffer that the bus and the renderer hand to each other; on a board it is a static.
 pub type Buffer = &'static mut [u8; CHUNK];
 
-/// What a board's SPI peripheral with DMA offers.
+/// The operations of a board's SPI peripheral with DMA.
 pub trait Bus {
     /// Sends a command and its arguments, with the data line low for the command.
     fn command(&mut self, command: u8, arguments: &[u8]);
@@ -38,7 +38,7 @@ pub trait Bus {
 const COLUMNS: u8 = 0x2a;
 /// Its rows.
 const ROWS: u8 = 0x2b;
-/// What follows are pixels.
+/// The following bytes are pixels.
 const WRITE: u8 = 0x2c;
 
 /// Renders the picture and sends it; `row` has as many pixels as the picture is wide. Returns the

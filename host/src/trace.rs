@@ -27,7 +27,7 @@ pub struct SceneRay {
     pub tmax: f64,
 }
 
-/// What a ray met; [`SceneHit::MISS`] for nothing, [`SceneHit::REJECTED`] for what is not answered.
+/// The answer to a ray: a hit, [`SceneHit::MISS`] or [`SceneHit::REJECTED`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneHit {
     pub t: f64,
@@ -59,7 +59,7 @@ impl SceneHit {
         normal: [0.0; 3],
     };
 
-    /// Whether the ray was rejected.
+    /// Returns whether the ray was rejected.
     pub fn is_rejected(&self) -> bool {
         self.t.is_nan()
     }

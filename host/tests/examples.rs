@@ -44,7 +44,7 @@ fn blob(name: &str) -> Blob {
         .blob
 }
 
-/// What `gridel render` makes, as the pixels of a display.
+/// Returns the picture of `gridel render`, as the pixels of a display.
 fn rendered(blob: &Blob, [width, height]: [u16; 2]) -> Vec<u16> {
     let scene = blob.scene().expect("the compiler's blob");
     let settings = Settings {

@@ -40,7 +40,7 @@ impl Traverse for Plain {
     }
 }
 
-/// What was compared.
+/// The compared rays.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tally {
     pub rays: u64,

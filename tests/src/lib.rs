@@ -1,4 +1,4 @@
-//! What the whole-program tests share: scenes, rays, and answers that owe nothing to the core.
+//! Shared parts of the whole-program tests: scenes, rays, and answers that owe nothing to the core.
 
 /// The example of the package's page compiles.
 #[cfg(doctest)]

@@ -32,7 +32,7 @@ pub fn blob(scene: &Scene, lattice_bits: u8) -> Blob {
     blob_with_inside(scene, lattice_bits).expect("meshes with an inside")
 }
 
-/// The same, or `None` if the lattice leaves a closed mesh no inside.
+/// Returns the blob, or `None` if the lattice leaves a closed mesh no inside.
 pub fn blob_with_inside(scene: &Scene, lattice_bits: u8) -> Option<Blob> {
     let all = Structure::ALL.into_iter();
     let options = Options {
@@ -90,7 +90,7 @@ pub fn fixture_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures")
 }
 
-/// What the fixtures are held to.
+/// Returns the manifest with the records of the fixtures.
 pub fn manifest() -> PathBuf {
     fixture_folder().join("check.toml")
 }

@@ -14,7 +14,7 @@ pub use setting::{Parameter, Setting, least_reference_samples, sweep};
 use crate::table::significant;
 use serde::{Deserialize, Serialize};
 
-/// What was measured so far; what a sweep writes down after every step.
+/// The measurements so far; a sweep writes them after every step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results {
     /// Identifies the sweep: the program's version, the scene, the picture's size, the structure, the reference.
@@ -37,7 +37,7 @@ pub fn frontier(points: &[Point]) -> Vec<bool> {
     frontier_by(points, |point| point.errors.rmse)
 }
 
-/// The same by another error.
+/// Returns the frontier by another error.
 pub fn frontier_by(points: &[Point], error: impl Fn(&Point) -> f64) -> Vec<bool> {
     let beats = |a: &Point, b: &Point| {
         let cheaper = a.is_cheaper(b);
@@ -50,7 +50,7 @@ pub fn frontier_by(points: &[Point], error: impl Fn(&Point) -> f64) -> Vec<bool>
 }
 
 impl Point {
-    /// Whether it surely costs less: by time where the repeats of both are distinct, else by rays and
+    /// Returns whether it surely costs less: by time where the repeats of both are distinct, else by rays and
     /// tests, which repeat exactly and compare within a number format.
     fn is_cheaper(&self, other: &Self) -> bool {
         if self.cost.is_below(&other.cost) {
@@ -64,7 +64,7 @@ impl Point {
             && !self.same_work(other)
     }
 
-    /// Whether both cast the same rays and make the same tests in the same format, and their times
+    /// Returns whether both cast the same rays and make the same tests in the same format, and their times
     /// do not differ.
     fn same_work(&self, other: &Self) -> bool {
         let work = |point: &Self| (point.setting.format, point.cost.rays, point.cost.tests);
@@ -205,7 +205,7 @@ impl Ratio {
         }
     }
 
-    /// Whether it may as well be 1.
+    /// Returns whether it may as well be 1.
     fn is_noise(&self) -> bool {
         self.ends
             .is_some_and(|[low, high]| low <= 1.0 && 1.0 <= high)
@@ -246,10 +246,10 @@ impl Ratio {
     }
 }
 
-/// What is said of times without repeats.
+/// The text for times without repeats.
 const ONCE: &str = "timed once, so its noise is unknown";
 
-/// What becomes of an error, `each` step of the ratio.
+/// Says how an error changes; `each` returns the ratio per step.
 fn error_text(from: f64, to: f64, each: impl Fn(f64) -> f64) -> String {
     match (from, to) {
         (0.0, 0.0) => String::from("leaves the error at 0"),

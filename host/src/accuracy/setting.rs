@@ -100,7 +100,7 @@ impl Setting {
         Parameter::ALL.into_iter().filter(differs).collect()
     }
 
-    /// What is read off a parameter.
+    /// Returns the value of a parameter as text.
     pub fn value(&self, parameter: Parameter) -> String {
         match parameter {
             Parameter::Format => self.format.name().to_owned(),

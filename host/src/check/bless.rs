@@ -8,14 +8,14 @@ use std::io;
 use std::path::PathBuf;
 use toml_edit::{DocumentMut, InlineTable, Item, Value};
 
-/// What a manifest becomes.
+/// A manifest with the new records.
 #[derive(Clone, Debug)]
 pub struct Blessed {
     path: PathBuf,
     old: String,
     new: String,
     references: Vec<(PathBuf, super::Image)>,
-    /// What is broken and nothing that can be recorded: names of checks and what of them.
+    /// Failures that cannot be recorded: names of checks, and the key of each.
     pub left: Vec<String>,
 }
 

@@ -99,7 +99,7 @@ impl Image {
         Some(Difference { largest, beyond })
     }
 
-    /// What was expected, what is there, and how they differ, side by side: differences are
+    /// Returns the expected picture, the rendered one and their differences side by side: differences are
     /// stretched so that the largest is white. Only the two where the sizes differ.
     ///
     /// # Errors

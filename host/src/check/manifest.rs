@@ -164,7 +164,7 @@ impl Manifest {
         names.map(String::as_str)
     }
 
-    /// What is wrong with a file, where the manifest names it.
+    /// Returns an error about a file, at the place where the manifest names it.
     pub(super) fn error(&self, named: &Named, cause: impl Display, remedy: &str) -> SceneError {
         let Span { start, end } = named.span;
         let cause = format!("{} {cause}", named.path.display());
@@ -262,7 +262,7 @@ impl Check {
         Ok(check)
     }
 
-    /// Whether there is nothing that could be held or broken.
+    /// Returns whether there is nothing that could be held or broken.
     fn expects_nothing(&self) -> bool {
         let Budget {
             blob_bytes,

@@ -127,7 +127,7 @@ impl Run<'_> {
         Ok(compiled.blob)
     }
 
-    /// What is measured in one number format.
+    /// Measures the scene in one number format.
     fn format(
         &mut self,
         scene: &Scene<'_>,
@@ -275,7 +275,7 @@ impl Run<'_> {
         }
     }
 
-    /// What a program finds on a board.
+    /// Runs a program on a board and compares its figures.
     fn board(
         &mut self,
         number: usize,

@@ -26,7 +26,7 @@ use std::path::PathBuf;
 /// Most pixels that are measured.
 const MOST_PIXELS: usize = 1 << 22;
 
-/// What is printed as JSON.
+/// The JSON output.
 #[derive(Serialize)]
 struct Printed<'t> {
     folder: String,

@@ -96,7 +96,7 @@ pub struct Arguments {
     scene_options: SceneOptions,
 }
 
-/// What was built.
+/// The report of `build`.
 #[derive(Serialize)]
 struct Built<'r> {
     blob: &'r str,

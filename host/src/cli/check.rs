@@ -52,7 +52,7 @@ struct Checked<'r> {
     manifest: String,
     passed: usize,
     failed: usize,
-    /// What was broken and is recorded now.
+    /// Failures that are recorded now.
     recorded: usize,
     not_run: usize,
     #[serde(flatten)]

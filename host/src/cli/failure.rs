@@ -41,7 +41,7 @@ pub enum Failure {
     Broken,
 }
 
-/// What went wrong and what to do about it.
+/// The cause of a failure, and its remedy.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 #[error("{cause}")]
 #[diagnostic(help("{remedy}"))]

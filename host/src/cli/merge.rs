@@ -32,7 +32,7 @@ pub struct Arguments {
     json: bool,
 }
 
-/// What was merged.
+/// The report of `merge`.
 #[derive(Serialize)]
 struct Merged {
     picture: String,

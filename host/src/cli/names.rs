@@ -8,7 +8,7 @@ use serde::Serialize;
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
-/// What the numbers of objects and primitives stand for; the file of `trace --names`.
+/// The names behind the numbers of objects and primitives; the file of `trace --names`.
 #[derive(Serialize)]
 pub struct NameTable {
     objects: Vec<ObjectRow>,

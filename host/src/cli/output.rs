@@ -47,7 +47,7 @@ pub fn check_writable(path: &Path) -> Result<(), Failure> {
     output::check_writable(path).map_err(|error| Failure::writing(path, &error))
 }
 
-/// What a file of [`write_files`] is to hold.
+/// The content of a file of [`write_files`].
 pub type Content<'c> = &'c dyn Fn(&mut dyn Write) -> io::Result<()>;
 
 /// Writes files that belong together, all of them or none.

@@ -80,7 +80,7 @@ pub struct Arguments {
 /// Pixels that are held at once.
 const MOST_PIXELS: usize = 1 << 26;
 
-/// What was rendered.
+/// The report of `render`.
 #[derive(Serialize)]
 struct Rendered {
     picture: String,

@@ -1,4 +1,4 @@
-//! What a command works on: a scene blob, or a scene file that is compiled on the spot.
+//! The input of a command: a scene blob, or a scene file that is compiled on the spot.
 //! The first bytes distinguish them.
 
 use super::arguments::{SceneOptions, TraceOptions, check_quality};
@@ -153,7 +153,7 @@ impl Source {
         }
     }
 
-    /// What makes the blob of a scene file smaller: what is said where no byte is allowed.
+    /// Returns advice that makes the blob of a scene file smaller, from a build that allows no byte.
     fn smaller(&self) -> Option<String> {
         let (importing, compiling) = self.made_by.as_ref()?;
         let imported = self.input.scene(importing).ok()?;

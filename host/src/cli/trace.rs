@@ -83,7 +83,7 @@ pub struct Arguments {
 /// Rays that a thread takes at once; they count as one step of progress.
 const CHUNK: usize = 4096;
 
-/// What was traced.
+/// The report of `trace`.
 #[derive(Serialize)]
 struct Traced {
     rays: usize,
@@ -97,9 +97,9 @@ struct Traced {
     accel: &'static str,
     any: bool,
     threads: usize,
-    /// Of each repeat, tracing alone.
+    /// Seconds of each repeat, tracing alone.
     seconds: Vec<f64>,
-    /// Of the fastest repeat.
+    /// Rate of the fastest repeat.
     rays_per_second: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     counters: Option<Tests>,
@@ -116,7 +116,7 @@ struct Rejected {
     reason: String,
 }
 
-/// What was tested for all rays.
+/// Tests of all rays.
 #[derive(Serialize)]
 struct Tests {
     planes: u64,

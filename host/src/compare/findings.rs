@@ -4,12 +4,12 @@ use super::{Comparison, Row};
 use crate::table::grouped;
 use gridel_core::Structure;
 
-/// What is compared between rows.
+/// A figure that is compared between rows.
 struct Measure {
     name: &'static str,
     of: fn(&Row) -> Option<f64>,
     more_is_better: bool,
-    /// Whether it is a time, which needs several repeats.
+    /// `true` if it is a time, which needs several repeats.
     timed: bool,
 }
 
@@ -64,7 +64,7 @@ fn tests(row: &Row) -> Option<f64> {
     Some(all.planes + all.cells + all.objects)
 }
 
-/// What counts as equal: the noise of a shared machine.
+/// Ratio below which figures count as equal: the noise of a shared machine.
 const NOISE: f64 = 1.03;
 
 /// A factor with the digits that mean something.

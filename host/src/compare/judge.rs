@@ -1,4 +1,4 @@
-//! Whether the contenders' answers are right: the list's, primitive and t to the last bit.
+//! Compares the contenders' answers with brute force: primitive, and t to the last bit.
 //!
 //! The list tests every primitive, which takes long where there are many. So it is asked about as
 //! many rays as fit a budget, spread evenly over the picture, and about every ray on which two
@@ -19,7 +19,7 @@ pub struct Mismatch {
     pub first: String,
 }
 
-/// What was found.
+/// The result of the comparison.
 pub struct Verdict {
     /// Rays about which the list was asked.
     pub listed: usize,

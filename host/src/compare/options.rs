@@ -5,7 +5,7 @@ use crate::picture_rays::PictureRaysError;
 use gridel_core::{BlobError, Format, Structure};
 use peak_alloc::PeakAlloc;
 
-/// What to compare, and how.
+/// Options of a comparison.
 #[derive(Clone, Debug)]
 pub struct Options<'o> {
     pub structures: Vec<Structure>,

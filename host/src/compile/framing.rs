@@ -4,7 +4,7 @@ use super::primitives::in_extent;
 use crate::scene::{Camera, Color, Scene};
 use glam::DVec3;
 
-/// What rays see that meet nothing, where a scene states neither a camera nor a background: a light
+/// The background of a scene that states neither a camera nor a background: a light
 /// grey, against which what is white is seen by its shades, and what is black by its outline.
 pub const BACKGROUND: Color = [0.9, 0.92, 0.95];
 

@@ -62,7 +62,7 @@ pub struct Compiled {
     pub report: Report,
 }
 
-/// What compiling did.
+/// The compiler's report.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Report {
     /// Scene units of a lattice step.
@@ -96,7 +96,7 @@ pub struct Report {
     pub setup: Duration,
     /// Structures with tables of candidate lists.
     pub tables: Vec<TableStats>,
-    /// What became of the names; `None` where they are not asked for, or there are none.
+    /// The names in the blob; `None` if they are not asked for, or there are none.
     pub names: Option<KeptNames>,
 }
 
@@ -110,7 +110,7 @@ pub struct TableStats {
 
 /// Compiles a scene.
 ///
-/// The same scene and options give the same bytes on every machine and with any number of threads.
+/// A scene and its options give the same bytes on every machine and with any number of threads.
 ///
 /// # Errors
 /// If the scene does not fit a lattice, a count does not fit the format, or the blob is larger than
@@ -278,9 +278,9 @@ fn held(asked: &[Structure]) -> Vec<Structure> {
     structures
 }
 
-/// What structures are laid out from.
+/// The input of the layout of structures.
 struct Hierarchies {
-    /// What all share that need one.
+    /// Shared by all structures that need one.
     root: Option<Node>,
     /// Primitives in the order of its leaves.
     order: Vec<Primitive>,

@@ -8,7 +8,7 @@ use gridel_core::format::Leaf;
 /// Most primitives of a leaf.
 pub const LARGEST_LEAF: usize = Leaf::MAX_COUNT as usize;
 
-/// What to put into a blob.
+/// Options of the compiler.
 ///
 /// ```
 /// use gridel_core::Structure;

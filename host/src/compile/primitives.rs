@@ -36,7 +36,7 @@ pub struct Primitives {
     pub total: u32,
     /// For each object, its first primitive.
     pub object_first: Vec<u32>,
-    /// What the lattice leaves nothing of.
+    /// Primitives that collapse on the lattice.
     pub collapsed: LeftOut,
     /// Triangles without area.
     pub without_area: LeftOut,

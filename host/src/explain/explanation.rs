@@ -93,7 +93,7 @@ pub struct Hit {
 #[derive(Clone, Debug, Serialize)]
 pub struct Lighting {
     pub light: u32,
-    /// Of the angle between the surface's normal and the light.
+    /// Cosine of the angle between the surface's normal and the light.
     pub cosine: f64,
     /// The way to the light, surface of glass by surface of glass.
     pub shadow: Vec<Walk>,
@@ -104,7 +104,7 @@ pub struct Lighting {
     pub outcome: LightOutcome,
 }
 
-/// What becomes of a light.
+/// The outcome of a light at a surface.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "outcome", rename_all = "kebab-case")]
 pub enum LightOutcome {

@@ -23,7 +23,7 @@ use gridel_core::{
     Workspace,
 };
 
-/// What to explain.
+/// The subject of an explanation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Subject {
     /// A pixel of the picture that the settings ask for, from its upper left corner.

@@ -248,7 +248,7 @@ mod tests {
             .collect()
     }
 
-    /// What the authors' own program (version 1.2, 67 pixels a degree) gives.
+    /// The values of the authors' own program (version 1.2, 67 pixels per degree).
     #[test]
     fn differences_are_those_of_the_authors_program() {
         const CASES: [(Shade, Shade, f64, f64); 7] = [

@@ -47,7 +47,7 @@ fn dashes(index: usize) -> Option<(u32, u32)> {
     }
 }
 
-/// Whether the points of a curve are triangles. Others are discs, and rings when colors are used for
+/// Returns whether the points of a curve are triangles. Others are discs, and rings when colors are used for
 /// the third time.
 fn is_triangular(index: usize) -> bool {
     index / COLORS.len() == 1

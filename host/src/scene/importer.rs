@@ -12,7 +12,7 @@ use std::path::Path;
 pub struct Importer {
     /// Name of the format.
     pub name: &'static str,
-    /// What the format holds, in one line.
+    /// The content of the format, in one line.
     pub about: &'static str,
     /// Extensions of its files, in lower case and without a dot, the usual one first. Behind each of
     /// them `.gz` may stand.
@@ -158,7 +158,7 @@ fn dotted(extensions: &[&str]) -> Vec<String> {
 
 /// A file on its way to an importer.
 pub(super) struct Input<'a> {
-    /// What a file that this one names is read by.
+    /// Importers of files that this one names.
     pub(super) importers: Importers,
     /// Names the file in messages, and its folder is where files are that it names.
     pub(super) path: &'a Path,

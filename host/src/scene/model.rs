@@ -15,7 +15,7 @@ pub struct Scene {
     pub camera: Option<Camera>,
     /// Which way is up, for that frame.
     pub up: Up,
-    /// What a ray that meets nothing sees; without one it is black, or light if there is no camera
+    /// The color of rays that hit nothing; without one it is black, or light if there is no camera
     /// either.
     pub background: Option<Color>,
     /// Whether colors and lights are display values, which are added up and shown as they are: what
@@ -67,7 +67,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Whether the camera looks along `up`, or one of both has no length.
+    /// Returns whether the camera looks along `up`, or one of both has no length.
     pub fn is_along_up(&self) -> bool {
         parallel(self.target - self.eye, self.up)
     }
@@ -81,7 +81,7 @@ pub enum Light {
     Directional { direction: DVec3, color: Color },
 }
 
-/// What a surface does with light. The parts add up: local light (diffuse and highlight), what
+/// The reflection and transmission of a surface. The parts add up: local light (diffuse and highlight), what
 /// a mirror ray brings, what glass lets through.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {

@@ -40,7 +40,7 @@ pub(super) const IMPORTER: Importer = Importer {
     read,
 };
 
-/// What the first word of a file says of its vertices.
+/// The properties of vertices that the first word of a file states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Keyword<'a> {
     textured: bool,
@@ -48,7 +48,7 @@ struct Keyword<'a> {
     normals: bool,
     /// `4` or `n`, for vertices that have not three coordinates.
     dimension: &'a str,
-    /// What stands behind it without a space between, as in the files of ModelNet.
+    /// Numbers that follow without a space between, as in the files of ModelNet.
     rest: &'a str,
 }
 

@@ -130,7 +130,7 @@ pub(crate) fn check_encoding(path: &Path, bytes: &[u8]) -> Result<(), SceneError
     ))
 }
 
-/// What an importer passed over. The same sentence is kept once, with the first line it applies
+/// Warnings of an importer. A sentence is kept once, with the first line it applies
 /// to and how many lines follow it, so that a file of a million equal faults stays readable.
 #[derive(Default)]
 pub(super) struct Warnings {

@@ -140,7 +140,7 @@ macro_rules! registry {
         }
 
         impl Shape {
-            /// Whether it has a box. Shapes without one lie outside of all structures.
+            /// Returns whether it has a box. Shapes without one lie outside of all structures.
             pub(crate) fn is_bounded(&self) -> bool {
                 match self {
                     Self::Mesh { .. } | Self::Sphere(_) => true,
@@ -150,7 +150,7 @@ macro_rules! registry {
         }
 
         impl Solid {
-            /// Whether it has a box.
+            /// Returns whether it has a box.
             pub fn is_bounded(&self) -> bool {
                 match self {
                     Self::Triangle(_) | Self::Sphere(_) => true,
@@ -210,13 +210,13 @@ macro_rules! registry {
 gridel_core::shapes!(registry);
 
 impl Shape {
-    /// Whether all numbers are finite.
+    /// Returns whether all numbers are finite.
     pub(crate) fn is_finite(&self) -> bool {
         of_shape!(self, it => it.is_finite(),
             Self::Mesh { vertices, .. } => vertices.iter().all(|vertex| vertex.is_finite()))
     }
 
-    /// Whether there is something of it.
+    /// Returns whether there is something of it.
     pub(crate) fn has_extent(&self) -> bool {
         of_shape!(self, it => it.has_extent(), Self::Mesh { .. } => true)
     }

@@ -17,7 +17,7 @@ use gridel_core::geometry::plane;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     pub point: DVec3,
-    /// Of any length above 0.
+    /// The normal, of any length above 0.
     pub normal: DVec3,
 }
 

@@ -10,7 +10,7 @@ use gridel_core::{
     closest_hit,
 };
 
-/// What a scene properties.
+/// A property that holds for every scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Property {
@@ -18,21 +18,21 @@ pub enum Property {
     Structures,
     /// Whether anything is met does not depend on how it is asked.
     AnyHit,
-    /// What is met is what exact arithmetic meets first, where it meets it, within [`STEPS`].
+    /// Hits are those of exact arithmetic, where it finds them, within [`STEPS`].
     Answers,
     /// Numbers of a hit are finite, its t lies in the interval, its normal has the length 1.
     Numbers,
     /// A ray that starts beside a hit does not meet the same surface again, and one that starts inside
     /// of a solid leaves it.
     SelfHits,
-    /// What lies in the dark by `f64` does not lie in the light of another format.
+    /// A point in shadow by `f64` is not lit in another format.
     Shadows,
     /// No ray leaves a closed mesh unseen.
     Leaks,
 }
 
 impl Property {
-    /// What the property says, for reports.
+    /// Returns the property in words, for reports.
     pub const fn text(self) -> &'static str {
         match self {
             Property::Structures => "every structure agrees with brute force, bit for bit",
@@ -52,11 +52,11 @@ pub struct Fault {
     pub property: Property,
     pub format: Format,
     pub structure: Structure,
-    /// What happened, as a clause.
+    /// The fault, as a clause.
     pub what: String,
 }
 
-/// What one structure answers.
+/// The answer of one structure.
 #[derive(Clone, Copy, Debug)]
 pub struct StructureAnswer<N: Number> {
     pub structure: Structure,
@@ -64,7 +64,7 @@ pub struct StructureAnswer<N: Number> {
     pub any: bool,
 }
 
-/// What a ray's answers come to.
+/// The result of checking a ray's answers.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
     pub faults: Vec<Fault>,
@@ -221,7 +221,7 @@ fn bits<N: Number>(hit: &Option<Hit<N>>) -> Option<(u32, u32, bool, [u64; 8])> {
     })
 }
 
-/// What is wrong with the numbers of a hit.
+/// Returns a fault of the numbers of a hit.
 fn numbers<N: Number>(ray: &RoundedRay, judge: &Judge, hit: &Hit<N>) -> Option<String> {
     let t = N::far_to_f64(hit.t);
     let point = hit.point.map(N::length_to_f64);

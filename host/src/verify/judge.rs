@@ -1,4 +1,4 @@
-//! What is right, by arithmetic that owes nothing to the kernels: which primitive a ray meets first,
+//! Right answers, by arithmetic that owes nothing to the kernels: which primitive a ray hits first,
 //! within what a number format may be off by.
 
 use crate::shape::Solid;
@@ -36,9 +36,9 @@ pub fn step(format: Format, magnitude: f64) -> f64 {
 pub struct RoundedRay {
     pub start: [f64; 3],
     pub slope: [f64; 3],
-    /// What counts, from `start`.
+    /// The interval that counts, from `start`.
     pub interval: [f64; 2],
-    /// What counts of shapes without bounds, likewise.
+    /// The interval that counts for shapes without bounds.
     pub far_interval: [f64; 2],
     /// The t of `start` as hits count it.
     pub moved: f64,
@@ -57,7 +57,7 @@ impl RoundedRay {
         }
     }
 
-    /// The same ray in double precision.
+    /// Returns the ray in double precision.
     pub fn in_f64(&self, scene: &Scene<'_>) -> Option<Ray<f64>> {
         let mut kinds = Kind::ALL.into_iter();
         let bounded = kinds.all(|kind| kind.is_bounded() || scene.count(kind) == 0);
@@ -65,7 +65,7 @@ impl RoundedRay {
         Ray::from_f64(scene.bounds(), self.start, self.slope, first, last).ok()
     }
 
-    /// What counts, from `start`, of shapes with bounds or without.
+    /// Returns the interval that counts, from `start`, for shapes with bounds or without.
     pub fn interval_of(&self, bounded: bool) -> [f64; 2] {
         if bounded {
             self.interval
@@ -74,7 +74,7 @@ impl RoundedRay {
         }
     }
 
-    /// Of the angle between the ray and a vector of length 1.
+    /// Returns the cosine of the angle between the ray and a vector of length 1.
     pub fn cosine(&self, unit: [f64; 3]) -> f64 {
         let dot = |v: [f64; 3]| (0..3).map(|k| self.slope[k] * v[k]).sum::<f64>();
         dot(unit) / dot(self.slope).sqrt()
@@ -157,7 +157,7 @@ impl Judge {
             .map(|(_, _, solid)| solid)
     }
 
-    /// Whether an answer is right, within [`STEPS`].
+    /// Returns whether an answer is right, within [`STEPS`].
     pub fn check(
         &self,
         format: Format,
@@ -210,7 +210,7 @@ impl Judge {
         Ok(())
     }
 
-    /// Whether a ray meets a primitive at `t`, which may be as far off as `within`, or [`STEPS`] more.
+    /// Returns whether a ray meets a primitive at `t`, which may be as far off as `within`, or [`STEPS`] more.
     pub fn crosses(
         &self,
         format: Format,
@@ -244,7 +244,7 @@ impl<'c> Crossings<'c> {
         Self { solid, line, off }
     }
 
-    /// Whether one of the shapes is met at `t` by a ray that counts from `begin`.
+    /// Returns whether one of the shapes is met at `t` by a ray that counts from `begin`.
     pub fn may_be_met_at(&self, t: &Real, begin: &Real) -> bool {
         let largest = self.solid.spans(self.line, &self.off);
         let Some((first, last)) = largest.iter().find(|(first, last)| first <= t && t <= last)
@@ -282,7 +282,7 @@ impl<'c> Crossings<'c> {
     }
 }
 
-/// Whether a ray can meet a box, or one that is larger by a unit.
+/// Returns whether a ray can meet a box, or one that is larger by a unit.
 fn may_meet(ray: &RoundedRay, bounds: &UnitBox) -> bool {
     let mut span = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {

@@ -27,7 +27,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// What was found.
+/// The report of a verification.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
     /// Rays that were put to every structure in every format.
@@ -39,7 +39,7 @@ pub struct Report {
     pub properties: Vec<PropertyReport>,
 }
 
-/// What was found in one format.
+/// The results in one format.
 #[derive(Clone, Debug, Serialize)]
 pub struct FormatReport {
     pub format: &'static str,
@@ -111,7 +111,7 @@ impl Report {
 pub const RAYS: u64 = 10_000;
 /// Rays of a chunk of work.
 const CHUNK: u64 = 128;
-/// Of so many rays one is judged by exact arithmetic whatever was answered, and one hit in so many is
+/// One ray in so many is judged by exact arithmetic whatever was answered, and one hit in so many is
 /// left by secondary rays.
 const CONTROL: u64 = 16;
 /// Examples that are kept of each property.
@@ -227,7 +227,7 @@ fn aims(work: &Work<'_>, meshes: &[ClosedMesh], rays: u64) -> Vec<Aim> {
     aims
 }
 
-/// What checking a ray needs.
+/// The input of checking a ray.
 struct Work<'w> {
     scene: &'w Scene<'w>,
     judge: &'w Judge,
@@ -341,7 +341,7 @@ fn held(scene: &Scene<'_>) -> impl Iterator<Item = Structure> {
     all.filter(|&structure| structure == Structure::List || scene.holds(structure))
 }
 
-/// What was found so far.
+/// The results so far.
 #[derive(Clone, Debug, Default)]
 struct Tally {
     formats: [FormatTally; 3],

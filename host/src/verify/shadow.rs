@@ -63,7 +63,7 @@ fn to_light(light: &Light, from: DVec3) -> Option<DVec3> {
     (way != DVec3::ZERO).then_some(way)
 }
 
-/// What keeps a light from a hit, seen from where a ray leaves it: the nearest opaque primitive.
+/// Returns the nearest opaque primitive between a hit and a light, seen from where a ray leaves the hit.
 fn blocker<N: Number>(scene: &Scene<'_>, light: &Light, from: DVec3) -> Option<Hit<N>> {
     let way = to_light(light, from)?;
     let reach = if light.directional == 1 {

@@ -73,7 +73,7 @@ fn a_bound_that_is_too_tight_still_shows_the_table() {
     }
 }
 
-/// What is in the way is not replaced, and what an interrupted run has lost is made again.
+/// Other files are not replaced, and results that an interrupted run has lost are made again.
 #[test]
 fn only_the_same_run_goes_on_in_its_folder() {
     let folder = folder();

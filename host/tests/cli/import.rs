@@ -1,4 +1,4 @@
-//! What is said of scene files that hold more than is drawn, name files elsewhere, or stand for more
+//! Messages about scene files that hold more than is drawn, name files elsewhere, or stand for more
 //! than memory holds.
 
 use crate::program::Folder;

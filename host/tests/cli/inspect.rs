@@ -220,7 +220,7 @@ fn sum(report: &Value, account: &str, word: &str) -> u64 {
     items.map(|item| item["bytes"].as_u64().unwrap()).sum()
 }
 
-/// What `quick` lacks.
+/// The names that `quick` lacks.
 const OTHER_SHAPES: &[u8] = b"
 [[object]]
 kind = 'torus'

@@ -2,7 +2,7 @@
 
 use crate::program::Folder;
 
-/// What each structure alone takes, where it is not built.
+/// Options of one structure alone, where it is not built.
 #[test]
 fn options_of_structures_that_are_not_built_are_rejected() {
     let folder = Folder::with_quick();
@@ -76,7 +76,7 @@ fn options_of_structures_that_are_not_built_are_rejected() {
     fails(&accuracy, &["--quality is for wide"]);
 }
 
-/// What scene files take, given with a blob; what a command has no use for is no option of it.
+/// Options for scene files, given with a blob; options that a command does not use are unknown to it.
 #[test]
 fn options_that_a_command_cannot_use_are_rejected() {
     let folder = Folder::with_quick();
@@ -125,7 +125,7 @@ fn options_that_a_command_cannot_use_are_rejected() {
     }
 }
 
-/// What is asked for twice is done once, and `--quality` reaches the builder.
+/// A structure that is asked for twice is built once, and `--quality` reaches the builder.
 #[test]
 fn compare_takes_its_options() {
     let folder = Folder::with_quick();

@@ -116,7 +116,7 @@ fn stats_count_every_ray() {
     }
 }
 
-/// What a scene does not call for, it does not pay for.
+/// Effects that a scene does not require cost nothing.
 #[test]
 fn a_plain_scene_casts_no_secondary_ray() {
     let folder = Folder::new();

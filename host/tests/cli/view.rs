@@ -14,7 +14,7 @@ fn cuboid() -> String {
     corners.collect::<String>() + &faces.map(|face| format!("f {face}\n")).concat()
 }
 
-/// The same box in STL, on its side: 2 by 4 by 1.
+/// This box in STL, on its side: 2 by 4 by 1.
 fn lying() -> String {
     let mut text = String::from("solid box\n");
     let corner = |corner: usize| {

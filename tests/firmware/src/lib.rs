@@ -1,4 +1,4 @@
-//! What the firmware's programs share: the scene in flash, the board, and measuring on it.
+//! Shared parts of the firmware's programs: the scene in flash, the board, and measuring on it.
 //!
 //! | program | what it does |
 //! |---|---|
@@ -35,7 +35,7 @@ pub use riscv_rt as rt;
 
 #[cfg(all(target_arch = "arm", feature = "small"))]
 unsafe extern "C" {
-    /// What cortex-m-rt does with an interrupt that nobody handles.
+    /// The handler of cortex-m-rt for an interrupt without one.
     fn DefaultHandler();
 }
 

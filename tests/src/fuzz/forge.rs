@@ -215,7 +215,7 @@ pub struct Forger {
 }
 
 impl Forger {
-    /// Of some blobs. The forgeries of a seed are always the same.
+    /// Returns a forger of some blobs; the forgeries of a seed are always the same.
     pub fn new(bases: Vec<Base>, seed: u64) -> Self {
         Self {
             bases,

@@ -30,7 +30,7 @@ use gridel_core::{Format, Scene, Settings, Structure};
 use gridel_host::compile::Quality;
 use values::first_given;
 
-/// What rays are traced with.
+/// Options of tracing.
 #[derive(Args, Clone, Debug)]
 pub struct TraceOptions {
     /// Number format
@@ -47,7 +47,7 @@ pub struct TraceOptions {
     pub quality: Option<Quality>,
 }
 
-/// What of a picture's settings is not as the scene states it.
+/// Options of pictures that replace the scene's settings.
 #[derive(Args, Clone, Debug)]
 pub struct PictureOptions {
     /// Size of the whole picture, such as 640x480 [default: that of the scene]

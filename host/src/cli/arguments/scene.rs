@@ -102,7 +102,7 @@ impl SceneOptions {
 }
 
 impl SceneOptions {
-    /// The same options for a picture of another size, if one is given.
+    /// Sets the size of the picture, if one is given.
     pub fn sized(mut self, size: Option<[u16; 2]>) -> Self {
         self.view.size = size;
         self
@@ -120,7 +120,7 @@ impl From<GeometryOptions> for SceneOptions {
 }
 
 impl ImportOptions {
-    /// What was given, as it is written behind a file's name.
+    /// Returns the given options as they follow a file's name.
     pub fn written(&self) -> String {
         let outside = if self.allow_outside {
             " --allow-outside"

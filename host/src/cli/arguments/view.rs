@@ -15,7 +15,7 @@ pub struct ViewOptions {
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     eye: Option<DVec3>,
 
-    /// What the option `TargetPoint` holds, or `--target` of a command that takes boards, too.
+    /// The point of `TargetPoint`, or of `--target` in a command that takes boards too.
     #[arg(skip)]
     pub target: Option<DVec3>,
 

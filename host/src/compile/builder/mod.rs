@@ -28,7 +28,7 @@ pub enum Builder {
     /// where there are many.
     #[default]
     Sah,
-    /// The same with bins throughout.
+    /// As [`Sah`](Self::Sah), with bins throughout.
     Binned,
     /// That of [`Sah`](Self::Sah), improved by reinsertion: takes longest, and is best for boxes.
     Reinsertion,

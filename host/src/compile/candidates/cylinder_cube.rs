@@ -202,7 +202,7 @@ impl Form for Cylinders {
 /// A cylinder without ends.
 struct Cylinder {
     middle: DVec3,
-    /// Of length 1.
+    /// Direction of length 1.
     axis: DVec3,
     radius: f64,
 }

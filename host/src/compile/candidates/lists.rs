@@ -23,7 +23,7 @@ pub struct Lists {
     pub figures: Figures,
 }
 
-/// What a table of lists came to.
+/// Figures of a finished table of lists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Figures {
     /// Cells of the table.

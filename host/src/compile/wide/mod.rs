@@ -69,7 +69,7 @@ pub struct Wide {
     pub stack_depth: usize,
 }
 
-/// What the tree is built over.
+/// The items that the tree is built over.
 enum Item {
     Strip(usize),
     Pack(usize),

@@ -25,7 +25,7 @@ pub struct Strip {
 const NOBODY: u32 = u32::MAX;
 /// Strips that are looked at, in the order of their places in space, to join one with.
 const REACH: usize = 48;
-/// What a joined box may cost, the sum of the two being 1: there is one strip less, and a node has one
+/// The most that a joined box may cost, the sum of the two being 1: there is one strip less, and a node has one
 /// child less. More than a ray's time alone would allow, for their bytes.
 const JOINED_COST: f64 = 3.0;
 

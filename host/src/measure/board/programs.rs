@@ -44,7 +44,7 @@ pub struct Program {
 }
 
 impl Program {
-    /// What it takes in a profile.
+    /// Returns its footprint in a profile.
     pub fn footprint(&self, profile: Profile) -> Option<Footprint> {
         match profile {
             Profile::Fast => self.fast,
@@ -142,7 +142,7 @@ impl Programs {
         })
     }
 
-    /// What a part adds to programs that were built with and without it, in the middle; `None` where
+    /// Returns the median of what a part adds to programs that were built with and without it; `None` where
     /// there is no such pair.
     pub fn share(&self, program_key: ProgramKey<'_>, part: &str, profile: Profile) -> Option<u64> {
         let built = self.at(program_key)?;
@@ -236,7 +236,7 @@ mod tests {
         assert_eq!(figure, None);
     }
 
-    /// What is recorded can be read, and every program in it has a name that parts make.
+    /// The records can be read, and the name of every program consists of parts.
     #[test]
     fn recorded_programs_have_known_parts() {
         let recorded: Programs = serde_json::from_str(RECORDED).unwrap();

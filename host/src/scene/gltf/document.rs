@@ -93,7 +93,7 @@ fn leave_out_shapeless(path: &Path, root: &mut Root, warnings: &mut Warnings) {
     }
 }
 
-/// What the crate looks up without having validated it.
+/// Checks the indices that the crate looks up without having validated them.
 fn check_indices(path: &Path, root: &Root) -> Result<(), SceneError> {
     let lacks = |camera: &gltf::json::Camera| match camera.type_ {
         Checked::Valid(Type::Perspective) => camera.perspective.is_none(),

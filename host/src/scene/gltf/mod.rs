@@ -100,7 +100,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     })
 }
 
-/// What a file has come to so far.
+/// The scene so far.
 struct Importer<'a> {
     path: &'a Path,
     place: SourceSpan,
@@ -381,7 +381,7 @@ impl Importer<'_> {
     }
 }
 
-/// What messages call a part of a mesh.
+/// Returns the name of a part of a mesh in messages.
 fn place(mesh: &gltf::Mesh<'_>, part: &Primitive<'_>) -> String {
     format!("mesh {}, primitive {}", mesh.index(), part.index())
 }

@@ -7,7 +7,7 @@ use crate::scene::Color;
 pub(crate) struct Element(u8);
 
 impl Element {
-    /// What is no element of the table: a dummy atom or an unreadable symbol.
+    /// No element of the table: a dummy atom or an unreadable symbol.
     pub(crate) const UNKNOWN: Self = Self(0);
     pub(crate) const HYDROGEN: Self = Self(1);
     pub(crate) const CARBON: Self = Self(6);

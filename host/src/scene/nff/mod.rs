@@ -1,7 +1,7 @@
 //! Reads NFF, the Neutral File Format of Eric Haines's Standard Procedural Databases (version
 //! 3.1 of its text, 1992).
 //!
-//! What the format leaves open is settled as the databases' reference pictures show it:
+//! Where the format leaves a meaning open, the databases' reference pictures decide:
 //! * Colors and lights are display values: they are added up and shown as they are.
 //! * A light without a color has intensity 1 / sqrt(n), n being the number of lights.
 //! * Ambient light, of which the format knows nothing, is what materials leave of 1 beside Kd, Ks
@@ -26,7 +26,7 @@ use glam::DVec3;
 use reader::{Line, Lines};
 use std::collections::{BTreeSet, HashMap};
 
-/// What turns the exponent of Phong's cosine into that of the halfway vector's.
+/// The factor from the exponent of Phong's cosine to that of the halfway vector's.
 const PHONG_TO_HALFWAY: f64 = 4.0;
 
 pub(super) const IMPORTER: Entry = Entry {

@@ -9,7 +9,7 @@
 use crate::scene::text::{Source, Warnings};
 use crate::scene::{Color, Diffuse, Material, SceneError};
 
-/// What a file says of one material.
+/// One material of a file.
 #[derive(Default)]
 struct Statements {
     name: String,

@@ -9,7 +9,7 @@ pub(super) struct Parsed<'a> {
     pub(super) vertices: Vec<DVec3>,
     /// In file order; each has at least one face.
     pub(super) parts: Vec<Part<'a>>,
-    /// What follows each `mtllib`, with its line.
+    /// The text behind each `mtllib`, with its line.
     pub(super) libraries: Vec<(usize, &'a str)>,
 }
 

@@ -13,7 +13,7 @@ pub(super) const MAX_PRIMITIVES: u64 = 16_777_216;
 /// How deep groups may be nested; reading and placing them takes stack.
 pub(super) const MAX_NESTING: usize = 64;
 
-/// What placing some objects costs.
+/// The cost of placing some objects.
 #[derive(Clone, Copy, Default)]
 struct Cost {
     /// Primitives, or as much memory as they would take.
@@ -33,7 +33,7 @@ impl Cost {
     }
 }
 
-/// What the census found.
+/// The result of the census.
 pub(super) struct Usage {
     /// How many objects the scene's own list comes to.
     pub(super) objects: usize,

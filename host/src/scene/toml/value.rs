@@ -19,7 +19,7 @@ pub(crate) struct Value<'a> {
 pub(crate) struct Fields<'a> {
     pub(crate) source: &'a Source,
     pub(crate) span: Span,
-    /// What the table describes, for messages.
+    /// The subject of the table, for messages.
     what: &'a str,
     table: &'a DeTable<'a>,
 }
@@ -341,7 +341,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// What `read` makes of the key's value, or `default` without one.
+    /// Returns the key's value as `read` converts it, or `default` without one.
     pub(crate) fn or<T>(
         &self,
         key: &str,

@@ -34,7 +34,7 @@ fn a_budget_rejects_before_writing() {
     run("some", &|arguments| folder.fails(2, arguments, &["64K"]));
 }
 
-/// What would be saved is what is saved.
+/// The advised change saves the bytes that the advice states.
 #[test]
 fn the_advice_for_a_budget_is_exact() {
     let folder = Folder::with_quick();
@@ -136,7 +136,7 @@ fn a_scene_that_does_not_fit_a_board_is_rejected_with_figures() {
     folder.done(&with(&["--target", "mps2-an386"]));
 }
 
-/// What is said to make a blob smaller is what it does, whether its own bytes are bounded or a board's.
+/// Advice is true for budgets of the blob and of a board.
 #[test]
 fn advice_on_flash_is_what_it_saves() {
     let folder = Folder::new();

@@ -1,4 +1,4 @@
-//! What valid files come to.
+//! Objects of valid files.
 
 use crate::shape::{Cone, Cuboid, Sphere};
 use super::{example, load, material_of, named, scene};

@@ -1,4 +1,4 @@
-//! What transforms make of shapes.
+//! Shapes after transforms.
 
 use crate::shape::{Cone, Cuboid, Disc, Sphere};
 use super::{assert_near, named, rejection, scene, volume};
