@@ -218,6 +218,14 @@ fn encoded<P: Pixel>(picture: &Picture, dither: bool) -> Vec<P> {
 ///
 /// # Errors
 /// If `out` has one.
+///
+/// ```
+/// let mut file = Vec::new();
+/// let red_and_blue = [255, 0, 0, 0, 0, 255];
+/// gridel_host::picture::write_png(&mut file, [2, 1], &red_and_blue, None)?;
+/// assert!(file.starts_with(b"\x89PNG"));
+/// # Ok::<(), std::io::Error>(())
+/// ```
 pub fn write_png(
     out: &mut dyn Write,
     [width, height]: [u32; 2],

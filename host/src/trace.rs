@@ -116,6 +116,32 @@ pub fn trace(
 }
 
 /// Traces rays like [`trace`], and counts what is tested for them.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// # let blob = compile(&imported.scene, &Options::default())?.blob;
+/// # let scene = blob.scene()?;
+/// use gridel_core::{Counters, Format, Structure};
+/// use gridel_host::trace::{Query, SceneHit, SceneRay, trace_counted};
+///
+/// let down = SceneRay {
+///     origin: glam::DVec3::new(0.0, 5.0, 0.0),
+///     tmin: 0.0,
+///     direction: glam::DVec3::NEG_Y,
+///     tmax: f64::INFINITY,
+/// };
+/// let query = Query {
+///     format: Format::Fixed,
+///     structure: Structure::List,
+///     any: false,
+/// };
+/// let mut counters = Counters::default();
+/// trace_counted(&scene, &[down], query, &mut [SceneHit::MISS], &mut counters);
+/// assert_eq!(counters.objects, 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn trace_counted(
     scene: &Scene<'_>,
     rays: &[SceneRay],

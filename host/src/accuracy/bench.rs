@@ -100,6 +100,21 @@ pub enum MeasureError {
 }
 
 /// A scene that is measured, with the blobs that were built of it.
+///
+/// ```
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// use gridel_core::Structure;
+/// use gridel_host::accuracy::Bench;
+///
+/// let mut bench = Bench::new(&imported.scene, Structure::Flagged, [16, 12]);
+/// let reference = bench.reference(16)?;
+/// let base = bench.base();
+/// let (point, pixels) = bench.measure(&base, &reference)?;
+/// assert_eq!(pixels.len(), 16 * 12);
+/// assert!(point.errors.rmse < 0.2 && point.cost.rays >= 16 * 12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Bench<'s> {
     scene: &'s Scene,
     structure: Structure,

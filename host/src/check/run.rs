@@ -14,6 +14,23 @@ use gridel_core::{Format, Scene, Settings, Structure};
 use std::io;
 
 /// Measures everything. Calls `progress` after each of the [steps](Manifest::steps).
+///
+/// ```
+/// use gridel_host::check::{Manifest, run};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("check.toml");
+/// std::fs::write(
+///     folder.path().join("ball.toml"),
+///     "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n",
+/// )?;
+/// std::fs::write(&path, "[[check]]\nscene = 'ball.toml'\nsize = [16, 12]\nhash = {}\n")?;
+///
+/// let report = run(&Manifest::read(&path)?, &|| ());
+/// // No hash is recorded yet.
+/// assert_eq!((report.passed(), report.failed()), (0, 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn run(manifest: &Manifest, progress: &dyn Fn()) -> Report {
     let mut report = Report::default();
     for (index, check) in manifest.checks.iter().enumerate() {

@@ -35,6 +35,24 @@ use std::time::Duration;
 ///
 /// # Errors
 /// If the scene cannot be compiled, or its picture casts too many rays.
+///
+/// ```
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// use gridel_core::Structure;
+/// use gridel_host::compare::{Options, compare};
+///
+/// let options = Options {
+///     structures: vec![Structure::List, Structure::DualSplit],
+///     size: [16, 12],
+///     repeats: 0,
+///     ..Options::default()
+/// };
+/// let comparison = compare(&imported.scene, &options, &|step| eprintln!("{step}"))?;
+/// assert_eq!(comparison.rays.primary, 16 * 12);
+/// assert!(comparison.rows.iter().all(|row| row.wrong.is_none()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn compare(
     scene: &scene::Scene,
     options: &Options<'_>,

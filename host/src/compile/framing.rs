@@ -24,6 +24,17 @@ const NEAREST: f64 = 1.0 / 16.0;
 /// The front is that of the scene's [up](Scene::up): the camera looks along -z where y is up, and along +y where z
 /// is up. A flat scene that would be seen from its edge is seen from above or from its right. Unbounded shapes do
 /// not count beside bounded ones.
+///
+/// ```
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// use gridel_host::compile::framing;
+///
+/// let camera = framing(&imported.scene, Some(30.0));
+/// assert_eq!(camera.target, glam::DVec3::ZERO);
+/// assert!(camera.eye.x == 0.0 && camera.eye.y == 0.0 && camera.eye.z > 1.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn framing(scene: &Scene, fov_degrees: Option<f64>) -> Camera {
     let fov_degrees = fov_degrees.unwrap_or(FOV_DEGREES);
     let shapes = in_extent(scene);

@@ -133,6 +133,24 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
 ///
 /// # Errors
 /// As [`compile`].
+///
+/// ```
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// use gridel_core::Structure;
+/// use gridel_host::compile::{Options, compile_with_progress};
+///
+/// let options = Options {
+///     structures: vec![Structure::CylinderCube],
+///     gridels: Some(4),
+///     ..Options::default()
+/// };
+/// let compiled = compile_with_progress(&imported.scene, &options, &|structure, done, of| {
+///     eprintln!("{}: {done} of {of} cells", structure.name());
+/// })?;
+/// assert!(compiled.blob.scene()?.holds(Structure::CylinderCube));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn compile_with_progress(
     scene: &Scene,
     options: &Options,

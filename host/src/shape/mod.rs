@@ -7,9 +7,11 @@
 mod analytic;
 mod crossing;
 mod direction;
+#[doc(hidden)]
 pub mod exact;
 mod keys;
 mod lattice;
+#[doc(hidden)]
 pub mod random;
 mod snapped;
 mod sphere;

@@ -7,7 +7,9 @@
 
 mod check;
 mod closed;
+#[doc(hidden)]
 pub mod judge;
+#[doc(hidden)]
 pub mod rays;
 mod shadow;
 
