@@ -1,4 +1,4 @@
-//! What `accuracy` measures is what is there.
+//! Figures of `accuracy` equal those of pictures and blobs.
 
 use gridel_core::{Format, Structure};
 use gridel_host::accuracy::{

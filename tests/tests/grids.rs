@@ -251,7 +251,7 @@ fn walks_are_as_long_as_the_grid_is_wide() {
     assert!((1500..=2050).contains(&most), "{most}");
 }
 
-/// What reaches into many cells is hit in the right one, and not where it was first listed (B6).
+/// A primitive in many cells is hit in the right one, and not where it was first listed (B6).
 #[test]
 fn long_things_are_hit_where_they_are() {
     let mut random = Random(5);

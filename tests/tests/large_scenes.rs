@@ -39,7 +39,7 @@ fn blob(scene: &Scene) -> Blob {
     compile(scene, &options).expect("compiles").blob
 }
 
-/// What a small box stands on.
+/// The ground of a small box.
 #[derive(Clone, Copy, Debug)]
 enum Ground {
     Slab,

@@ -161,7 +161,9 @@ pub fn compile_with_progress(
     let (lattice, snapped) = snap(scene, extent, options.lattice_bits)?;
     let structures = held(&options.structures);
     let shading_data = shading_data::ShadingData::of(scene, &lattice, extent)?;
-    let started = Instant::now();
+    // WebAssembly without a system has no clock, and asking for the time would panic.
+    let has_clock = !cfg!(all(target_family = "wasm", target_os = "unknown"));
+    let started = has_clock.then(Instant::now);
     let Hierarchies {
         root,
         order,
@@ -191,7 +193,7 @@ pub fn compile_with_progress(
         .iter()
         .map(|&structure| structures::lay_out(structure, &context))
         .collect::<Result<Vec<_>, _>>()?;
-    let setup = started.elapsed();
+    let setup = started.map_or(Duration::ZERO, |started| started.elapsed());
     let tables = layouts
         .iter()
         .filter_map(|layout| {

@@ -22,7 +22,7 @@ struct Recorded {
     hit: Option<(u32, f64)>,
 }
 
-/// What t may differ by: the 16-bit lattice moves surfaces by so much.
+/// Largest difference of t: the 16-bit lattice moves surfaces by so much.
 const TOLERANCE: f64 = 1e-3;
 
 fn folder() -> PathBuf {

@@ -254,7 +254,7 @@ fn walks_end<N: Number>(scene: &Scene<'_>, leaves: u32, rays_each: usize) {
     }
 }
 
-/// What is read of a blob while a program is compiled is what is read of its scene.
+/// Requirements that are read while a program is compiled equal those of the scene.
 #[test]
 fn demands_are_those_of_the_scene() {
     for (name, scene) in scenes::fixtures() {

@@ -159,7 +159,7 @@ fn build<'s>(
     }
 }
 
-/// What the usual scenes call for, with coordinates of 24 bits as they are by default.
+/// Parts that usual scenes require, with coordinates of 24 bits as they are by default.
 fn programs_take_what_is_recorded(board: &'static Board, format: Format) {
     let mut linked = Linked::new();
     for (shapes, effects) in parts::combinations() {

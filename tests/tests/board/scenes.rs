@@ -24,7 +24,7 @@ pub fn quick() -> Compiled {
     fixture("quick", [48, 36])
 }
 
-/// The same with every structure, small tables among them.
+/// That scene with every structure, small tables among them.
 pub fn quick_through_everything() -> Compiled {
     let options = Options {
         structures: Structure::ALL.to_vec(),
@@ -206,7 +206,7 @@ impl Compiled {
         self.picture_through(Structure::DualSplit, format)
     }
 
-    /// The same through a structure of choice.
+    /// Returns the picture through a structure of choice.
     pub fn picture_through(&self, structure: Structure, format: Format) -> Vec<u8> {
         let scene = self.blob.scene().expect("the compiler's own blob");
         let job = Job::whole(format, structure, Settings::of(&scene));
@@ -260,7 +260,7 @@ fn compile(name: &'static str, scene: Scene, size: [u32; 2]) -> Compiled {
     compile_with(name, scene, size, options)
 }
 
-/// What takes the least flash.
+/// Returns the options that take the least flash.
 pub fn small() -> Options {
     Options {
         structures: vec![Structure::DualSplit],

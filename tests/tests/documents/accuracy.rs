@@ -1,4 +1,4 @@
-//! What accuracy costs, as `gridel accuracy` recorded it.
+//! Costs of accuracy, as `gridel accuracy` recorded them.
 
 use super::{BENCHMARKS, README, holds_table, text};
 use serde_json::Value;

@@ -1,4 +1,4 @@
-//! What the documents show is what the project has: examples and dumps cannot fall behind.
+//! Documents show the project as it is: examples and dumps cannot fall behind.
 
 mod accuracy;
 mod boards;

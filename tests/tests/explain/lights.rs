@@ -8,7 +8,7 @@ use gridel_host::shape::{Cuboid, Sphere};
 use gridel_host::trace::SceneRay;
 use gridel_tests::scenes;
 
-/// What stands in a light's way is named, and what is culled says why.
+/// An object in a light's way is named, and culled nodes say why.
 #[test]
 fn reasons_are_true() {
     let ball = |x: f64, y: f64| {

@@ -278,7 +278,7 @@ fn disc_with_small_integer_normal_is_exact() {
     );
 }
 
-/// What the lattice does not move is said not to be moved.
+/// Surfaces that the lattice does not move have displacement 0.
 #[test]
 fn surfaces_on_the_lattice_have_no_displacement() {
     let on_lattice = |k: u32| f64::from(k) / 64.0;

@@ -4,7 +4,7 @@ use super::paths::{Named, absolute, paths};
 use super::source::{Module, Source, module};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What is wrong with the imports of some files.
+/// Returns the faults of the imports of some files.
 pub(super) fn faults(sources: &[Source], order: &[&str]) -> Vec<String> {
     let files: BTreeMap<Module, &Source> = sources
         .iter()

@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 /// A torus as a ray is aimed at it.
 struct Target {
     center: DVec3,
-    /// Of length 1, like those across it, which are at right angles.
+    /// Direction of length 1, like those across it, which are at right angles.
     axis: DVec3,
     outward: DVec3,
     around: DVec3,

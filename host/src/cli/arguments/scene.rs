@@ -175,7 +175,8 @@ impl MoleculeOptions {
 #[command(next_help_heading = "Options for scene files")]
 pub struct TargetPoint {
     /// Look at this point [default: the file's, or the middle of the scene]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
+        display_order = 101)]
     target: Option<DVec3>,
 }
 

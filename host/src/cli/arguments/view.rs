@@ -7,12 +7,14 @@ use glam::DVec3;
 use gridel_host::compile;
 use gridel_host::scene::{Color, Scene, Up};
 
-/// From where a scene file is seen, in place of what it states.
+/// From where a scene file is seen, in place of what it states. Help lists these options last, in their order,
+/// with `--target` behind `--eye`.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for scene files")]
 pub struct ViewOptions {
     /// Place the camera here, in scene units [default: the file's, or where everything is seen]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
+        display_order = 100)]
     eye: Option<DVec3>,
 
     /// The point of `TargetPoint`, or of `--target` in a command that takes boards too.
@@ -24,16 +26,19 @@ pub struct ViewOptions {
     pub size: Option<[u16; 2]>,
 
     /// Point this direction up [default: the file's, or y; z for STL and NFF]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
+        display_order = 102)]
     up: Option<DVec3>,
 
     /// See this vertical angle, in degrees between 0 and 180 [default: the file's, or 40]
-    #[arg(long, value_name = "DEG", value_parser = degrees, allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEG", value_parser = degrees, allow_hyphen_values = true,
+        display_order = 103)]
     fov: Option<f64>,
 
     /// Show this linear color where nothing is, 1 being display white [default: the file's, else black;
     /// light grey for a file without a camera]
-    #[arg(long, value_name = "R,G,B", value_parser = color, allow_hyphen_values = true)]
+    #[arg(long, value_name = "R,G,B", value_parser = color, allow_hyphen_values = true,
+        display_order = 104)]
     background: Option<Color>,
 }
 
