@@ -18,7 +18,7 @@ macro_rules! avx2 {
 }
 
 impl F32x8 {
-    /// One number in every lane.
+    /// The same number in every lane.
     #[inline(always)]
     pub fn splat(_: Avx2, value: f32) -> Self {
         Self(avx2!(_mm256_set1_ps(value)))
