@@ -136,7 +136,7 @@ impl Tally {
         }
     }
 
-    /// Tells what was compared, and holds the flagged hierarchy to half of the planes.
+    /// Prints what was compared, and holds the flagged hierarchy to half of the planes.
     pub fn report<N: Number>(&self, name: &str) {
         assert!(2 * self.flagged_planes <= self.plain_planes, "{name}");
         let percent = 100.0 * self.flagged_planes as f64 / self.plain_planes.max(1) as f64;

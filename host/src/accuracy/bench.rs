@@ -161,7 +161,7 @@ impl<'s> Bench<'s> {
         }
     }
 
-    /// Tells scenes apart.
+    /// Returns a number that distinguishes scenes.
     pub fn checksum(&mut self) -> Result<u32, MeasureError> {
         let base = self.base();
         Ok(checksum(self.blob(&base)?.bytes()))

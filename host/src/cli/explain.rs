@@ -1,4 +1,4 @@
-//! `gridel explain`: the explanation of a pixel or of a ray.
+//! `gridel explain`: explains a pixel or a ray.
 
 use super::arguments::TargetPoint;
 use super::arguments::{PictureOptions, SceneOptions, TraceOptions};
@@ -126,7 +126,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })
 }
 
-/// A explanation, with the names of its objects.
+/// An explanation, with the names of its objects.
 #[derive(Serialize)]
 struct Named {
     #[serde(flatten)]

@@ -283,7 +283,7 @@ fn read(path: &Path) -> Result<Vec<SceneRay>, Failure> {
 struct Pass<'p> {
     rays: &'p [SceneRay],
     pool: &'p ThreadPool,
-    /// Told of every chunk.
+    /// Counts the chunks that are done.
     progress: &'p Progress,
 }
 

@@ -1,4 +1,4 @@
-//! `gridel verify`: whether a scene keeps every property.
+//! `gridel verify`: tests the properties of a scene.
 
 use super::arguments::{self, GeometryOptions, check_quality, distinct, quoted};
 use super::failure::Failure;

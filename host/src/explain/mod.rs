@@ -1,4 +1,4 @@
-//! The explanation of a ray or of a pixel: what was visited, what was met, what it brought.
+//! Explains a ray or a pixel: the nodes that are visited, the hits, and the light that they bring.
 //!
 //! The renderer reports it through [`Observer::event`]; this module only puts it in order: `walk.rs`
 //! keeps a query's way through a structure, `explanation.rs` the rays of a pixel and what they add up to,
@@ -44,7 +44,7 @@ pub enum ExplainError {
     Ray(#[from] Rejection),
 }
 
-/// Tells the explanation of a pixel or of a ray.
+/// Explains a pixel or a ray.
 ///
 /// The code that is watched is that of [`render`](crate::render), compiled for effects with glass or
 /// without: what else it is compiled for changes neither bits nor ways.

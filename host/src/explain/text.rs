@@ -1,4 +1,4 @@
-//! A explanation for people.
+//! Explanations as text for people.
 
 use super::explanation::{Explanation, Hit, LightOutcome, Lighting, Ray, Sample};
 use super::walk::{Culled, Plane, Side, Step, Tested, Verdict, Walk};
@@ -6,7 +6,7 @@ use crate::compile::Names;
 use crate::table::{counted, printable, significant};
 use std::fmt::{self, Display, Formatter};
 
-/// A explanation as text.
+/// An explanation as text.
 pub struct Shown<'s> {
     pub explanation: &'s Explanation,
     pub names: &'s Names,

@@ -1,4 +1,4 @@
-//! Puts one ray to every structure in one number format, and holds the answers to the properties.
+//! Traces one ray through every structure in one number format, and tests the properties of the answers.
 
 use super::judge::{Answer, GRAZING, Judge, Mismatch, RoundedRay, STEPS, step};
 use crate::shape::Solid;
@@ -46,7 +46,7 @@ impl Property {
     }
 }
 
-/// A property that was broken.
+/// A violation of a property.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
     pub property: Property,
@@ -102,7 +102,7 @@ pub fn ask_all<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<StructureAnswe
     std::iter::once(list).chain(others).collect()
 }
 
-/// Holds what was heard to the properties. The first is the list's answer. `control` asks exact
+/// Tests the properties of answers. The first is the list's answer. `control` asks exact
 /// arithmetic even where nothing seems to be wrong.
 pub fn check<N: Number>(
     scene: &Scene<'_>,

@@ -80,7 +80,7 @@ impl Worst {
     }
 }
 
-/// How a property was kept.
+/// How often a property was tested, and how often it was violated.
 #[derive(Clone, Debug, Serialize)]
 pub struct PropertyReport {
     pub property: Property,
@@ -92,7 +92,7 @@ pub struct PropertyReport {
     pub examples: Vec<Example>,
 }
 
-/// A property that was broken.
+/// A violation of a property.
 #[derive(Clone, Debug, Serialize)]
 pub struct Example {
     pub format: &'static str,
@@ -103,7 +103,7 @@ pub struct Example {
 }
 
 impl Report {
-    /// How often a property was broken.
+    /// Returns how often a property was violated.
     pub fn broken(&self) -> u64 {
         self.properties.iter().map(|property| property.broken).sum()
     }
@@ -116,7 +116,7 @@ const CHUNK: u64 = 128;
 /// One ray in so many is judged by exact arithmetic whatever was answered, and one hit in so many is
 /// left by secondary rays.
 const CONTROL: u64 = 16;
-/// Examples that are kept of each property.
+/// Examples that are kept per property.
 const EXAMPLES: usize = 5;
 
 /// Steps of the work, for progress: [`verify`] reports each.

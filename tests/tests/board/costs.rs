@@ -1,5 +1,5 @@
 //! Costs of code, call stacks and pictures, by shape, effect and structure: programs that the memory
-//! report tells of, and the README's tables.
+//! report shows, and the README's tables.
 
 use crate::figures::Figures;
 use crate::firmware::{Build, WASM, board};

@@ -75,7 +75,7 @@ pub fn write_picture(
     })
 }
 
-/// The reference, and the pictures of parameters that were turned alone.
+/// The reference, and the pictures of parameters that were changed alone.
 pub fn comparisons(
     folder: &Path,
     size: [u16; 2],
