@@ -11,7 +11,7 @@ use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Scene, Shape,
 use gridel_host::shape::{Cuboid, Sphere};
 use std::error::Error;
 
-/// A red ball on a grey floor.
+/// A red ball on a gray floor.
 pub fn scene() -> Scene {
     let material = |name: &str, color| Material {
         name: name.into(),

@@ -5,7 +5,7 @@ use crate::scene::{Camera, Color, Scene};
 use glam::DVec3;
 
 /// The background of a scene that states neither a camera nor a background: a light
-/// grey, against which what is white is seen by its shades, and what is black by its outline.
+/// gray, against which what is white is seen by its shades, and what is black by its outline.
 pub const BACKGROUND: Color = [0.9, 0.92, 0.95];
 
 /// The part of the picture's width or height that the scene takes.

@@ -123,7 +123,7 @@ impl Primitives {
         Ok(primitives)
     }
 
-    /// Cuts the neighbours of slivers at the slivers' corners.
+    /// Cuts the neighbors of slivers at the slivers' corners.
     fn cut(&mut self, vertex_numbers: &mut HashMap<[i32; 3], u32>) -> Result<(), CompileError> {
         let cuts = cuts::Cuts::around(&self.slivers);
         if cuts.is_empty() {

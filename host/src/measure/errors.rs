@@ -16,7 +16,7 @@ pub struct Errors {
     pub largest: f64,
     /// Pixels of which a display value is off by more than 1/255.
     pub pixels_off: usize,
-    /// Mean structural similarity of the grey pictures, in windows of 8 by 8 (Wang and others 2004);
+    /// Mean structural similarity of the gray pictures, in windows of 8 by 8 (Wang and others 2004);
     /// 1 is the same.
     pub ssim: f64,
     /// Mean of FLIP: 0 is the same, 1 as different as can be.

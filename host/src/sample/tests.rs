@@ -15,7 +15,7 @@ fn centers(scene: &Scene) -> Vec<DVec3> {
         .collect()
 }
 
-/// The lengths of all bonds, and how many atoms have how many neighbours.
+/// The lengths of all bonds, and how many atoms have how many neighbors.
 fn bonds(scene: &Scene) -> (Vec<f64>, HashMap<usize, usize>) {
     let atoms = centers(scene);
     let sites: Vec<Site> = atoms

@@ -23,7 +23,7 @@ pub struct Importer {
     pub binary: bool,
     /// A small file in the format, which tests and fuzzers start from.
     pub example: &'static str,
-    /// Recognises a whole file by its content. At most one importer recognises a file.
+    /// Recognises a whole file by its content. At most one importer recognizes a file.
     pub(super) recognizes: fn(&[u8]) -> bool,
     /// Reads a file, all but the scene's `up`.
     pub(super) read: fn(Input<'_>) -> Result<Imported, SceneError>,
@@ -73,7 +73,7 @@ impl Importers {
         })
     }
 
-    /// The importer that recognises the content of a file.
+    /// The importer that recognizes the content of a file.
     fn of_content(self, path: &Path, bytes: &[u8]) -> Result<&'static Importer, SceneError> {
         check_encoding(path, bytes)?;
         let mut all = self.0.iter();

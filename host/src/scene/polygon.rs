@@ -169,7 +169,7 @@ enum Ear {
     /// A corner that turns left and into which nothing reaches.
     Clear,
     /// A corner without area: a repeated vertex, a spike, or a vertex in the middle of an edge.
-    /// It comes after the clear ears, which use vertices on edges, so that neighbours that share
+    /// It comes after the clear ears, which use vertices on edges, so that neighbors that share
     /// them leave no gap.
     Flat,
     /// Any corner that turns left; only an outline that crosses itself comes to this.

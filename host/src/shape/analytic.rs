@@ -59,8 +59,8 @@ pub trait Geometric {
         true
     }
 
-    /// Returns two spheres, as centres and radii. Their common box holds the primitive, and its middle lies
-    /// halfway between the centres.
+    /// Returns two spheres, as centers and radii. Their common box holds the primitive, and its middle lies
+    /// halfway between the centers.
     fn ends(&self) -> [(DVec3, f64); 2];
 
     /// Returns the kind of surface.

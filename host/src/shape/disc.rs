@@ -108,7 +108,7 @@ impl Analytic for Disc {
         vec![unit(self.normal) * (2.0 * std::f64::consts::PI * self.radius * self.radius)]
     }
 
-    /// How far two discs are apart at most: as far as their centres, their radii, and the smaller radius
+    /// How far two discs are apart at most: as far as their centers, their radii, and the smaller radius
     /// times the sine of the angle between them.
     fn displacement(&self, other: &Self) -> f64 {
         // Scaled, so that squares stay in range.

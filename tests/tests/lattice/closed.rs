@@ -1,4 +1,4 @@
-//! Closed meshes stay closed where triangles collapse: their neighbours are cut.
+//! Closed meshes stay closed where triangles collapse: their neighbors are cut.
 
 use super::meshes::{Mesh, cut_box, stretched, torus};
 use glam::DVec3;

@@ -213,7 +213,7 @@ fn rings_of_one_step() {
 }
 
 /// Radii at both ends of their ranges: a step each, and a reach as large as the lattice, around an axis of
-/// coordinates and around a diagonal, where it reaches beyond the lattice's end from the centre.
+/// coordinates and around a diagonal, where it reaches beyond the lattice's end from the center.
 #[test]
 fn tori_at_the_ends_of_the_lattice() {
     let mut random = Random(75);

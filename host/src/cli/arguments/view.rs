@@ -36,7 +36,7 @@ pub struct ViewOptions {
     fov: Option<f64>,
 
     /// Show this linear color where nothing is, 1 being display white [default: the file's, else black;
-    /// light grey for a file without a camera]
+    /// light gray for a file without a camera]
     #[arg(long, value_name = "R,G,B", value_parser = color, allow_hyphen_values = true,
         display_order = 104)]
     background: Option<Color>,

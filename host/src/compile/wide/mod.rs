@@ -326,7 +326,7 @@ impl Wide {
         })
     }
 
-    /// Centres and radii of every pack; lanes that are not needed repeat the last centre, with no
+    /// Centers and radii of every pack; lanes that are not needed repeat the last center, with no
     /// radius.
     fn pack_rows(
         &self,

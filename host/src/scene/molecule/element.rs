@@ -42,7 +42,7 @@ impl Element {
     }
 
     /// The covalent radius in angstroms, by which bonds are found; `None` for elements that are
-    /// seen as ions (the alkali and alkaline earth metals), whose neighbours are not bonded.
+    /// seen as ions (the alkali and alkaline earth metals), whose neighbors are not bonded.
     pub(crate) fn covalent(self) -> Option<f64> {
         let is_ion = matches!(
             self.0,

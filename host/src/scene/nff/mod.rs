@@ -7,7 +7,7 @@
 //! * Ambient light, of which the format knows nothing, is what materials leave of 1 beside Kd, Ks
 //!   and T, relative to Kd: the mean of all materials that objects have, each at most 1.
 //! * `angle` is the full vertical field of view. `hither` is not needed.
-//! * Of `f`, Kd (1 - T) weighs the color, Ks is the grey mirror and, up to 1 - Ks, the white
+//! * Of `f`, Kd (1 - T) weighs the color, Ks is the gray mirror and, up to 1 - Ks, the white
 //!   highlight, and T filters by the color what is transmitted. Shine is the exponent of Phong's
 //!   cosine, between the view and the mirrored light; the halfway vector leans half as far, which
 //!   four times the exponent makes up for.

@@ -322,7 +322,7 @@ fn means(pixels: &[u8]) -> [f64; 3] {
     })
 }
 
-/// A grey of 0.5 is shown as 0.5, also where lights add up to it.
+/// A gray of 0.5 is shown as 0.5, also where lights add up to it.
 #[test]
 fn display_values_are_shown_as_they_are() {
     let text = format!(

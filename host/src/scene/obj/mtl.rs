@@ -186,7 +186,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads a color of one number (grey) or three, from 0 to 1; `None` where it is given in
+    /// Reads a color of one number (gray) or three, from 0 to 1; `None` where it is given in
     /// another way.
     fn color(&self, line: usize, warnings: &mut Warnings) -> Result<Option<Color>, SceneError> {
         if let Some(way @ (&"spectral" | &"xyz")) = self.values.first() {

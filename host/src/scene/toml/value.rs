@@ -144,7 +144,7 @@ impl<'a> Value<'a> {
         Ok(vector)
     }
 
-    /// A linear color: three numbers, one number for grey, or an sRGB string.
+    /// A linear color: three numbers, one number for gray, or an sRGB string.
     pub(crate) fn color(self) -> Result<Color, SceneError> {
         match self.node.get_ref() {
             DeValue::String(text) => srgb(text).ok_or_else(|| {
