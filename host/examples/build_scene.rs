@@ -7,11 +7,11 @@
 use glam::DVec3;
 use gridel_host::blob::Blob;
 use gridel_host::compile::{CompileError, Options, compile};
-use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Place, Scene, Shape};
+use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Scene, Shape, SourceSpan};
 use gridel_host::shape::{Cuboid, Sphere};
 use std::error::Error;
 
-/// A red ball on a grey floor.
+/// A red ball on a gray floor.
 pub fn scene() -> Scene {
     let material = |name: &str, color| Material {
         name: name.into(),
@@ -22,7 +22,7 @@ pub fn scene() -> Scene {
         name: name.into(),
         material,
         shape,
-        place: Place::default(),
+        place: SourceSpan::default(),
     };
     let floor = Shape::Box(Cuboid {
         min: DVec3::new(-4.0, -0.5, -4.0),

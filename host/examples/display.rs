@@ -35,7 +35,7 @@ const BYTES: usize = buffer_size::<Rgb565>(SIZE[0] as usize, SIZE[1] as usize);
 pub type Screen =
     Framebuffer<Rgb565, RawU16, LittleEndian, { SIZE[0] as usize }, { SIZE[1] as usize }, BYTES>;
 
-/// The picture, and below it what it shows. Colours are dithered, since there are few.
+/// The picture, and below it what it shows. Colors are dithered, since there are few.
 pub fn draw<D: DrawTarget<Color = Rgb565>>(
     scene: &Scene<'_>,
     caption: &str,

@@ -1,4 +1,4 @@
-//! Renders row by row for a display on an SPI bus: two bytes a pixel, the upper one first, in
+//! Renders row by row for a display on an SPI bus: two bytes per pixel, the upper one first, in
 //! chunks that a DMA channel sends while the next one is rendered.
 //!
 //! ```text
@@ -25,7 +25,7 @@ pub const CHUNK: usize = 128;
 /// A buffer that the bus and the renderer hand to each other; on a board it is a static.
 pub type Buffer = &'static mut [u8; CHUNK];
 
-/// What a board's SPI peripheral with DMA offers.
+/// The operations of a board's SPI peripheral with DMA.
 pub trait Bus {
     /// Sends a command and its arguments, with the data line low for the command.
     fn command(&mut self, command: u8, arguments: &[u8]);
@@ -38,7 +38,7 @@ pub trait Bus {
 const COLUMNS: u8 = 0x2a;
 /// Its rows.
 const ROWS: u8 = 0x2b;
-/// What follows are pixels.
+/// The following bytes are pixels.
 const WRITE: u8 = 0x2c;
 
 /// Renders the picture and sends it; `row` has as many pixels as the picture is wide. Returns the
@@ -108,7 +108,7 @@ impl Panel {
         let file = std::fs::File::create(path)?;
         let mut encoder = png::Encoder::new(file, self.width as u32, self.height as u32);
         encoder.set_color(png::ColorType::Rgb);
-        // As displays widen their colours: the upper bits again below.
+        // As displays widen their colors: the upper bits again below.
         let wide = |code: u16, bits: u32| (code << (8 - bits) | code >> (2 * bits - 8)) as u8;
         let pixels = self.memory.iter().flat_map(|&Rgb565(pixel)| {
             let (red, green, blue) = (pixel >> 11, pixel >> 5 & 63, pixel & 31);

@@ -64,7 +64,7 @@ impl Blob {
     }
 }
 
-/// Whether a file begins as a blob does, or is named like one and so was meant as one. The last two
+/// Returns whether a file begins as a blob does, or is named like one and so was meant as one. The last two
 /// bytes of the magic do not count, so that a blob that was mangled as text is called a broken blob.
 ///
 /// # Errors
@@ -83,7 +83,7 @@ pub fn is_blob(path: &Path) -> io::Result<bool> {
     Ok(named || begins_as_blob(&start))
 }
 
-/// Whether bytes begin as a blob does, the last two bytes of the magic aside.
+/// Returns whether bytes begin as a blob does, the last two bytes of the magic aside.
 ///
 /// ```
 /// use gridel_host::blob::begins_as_blob;

@@ -14,7 +14,7 @@ pub const BLOB: &str = "scene.gridel";
 /// How every module begins.
 const FIRST: &str = "// Written by `gridel build --emit-rust`";
 
-/// Whether a file is such a module.
+/// Returns whether a file is such a module.
 ///
 /// # Errors
 /// If the file cannot be read.

@@ -19,9 +19,7 @@
 //! | hold a scene to what is promised | [`verify`] |
 //! | draw charts and heat maps | [`report`] |
 //! | know a shape, on the lattice and exactly | [`shape`] |
-//! | print tables | [`table`] |
 //! | find objects that a number format cannot resolve | [`resolution`] |
-//! | write a file whole or not at all | [`output`] |
 //!
 //! The program `gridel` is a thin layer over this library: what it does can be done from here.
 //!
@@ -55,6 +53,7 @@ pub mod explain;
 pub mod measure;
 pub mod merge;
 pub mod npy;
+#[doc(hidden)]
 pub mod output;
 pub mod picture;
 pub mod picture_rays;
@@ -64,7 +63,9 @@ pub mod resolution;
 pub mod sample;
 pub mod scene;
 pub mod shape;
+#[doc(hidden)]
 pub mod simd;
+#[doc(hidden)]
 pub mod table;
 pub mod trace;
 pub mod verify;

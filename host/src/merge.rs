@@ -9,7 +9,7 @@ use std::fmt;
 use std::io::{self, BufRead, Read, Write};
 use std::ops::Range;
 
-/// One part: rows of a picture, three bytes a pixel.
+/// One part: rows of a picture, three bytes per pixel.
 #[derive(Clone, Debug)]
 pub struct Part {
     width: u32,
@@ -141,6 +141,32 @@ fn read_ppm(mut input: impl BufRead) -> Result<Read4, PartError> {
 }
 
 /// A picture whose rows come part by part.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// # let blob = compile(&imported.scene, &Options::default())?.blob;
+/// # let scene = blob.scene()?;
+/// use gridel_core::{Format, Settings, Structure};
+/// use gridel_host::merge::{Merge, Part};
+/// use gridel_host::picture::{PictureFormat, RenderMetadata};
+/// use gridel_host::render::{Job, render};
+///
+/// let settings = Settings { width: 16, height: 12, ..Settings::of(&scene) };
+/// let mut job = Job::whole(Format::F32, Structure::DualSplit, settings);
+/// let mut merge = Merge::default();
+/// for rows in [0..5, 5..12] {
+///     job.rows = rows;
+///     let mut file = Vec::new();
+///     let metadata = RenderMetadata::of(&scene, &job);
+///     PictureFormat::Png.write(&mut file, &render(&scene, &job, &|| ())?, &metadata)?;
+///     merge.add(&Part::read(PictureFormat::Png, std::io::Cursor::new(file))?)?;
+/// }
+/// assert_eq!(merge.size(), Some([16, 12]));
+/// merge.finish()?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Default)]
 pub struct Merge {
     /// Width and height, once there is a part.

@@ -94,7 +94,7 @@ fn array<const N: usize>(bytes: &[u8]) -> [u8; N] {
     array
 }
 
-/// What the header says of an array of plain numbers.
+/// The header of an array of plain numbers.
 struct Header<'a> {
     element: &'a str,
     fortran_order: bool,
@@ -176,7 +176,7 @@ fn dictionary(text: &str) -> Option<Header<'_>> {
     })
 }
 
-/// What follows `token` and the space before it, if `text` begins with them.
+/// Returns the text behind `token` and the space before it, if `text` begins with them.
 fn token<'a>(text: &'a str, token: &str) -> Option<&'a str> {
     text.trim_start().strip_prefix(token)
 }
@@ -350,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn hostile_headers_are_refused() {
+    fn hostile_headers_are_rejected() {
         let nested = format!("{}1{}", "(".repeat(5000), ")".repeat(5000));
         for shape in [
             nested.as_str(),

@@ -31,7 +31,7 @@ pub fn write_whole(
 ///
 /// # Errors
 /// As [`Files::add`]. The file stays as it is, and one that is not there is not made.
-pub fn prove(path: &Path) -> io::Result<()> {
+pub fn check_writable(path: &Path) -> io::Result<()> {
     match fs::metadata(path) {
         // Who reads a pipe would take this for the end.
         Ok(old) if !old.is_file() && !old.is_dir() => Ok(()),
@@ -129,7 +129,7 @@ impl Drop for Files {
 }
 
 /// Removes what writing has left so far, and ends the program: for whoever handles an interrupt.
-pub fn abandon(exit_code: i32) -> ! {
+pub fn exit_removing_unfinished(exit_code: i32) -> ! {
     let unfinished = unfinished();
     for path in unfinished.iter() {
         // The program ends, so a failure is not reported.
@@ -226,11 +226,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         fs::write(path("old"), "old").unwrap();
-        prove(&path("old")).unwrap();
-        prove(&path("new")).unwrap();
-        assert!(prove(folder.path()).is_err());
-        assert!(prove(&path("old/new")).is_err());
-        let lost = prove(&path("lost/new")).unwrap_err();
+        check_writable(&path("old")).unwrap();
+        check_writable(&path("new")).unwrap();
+        assert!(check_writable(folder.path()).is_err());
+        assert!(check_writable(&path("old/new")).is_err());
+        let lost = check_writable(&path("lost/new")).unwrap_err();
         assert_eq!(lost.kind(), io::ErrorKind::NotFound);
         assert_eq!(names(folder.path()), ["old"]);
         assert_eq!(fs::read(path("old")).unwrap(), b"old");

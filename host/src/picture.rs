@@ -9,9 +9,9 @@ use std::ops::Range;
 use std::path::Path;
 use std::str::FromStr;
 
-/// All that decides the colours of a picture's pixels, beside their place and the picture's size.
+/// All that decides the colors of a picture's pixels, beside their place and the picture's size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Making {
+pub struct RenderMetadata {
     /// Checksum of the blob.
     pub blob: u32,
     pub format: Format,
@@ -20,7 +20,7 @@ pub struct Making {
     pub dither: bool,
 }
 
-impl Making {
+impl RenderMetadata {
     /// How a job's picture of a scene is made.
     pub fn of(scene: &Scene<'_>, job: &Job) -> Self {
         Self {
@@ -34,7 +34,7 @@ impl Making {
 }
 
 /// Names and values, and the version of this program, whose arithmetic it is.
-impl fmt::Display for Making {
+impl fmt::Display for RenderMetadata {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             blob,
@@ -60,7 +60,7 @@ pub struct Rows {
     pub part: Range<u16>,
     /// Height of the whole picture.
     pub height: u16,
-    /// How the picture was made: names and values, as [`Making`] shows them.
+    /// How the picture was made: names and values, as [`RenderMetadata`] shows them.
     pub made: Vec<(String, String)>,
 }
 
@@ -69,12 +69,12 @@ impl Rows {
     pub const KEYWORD: &str = "Rows";
 
     /// The rows of a part; `None` for a whole picture.
-    fn of(picture: &Picture, making: &Making) -> Option<Self> {
+    fn of(picture: &Picture, metadata: &RenderMetadata) -> Option<Self> {
         let (part, height) = (picture.rows.clone(), picture.height);
         (part != (0..height)).then(|| Self {
             part,
             height,
-            made: pairs(&making.to_string()).unwrap_or_default(),
+            made: pairs(&metadata.to_string()).unwrap_or_default(),
         })
     }
 }
@@ -136,11 +136,11 @@ pub fn hash(pixels: &[[u16; 3]]) -> String {
 /// How a picture is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureFormat {
-    /// PNG, 8 bits a channel, sRGB.
+    /// PNG, 8 bits per channel, sRGB.
     Png,
-    /// The binary portable pixmap `P6`, 8 bits a channel, sRGB.
+    /// The binary portable pixmap `P6`, 8 bits per channel, sRGB.
     Ppm,
-    /// Two bytes a pixel, little-endian, without a header: 5 bits of red (the uppermost), 6 of
+    /// Two bytes per pixel, little-endian, without a header: 5 bits of red (the uppermost), 6 of
     /// green, 5 of blue, sRGB.
     Rgb565,
 }
@@ -169,19 +169,25 @@ impl PictureFormat {
     ///
     /// # Errors
     /// If `out` has one.
-    pub fn write(self, out: &mut dyn Write, picture: &Picture, making: &Making) -> io::Result<()> {
-        let dither = making.dither;
+    pub fn write(
+        self,
+        out: &mut dyn Write,
+        picture: &Picture,
+        metadata: &RenderMetadata,
+    ) -> io::Result<()> {
+        let dither = metadata.dither;
         let size = [picture.width.into(), picture.rows.len() as u32];
         match self {
             Self::Png => {
                 let pixels: Vec<Rgb888> = encoded(picture, dither);
-                let rows = Rows::of(picture, making).map(|rows| (Rows::KEYWORD, rows.to_string()));
+                let rows =
+                    Rows::of(picture, metadata).map(|rows| (Rows::KEYWORD, rows.to_string()));
                 write_png(out, size, bytemuck::cast_slice(&pixels), rows)
             }
             Self::Ppm => {
                 let pixels: Vec<Rgb888> = encoded(picture, dither);
                 writeln!(out, "P6")?;
-                if let Some(rows) = Rows::of(picture, making) {
+                if let Some(rows) = Rows::of(picture, metadata) {
                     writeln!(out, "# rows {rows}")?;
                 }
                 write!(out, "{} {}\n255\n", size[0], size[1])?;
@@ -212,6 +218,14 @@ fn encoded<P: Pixel>(picture: &Picture, dither: bool) -> Vec<P> {
 ///
 /// # Errors
 /// If `out` has one.
+///
+/// ```
+/// let mut file = Vec::new();
+/// let red_and_blue = [255, 0, 0, 0, 0, 255];
+/// gridel_host::picture::write_png(&mut file, [2, 1], &red_and_blue, None)?;
+/// assert!(file.starts_with(b"\x89PNG"));
+/// # Ok::<(), std::io::Error>(())
+/// ```
 pub fn write_png(
     out: &mut dyn Write,
     [width, height]: [u32; 2],
@@ -257,14 +271,14 @@ mod tests {
 
     fn written(format: PictureFormat, picture: &Picture, dither: bool) -> Vec<u8> {
         let mut bytes = Vec::new();
-        let making = Making {
+        let metadata = RenderMetadata {
             blob: 0xab,
             format: Format::F32,
             samples: 4,
             depth: 5,
             dither,
         };
-        format.write(&mut bytes, picture, &making).unwrap();
+        format.write(&mut bytes, picture, &metadata).unwrap();
         bytes
     }
 

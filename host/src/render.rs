@@ -17,7 +17,7 @@ use std::ops::Range;
 #[derive(Clone, Debug)]
 pub struct Picture {
     pub width: u16,
-    /// Of the whole picture.
+    /// Height of the whole picture.
     pub height: u16,
     /// Rows of the whole picture that these are.
     pub rows: Range<u16>,
@@ -29,7 +29,7 @@ pub struct Picture {
     pub work: Vec<u32>,
 }
 
-/// What to render, and how.
+/// The settings of a picture, or of some of its rows.
 #[derive(Clone, Debug)]
 pub struct Job {
     pub format: Format,

@@ -71,7 +71,7 @@ impl Extent {
         }
     }
 
-    /// Whether two boxes are no farther apart than a length.
+    /// Returns whether two boxes are no farther apart than a length.
     fn is_near(&self, other: &Self, length: f64) -> bool {
         (self.lowest - length).cmple(other.highest).all()
             && (other.lowest - length).cmple(self.highest).all()
@@ -82,7 +82,7 @@ impl Extent {
     }
 }
 
-/// What a format's numbers are apart at a place, in units.
+/// Returns the distance of a format's neighboring numbers at a place, in units.
 fn step(format: Format, magnitude: f64) -> f64 {
     match format {
         Format::Fixed => f64::powi(2.0, -13),

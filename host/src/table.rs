@@ -103,7 +103,7 @@ pub fn counted(number: usize, thing: &str) -> String {
     format!("{} {things}", grouped(number))
 }
 
-/// A power of two, so that it can be recognised, and its size: `2^-20 = 9.537e-7`.
+/// A power of two, so that it can be recognized, and its size: `2^-20 = 9.537e-7`.
 pub fn power_of_two(power: f64) -> String {
     format!("2^{} = {power:.3e}", power.log2().round())
 }

@@ -1,12 +1,12 @@
 //! Traces rays of the user's own through a blob.
 
 mod carry;
+mod direction_scale;
 mod rejection;
-mod stride;
 mod unit_ray;
 
+pub use direction_scale::DirectionScale;
 pub use rejection::{Rejection, Rejections};
-pub use stride::Stride;
 pub use unit_ray::UnitRay;
 
 use glam::DVec3;
@@ -27,7 +27,7 @@ pub struct SceneRay {
     pub tmax: f64,
 }
 
-/// What a ray met; [`SceneHit::MISS`] for nothing, [`SceneHit::REJECTED`] for what is not answered.
+/// The answer to a ray: a hit, [`SceneHit::MISS`] or [`SceneHit::REJECTED`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneHit {
     pub t: f64,
@@ -59,7 +59,7 @@ impl SceneHit {
         normal: [0.0; 3],
     };
 
-    /// Whether the ray was rejected.
+    /// Returns whether the ray was rejected.
     pub fn is_rejected(&self) -> bool {
         self.t.is_nan()
     }
@@ -116,6 +116,32 @@ pub fn trace(
 }
 
 /// Traces rays like [`trace`], and counts what is tested for them.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// # let blob = compile(&imported.scene, &Options::default())?.blob;
+/// # let scene = blob.scene()?;
+/// use gridel_core::{Counters, Format, Structure};
+/// use gridel_host::trace::{Query, SceneHit, SceneRay, trace_counted};
+///
+/// let down = SceneRay {
+///     origin: glam::DVec3::new(0.0, 5.0, 0.0),
+///     tmin: 0.0,
+///     direction: glam::DVec3::NEG_Y,
+///     tmax: f64::INFINITY,
+/// };
+/// let query = Query {
+///     format: Format::Fixed,
+///     structure: Structure::List,
+///     any: false,
+/// };
+/// let mut counters = Counters::default();
+/// trace_counted(&scene, &[down], query, &mut [SceneHit::MISS], &mut counters);
+/// assert_eq!(counters.objects, 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn trace_counted(
     scene: &Scene<'_>,
     rays: &[SceneRay],
@@ -176,7 +202,7 @@ fn through<N: Number, A: Accel, C: Observer>(
 const BATCH: usize = 16;
 
 /// A ray that is ready to be traced, or why it is not.
-type Ready<N> = Result<(Ray<N>, Stride), Rejection>;
+type Ready<N> = Result<(Ray<N>, DirectionScale), Rejection>;
 
 /// Finds whether each ray meets anything.
 fn any_of_each<N: Number, A: Accel, C: Observer>(
@@ -239,14 +265,14 @@ fn closest_of_each<N: Number, A: Accel, C: Observer>(
             batch.iter().zip(&met).zip(&mut hits[first..]).enumerate()
         {
             let found = ready.as_ref().map_err(|why| *why);
-            let found = found.and_then(|(ray, stride)| {
+            let found = found.and_then(|(ray, direction_scale)| {
                 // Inlined, it computes what is used here, and nothing else.
                 let Some(found) = met.and_then(|met| met.hit(scene, ray)) else {
                     return Ok(SceneHit::MISS);
                 };
                 let error = || found.error.length_to_f64();
                 Ok(SceneHit {
-                    t: stride.multiple(N::far_to_f64(found.t), error)?,
+                    t: direction_scale.multiple(N::far_to_f64(found.t), error)?,
                     object: found.object,
                     primitive: found.primitive,
                     normal: found.normal.map(|x| x.ratio_to_f64() as f32),
@@ -306,8 +332,14 @@ impl Frame {
     /// A ray in scene units, from one in units.
     pub fn scene_ray(&self, ray: &UnitRay) -> SceneRay {
         let direction = DVec3::from_array(ray.direction);
-        let (stride, _) = Stride::of(direction, self.unit, self.per_unit);
-        let along = |t: f64| if t == 0.0 { 0.0 } else { stride.nearest(t) };
+        let (direction_scale, _) = DirectionScale::of(direction, self.unit, self.per_unit);
+        let along = |t: f64| {
+            if t == 0.0 {
+                0.0
+            } else {
+                direction_scale.nearest(t)
+            }
+        };
         SceneRay {
             origin: self.place(ray.origin),
             tmin: along(ray.tmin),
@@ -335,21 +367,22 @@ impl Frame {
         &self,
         scene: &Scene<'_>,
         ray: &SceneRay,
-    ) -> Result<(Ray<N>, Stride), Rejection> {
+    ) -> Result<(Ray<N>, DirectionScale), Rejection> {
         // Multiples of the direction become lengths along its largest component.
-        let (mut stride, direction) = Stride::of(ray.direction, self.unit, self.per_unit);
+        let (mut direction_scale, direction) =
+            DirectionScale::of(ray.direction, self.unit, self.per_unit);
         let mut start = Start {
             origin: (ray.origin - self.origin) * self.per_unit,
-            tmin: stride.length(ray.tmin),
-            tmax: stride.length(ray.tmax),
+            tmin: direction_scale.length(ray.tmin),
+            tmax: direction_scale.length(ray.tmax),
             begin: 0.0,
         };
         // Here only numbers are chosen: a ray that is chosen goes through memory, and is waited for.
         if start.origin.abs().max_element() > carry::FAR {
             start = self.far_start::<N>(scene, ray, start, direction)?;
-            stride.begin_at(start.begin);
+            direction_scale.begin_at(start.begin);
         }
-        Ok((start.ray(scene, direction)?, stride))
+        Ok((start.ray(scene, direction)?, direction_scale))
     }
 
     /// The start of a ray from an origin far from the scene.

@@ -1,4 +1,4 @@
-//! What needs an emulated board: `core/BOARDS.md`, done as it says (its files written, its commands run,
+//! Tests on emulated boards: `core/BOARDS.md`, done as it says (its files written, its commands run,
 //! its output compared), and `gridel check` with the project's firmware. Ignored where the emulator or
 //! the target is missing, unless `GRIDEL_REQUIRE_BOARDS` is 1.
 
@@ -43,7 +43,7 @@ fn repository() -> PathBuf {
         .to_owned()
 }
 
-/// Whether the emulator and the target are there.
+/// Returns whether the emulator and the target are there.
 fn is_available() -> bool {
     let emulator = Command::new("qemu-system-arm").arg("--version").output();
     let library = Command::new("rustc")

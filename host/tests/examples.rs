@@ -44,7 +44,7 @@ fn blob(name: &str) -> Blob {
         .blob
 }
 
-/// What `gridel render` makes, as the pixels of a display.
+/// Returns the picture of `gridel render`, as the pixels of a display.
 fn rendered(blob: &Blob, [width, height]: [u16; 2]) -> Vec<u16> {
     let scene = blob.scene().expect("the compiler's blob");
     let settings = Settings {
@@ -106,7 +106,7 @@ fn a_display_shows_the_picture_and_the_caption() {
 
 /// Only pixels that can be seen are traced, wherever the display lies.
 #[test]
-fn what_a_display_does_not_show_is_not_traced() {
+fn pixels_outside_of_a_display_are_not_traced() {
     let blob = blob("quick.toml");
     let scene = blob.scene().expect("the compiler's blob");
     let settings = Settings {

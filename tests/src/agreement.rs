@@ -40,7 +40,7 @@ impl Traverse for Plain {
     }
 }
 
-/// What was compared.
+/// The compared rays.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tally {
     pub rays: u64,
@@ -91,7 +91,7 @@ fn compare_one<N: Number>(
     tally: &mut Tally,
 ) -> Option<[f64; 3]> {
     let Some(ready) = ray.ready::<N>(scene) else {
-        panic!("{name}: {ray:?} is refused");
+        panic!("{name}: {ray:?} is rejected");
     };
     tally.rays += 1;
     let (mut plain_work, mut flagged_work) = (Counters::default(), Counters::default());
@@ -136,7 +136,7 @@ impl Tally {
         }
     }
 
-    /// Tells what was compared, and holds the flagged hierarchy to half of the planes.
+    /// Prints what was compared, and holds the flagged hierarchy to half of the planes.
     pub fn report<N: Number>(&self, name: &str) {
         assert!(2 * self.flagged_planes <= self.plain_planes, "{name}");
         let percent = 100.0 * self.flagged_planes as f64 / self.plain_planes.max(1) as f64;

@@ -1,4 +1,4 @@
-//! What each kernel's answers may be off by, as data: the tests read it, and `core/ACCURACY.md`
+//! Error bounds of each kernel's answers, as data: the tests read it, and `core/ACCURACY.md`
 //! prints it.
 //!
 //! `u` is 2^-24 in `f32` and 2^-53 in `f64`, where errors are counted in `u` times the largest

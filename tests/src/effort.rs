@@ -6,7 +6,7 @@ fn is_set(name: &str) -> bool {
     env::var_os(name).is_some_and(|value| value == "1")
 }
 
-/// Whether the environment asks for all that the project promises, by `GRIDEL_FULL=1`.
+/// Returns whether the environment asks for all that the project promises, by `GRIDEL_FULL=1`.
 pub fn full() -> bool {
     is_set("GRIDEL_FULL")
 }

@@ -29,7 +29,7 @@ impl Fraction {
 }
 
 impl ExactRay {
-    /// Whether a point of the ray from t = 0 to `tmax` lies in the closed box.
+    /// Returns whether a point of the ray from t = 0 to `tmax` lies in the closed box.
     pub fn meets(&self, bounds: &UnitBox) -> bool {
         let one = 1_i128 << SLOPE_BITS;
         let mut enter = Fraction(0, one);

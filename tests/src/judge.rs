@@ -35,7 +35,7 @@ const LADDER: [f64; 15] = [
     0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 64.0, 1024.0, 1e9,
 ];
 
-/// Whether an answer is right for a shape that differs by no more than `error`.
+/// Returns whether an answer is right for a shape that differs by no more than `error`.
 fn is_right(solid: &Solid, line: &Line, answer: Option<f64>, error: f64) -> bool {
     let (crossings, begin) = (Crossings::new(solid, line, error), Real::of(0.0));
     match answer {
@@ -44,12 +44,12 @@ fn is_right(solid: &Solid, line: &Line, answer: Option<f64>, error: f64) -> bool
     }
 }
 
-/// What is wrong with an answer, in the units of the table of bounds.
+/// The errors of an answer, in the units of the table of bounds.
 pub struct Verdict<N: Number> {
     pub hit: Option<Hit<N>>,
     /// The least error on a ladder that explains where the hit is, or that there is none.
     pub crossing: f64,
-    /// The same, if there should have been a hit and was none, or the other way.
+    /// The error, if there should have been a hit and was none, or the other way.
     pub flag: f64,
     /// By how much the normal is off.
     pub normal: f64,
@@ -72,7 +72,7 @@ pub fn verdict<N: Number>(
 ) -> Option<Verdict<N>> {
     let ray = UnitRay::new(origin, slope);
     let Some(ready) = ray.ready::<N>(scene) else {
-        panic!("{ray:?} is refused");
+        panic!("{ray:?} is rejected");
     };
     assert_eq!(
         ready.slope().map(N::ratio_to_f64),

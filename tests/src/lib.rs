@@ -1,4 +1,9 @@
-//! What the whole-program tests share: scenes, rays, and answers that owe nothing to the core.
+//! Shared parts of the whole-program tests: scenes, rays, and answers that owe nothing to the core.
+
+/// The example of the package's page compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../../core/README.md")]
+struct CorePage;
 
 pub mod agreement;
 pub mod bounds;

@@ -1,4 +1,4 @@
-//! The same scene elsewhere: scaled, shifted, mirrored, turned.
+//! A scene elsewhere: scaled, shifted, mirrored, turned.
 
 use glam::DVec3;
 use gridel_host::scene::Scene;

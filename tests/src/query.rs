@@ -46,7 +46,7 @@ pub fn closest<N: Number, A: Accel>(
     closest_hit::<N, A, _>(scene, ray, stack.as_view(), count)
 }
 
-/// Whether there is a hit, through one structure.
+/// Returns whether there is a hit, through one structure.
 pub fn any<N: Number, A: Accel>(scene: &Scene<'_>, ray: &Ray<N>) -> bool {
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
     any_hit::<N, A, _>(scene, ray, stack.as_view(), &mut NoCount)

@@ -5,7 +5,9 @@ use glam::DVec3;
 use gridel_core::Structure;
 use gridel_host::blob::Blob;
 use gridel_host::compile::{CompileError, Options, compile};
-use gridel_host::scene::{Camera, Material, MoleculeOptions, Object, Place, Scene, Shape, load};
+use gridel_host::scene::{
+    Camera, Material, MoleculeOptions, Object, Scene, Shape, SourceSpan, load,
+};
 use gridel_host::shape::{Cone, Cuboid, Disc, Sphere};
 use std::path::{Path, PathBuf};
 
@@ -15,7 +17,7 @@ pub fn of(shapes: impl IntoIterator<Item = Shape>) -> Scene {
         name: String::from("thing"),
         material: 0,
         shape,
-        place: Place::default(),
+        place: SourceSpan::default(),
     });
     Scene {
         materials: vec![Material::default()],
@@ -30,7 +32,7 @@ pub fn blob(scene: &Scene, lattice_bits: u8) -> Blob {
     blob_with_inside(scene, lattice_bits).expect("meshes with an inside")
 }
 
-/// The same, or `None` if the lattice leaves a closed mesh no inside.
+/// Returns the blob, or `None` if the lattice leaves a closed mesh no inside.
 pub fn blob_with_inside(scene: &Scene, lattice_bits: u8) -> Option<Blob> {
     let all = Structure::ALL.into_iter();
     let options = Options {
@@ -44,7 +46,7 @@ pub fn blob_with_inside(scene: &Scene, lattice_bits: u8) -> Option<Blob> {
     }
 }
 
-/// A blob with every structure, the cylinder cubes with a number of gridels a side.
+/// A blob with every structure, the cylinder cubes with a number of gridels per side.
 pub fn blob_with_gridels(scene: &Scene, lattice_bits: u8, gridels: u32) -> Blob {
     blob_with_tables(scene, lattice_bits, gridels, 1 << 24)
 }
@@ -88,7 +90,7 @@ pub fn fixture_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures")
 }
 
-/// What the fixtures are held to.
+/// Returns the manifest with the records of the fixtures.
 pub fn manifest() -> PathBuf {
     fixture_folder().join("check.toml")
 }

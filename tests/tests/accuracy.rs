@@ -1,8 +1,8 @@
-//! What `accuracy` measures is what is there.
+//! Figures of `accuracy` equal those of pictures and blobs.
 
 use gridel_core::{Format, Structure};
 use gridel_host::accuracy::{
-    Bench, Lever, Point, Results, cheapest, frontier, page, reference_setting, sentences, sweep,
+    Bench, Parameter, Point, Results, cheapest, frontier, page, reference_setting, sentences, sweep,
 };
 use gridel_host::measure::board::PICTURE_COSTS;
 use gridel_tests::scenes;
@@ -32,26 +32,27 @@ fn swept(name: &str) -> Results {
 fn more_work_is_more_right() {
     let results = swept("glass-chess");
     let base = results.base;
-    let of = |lever: Lever, value: &str| -> &Point {
+    let of = |parameter: Parameter, value: &str| -> &Point {
         let turned = |point: &&Point| {
             let others = point.setting.differs(&base);
-            point.setting.value(lever) == value && (others.is_empty() || others == [lever])
+            point.setting.value(parameter) == value && (others.is_empty() || others == [parameter])
         };
         results.points.iter().find(turned).expect("a point")
     };
-    let rmse = |lever, value| of(lever, value).errors.rmse;
-    assert!(rmse(Lever::Samples, "64") < 0.5 * rmse(Lever::Samples, "1"));
-    assert!(rmse(Lever::Depth, "0") > rmse(Lever::Depth, "6"));
-    assert!(rmse(Lever::Cutoff, "0.125") > rmse(Lever::Cutoff, "0.00195"));
-    assert!(rmse(Lever::LatticeBits, "10") > rmse(Lever::LatticeBits, "24"));
+    let rmse = |parameter, value| of(parameter, value).errors.rmse;
+    assert!(rmse(Parameter::Samples, "64") < 0.5 * rmse(Parameter::Samples, "1"));
+    assert!(rmse(Parameter::Depth, "0") > rmse(Parameter::Depth, "6"));
+    assert!(rmse(Parameter::Cutoff, "0.125") > rmse(Parameter::Cutoff, "0.00195"));
+    assert!(rmse(Parameter::LatticeBits, "10") > rmse(Parameter::LatticeBits, "24"));
     // Distances of single precision are right to a few units of its last place, of double precision
     // to none, on a coarse lattice to many.
-    let ulps = |lever, value| of(lever, value).errors.t_ulps[0];
-    assert!(ulps(Lever::Format, "f64") < 1e-3);
-    assert!(ulps(Lever::Format, "f32") < 8.0);
-    assert!(of(Lever::LatticeBits, "10").errors.t_ulps[1] > 100.0);
+    let ulps = |parameter, value| of(parameter, value).errors.t_ulps[0];
+    assert!(ulps(Parameter::Format, "f64") < 1e-3);
+    assert!(ulps(Parameter::Format, "f32") < 8.0);
+    assert!(of(Parameter::LatticeBits, "10").errors.t_ulps[1] > 100.0);
     assert!(
-        of(Lever::LatticeBits, "16").cost.blob_bytes < of(Lever::LatticeBits, "24").cost.blob_bytes
+        of(Parameter::LatticeBits, "16").cost.blob_bytes
+            < of(Parameter::LatticeBits, "24").cost.blob_bytes
     );
 
     let best = frontier(&results.points);
@@ -62,7 +63,7 @@ fn more_work_is_more_right() {
         });
         assert!(!(beaten && *best), "{}", point.name);
     }
-    let bound = rmse(Lever::Samples, "4");
+    let bound = rmse(Parameter::Samples, "4");
     let cheap = cheapest(&results.points, bound, None).expect("a setting");
     assert!(cheap.errors.rmse <= bound);
     let board = cheapest(&results.points, bound, Some("cortex-m3")).expect("a setting");
@@ -99,7 +100,7 @@ fn the_same_picture_has_no_error() {
     assert!((errors.ssim - 1.0).abs() < 1e-9, "{}", errors.ssim);
 }
 
-/// The instructions a ray are those of the recorded pictures.
+/// The instructions per ray are those of the recorded pictures.
 #[test]
 fn boards_are_the_recorded_ones() {
     let text = std::fs::read_to_string(scenes::fixture_folder().join("recorded/board.json"));
@@ -123,7 +124,7 @@ fn boards_are_the_recorded_ones() {
             let reference = bench.reference(1).expect("a reference");
             let (point, _) = bench.measure(&setting, &reference).expect("a point");
             let found = instructions / point.cost.rays as f64;
-            eprintln!("{build}: {found:.0} instructions a ray");
+            eprintln!("{build}: {found:.0} instructions per ray");
             assert!(
                 (found / per_ray - 1.0).abs() < 0.15,
                 "{build}: {found} {per_ray}"

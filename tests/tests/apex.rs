@@ -24,7 +24,7 @@ fn lit_soup() -> SceneFile {
     }
 }
 
-/// The same with lights far away: one askew, one along an axis, and one between two axes.
+/// The scene with lights far away: one askew, one along an axis, and one between two axes.
 fn soup_lit_from_afar() -> SceneFile {
     let mut scene = lit_soup();
     let color = [0.2; 3];

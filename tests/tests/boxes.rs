@@ -236,7 +236,7 @@ fn boxes_that_are_met_are_never_passed_by() {
     }
 }
 
-/// Of a zero the sign does not matter (A2), and of a direction not the length (A8): the same bits
+/// Neither the sign of a zero (A2) nor the length of a direction (A8) matters: the same bits
 /// through every structure.
 #[test]
 fn signs_of_zero_and_lengths_of_directions_change_no_bit() {
@@ -354,7 +354,7 @@ fn any_number_of_the_same_primitive() {
 
 /// A number that is none, anywhere in a scene (A13): an error that says so, and no blob.
 #[test]
-fn numbers_that_are_none_are_refused() {
+fn nan_is_rejected() {
     let shapes = |bad: f64| {
         let v = |k: usize| {
             let mut v = DVec3::new(1.0, 2.0, 3.0);

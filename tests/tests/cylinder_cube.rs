@@ -30,7 +30,7 @@ const CUBES: [Structure; 3] = [
 fn agree<N: Number>(name: &str, scene: &gridel_core::Scene<'_>, rays: &[UnitRay]) -> usize {
     let agrees = |ray: &&UnitRay| {
         let Some(ready) = ray.ready::<N>(scene) else {
-            panic!("{name}: {ray:?} is refused");
+            panic!("{name}: {ray:?} is rejected");
         };
         let (listed, any) = through::<N>(Structure::List, scene, &ready);
         let listed = listed.as_ref().map(HitBits::of);
@@ -314,7 +314,7 @@ fn c6_rays_in_the_sides_of_the_scene() {
 }
 
 #[test]
-fn c8_a_table_beyond_its_budget_is_refused_with_its_size() {
+fn c8_a_table_beyond_its_budget_is_rejected_with_its_size() {
     let scene = scenes::soup(13, 200, 0.3);
     let options = |structure, gridels, budget| Options {
         structures: vec![structure],
@@ -325,8 +325,8 @@ fn c8_a_table_beyond_its_budget_is_refused_with_its_size() {
     for structure in CUBES {
         for gridels in [1, 2, 4, 8, 16, 64] {
             let budget = 1000;
-            let refused = compile(&scene, &options(structure, Some(gridels), budget));
-            match refused {
+            let rejected = compile(&scene, &options(structure, Some(gridels), budget));
+            match rejected {
                 Err(CompileError::OverBudget {
                     structure: name,
                     needed,

@@ -206,7 +206,7 @@ fn far_rays_meet_what_they_are_aimed_at() {
     }
 }
 
-/// Scenes that no lattice can hold are refused by name (E8); any other uses its lattice to at least
+/// Scenes that no lattice can hold are rejected by name (E8); any other uses its lattice to at least
 /// a half.
 #[test]
 fn the_lattice_fits_the_scene() {

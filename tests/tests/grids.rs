@@ -251,7 +251,7 @@ fn walks_are_as_long_as_the_grid_is_wide() {
     assert!((1500..=2050).contains(&most), "{most}");
 }
 
-/// What reaches into many cells is hit in the right one, and not where it was first listed (B6).
+/// A primitive in many cells is hit in the right one, and not where it was first listed (B6).
 #[test]
 fn long_things_are_hit_where_they_are() {
     let mut random = Random(5);
@@ -325,7 +325,7 @@ fn mirrors_do_not_matter() {
     }
 }
 
-/// Cells that would take too much memory are refused with the figure; where none are asked for,
+/// Cells that would take too much memory are rejected with the figure; where none are asked for,
 /// there are fewer.
 #[test]
 fn memory_is_bounded() {
@@ -341,9 +341,9 @@ fn memory_is_bounded() {
         ..Options::default()
     };
     let few = scenes::of((0..10).map(big));
-    let refused = compile(&few, &options(Some([1024; 3]))).expect_err("12 GiB of cells");
-    let CompileError::OverBudget { needed, budget, .. } = refused else {
-        panic!("{refused}");
+    let rejected = compile(&few, &options(Some([1024; 3]))).expect_err("12 GiB of cells");
+    let CompileError::OverBudget { needed, budget, .. } = rejected else {
+        panic!("{rejected}");
     };
     assert!(needed > 12 << 30 && budget == 256 << 20);
     // All in every cell.

@@ -10,7 +10,7 @@ use gridel_host::render::{Job, render};
 use gridel_host::resolution::unresolved;
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Scene, Shape};
 use gridel_host::shape::{Cuboid, Disc, Plane, Sphere};
-use gridel_host::verify::{Promise, verify};
+use gridel_host::verify::{Property, verify};
 use gridel_tests::scenes;
 
 /// Pixels as a screen has them.
@@ -39,7 +39,7 @@ fn blob(scene: &Scene) -> Blob {
     compile(scene, &options).expect("compiles").blob
 }
 
-/// What a small box stands on.
+/// The ground of a small box.
 #[derive(Clone, Copy, Debug)]
 enum Ground {
     Slab,
@@ -292,9 +292,9 @@ fn verify_reports_contact_shadows_that_single_precision_loses() {
     let report = |scene: &Scene| {
         let blob = blob(scene);
         let report = verify(&blob.scene().expect("a scene"), 2000, &|| ());
-        let shadows = report.promises.into_iter();
-        let mut shadows = shadows.filter(|it| it.promise == Promise::Shadows);
-        shadows.next().expect("the promise")
+        let shadows = report.properties.into_iter();
+        let mut shadows = shadows.filter(|it| it.property == Property::Shadows);
+        shadows.next().expect("the property")
     };
     let kept = report(&box_on(Ground::Slab, 1e6));
     assert!(kept.checked > 50, "{kept:?}");

@@ -27,7 +27,7 @@ fn peak(scene: &Scene, structure: Structure, budget: Option<u64>) -> (u64, Compi
 
 #[test]
 fn builders_keep_to_their_budgets() {
-    // A table, the blob that it is copied to, 72 bytes a cell, and what threads work with.
+    // A table, the blob that it is copied to, 72 bytes per cell, and what threads work with.
     let soup = scenes::soup(31, 400, 0.2);
     let (base, _) = peak(&soup, Structure::Bvh, None);
     for structure in [

@@ -37,7 +37,7 @@ fn answers(path: &Path) -> Vec<Answer> {
         .collect()
 }
 
-/// A binary STL file as one mesh: 50 bytes a triangle after 84.
+/// A binary STL file as one mesh: 50 bytes per triangle after 84.
 fn read_stl(path: &Path) -> Scene {
     let bytes = std::fs::read(path).expect("an STL file");
     let facets = bytes[84..].chunks_exact(50);

@@ -1,4 +1,4 @@
-//! What light does at surfaces (hard cases F): glass is left as often as it is entered, contact is
+//! Light at surfaces (hard cases F): glass is left as often as it is entered, contact is
 //! kept, lights do not shadow themselves. Laws of single surfaces are tested beside `glass` in the
 //! core, self-hits in `shapes`, pictures in `render`.
 
@@ -27,7 +27,7 @@ fn refracted(eta: f64, way: DVec3, normal: DVec3) -> Option<DVec3> {
     (rest >= 0.0).then(|| eta * way + (eta * cos - rest.sqrt()) * normal)
 }
 
-/// What became of a path through glass.
+/// The outcome of a path through glass.
 #[derive(Clone, Copy, Default)]
 struct Path {
     surfaces: usize,

@@ -1,6 +1,6 @@
 //! Every structure against the plain list, ray by ray, to the last bit.
 //!
-//! By default 20,000 rays a scene and format, three times as many with `GRIDEL_CI=1`;
+//! By default 20,000 rays per scene and format, three times as many with `GRIDEL_CI=1`;
 //! `cargo test -- --ignored --nocapture` traces the 10^6 that the project promises, and takes some
 //! minutes.
 
@@ -29,7 +29,7 @@ fn quick() -> Amount {
         list_tests: third_of(20_000_000) as u64,
     }
 }
-/// The list's share is what takes the time: 3 x 10^9 tests of primitives a scene, 10 s a core.
+/// The list's share is what takes the time: 3 x 10^9 tests of primitives per scene, 10 s per core.
 const FULL: Amount = Amount {
     rays: 1_000_000,
     list_tests: 1_000_000_000,
@@ -187,7 +187,7 @@ fn real_scenes_agree() {
 }
 
 #[test]
-#[ignore = "10^6 rays a scene and format take minutes"]
+#[ignore = "10^6 rays per scene and format take minutes"]
 fn full_synthetic_scenes_agree() {
     soups(FULL);
     hard_scenes(FULL);
@@ -195,7 +195,7 @@ fn full_synthetic_scenes_agree() {
 }
 
 #[test]
-#[ignore = "10^6 rays a scene and format take minutes"]
+#[ignore = "10^6 rays per scene and format take minutes"]
 fn full_real_scenes_agree() {
     real_scenes(FULL);
 }

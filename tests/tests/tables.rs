@@ -1,6 +1,6 @@
-//! The paper's tables, as counts: what each structure tests a ray, over the rays of three pictures.
+//! The paper's tables, as counts: what each structure tests per ray, over the rays of three pictures.
 //!
-//! Of each scene about as many objects as the paper's: a glass chessboard and two crystals in place
+//! Each scene has about as many objects as the paper's: a glass chessboard and two crystals in place
 //! of molecules. `fixtures/recorded/structures.json` holds what was counted last, beside the paper's
 //! figures, and the README prints it. Counts must not drift: in integers they are the same on every
 //! machine. The ordinary test casts the rays of a picture of 64 by 64 pixels; with `--ignored` those
@@ -118,7 +118,7 @@ fn counted(name: &str, scene: &scene::Scene, size: u16, grid: Option<[u32; 3]>) 
     for row in &comparison.rows {
         assert_eq!(row.wrong, None, "{name}, {}", row.name);
     }
-    assert!(comparison.refused.is_empty(), "{name}");
+    assert!(comparison.rejected.is_empty(), "{name}");
     comparison
 }
 

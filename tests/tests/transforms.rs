@@ -1,5 +1,5 @@
-//! The same scene elsewhere (hard cases G, and E4 and E8 of fixed point): scaled by powers of two,
-//! shifted, mirrored and turned, it gives the same bits, up to the mirror, until it is refused.
+//! A scene elsewhere (hard cases G, and E4 and E8 of fixed point): scaled by powers of two,
+//! shifted, mirrored and turned, it gives the same bits, up to the mirror, until it is rejected.
 
 use glam::DVec3;
 use gridel_core::{Kind, List, NoCount, Number, Scene};
@@ -31,7 +31,7 @@ fn same_hits(plain: &Blob, other: &Blob, rays: &[UnitRay], about: &str) {
     every_format!(judge(plain, other, rays, about));
 }
 
-/// Times a power of two: the same blob but for the unit, until a clear refusal (D4, E8, G5).
+/// Times a power of two: the same blob but for the unit, until a clear rejection (D4, E8, G5).
 #[test]
 fn a_scene_times_a_power_of_two_is_the_same() {
     let soup = lattice_soup(40, 60);

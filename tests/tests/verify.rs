@@ -12,7 +12,7 @@ use gridel_host::shape::random::Random;
 use gridel_host::shape::{Cone, Cuboid};
 use gridel_host::verify::judge::{Answer, GRAZING, Judge, RoundedRay, STEPS};
 use gridel_host::verify::{
-    ClosedMesh, Promise, RAYS, StructureAnswer, Targets, UnitRay, ask, ask_all, check, leave,
+    ClosedMesh, Property, RAYS, StructureAnswer, Targets, UnitRay, ask, ask_all, check, leave,
     sealed, verify,
 };
 use gridel_tests::effort::{part_of, third_of};
@@ -38,7 +38,7 @@ fn right_scenes_are_right() {
         eprintln!("{name}: {report:#?}");
         assert_eq!(report.broken(), 0, "{name}");
         assert_eq!(report.closed_meshes, usize::from(name == "mesh"));
-        let leaks = report.promises.last().expect("promises").checked;
+        let leaks = report.properties.last().expect("properties").checked;
         assert_eq!(leaks > 0, name == "mesh");
     }
 }
@@ -64,7 +64,7 @@ fn fixtures_keep_their_promises() {
         let blob = scenes::blob(&scene, 24);
         let rays = third_of(RAYS as usize) as u64;
         let report = verify(&blob.scene().expect("a scene"), rays, &|| ());
-        assert_eq!(report.broken(), 0, "{name}: {:#?}", report.promises);
+        assert_eq!(report.broken(), 0, "{name}: {:#?}", report.properties);
         for format in &report.formats {
             let worst = format.worst.error;
             // A surface that is off by STEPS, met at the flattest angle that does not graze.
@@ -93,8 +93,8 @@ fn real_scenes_keep_their_promises() {
         let blob = scenes::blob(&scenes::read(&path), 24);
         let rays = part_of(300, RAYS as usize) as u64;
         let report = verify(&blob.scene().expect("a scene"), rays, &|| ());
-        let promises = &report.promises;
-        assert_eq!(report.broken(), 0, "{}: {promises:#?}", path.display());
+        let properties = &report.properties;
+        assert_eq!(report.broken(), 0, "{}: {properties:#?}", path.display());
     }
 }
 
@@ -127,7 +127,7 @@ fn closed_meshes_that_touch_do_not_leak() {
         let blob = scenes::blob(&scenes::of([pyramid(1.0, 0.0), pyramid(-1.0, 2e-7)]), 24);
         let report = verify(&blob.scene().expect("a scene"), 1000, &|| ());
         assert_eq!(report.closed_meshes, 2);
-        assert_eq!(report.broken(), 0, "{turn}: {:#?}", report.promises);
+        assert_eq!(report.broken(), 0, "{turn}: {:#?}", report.properties);
     }
 }
 
@@ -141,7 +141,7 @@ fn cuboid(min: [f64; 3], max: [f64; 3]) -> Shape {
 /// A ray that starts inside of several solids leaves them where they end, be it at one place or at
 /// several; and reporting the later one is wrong.
 #[test]
-fn what_a_ray_leaves_is_judged_as_fairly_as_what_it_enters() {
+fn surfaces_that_a_ray_leaves_are_judged_as_those_it_enters() {
     // All share the face x = 1; one of them reaches further on the other sides.
     let boxes = [
         cuboid([-1.0; 3], [1.0; 3]),
@@ -233,12 +233,12 @@ fn a_ray_that_is_nearly_parallel_to_a_cylinder_meets_its_cap() {
     gridel_tests::every_format!(meets(&scene));
 }
 
-/// Changes the answers of one structure and returns which promises are found broken.
-fn broken_by(change: impl Fn(&mut StructureAnswer<f64>)) -> Vec<Promise> {
+/// Changes the answers of one structure and returns which properties are found broken.
+fn broken_by(change: impl Fn(&mut StructureAnswer<f64>)) -> Vec<Property> {
     let blob = mesh(2);
     let scene = blob.scene().expect("a scene");
     let judge = Judge::of(&scene);
-    let mut promises = Vec::new();
+    let mut properties = Vec::new();
     for ray in Targets::of(&scene).rays(3).take(400) {
         let Some(ready) = ray.ready::<f64>(&scene) else {
             continue;
@@ -246,11 +246,11 @@ fn broken_by(change: impl Fn(&mut StructureAnswer<f64>)) -> Vec<Promise> {
         let mut heard = ask_all::<f64>(&scene, &ready);
         heard.iter_mut().for_each(&change);
         let outcome = check(&scene, &judge, &ready, &heard, true);
-        promises.extend(outcome.faults.iter().map(|fault| fault.promise));
+        properties.extend(outcome.faults.iter().map(|fault| fault.property));
     }
-    promises.sort();
-    promises.dedup();
-    promises
+    properties.sort();
+    properties.dedup();
+    properties
 }
 
 fn with_hit(change: impl Fn(&mut Hit<f64>)) -> impl Fn(&mut StructureAnswer<f64>) {
@@ -271,25 +271,28 @@ fn mutated_answers_are_caught() {
             heard.hit = None;
         }
     });
-    assert_eq!(lost, [Promise::Structures, Promise::AnyHit]);
+    assert_eq!(lost, [Property::Structures, Property::AnyHit]);
     let last_bit = broken_by(|heard| {
         if let (true, Some(hit)) = (flagged(heard), &mut heard.hit) {
             hit.normal[1] = f64::from_bits(hit.normal[1].to_bits() ^ 1);
         }
     });
-    assert_eq!(last_bit, [Promise::Structures]);
+    assert_eq!(last_bit, [Property::Structures]);
     let no_shadow = broken_by(|heard| heard.any = false);
-    assert_eq!(no_shadow, [Promise::AnyHit]);
+    assert_eq!(no_shadow, [Property::AnyHit]);
     // Of all of them.
     let blind = broken_by(|heard| (heard.hit, heard.any) = (None, false));
-    assert_eq!(blind, [Promise::Answers]);
-    assert_eq!(broken_by(with_hit(|hit| hit.t += 1e-3)), [Promise::Answers]);
+    assert_eq!(blind, [Property::Answers]);
+    assert_eq!(
+        broken_by(with_hit(|hit| hit.t += 1e-3)),
+        [Property::Answers]
+    );
     let farther = broken_by(with_hit(|hit| hit.primitive ^= 1));
-    assert_eq!(farther, [Promise::Answers]);
+    assert_eq!(farther, [Property::Answers]);
     let nan = broken_by(with_hit(|hit| hit.point[2] = f64::NAN));
-    assert!(nan.contains(&Promise::Numbers), "{nan:?}");
+    assert!(nan.contains(&Property::Numbers), "{nan:?}");
     let short = broken_by(with_hit(|hit| hit.normal = hit.normal.map(|x| 0.999 * x)));
-    assert_eq!(short, [Promise::Numbers]);
+    assert_eq!(short, [Property::Numbers]);
 }
 
 /// A structure that forgets some of its leaves.
@@ -347,7 +350,7 @@ fn a_broken_structure_is_caught() {
             outcome
                 .faults
                 .iter()
-                .all(|fault| fault.promise == Promise::Structures)
+                .all(|fault| fault.property == Property::Structures)
         );
         caught += usize::from(!outcome.faults.is_empty());
     }

@@ -107,7 +107,7 @@ fn leaks<N: Number>(
     })
 }
 
-/// 10^7 rays a format, shared by all structures, at vertices and at random places of edges.
+/// 10^7 rays per format, shared by all structures, at vertices and at random places of edges.
 fn random_targets(scene: &Scene<'_>, seed: u64) -> impl Iterator<Item = [f64; 3]> {
     let triangles: Vec<_> = (0..scene.count(Kind::Triangle))
         .filter_map(|slot| scene.triangle(slot))

@@ -25,7 +25,7 @@ pub struct Point {
 /// The cost of a picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cost {
-    /// Of each repeat, rendering alone.
+    /// Seconds of each repeat, rendering alone.
     pub seconds: Vec<f64>,
     pub pixels: usize,
     pub rays: u64,
@@ -47,7 +47,7 @@ impl Cost {
         time::interval(&self.seconds)
     }
 
-    /// Whether every repeat took less than every repeat of another.
+    /// Returns whether every repeat took less than every repeat of another.
     pub fn is_below(&self, other: &Self) -> bool {
         time::is_below(&self.seconds, &other.seconds)
     }
@@ -81,7 +81,7 @@ pub struct Reference {
     pub samples: u16,
     /// Linear, 65535 being white.
     pub pixels: Vec<[u16; 3]>,
-    /// Of each pixel.
+    /// One value per pixel.
     hits: Vec<FirstHit>,
 }
 
@@ -100,10 +100,25 @@ pub enum MeasureError {
 }
 
 /// A scene that is measured, with the blobs that were built of it.
+///
+/// ```
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// use gridel_core::Structure;
+/// use gridel_host::accuracy::Bench;
+///
+/// let mut bench = Bench::new(&imported.scene, Structure::Flagged, [16, 12]);
+/// let reference = bench.reference(16)?;
+/// let base = bench.base();
+/// let (point, pixels) = bench.measure(&base, &reference)?;
+/// assert_eq!(pixels.len(), 16 * 12);
+/// assert!(point.errors.rmse < 0.2 && point.cost.rays >= 16 * 12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Bench<'s> {
     scene: &'s Scene,
     structure: Structure,
-    /// Of the structure wide.
+    /// Build quality of the structure `wide`.
     pub quality: Quality,
     pub size: [u16; 2],
     blobs: HashMap<(u8, u64), Blob>,
@@ -134,7 +149,7 @@ impl<'s> Bench<'s> {
         }
     }
 
-    /// What the scene file states.
+    /// Returns the setting that the scene file states.
     pub fn base(&self) -> Setting {
         let stated = self.scene.render;
         Setting {
@@ -146,13 +161,13 @@ impl<'s> Bench<'s> {
         }
     }
 
-    /// Tells scenes apart.
+    /// Returns a number that distinguishes scenes.
     pub fn checksum(&mut self) -> Result<u32, MeasureError> {
         let base = self.base();
         Ok(checksum(self.blob(&base)?.bytes()))
     }
 
-    /// Whether anything in the scene reflects or refracts.
+    /// Returns whether anything in the scene reflects or refracts.
     pub fn is_secondary(&mut self) -> Result<bool, MeasureError> {
         let base = self.base();
         let effects = self.blob(&base)?.scene()?.effects();
@@ -164,6 +179,7 @@ impl<'s> Bench<'s> {
         if !self.blobs.contains_key(&key) {
             let mut scene = self.scene.clone();
             scene.render.cutoff = setting.cutoff;
+            [scene.render.width, scene.render.height] = self.size.map(u32::from);
             let options = compile::Options {
                 structures: vec![self.structure],
                 lattice_bits: setting.lattice_bits,
@@ -227,7 +243,7 @@ impl<'s> Bench<'s> {
         Ok((point, rendered.picture.pixels))
     }
 
-    /// What the rays through the middles of pixels meet.
+    /// Returns the first hits of the rays through the middles of pixels.
     fn first_hits(&mut self, setting: &Setting) -> Result<Vec<FirstHit>, MeasureError> {
         let name = setting.format.name();
         let key = (setting.lattice_bits, setting.cutoff.to_bits(), name);

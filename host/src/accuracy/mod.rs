@@ -9,12 +9,12 @@ mod setting;
 
 pub use bench::{Bench, Cost, MeasureError, Point, Reference, reference_setting};
 pub use page::{Comparison, page};
-pub use setting::{Lever, Setting, least_reference_samples, sweep};
+pub use setting::{Parameter, Setting, least_reference_samples, sweep};
 
 use crate::table::significant;
 use serde::{Deserialize, Serialize};
 
-/// What was measured so far; what a sweep writes down after every step.
+/// The measurements so far; a sweep writes them after every step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results {
     /// Identifies the sweep: the program's version, the scene, the picture's size, the structure, the reference.
@@ -37,20 +37,20 @@ pub fn frontier(points: &[Point]) -> Vec<bool> {
     frontier_by(points, |point| point.errors.rmse)
 }
 
-/// The same by another error.
+/// Returns the frontier by another error.
 pub fn frontier_by(points: &[Point], error: impl Fn(&Point) -> f64) -> Vec<bool> {
     let beats = |a: &Point, b: &Point| {
         let cheaper = a.is_cheaper(b);
-        let no_dearer = cheaper || a.does_the_work_of(b);
+        let costs_no_more = cheaper || a.same_work(b);
         let (a, b) = (error(a), error(b));
-        no_dearer && a <= b && (cheaper || a < b)
+        costs_no_more && a <= b && (cheaper || a < b)
     };
     let unbeaten = |b: &Point| !points.iter().any(|a| beats(a, b));
     points.iter().map(unbeaten).collect()
 }
 
 impl Point {
-    /// Whether it surely costs less: by time where the repeats of both are distinct, else by rays and
+    /// Returns whether it surely costs less: by time where the repeats of both are distinct, else by rays and
     /// tests, which repeat exactly and compare within a number format.
     fn is_cheaper(&self, other: &Self) -> bool {
         if self.cost.is_below(&other.cost) {
@@ -61,12 +61,12 @@ impl Point {
             && !others.is_below(own)
             && own.rays <= others.rays
             && own.tests <= others.tests
-            && !self.does_the_work_of(other)
+            && !self.same_work(other)
     }
 
-    /// Whether both cast the same rays and make the same tests in the same format, and their times
+    /// Returns whether both cast the same rays and make the same tests in the same format, and their times
     /// do not differ.
-    fn does_the_work_of(&self, other: &Self) -> bool {
+    fn same_work(&self, other: &Self) -> bool {
         let work = |point: &Self| (point.setting.format, point.cost.rays, point.cost.tests);
         work(self) == work(other) && !other.cost.is_below(&self.cost)
     }
@@ -87,17 +87,19 @@ pub fn cheapest<'p>(points: &'p [Point], most: f64, board: Option<&str>) -> Opti
         .map(|(_, point)| point)
 }
 
-/// One sentence for each lever that was turned: what it costs and what it saves.
+/// One sentence for each parameter that was changed: what it costs and what it saves.
 pub fn sentences(base: &Setting, points: &[Point]) -> Vec<String> {
     let Some(start) = points.iter().find(|point| point.setting == *base) else {
         return Vec::new();
     };
-    let alone = |lever: Lever| -> Vec<&Point> {
-        let turned = points.iter().filter(|p| p.setting.differs(base) == [lever]);
+    let alone = |parameter: Parameter| -> Vec<&Point> {
+        let turned = points
+            .iter()
+            .filter(|p| p.setting.differs(base) == [parameter]);
         turned.chain([start]).collect()
     };
     let mut sentences = Vec::new();
-    for point in alone(Lever::Format) {
+    for point in alone(Parameter::Format) {
         if point.setting != *base {
             let ratio = Ratio::of(&point.cost, &start.cost);
             let time = match ratio.is_noise() {
@@ -112,35 +114,35 @@ pub fn sentences(base: &Setting, points: &[Point]) -> Vec<String> {
             ));
         }
     }
-    type Place = fn(&Setting) -> f64;
-    let numeric: [(Lever, Place, f64, &str); 4] = [
+    type Position = fn(&Setting) -> f64;
+    let numeric: [(Parameter, Position, f64, &str); 4] = [
         (
-            Lever::Samples,
+            Parameter::Samples,
             |s| -f64::from(s.samples).log2(),
             1.0,
             "Halving the samples per pixel",
         ),
         (
-            Lever::LatticeBits,
+            Parameter::LatticeBits,
             |s| -f64::from(s.lattice_bits),
             4.0,
             "Giving up four bits of the lattice",
         ),
         (
-            Lever::Depth,
+            Parameter::Depth,
             |s| -f64::from(s.depth),
             1.0,
             "One reflection or refraction less",
         ),
         (
-            Lever::Cutoff,
+            Parameter::Cutoff,
             |s| s.cutoff.log2(),
             2.0,
             "A cut-off four times as high",
         ),
     ];
-    for (lever, place, step, what) in numeric {
-        let mut turned: Vec<(f64, &Point)> = alone(lever)
+    for (parameter, place, step, what) in numeric {
+        let mut turned: Vec<(f64, &Point)> = alone(parameter)
             .into_iter()
             .map(|point| (place(&point.setting), point))
             .filter(|(place, _)| place.is_finite())
@@ -154,7 +156,7 @@ pub fn sentences(base: &Setting, points: &[Point]) -> Vec<String> {
         }
         let each = |ratio: f64| ratio.powf(step / (to - from));
         let bytes = last.cost.blob_bytes as f64 / first.cost.blob_bytes as f64;
-        let memory = if lever == Lever::LatticeBits {
+        let memory = if parameter == Parameter::LatticeBits {
             let saved = 1.0 - each(bytes);
             let verb = if saved < 0.0 { "adds" } else { "saves" };
             format!(", {verb} {} of the blob", part(saved.abs()))
@@ -170,8 +172,8 @@ pub fn sentences(base: &Setting, points: &[Point]) -> Vec<String> {
             "{what} {time}{memory}, and {}, on average from {} to {}; that is {} of display white at the \
              first and {} at the last.",
             error_text(first.errors.rmse, last.errors.rmse, each),
-            first.setting.value(lever),
-            last.setting.value(lever),
+            first.setting.value(parameter),
+            last.setting.value(parameter),
             significant(round(first.errors.rmse)),
             significant(round(last.errors.rmse)),
         ));
@@ -203,7 +205,7 @@ impl Ratio {
         }
     }
 
-    /// Whether it may as well be 1.
+    /// Returns whether it may as well be 1.
     fn is_noise(&self) -> bool {
         self.ends
             .is_some_and(|[low, high]| low <= 1.0 && 1.0 <= high)
@@ -244,10 +246,10 @@ impl Ratio {
     }
 }
 
-/// What is said of times without repeats.
+/// The text for times without repeats.
 const ONCE: &str = "timed once, so its noise is unknown";
 
-/// What becomes of an error, `each` step of the ratio.
+/// Says how an error changes; `each` returns the ratio per step.
 fn error_text(from: f64, to: f64, each: impl Fn(f64) -> f64) -> String {
     match (from, to) {
         (0.0, 0.0) => String::from("leaves the error at 0"),
@@ -337,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn frontier_goes_by_rays_and_tests_where_times_tell_nothing() {
+    fn frontier_goes_by_rays_and_tests_where_times_are_noise() {
         let fewer = Setting { depth: 5, ..BASE };
         let more = |seconds| point(BASE, 0.1, seconds, 100);
         let less = |seconds| point(fewer, 0.1, seconds, 90);

@@ -215,8 +215,8 @@ fn plot((title, error): Metric, results: &Results, best: &[bool]) -> io::Result<
 
 fn table(results: &Results, best: &[bool]) -> String {
     let mut table = String::from(
-        "<h2>All settings</h2>\n<p>Black: what the scene file states; blue: one lever turned; \
-         grey: several. Errors are of display values from 0 to 1; t counts units of the last place \
+        "<h2>All settings</h2>\n<p>Black: what the scene file states; blue: one parameter changed; \
+         gray: several. Errors are of display values from 0 to 1; t counts units of the last place \
          of single precision. Instructions per pixel on boards are estimates: the rays times the \
          least and the most that a ray of a recorded picture takes.</p>\n<div class=\"scroll\"><table>\n\
          <tr><th>#</th><th>setting</th><th>ms</th><th>spread</th><th>RMSE</th><th>largest</th>\

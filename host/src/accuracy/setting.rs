@@ -1,4 +1,4 @@
-//! The settings of a sweep: five levers, each alone and together.
+//! The settings of a sweep: five parameters, each alone and together.
 
 use gridel_core::Format;
 use gridel_core::format::limits::MAX_SAMPLES;
@@ -35,7 +35,7 @@ mod format_name {
 /// One of the five.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Lever {
+pub enum Parameter {
     Format,
     LatticeBits,
     Samples,
@@ -43,23 +43,23 @@ pub enum Lever {
     Cutoff,
 }
 
-impl Lever {
-    pub const ALL: [Lever; 5] = [
-        Lever::Format,
-        Lever::LatticeBits,
-        Lever::Samples,
-        Lever::Depth,
-        Lever::Cutoff,
+impl Parameter {
+    pub const ALL: [Parameter; 5] = [
+        Parameter::Format,
+        Parameter::LatticeBits,
+        Parameter::Samples,
+        Parameter::Depth,
+        Parameter::Cutoff,
     ];
 
     /// Its name.
     pub const fn name(self) -> &'static str {
         match self {
-            Lever::Format => "number format",
-            Lever::LatticeBits => "lattice bits",
-            Lever::Samples => "samples per pixel",
-            Lever::Depth => "ray depth",
-            Lever::Cutoff => "contribution cut-off",
+            Parameter::Format => "number format",
+            Parameter::LatticeBits => "lattice bits",
+            Parameter::Samples => "samples per pixel",
+            Parameter::Depth => "ray depth",
+            Parameter::Cutoff => "contribution cut-off",
         }
     }
 }
@@ -88,26 +88,26 @@ impl Setting {
         )
     }
 
-    /// The levers in which it differs from another.
-    pub fn differs(&self, other: &Self) -> Vec<Lever> {
-        let differs = |lever: &Lever| match lever {
-            Lever::Format => self.format != other.format,
-            Lever::LatticeBits => self.lattice_bits != other.lattice_bits,
-            Lever::Samples => self.samples != other.samples,
-            Lever::Depth => self.depth != other.depth,
-            Lever::Cutoff => self.cutoff != other.cutoff,
+    /// The parameters in which it differs from another.
+    pub fn differs(&self, other: &Self) -> Vec<Parameter> {
+        let differs = |parameter: &Parameter| match parameter {
+            Parameter::Format => self.format != other.format,
+            Parameter::LatticeBits => self.lattice_bits != other.lattice_bits,
+            Parameter::Samples => self.samples != other.samples,
+            Parameter::Depth => self.depth != other.depth,
+            Parameter::Cutoff => self.cutoff != other.cutoff,
         };
-        Lever::ALL.into_iter().filter(differs).collect()
+        Parameter::ALL.into_iter().filter(differs).collect()
     }
 
-    /// What is read off a lever.
-    pub fn value(&self, lever: Lever) -> String {
-        match lever {
-            Lever::Format => self.format.name().to_owned(),
-            Lever::LatticeBits => self.lattice_bits.to_string(),
-            Lever::Samples => self.samples.to_string(),
-            Lever::Depth => self.depth.to_string(),
-            Lever::Cutoff => cutoff_text(self.cutoff),
+    /// Returns the value of a parameter as text.
+    pub fn value(&self, parameter: Parameter) -> String {
+        match parameter {
+            Parameter::Format => self.format.name().to_owned(),
+            Parameter::LatticeBits => self.lattice_bits.to_string(),
+            Parameter::Samples => self.samples.to_string(),
+            Parameter::Depth => self.depth.to_string(),
+            Parameter::Cutoff => cutoff_text(self.cutoff),
         }
     }
 }
@@ -119,7 +119,7 @@ fn cutoff_text(cutoff: f64) -> String {
         .map_or_else(|_| cutoff.to_string(), |x| x.to_string())
 }
 
-/// The settings of a sweep around the one that the scene file states: first that one, then each lever
+/// The settings of a sweep around the one that the scene file states: first that one, then each parameter
 /// alone, then together. `secondary` says whether anything in the scene reflects or refracts; without,
 /// depth and cut-off change nothing and are left alone.
 pub fn sweep(base: Setting, secondary: bool) -> Vec<Setting> {
@@ -205,9 +205,9 @@ mod tests {
             cutoff: 1.0 / 512.0,
         };
         let settings = sweep(base, true);
-        for lever in Lever::ALL {
-            let alone = settings.iter().filter(|s| s.differs(&base) == [lever]);
-            assert!(alone.count() >= 2, "{lever:?}");
+        for parameter in Parameter::ALL {
+            let alone = settings.iter().filter(|s| s.differs(&base) == [parameter]);
+            assert!(alone.count() >= 2, "{parameter:?}");
         }
         for (number, setting) in settings.iter().enumerate() {
             assert!(!settings[..number].contains(setting), "{setting:?}");

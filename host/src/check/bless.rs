@@ -8,19 +8,38 @@ use std::io;
 use std::path::PathBuf;
 use toml_edit::{DocumentMut, InlineTable, Item, Value};
 
-/// What a manifest becomes.
+/// A manifest with the new records.
 #[derive(Clone, Debug)]
 pub struct Blessed {
     path: PathBuf,
     old: String,
     new: String,
     references: Vec<(PathBuf, super::Image)>,
-    /// What is broken and nothing that can be recorded: names of checks and what of them.
+    /// Failures that cannot be recorded: names of checks, and the key of each.
     pub left: Vec<String>,
 }
 
 /// Puts the figures that were found where the manifest has others that are broken. What holds
 /// stays as it is, and so do comments and layout.
+///
+/// ```
+/// use gridel_host::check::{Manifest, bless, run};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("check.toml");
+/// std::fs::write(
+///     folder.path().join("ball.toml"),
+///     "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n",
+/// )?;
+/// std::fs::write(&path, "[[check]]\nscene = 'ball.toml'\nsize = [16, 12]\nhash = {}\n")?;
+///
+/// let manifest = Manifest::read(&path)?;
+/// let report = run(&manifest, &|| ());
+/// let recorded = bless(&manifest, &report);
+/// recorded.files().map_err(|(_, error)| error)?.keep().map_err(|(_, error)| error)?;
+/// assert_eq!(run(&Manifest::read(&path)?, &|| ()).failed(), 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
     let mut blessed = Blessed {
         path: manifest.path.clone(),

@@ -11,7 +11,7 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 /// How a program ran.
-pub(super) enum Ran {
+pub(super) enum BoardRun {
     /// It printed these figures, and wrote a picture if it should.
     Printed(BTreeMap<String, u64>, Result<Vec<u8>, String>),
     /// The emulator or a file is missing.
@@ -36,11 +36,11 @@ const ELF: [u8; 4] = *b"\x7fELF";
 const SHOWN: usize = 2000;
 
 /// Builds a program if it must be built, and runs it.
-pub(super) fn run(manifest: &Manifest, board: &Board, blob: &Blob) -> Ran {
+pub(super) fn run(manifest: &Manifest, board: &Board, blob: &Blob) -> BoardRun {
     match try_run(manifest, board, blob) {
-        Ok((figures, picture)) => Ran::Printed(figures, picture),
-        Err(Obstacle::Missing(why)) => Ran::NotRun(why),
-        Err(Obstacle::Failure(why)) => Ran::Failed(why),
+        Ok((figures, picture)) => BoardRun::Printed(figures, picture),
+        Err(Obstacle::Missing(why)) => BoardRun::NotRun(why),
+        Err(Obstacle::Failure(why)) => BoardRun::Failed(why),
     }
 }
 

@@ -8,7 +8,7 @@ use std::fs::File;
 use std::io::{self, BufReader, Write};
 use std::path::Path;
 
-/// A picture in sRGB, three bytes a pixel, row by row.
+/// A picture in sRGB, three bytes per pixel, row by row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
     pub size: [u32; 2],
@@ -99,7 +99,7 @@ impl Image {
         Some(Difference { largest, beyond })
     }
 
-    /// What was expected, what is there, and how they differ, side by side: differences are
+    /// Returns the expected picture, the rendered one and their differences side by side: differences are
     /// stretched so that the largest is white. Only the two where the sizes differ.
     ///
     /// # Errors

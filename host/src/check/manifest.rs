@@ -116,12 +116,12 @@ impl Manifest {
             text: source.text().to_owned(),
             checks,
         };
-        manifest.refuse_lost_files()?;
+        manifest.reject_lost_files()?;
         Ok(manifest)
     }
 
-    /// Refuses references that are also something else, which recording a picture would destroy.
-    fn refuse_lost_files(&self) -> Result<(), SceneError> {
+    /// Rejects references that are also something else, which recording a picture would destroy.
+    fn reject_lost_files(&self) -> Result<(), SceneError> {
         let others: BTreeSet<_> = self.sources().map(place).collect();
         let mut pictures = self.references();
         match pictures.find(|picture| others.contains(&place(&picture.path))) {
@@ -164,7 +164,7 @@ impl Manifest {
         names.map(String::as_str)
     }
 
-    /// What is wrong with a file, where the manifest names it.
+    /// Returns an error about a file, at the place where the manifest names it.
     pub(super) fn error(&self, named: &Named, cause: impl Display, remedy: &str) -> SceneError {
         let Span { start, end } = named.span;
         let cause = format!("{} {cause}", named.path.display());
@@ -262,7 +262,7 @@ impl Check {
         Ok(check)
     }
 
-    /// Whether there is nothing that could be held or broken.
+    /// Returns whether there is nothing that could be held or broken.
     fn expects_nothing(&self) -> bool {
         let Budget {
             blob_bytes,

@@ -97,7 +97,7 @@ impl Run<'_> {
     }
 }
 
-/// What would make a figure smaller.
+/// Returns advice that makes a figure smaller.
 fn help(report: &MemoryReport, what: &str, scene: &Scene<'_>) -> String {
     let mut steps = match what {
         "call_stack" => report.call_stack_advice(scene),

@@ -9,7 +9,7 @@ use std::fmt;
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
     pub findings: Vec<Finding>,
-    /// What importers passed over, each once.
+    /// Warnings of importers, each once.
     pub warnings: Vec<String>,
 }
 
@@ -27,7 +27,7 @@ pub struct Finding {
     pub allowed: Option<Figure>,
     #[serde(flatten)]
     pub outcome: Outcome,
-    /// What would have to be recorded for this to hold.
+    /// The record with which this check passes.
     #[serde(skip)]
     pub(super) record: Option<Record>,
     /// The picture that is not as it should be.
@@ -155,7 +155,7 @@ impl Report {
 }
 
 impl Figure {
-    /// Whether this is within a budget, or the same hash.
+    /// Returns whether this is within a budget, or the same hash.
     pub(super) fn within(&self, allowed: &Self) -> bool {
         match (self, allowed) {
             (Self::Count(found), Self::Count(most)) => found <= most,

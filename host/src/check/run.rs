@@ -1,6 +1,6 @@
 //! Measures what a manifest asks for.
 
-use super::board::{self, Ran};
+use super::board::{self, BoardRun};
 use super::explained::explained;
 use super::image::Image;
 use super::manifest::{Check, Manifest, Reference};
@@ -14,6 +14,23 @@ use gridel_core::{Format, Scene, Settings, Structure};
 use std::io;
 
 /// Measures everything. Calls `progress` after each of the [steps](Manifest::steps).
+///
+/// ```
+/// use gridel_host::check::{Manifest, run};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("check.toml");
+/// std::fs::write(
+///     folder.path().join("ball.toml"),
+///     "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n",
+/// )?;
+/// std::fs::write(&path, "[[check]]\nscene = 'ball.toml'\nsize = [16, 12]\nhash = {}\n")?;
+///
+/// let report = run(&Manifest::read(&path)?, &|| ());
+/// // No hash is recorded yet.
+/// assert_eq!((report.passed(), report.failed()), (0, 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn run(manifest: &Manifest, progress: &dyn Fn()) -> Report {
     let mut report = Report::default();
     for (index, check) in manifest.checks.iter().enumerate() {
@@ -127,7 +144,7 @@ impl Run<'_> {
         Ok(compiled.blob)
     }
 
-    /// What is measured in one number format.
+    /// Measures the scene in one number format.
     fn format(
         &mut self,
         scene: &Scene<'_>,
@@ -275,7 +292,7 @@ impl Run<'_> {
         }
     }
 
-    /// What a program finds on a board.
+    /// Runs a program on a board and compares its figures.
     fn board(
         &mut self,
         number: usize,
@@ -289,12 +306,12 @@ impl Run<'_> {
         let ran = board::run(self.manifest, board, blob);
         let figures = board.budget.iter();
         let broken = match &ran {
-            Ran::Printed(..) => None,
-            Ran::NotRun(why) => Some(Outcome::NotRun(why.clone())),
-            Ran::Failed(why) => Some(Outcome::Failed(why.clone())),
+            BoardRun::Printed(..) => None,
+            BoardRun::NotRun(why) => Some(Outcome::NotRun(why.clone())),
+            BoardRun::Failed(why) => Some(Outcome::Failed(why.clone())),
         };
         let mut printed = None;
-        if let Ran::Printed(figures, picture) = ran {
+        if let BoardRun::Printed(figures, picture) = ran {
             printed = Some((figures, picture));
         }
         for (name, &most) in figures {

@@ -10,7 +10,7 @@ pub use arguments::Arguments;
 
 use super::arguments::{GeometryOptions, SceneOptions, ViewOptions, check_quality};
 use super::failure::Failure;
-use super::output::{print, print_json_warned, prove, write_texts};
+use super::output::{check_writable, print, print_json_warned, write_texts};
 use super::source::import;
 use choice::{Choice, choice};
 use folder::{CSV, PAGE, comparisons, kept};
@@ -26,7 +26,7 @@ use std::path::PathBuf;
 /// Most pixels that are measured.
 const MOST_PIXELS: usize = 1 << 22;
 
-/// What is printed as JSON.
+/// The JSON output.
 #[derive(Serialize)]
 struct Printed<'t> {
     folder: String,
@@ -97,7 +97,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     std::fs::create_dir_all(folder.join("pictures"))
         .map_err(|error| Failure::writing(&folder, &error))?;
     for name in [PAGE, CSV] {
-        prove(&folder.join(name))?;
+        check_writable(&folder.join(name))?;
     }
     let results = measure(arguments, &mut bench, &folder, (key, kept), &settings)?;
     let comparisons = comparisons(&folder, size, &results)?;

@@ -7,7 +7,9 @@ use super::arguments::{
 use super::effects::CalledFor;
 use super::failure::Failure;
 use super::input::is_standard;
-use super::output::{Content, check_extension, json, print_about, prove, refuse_same, write_files};
+use super::output::{
+    Content, check_extension, check_writable, json, print_about, reject_same, write_files,
+};
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Format, Scene, Structure};
@@ -94,7 +96,7 @@ pub struct Arguments {
     scene_options: SceneOptions,
 }
 
-/// What was built.
+/// The report of `build`.
 #[derive(Serialize)]
 struct Built<'r> {
     blob: &'r str,
@@ -134,12 +136,12 @@ const NAMED: usize = 5;
 
 /// Builds a blob and reports on it.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    refuse_same(&arguments.scene, &arguments.output)?;
+    reject_same(&arguments.scene, &arguments.output)?;
     check_extension(&arguments.output, &["gridel", "bin"], "blob")?;
     if is_standard(&arguments.output) {
-        prove(&arguments.output)?;
+        check_writable(&arguments.output)?;
     } else {
-        refuse_foreign(&arguments.output, "blob", is_blob)?;
+        reject_foreign(&arguments.output, "blob", is_blob)?;
     }
     if let Some(folder) = &arguments.emit_rust {
         if folder.exists() && !folder.is_dir() {
@@ -148,8 +150,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 "give the folder that the module and its blob lie in; it need not exist",
             ));
         }
-        refuse_foreign(&folder.join(emit::BLOB), "blob", is_blob)?;
-        refuse_foreign(
+        reject_foreign(&folder.join(emit::BLOB), "blob", is_blob)?;
+        reject_foreign(
             &folder.join(emit::MODULE),
             "module of Gridel",
             emit::is_module,
@@ -168,7 +170,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             && arguments.emit_rust.is_none(),
         ..compile::Options::default()
     })?;
-    let scene_options = arguments.target.aimed(&arguments.scene_options)?;
+    let scene_options = arguments.target.with_target(&arguments.scene_options)?;
     let source = Source::compile(&arguments.scene, &scene_options, compiling)?;
     let scene = source.scene()?;
     let target = arguments.target.target();
@@ -242,8 +244,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     print_about(&arguments.output, report)
 }
 
-/// Refuses to write over a file of another sort, such as the buffer of a glTF scene, or a program's own.
-fn refuse_foreign(
+/// Rejects to write over a file of another sort, such as the buffer of a glTF scene, or a program's own.
+fn reject_foreign(
     path: &Path,
     sort: &str,
     is_one: impl Fn(&Path) -> io::Result<bool>,

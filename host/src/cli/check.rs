@@ -1,7 +1,7 @@
 //! `gridel check`: scenes and their memory, held to what is recorded.
 
 use super::failure::Failure;
-use super::output::{print, print_json, prove, refuse_inputs, warn, write_file};
+use super::output::{check_writable, print, print_json, reject_inputs, warn, write_file};
 use super::progress::Progress;
 use clap::Args;
 use gridel_host::check::{self, Blessed, Manifest, Outcome, Report};
@@ -52,7 +52,7 @@ struct Checked<'r> {
     manifest: String,
     passed: usize,
     failed: usize,
-    /// What was broken and is recorded now.
+    /// Failures that are recorded now.
     recorded: usize,
     not_run: usize,
     #[serde(flatten)]
@@ -106,7 +106,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     recorded.and(reported).and(shown).and(printed).and(failure)
 }
 
-/// Refuses outputs that would destroy what is read or cannot be written, before any work.
+/// Rejects outputs that would destroy what is read or cannot be written, before any work.
 fn prove_outputs(arguments: &Arguments, manifest: &Manifest) -> Result<(), Failure> {
     let (folder, junit) = (&arguments.diff, &arguments.junit);
     let pictures = folder.iter().flat_map(|folder| {
@@ -114,12 +114,12 @@ fn prove_outputs(arguments: &Arguments, manifest: &Manifest) -> Result<(), Failu
         names.map(move |name| picture(folder, name))
     });
     let outputs = junit.iter().cloned().chain(pictures);
-    refuse_inputs(manifest.inputs(), outputs, "a file that the checks read")?;
+    reject_inputs(manifest.inputs(), outputs, "a file that the checks read")?;
     if let Some(folder) = folder {
         std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
     }
     if let Some(path) = junit {
-        prove(path)?;
+        check_writable(path)?;
     }
     Ok(())
 }

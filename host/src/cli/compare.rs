@@ -1,6 +1,6 @@
 //! `gridel compare`: structures side by side on a scene's own rays.
 
-use super::arguments::Aim;
+use super::arguments::TargetPoint;
 use super::arguments::{
     self, SceneOptions, StructureOptions, check_hierarchy, distinct, scene_help, scene_long_help,
 };
@@ -70,7 +70,7 @@ pub struct Arguments {
     scene_options: SceneOptions,
 
     #[command(flatten)]
-    aim: Aim,
+    target_point: TargetPoint,
 }
 
 #[derive(Serialize)]
@@ -99,7 +99,13 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         lattice_bits: lattice_bits.unwrap_or(default.compiling.lattice_bits),
         ..default.compiling
     })?;
-    let imported = import(path, &arguments.aim.aimed(&arguments.scene_options))?;
+    let imported = import(
+        path,
+        &arguments
+            .target_point
+            .with_target(&arguments.scene_options)
+            .sized(Some(arguments.size)),
+    )?;
     if let Some(folder) = &arguments.plot {
         std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
     }
@@ -169,9 +175,9 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         ));
     }
     // Of all structures some may not fit; one that was asked for must.
-    match comparison.refused.first() {
-        Some(refused) if !arguments.accel.is_empty() => Err(Failure::refused(
-            refused.why.clone(),
+    match comparison.rejected.first() {
+        Some(rejected) if !arguments.accel.is_empty() => Err(Failure::rejected(
+            rejected.why.clone(),
             "give it a larger `--budget`, or fewer cells",
         )),
         _ => Ok(()),

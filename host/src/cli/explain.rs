@@ -1,6 +1,6 @@
-//! `gridel explain`: the story of a pixel or of a ray.
+//! `gridel explain`: explains a pixel or a ray.
 
-use super::arguments::Aim;
+use super::arguments::TargetPoint;
 use super::arguments::{PictureOptions, SceneOptions, TraceOptions};
 use super::failure::Failure;
 use super::output::{print, print_json_warned};
@@ -9,7 +9,7 @@ use clap::{ArgGroup, Args};
 use glam::DVec3;
 use gridel_core::{Settings, Structure};
 use gridel_host::compile::Names;
-use gridel_host::explain::{ExplainError, Fall, Shown, Story, Subject, explain};
+use gridel_host::explain::{ExplainError, Explanation, LightOutcome, Shown, Subject, explain};
 use gridel_host::trace::SceneRay;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -65,7 +65,7 @@ pub struct Arguments {
     scene_options: SceneOptions,
 
     #[command(flatten)]
-    aim: Aim,
+    target_point: TargetPoint,
 }
 
 /// Explains a pixel or a ray.
@@ -80,7 +80,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let source = Source::to_trace(
         &arguments.input,
-        &arguments.aim.aimed(&arguments.scene_options),
+        &arguments
+            .target_point
+            .with_target(&arguments.scene_options)
+            .sized(arguments.picture.size),
         &arguments.with,
         Structure::DualSplit,
     )?;
@@ -105,26 +108,29 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         // The command line asks for one of them.
         (None, None) => return Ok(()),
     };
-    let story = explain(&scene, arguments.with.format, structure, settings, subject)
+    let explanation = explain(&scene, arguments.with.format, structure, settings, subject)
         .map_err(|error| failure(&error))?;
     let names = source.names(&scene);
     if arguments.json {
-        let objects = named(&story, &names);
-        let story = Named { story, objects };
-        return print_json_warned(&story, &source.warnings);
+        let objects = named(&explanation, &names);
+        let explanation = Named {
+            explanation,
+            objects,
+        };
+        return print_json_warned(&explanation, &source.warnings);
     }
     print(Shown {
-        story: &story,
+        explanation: &explanation,
         names: &names,
         all_walks: arguments.all_walks,
     })
 }
 
-/// A story, with the names of its objects.
+/// An explanation, with the names of its objects.
 #[derive(Serialize)]
 struct Named {
     #[serde(flatten)]
-    story: Story,
+    explanation: Explanation,
     /// By number; those without a name are missing.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     objects: BTreeMap<u32, ObjectNames>,
@@ -136,11 +142,11 @@ struct ObjectNames {
     material: Option<String>,
 }
 
-fn named(story: &Story, names: &Names) -> BTreeMap<u32, ObjectNames> {
-    let rays = story.samples.iter().flat_map(|sample| &sample.rays);
+fn named(explanation: &Explanation, names: &Names) -> BTreeMap<u32, ObjectNames> {
+    let rays = explanation.samples.iter().flat_map(|sample| &sample.rays);
     let objects = rays.flat_map(|ray| {
-        let blocking = ray.lights.iter().filter_map(|light| match light.fall {
-            Fall::Blocked { object, .. } => Some(object),
+        let blocking = ray.lights.iter().filter_map(|light| match light.outcome {
+            LightOutcome::Blocked { object, .. } => Some(object),
             _ => None,
         });
         blocking.chain(ray.hit.as_ref().map(|hit| hit.object))

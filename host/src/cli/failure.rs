@@ -1,4 +1,4 @@
-//! Why a verb ends before its work is done, and the exit code that says so.
+//! Why a command ends before its work is done, and the exit code that says so.
 
 use gridel_host::compile::CompileError;
 use miette::{Diagnostic, MietteHandlerOpts, Report};
@@ -28,7 +28,7 @@ pub fn break_lines_at_spaces() {
     }));
 }
 
-/// Why a verb ended early.
+/// Why a command ended early.
 #[derive(Debug)]
 pub enum Failure {
     /// An input is broken, or a file cannot be read or written.
@@ -36,12 +36,12 @@ pub enum Failure {
     /// The command line does not fit the input.
     Usage(Report),
     /// A budget would be exceeded.
-    Refused(Report),
+    Rejected(Report),
     /// A check does not hold, as the report says that was printed.
     Broken,
 }
 
-/// What went wrong and what to do about it.
+/// The cause of a failure, and its remedy.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 #[error("{cause}")]
 #[diagnostic(help("{remedy}"))]
@@ -67,8 +67,8 @@ impl Failure {
     }
 
     /// A budget that would be exceeded.
-    pub fn refused(cause: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self::Refused(fault(cause, remedy))
+    pub fn rejected(cause: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self::Rejected(fault(cause, remedy))
     }
 
     /// A file that cannot be read.
@@ -113,7 +113,7 @@ impl Failure {
         );
         let report = Report::new(error).wrap_err(format!("{} cannot be compiled", path.display()));
         if over_budget {
-            Self::Refused(report)
+            Self::Rejected(report)
         } else {
             Self::Failed(report)
         }
@@ -125,7 +125,7 @@ impl Failure {
             Self::Broken => return ExitCode::from(1),
             Self::Failed(report) => (report, 1),
             Self::Usage(report) => (report, 2),
-            Self::Refused(report) => (report, 3),
+            Self::Rejected(report) => (report, 3),
         };
         // Standard error may be closed; the exit code still reports the failure.
         let _ = io::Write::write_fmt(&mut io::stderr(), format_args!("{report:?}\n"));

@@ -1,4 +1,4 @@
-//! `gridel help`: the help of a verb, and the documents.
+//! `gridel help`: the help of a command, and the documents.
 
 use super::failure::Failure;
 use super::output::print;

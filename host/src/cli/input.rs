@@ -1,4 +1,4 @@
-//! The scene or blob that a verb reads: a file, or standard input, which is written `-`.
+//! The scene or blob that a command reads: a file, or standard input, which is written `-`.
 //!
 //! Standard input is called `<stdin>` in messages, and is read once, whole. Files that a scene from there
 //! names lie in the current folder, as those of a scene file there do.
@@ -10,7 +10,7 @@ use gridel_host::table::grouped;
 use std::io::{self, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 
-/// Whether a path stands for standard input or output.
+/// Returns whether a path stands for standard input or output.
 pub fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
 }
@@ -41,12 +41,12 @@ impl Input {
         })
     }
 
-    /// What messages call it.
+    /// Returns its name in messages.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Whether it is a blob, and not a scene file.
+    /// Returns whether it is a blob, and not a scene file.
     pub fn is_blob(&self) -> Result<bool, Failure> {
         match &self.bytes {
             Some(bytes) => Ok(blob::begins_as_blob(bytes)),

@@ -126,7 +126,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         names: arguments.target.target().is_none(),
         ..compile::Options::default()
     };
-    let scene_options = arguments.target.aimed(&arguments.scene_options)?;
+    let scene_options = arguments.target.with_target(&arguments.scene_options)?;
     let source = Source::open(&arguments.input, &scene_options, None, compiling)?;
     let scene = source.scene()?;
     let target = arguments.target.target();

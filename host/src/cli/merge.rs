@@ -1,7 +1,7 @@
 //! `gridel merge`: parts of a picture become one.
 
 use super::failure::Failure;
-use super::output::{print, print_json, refuse_same, unsupported, write_file};
+use super::output::{print, print_json, reject_same, unsupported, write_file};
 use super::progress::Progress;
 use clap::Args;
 use gridel_host::merge::{Merge, MergeError, Part};
@@ -32,7 +32,7 @@ pub struct Arguments {
     json: bool,
 }
 
-/// What was merged.
+/// The report of `merge`.
 #[derive(Serialize)]
 struct Merged {
     picture: String,
@@ -56,7 +56,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 "render the parts in the format of the picture",
             ));
         }
-        refuse_same(part, output)?;
+        reject_same(part, output)?;
     }
     let progress = Progress::steps("merging", arguments.parts.len() as u64);
     let mut merge = Merge::default();

@@ -1,11 +1,11 @@
-//! The command line: one file a verb, and what the verbs share.
+//! The command line: one file per command, and what the commands share.
 //!
 //! | file | what is in it |
 //! |---|---|
-//! | `failure.rs` | why a verb ends, and the exit code that says so |
-//! | `arguments/` | options that several verbs have |
+//! | `failure.rs` | why a command ends, and the exit code that says so |
+//! | `arguments/` | options that several commands have |
 //! | `input.rs` | a file or standard input |
-//! | `source.rs` | the blob or scene file that a verb works on |
+//! | `source.rs` | the blob or scene file that a command works on |
 //! | `effects.rs` | what calls for the effects of a scene |
 //! | `output.rs` | files and standard output |
 //! | `shell.rs` | completion scripts for shells, and man pages |
@@ -50,11 +50,11 @@ use std::process::ExitCode;
 )]
 struct Program {
     #[command(subcommand)]
-    verb: Verb,
+    command: Command,
 }
 
 #[derive(Subcommand)]
-enum Verb {
+enum Command {
     Build(build::Arguments),
     Compare(compare::Arguments),
     Inspect(inspect::Arguments),
@@ -80,27 +80,27 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
     let program = Program::parse();
     failure::break_lines_at_spaces();
     // Without a handler an interrupt would only leave a temporary file behind.
-    let _ = ctrlc::set_handler(|| gridel_host::output::abandon(130));
+    let _ = ctrlc::set_handler(|| gridel_host::output::exit_removing_unfinished(130));
     if let Err(cause) = gridel_host::simd::from_environment() {
         return failure::Failure::usage(cause, "unset the variable for the fastest").report();
     }
-    let done = match program.verb {
-        Verb::Build(arguments) => build::run(&arguments),
-        Verb::Compare(arguments) => compare::run(&arguments, memory),
-        Verb::Inspect(arguments) => inspect::run(&arguments),
-        Verb::Render(arguments) => render::run(&arguments),
-        Verb::Merge(arguments) => merge::run(&arguments),
-        Verb::Trace(arguments) => trace::run(&arguments),
-        Verb::Accuracy(arguments) => accuracy::run(&arguments),
-        Verb::Verify(arguments) => verify::run(&arguments),
-        Verb::Explain(arguments) => explain::run(&arguments),
-        Verb::Sample(arguments) => sample::run(&arguments),
-        Verb::Check(arguments) => check::run(&arguments),
-        Verb::Help(arguments) => help::run(&arguments, Program::command()),
+    let done = match program.command {
+        Command::Build(arguments) => build::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments, memory),
+        Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Render(arguments) => render::run(&arguments),
+        Command::Merge(arguments) => merge::run(&arguments),
+        Command::Trace(arguments) => trace::run(&arguments),
+        Command::Accuracy(arguments) => accuracy::run(&arguments),
+        Command::Verify(arguments) => verify::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
+        Command::Sample(arguments) => sample::run(&arguments),
+        Command::Check(arguments) => check::run(&arguments),
+        Command::Help(arguments) => help::run(&arguments, Program::command()),
         #[cfg(feature = "shell")]
-        Verb::Completions(arguments) => shell::completions(&arguments, Program::command()),
+        Command::Completions(arguments) => shell::completions(&arguments, Program::command()),
         #[cfg(feature = "shell")]
-        Verb::Man(arguments) => shell::man(&arguments, Program::command()),
+        Command::Man(arguments) => shell::man(&arguments, Program::command()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

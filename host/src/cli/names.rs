@@ -2,11 +2,13 @@
 
 use gridel_core::Scene;
 use gridel_host::compile::Names;
+use gridel_host::table::{Align, Table, counted, grouped, printable};
 use gridel_host::trace::SceneHit;
 use serde::Serialize;
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
-/// What the numbers of objects and primitives stand for; the file of `trace --names`.
+/// The names behind the numbers of objects and primitives; the file of `trace --names`.
 #[derive(Serialize)]
 pub struct NameTable {
     objects: Vec<ObjectRow>,
@@ -79,4 +81,53 @@ pub fn hits_by_name(hits: &[SceneHit], names: &Names) -> BTreeMap<String, usize>
         *by_name.entry(name).or_default() += count;
     }
     by_name
+}
+
+/// Objects that the table for a terminal names.
+const SHOWN: usize = 20;
+
+/// The names with the most hits as a table; the last line counts the others.
+pub fn most_hit(hits_by_name: &BTreeMap<String, usize>) -> String {
+    let mut rows: Vec<_> = hits_by_name.iter().collect();
+    // Equal counts stay in the order of names.
+    rows.sort_by_key(|&(_, &hits)| Reverse(hits));
+    let mut table = Table::new([("object", Align::Left), ("hits", Align::Right)]);
+    for &(name, &hits) in rows.iter().take(SHOWN) {
+        table.row([printable(name), grouped(hits)]);
+    }
+    let mut text = table.to_string();
+    if let Some(others @ [_, ..]) = rows.get(SHOWN..) {
+        let hits: usize = others.iter().map(|&(_, &hits)| hits).sum();
+        text.push_str(&format!(
+            "{} with {}; --json counts all\n",
+            counted(others.len(), "other name"),
+            counted(hits, "hit")
+        ));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn table_has_the_names_with_the_most_hits_and_counts_the_others() {
+        let hits = |names: usize| {
+            let rows = (0..names).map(|number| (format!("object {number:03}"), 2 * number + 1));
+            most_hit(&rows.collect())
+        };
+        assert_eq!(hits(0), "object  hits\n");
+        assert_eq!(
+            hits(2),
+            "object      hits\nobject 001     3\nobject 000     1\n"
+        );
+        assert_eq!(hits(20).lines().count(), 21);
+        let long = hits(1000);
+        assert_eq!(long.lines().count(), 22);
+        assert!(long.contains("\nobject 999  1,999\n"));
+        // The sum of the first 980 odd numbers.
+        let last = long.lines().last().unwrap();
+        assert_eq!(last, "980 other names with 960,400 hits; --json counts all");
+    }
 }

@@ -20,8 +20,8 @@ pub fn write_file(
     write_whole(path, write).map_err(|error| Failure::writing(path, &error))
 }
 
-/// Refuses to write bytes to a terminal, which would take some of them for commands.
-fn refuse_terminal() -> Result<(), Failure> {
+/// Rejects to write bytes to a terminal, which would take some of them for commands.
+fn reject_terminal() -> Result<(), Failure> {
     if io::stdout().is_terminal() {
         return Err(Failure::usage(
             "standard output is a terminal, and what is written is binary",
@@ -33,21 +33,21 @@ fn refuse_terminal() -> Result<(), Failure> {
 
 /// Writes all at once, so that an error on the way leaves nothing written.
 fn write_standard(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
-    refuse_terminal()?;
+    reject_terminal()?;
     let mut bytes = Vec::new();
     write(&mut bytes).map_err(|error| Failure::writing(Path::new("<stdout>"), &error))?;
     to_standard_output(&bytes)
 }
 
 /// Proves that a file can be written, before any work that it shall hold.
-pub fn prove(path: &Path) -> Result<(), Failure> {
+pub fn check_writable(path: &Path) -> Result<(), Failure> {
     if is_standard(path) {
-        return refuse_terminal();
+        return reject_terminal();
     }
-    output::prove(path).map_err(|error| Failure::writing(path, &error))
+    output::check_writable(path).map_err(|error| Failure::writing(path, &error))
 }
 
-/// What a file of [`write_files`] is to hold.
+/// The content of a file of [`write_files`].
 pub type Content<'c> = &'c dyn Fn(&mut dyn Write) -> io::Result<()>;
 
 /// Writes files that belong together, all of them or none.
@@ -84,13 +84,13 @@ fn keep(files: Files) -> Result<(), Failure> {
         .map_err(|(path, error)| Failure::writing(&path, &error))
 }
 
-/// Refuses to write over a file that is read.
-pub fn refuse_same(input: &Path, output: &Path) -> Result<(), Failure> {
-    refuse_inputs([input], [output], "the input")
+/// Rejects to write over a file that is read.
+pub fn reject_same(input: &Path, output: &Path) -> Result<(), Failure> {
+    reject_inputs([input], [output], "the input")
 }
 
-/// Refuses to write over files that are read; `role` says what they are.
-pub fn refuse_inputs<'i>(
+/// Rejects to write over files that are read; `role` says what they are.
+pub fn reject_inputs<'i>(
     inputs: impl IntoIterator<Item = &'i Path>,
     outputs: impl IntoIterator<Item = impl AsRef<Path>>,
     role: &str,

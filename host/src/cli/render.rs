@@ -1,18 +1,18 @@
 //! `gridel render`: a picture of a scene.
 
-use super::arguments::Aim;
+use super::arguments::TargetPoint;
 use super::arguments::{self, PictureOptions, SceneOptions, TraceOptions};
 use super::failure::Failure;
 use super::input::is_standard;
 use super::output::{
-    Content, Warned, json, print_about, prove, refuse_same, unsupported, write_files,
+    Content, Warned, check_writable, json, print_about, reject_same, unsupported, write_files,
 };
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Counters, Scene, Settings, Structure};
 use gridel_host::output::place;
-use gridel_host::picture::{Making, PictureFormat};
+use gridel_host::picture::{PictureFormat, RenderMetadata};
 use gridel_host::render::{Job, Picture, render};
 use gridel_host::report::HeatMap;
 use gridel_host::resolution::Unresolved;
@@ -74,13 +74,13 @@ pub struct Arguments {
     scene_options: SceneOptions,
 
     #[command(flatten)]
-    aim: Aim,
+    target_point: TargetPoint,
 }
 
 /// Pixels that are held at once.
 const MOST_PIXELS: usize = 1 << 26;
 
-/// What was rendered.
+/// The report of `render`.
 #[derive(Serialize)]
 struct Rendered {
     picture: String,
@@ -128,7 +128,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let format = check_outputs(arguments)?;
     let source = Source::to_trace(
         &arguments.input,
-        &arguments.aim.aimed(&arguments.scene_options),
+        &arguments
+            .target_point
+            .with_target(&arguments.scene_options)
+            .sized(arguments.picture.size),
         &arguments.with,
         Structure::Wide,
     )?;
@@ -158,8 +161,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         )
     })?;
 
-    let making = Making::of(&scene, &job);
-    let write_picture: Content<'_> = &|out| format.write(out, &picture, &making);
+    let metadata = RenderMetadata::of(&scene, &job);
+    let write_picture: Content<'_> = &|out| format.write(out, &picture, &metadata);
     let heat_map = match &arguments.heat_map {
         Some(path) => {
             let map = HeatMap::of(&picture);
@@ -207,12 +210,12 @@ fn check_outputs(arguments: &Arguments) -> Result<PictureFormat, Failure> {
     let format = stream
         .or(PictureFormat::of(output))
         .ok_or_else(|| unsupported(output, "image", ".png, .ppm or .rgb565"))?;
-    refuse_same(&arguments.input, output)?;
+    reject_same(&arguments.input, output)?;
     if let Some(heat_map) = &arguments.heat_map {
         if PictureFormat::of(heat_map) != Some(PictureFormat::Png) {
             return Err(unsupported(heat_map, "heat map", ".png"));
         }
-        refuse_same(&arguments.input, heat_map)?;
+        reject_same(&arguments.input, heat_map)?;
         if place(heat_map) == place(output) {
             return Err(Failure::usage(
                 format!("picture and heat map are both {}", output.display()),
@@ -221,7 +224,7 @@ fn check_outputs(arguments: &Arguments) -> Result<PictureFormat, Failure> {
         }
     }
     for path in [output].into_iter().chain(&arguments.heat_map) {
-        prove(path)?;
+        check_writable(path)?;
     }
     Ok(format)
 }

@@ -18,7 +18,7 @@ pub struct CompletionArguments {
     shell: Shell,
 }
 
-/// Write the manual's pages, one for each verb, into a folder
+/// Write the manual's pages, one for each command, into a folder
 ///
 /// `man -l DIR/gridel-build.1` shows one of them.
 #[derive(Args)]
@@ -40,11 +40,11 @@ pub fn completions(arguments: &CompletionArguments, mut program: Command) -> Res
 pub fn man(arguments: &ManArguments, mut program: Command) -> Result<(), Failure> {
     let folder = &arguments.folder;
     program.build();
-    let verbs = program
+    let commands = program
         .get_subcommands()
-        .filter(|verb| verb.get_name() != "help");
+        .filter(|command| command.get_name() != "help");
     let pages: Vec<(String, String)> = std::iter::once(&program)
-        .chain(verbs)
+        .chain(commands)
         .map(|command| {
             let page = Man::new(command.clone());
             let mut text = Vec::new();

@@ -1,4 +1,4 @@
-//! What a verb works on: a scene blob, or a scene file that is compiled on the spot.
+//! The input of a command: a scene blob, or a scene file that is compiled on the spot.
 //! The first bytes distinguish them.
 
 use super::arguments::{SceneOptions, TraceOptions, check_quality};
@@ -52,7 +52,7 @@ impl Source {
     }
 
     /// Reads a blob, or compiles a scene file; the lattice's bits are those of `options`. A blob is
-    /// refused with options for scene files, of which `other` is one more that was given.
+    /// rejected with options for scene files, of which `other` is one more that was given.
     pub fn open(
         path: &Path,
         options: &SceneOptions,
@@ -138,22 +138,22 @@ impl Source {
         })
     }
 
-    /// Refuses a scene that does not fit a board's memory, with what would help.
+    /// Rejects a scene that does not fit a board's memory, with what would help.
     pub fn check_fits(&self, scene: &Scene<'_>, report: &MemoryReport) -> Result<(), Failure> {
         match report.fit() {
             Fit::Fits => Ok(()),
             Fit::Short(why) => {
                 let advice = report.advice(scene, || self.smaller());
-                Err(Failure::refused(why, advice))
+                Err(Failure::rejected(why, advice))
             }
-            Fit::Undecided(why) => Err(Failure::refused(
+            Fit::Undecided(why) => Err(Failure::rejected(
                 why,
                 "build the program and measure it, or name another board with `--target`",
             )),
         }
     }
 
-    /// What makes the blob of a scene file smaller: what is said where no byte is allowed.
+    /// Returns advice that makes the blob of a scene file smaller, from a build that allows no byte.
     fn smaller(&self) -> Option<String> {
         let (importing, compiling) = self.made_by.as_ref()?;
         let imported = self.input.scene(importing).ok()?;
@@ -219,7 +219,7 @@ impl Source {
         }
     }
 
-    /// Warns of primitives that were left out, for verbs that do not name them.
+    /// Warns of primitives that were left out, for commands that do not name them.
     pub fn warn_of_collapsed(&self) {
         let Some(report) = &self.report else {
             return;

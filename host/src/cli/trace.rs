@@ -3,10 +3,10 @@
 use super::arguments::{self, GeometryOptions, TraceOptions};
 use super::failure::Failure;
 use super::input::{is_standard, standard_input};
-use super::names::{NameTable, hits_by_name};
+use super::names::{NameTable, hits_by_name, most_hit};
 use super::output::{
-    Content, Warned, check_extension, json, print_about, prove, refuse_inputs, refuse_same,
-    write_files,
+    Content, Warned, check_extension, check_writable, json, print_about, reject_inputs,
+    reject_same, write_files,
 };
 use super::progress::Progress;
 use super::source::Source;
@@ -67,10 +67,10 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = arguments::threads())]
     threads: usize,
 
-    /// Write the names of objects, materials and lights, and the primitives of each object; with
-    /// --json, count the hits by name too
-    #[arg(long, value_name = "NAMES.json")]
-    names: Option<PathBuf>,
+    /// Count the hits by name: print the objects with the most, or with --json all. With a file, write the
+    /// names of objects, materials and lights there, and the primitives of each object, in place of the table
+    #[arg(long, value_name = "NAMES.json", num_args = 0..=1)]
+    names: Option<Option<PathBuf>>,
 
     /// Print counts and times as JSON; an extra run, before the timed ones, counts the tests
     #[arg(long)]
@@ -83,7 +83,7 @@ pub struct Arguments {
 /// Rays that a thread takes at once; they count as one step of progress.
 const CHUNK: usize = 4096;
 
-/// What was traced.
+/// The report of `trace`.
 #[derive(Serialize)]
 struct Traced {
     rays: usize,
@@ -97,9 +97,9 @@ struct Traced {
     accel: &'static str,
     any: bool,
     threads: usize,
-    /// Of each repeat, tracing alone.
+    /// Seconds of each repeat, tracing alone.
     seconds: Vec<f64>,
-    /// Of the fastest repeat.
+    /// Rate of the fastest repeat.
     rays_per_second: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     counters: Option<Tests>,
@@ -116,7 +116,7 @@ struct Rejected {
     reason: String,
 }
 
-/// What was tested for all rays.
+/// Tests of all rays.
 #[derive(Serialize)]
 struct Tests {
     planes: u64,
@@ -126,12 +126,20 @@ struct Tests {
 
 /// Traces rays and writes what they hit.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    refuse_same(&arguments.input, &arguments.output)?;
-    refuse_same(&arguments.rays, &arguments.output)?;
+    reject_same(&arguments.input, &arguments.output)?;
+    reject_same(&arguments.rays, &arguments.output)?;
     check_extension(&arguments.output, &["npy"], "hits")?;
-    prove(&arguments.output)?;
-    if let Some(path) = &arguments.names {
-        refuse_inputs(
+    check_writable(&arguments.output)?;
+    if let Some(None) = arguments.names
+        && arguments.any
+    {
+        return Err(Failure::usage(
+            "--names counts hits by object, and --any finds no objects",
+            "leave one of them out, or name a file: `--names names.json`",
+        ));
+    }
+    if let Some(Some(path)) = &arguments.names {
+        reject_inputs(
             [
                 arguments.input.as_path(),
                 arguments.rays.as_path(),
@@ -141,7 +149,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "a file of this command",
         )?;
         check_extension(path, &["json"], "names")?;
-        prove(path)?;
+        check_writable(path)?;
         if is_standard(path) {
             return Err(Failure::usage(
                 "names cannot go to standard output, where the report goes",
@@ -207,12 +215,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let names = source.names(&scene);
     let write_hits: Content<'_> = &|out| write_hits(out, &hits);
     match &arguments.names {
-        Some(path) => {
+        Some(Some(path)) => {
             let table = json(&NameTable::of(&scene, &names))?;
             let write_names: Content<'_> = &|out| out.write_all(table.as_bytes());
             write_files(&[(&arguments.output, write_hits), (path, write_names)])?;
         }
-        None => write_files(&[(&arguments.output, write_hits)])?,
+        Some(None) | None => write_files(&[(&arguments.output, write_hits)])?,
     }
 
     let places = (0..).step_by(CHUNK);
@@ -252,7 +260,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             value: &traced,
             warnings: &source.warnings,
         })?,
-        false => traced.text(&arguments.output),
+        false => traced.text(&arguments.output, matches!(arguments.names, Some(None))),
     };
     print_about(&arguments.output, report)
 }
@@ -275,7 +283,7 @@ fn read(path: &Path) -> Result<Vec<SceneRay>, Failure> {
 struct Pass<'p> {
     rays: &'p [SceneRay],
     pool: &'p ThreadPool,
-    /// Told of every chunk.
+    /// Counts the chunks that are done.
     progress: &'p Progress,
 }
 
@@ -303,7 +311,7 @@ impl Pass<'_> {
 }
 
 impl Traced {
-    fn text(&self, output: &Path) -> String {
+    fn text(&self, output: &Path, with_names: bool) -> String {
         let mut text = format!(
             "{}: {} rays, {} hits, {} misses, {}, {}\n",
             output.display(),
@@ -324,6 +332,9 @@ impl Traced {
                 "{seconds:.6} s, {} rays per second\n",
                 grouped((self.rays as f64 / seconds.max(f64::MIN_POSITIVE)).round())
             ));
+        }
+        if let Some(hits) = self.hits_by_name.as_ref().filter(|_| with_names) {
+            text.push_str(&format!("\n{}", most_hit(hits)));
         }
         text
     }

@@ -1,4 +1,4 @@
-//! `gridel verify`: whether a scene keeps every promise.
+//! `gridel verify`: tests the properties of a scene.
 
 use super::arguments::{self, GeometryOptions, check_quality, distinct, quoted};
 use super::failure::Failure;
@@ -88,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         0 => Ok(()),
         broken => Err(Failure::failed(
             format!(
-                "{}: answers broke a promise {} times",
+                "{}: answers broke a property {} times",
                 input.display(),
                 grouped(broken)
             ),
@@ -140,21 +140,21 @@ fn text(arguments: &Arguments, report: &Report) -> String {
         }
     }
     let mut table = Table::new([
-        ("promise", Align::Left),
+        ("property", Align::Left),
         ("checked", Align::Right),
         ("broken", Align::Right),
     ]);
-    for promise in &report.promises {
+    for property in &report.properties {
         table.row([
-            promise.text.to_owned(),
-            grouped(promise.checked),
-            grouped(promise.broken),
+            property.text.to_owned(),
+            grouped(property.checked),
+            grouped(property.broken),
         ]);
     }
     let _ = write!(text, "\n{table}");
-    for promise in report.promises.iter().filter(|p| p.broken > 0) {
-        let _ = writeln!(text, "\nBroken: {}", promise.text);
-        for example in &promise.examples {
+    for property in report.properties.iter().filter(|p| p.broken > 0) {
+        let _ = writeln!(text, "\nBroken: {}", property.text);
+        for example in &property.examples {
             let _ = writeln!(
                 text,
                 "  {} {}: {}\n    {}",

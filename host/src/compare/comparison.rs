@@ -1,6 +1,6 @@
 //! How contenders compare.
 
-use super::judge::Wrong;
+use super::judge::Mismatch;
 use crate::measure::rays::Works;
 use serde::Serialize;
 
@@ -19,12 +19,12 @@ pub struct Comparison {
     pub listed: usize,
     pub rows: Vec<Row>,
     /// Structures whose tables do not fit their budget.
-    pub refused: Vec<Refused>,
+    pub rejected: Vec<Rejected>,
 }
 
 /// A structure that was not built.
 #[derive(Clone, Debug, Serialize)]
-pub struct Refused {
+pub struct Rejected {
     pub structure: &'static str,
     /// With the bytes that it would take.
     pub why: String,
@@ -46,9 +46,9 @@ pub struct Row {
     pub structure: &'static str,
     /// `None` where there is no hierarchy.
     pub builder: Option<&'static str>,
-    /// Of the hierarchy's boxes, by the surface area heuristic.
+    /// Cost of the hierarchy's boxes by the surface area heuristic.
     pub sah_cost: Option<f64>,
-    /// Of building the structure, from primitives on the lattice to records.
+    /// Time to build the structure, from primitives on the lattice to records.
     pub setup_seconds: f64,
     /// The most memory at any time while the scene was compiled, beyond the scene itself.
     pub peak_bytes: Option<usize>,
@@ -59,8 +59,8 @@ pub struct Row {
     pub longest_list: usize,
     /// The traversal stack on a 32-bit board.
     pub stack_bytes: usize,
-    /// What the answers are worth: `None` where all are the list's.
-    pub wrong: Option<Wrong>,
+    /// The first difference from brute force; `None` if all answers are equal.
+    pub wrong: Option<Mismatch>,
     /// `None` where the answers are wrong.
     pub work: Option<Works>,
 }

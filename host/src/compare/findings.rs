@@ -4,12 +4,12 @@ use super::{Comparison, Row};
 use crate::table::grouped;
 use gridel_core::Structure;
 
-/// What is compared between rows.
+/// A figure that is compared between rows.
 struct Measure {
     name: &'static str,
     of: fn(&Row) -> Option<f64>,
     more_is_better: bool,
-    /// Whether it is a time, which needs several repeats.
+    /// `true` if it is a time, which needs several repeats.
     timed: bool,
 }
 
@@ -34,9 +34,9 @@ impl Measure {
 }
 
 const MEASURES: [Measure; 7] = [
-    Measure::timed("primary rays a second", primary_rate, true),
-    Measure::timed("shadow rays a second", shadow_rate, true),
-    Measure::timed("bounced rays a second", bounced_rate, true),
+    Measure::timed("primary rays per second", primary_rate, true),
+    Measure::timed("shadow rays per second", shadow_rate, true),
+    Measure::timed("bounced rays per second", bounced_rate, true),
     Measure::counted("tests per ray", tests),
     Measure::counted("bytes", |row| Some(row.own_bytes as f64)),
     Measure::timed("set-up", |row| Some(row.setup_seconds), false),
@@ -64,7 +64,7 @@ fn tests(row: &Row) -> Option<f64> {
     Some(all.planes + all.cells + all.objects)
 }
 
-/// What counts as equal: the noise of a shared machine.
+/// Ratio below which figures count as equal: the noise of a shared machine.
 const NOISE: f64 = 1.03;
 
 /// A factor with the digits that mean something.
@@ -82,8 +82,8 @@ fn times(factor: f64) -> String {
 /// which takes nothing to make and to hold, is passed over where it comes to that.
 pub fn findings(comparison: &Comparison) -> Vec<String> {
     let list = Structure::List.name();
-    let refused = comparison.refused.iter();
-    let mut findings: Vec<_> = refused.map(|refused| refused.why.clone()).collect();
+    let rejected = comparison.rejected.iter();
+    let mut findings: Vec<_> = rejected.map(|rejected| rejected.why.clone()).collect();
     for row in &comparison.rows {
         if row.wrong.is_some() {
             findings.push(format!("{} is wrong", row.name));

@@ -1,4 +1,4 @@
-//! Whether the contenders' answers are right: the list's, primitive and t to the last bit.
+//! Compares the contenders' answers with brute force: primitive, and t to the last bit.
 //!
 //! The list tests every primitive, which takes long where there are many. So it is asked about as
 //! many rays as fit a budget, spread evenly over the picture, and about every ray on which two
@@ -12,19 +12,19 @@ use std::collections::BTreeMap;
 
 /// How a contender is wrong.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Wrong {
+pub struct Mismatch {
     /// Rays with another answer than the list's.
     pub rays: usize,
     /// The first of them.
     pub first: String,
 }
 
-/// What was found.
+/// The result of the comparison.
 pub struct Verdict {
     /// Rays about which the list was asked.
     pub listed: usize,
     /// For each contender.
-    pub wrong: Vec<Option<Wrong>>,
+    pub wrong: Vec<Option<Mismatch>>,
 }
 
 /// Compares the contenders' answers with each other and with the list's.
@@ -70,7 +70,7 @@ pub fn judge<N: Number>(
             });
             let (&number, &truth) = differ.next()?;
             let (question, ray) = rays[number];
-            Some(Wrong {
+            Some(Mismatch {
                 rays: 1 + differ.count(),
                 first: format!(
                     "{question:?} of {ray:?}: {:x?} and not {truth:x?}",
@@ -122,7 +122,7 @@ mod tests {
                     center: DVec3::new(x, 0.0, 0.0),
                     radius,
                 }),
-                place: scene::Place::default(),
+                place: scene::SourceSpan::default(),
             });
         let wall = scene::Object {
             name: String::from("wall"),
@@ -131,7 +131,7 @@ mod tests {
                 min: DVec3::new(-2.0, -2.0, -3.0),
                 max: DVec3::new(2.0, 2.0, -2.5),
             }),
-            place: scene::Place::default(),
+            place: scene::SourceSpan::default(),
         };
         let scene = scene::Scene {
             materials: vec![scene::Material::default()],

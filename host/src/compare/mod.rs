@@ -14,10 +14,10 @@ mod options;
 
 pub use crate::measure::rays::{Work, Works};
 pub use charts::charts;
-pub use comparison::{Comparison, RayCounts, Refused, Row};
+pub use comparison::{Comparison, RayCounts, Rejected, Row};
 pub use findings::findings;
 pub use growth::{Growth, Step, growth, growth_steps};
-pub use judge::Wrong;
+pub use judge::Mismatch;
 pub use options::{CompareError, Options};
 
 use crate::compile::{self, Builder, CompileError, Compiled, compile};
@@ -28,17 +28,43 @@ use crate::render::OPAQUE;
 use crate::scene;
 use gridel_core::{Effects, Fixed, Format, Number, Scene, Settings, Structure};
 use options::Contender;
+use std::borrow::Cow;
 use std::time::Duration;
 
 /// Compares structures on a scene. Calls `progress` with a description of each step.
 ///
 /// # Errors
 /// If the scene cannot be compiled, or its picture casts too many rays.
+///
+/// ```
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// use gridel_core::Structure;
+/// use gridel_host::compare::{Options, compare};
+///
+/// let options = Options {
+///     structures: vec![Structure::List, Structure::DualSplit],
+///     size: [16, 12],
+///     repeats: 0,
+///     ..Options::default()
+/// };
+/// let comparison = compare(&imported.scene, &options, &|step| eprintln!("{step}"))?;
+/// assert_eq!(comparison.rays.primary, 16 * 12);
+/// assert!(comparison.rows.iter().all(|row| row.wrong.is_none()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn compare(
     scene: &scene::Scene,
     options: &Options<'_>,
     progress: &dyn Fn(&str),
 ) -> Result<Comparison, CompareError> {
+    let mut scene = Cow::Borrowed(scene);
+    if scene.camera.is_none() {
+        // A supplied camera shows the scene in a picture of this shape.
+        let render = &mut scene.to_mut().render;
+        [render.width, render.height] = options.size.map(u32::from);
+    }
+    let scene = &*scene;
     match options.format {
         Format::Fixed => compare_in::<Fixed>(scene, options, progress),
         Format::F32 => compare_in::<f32>(scene, options, progress),
@@ -64,12 +90,12 @@ fn compare_in<N: Number>(
     progress("casting the picture's rays");
     let picture_rays = PictureRays::<N>::of(&flagged.compiled.blob.scene()?, settings)?;
     let mut built = Vec::new();
-    let mut refused = Vec::new();
+    let mut rejected = Vec::new();
     for contender in options.contenders() {
         progress(&format!("building {}", contender.0.name()));
         match build(contender) {
             Err(CompareError::Compile(error @ CompileError::OverBudget { .. })) => {
-                refused.push(Refused {
+                rejected.push(Rejected {
                     structure: contender.0.name(),
                     why: error.to_string(),
                 });
@@ -133,7 +159,7 @@ fn compare_in<N: Number>(
         },
         listed: verdict.listed,
         rows,
-        refused,
+        rejected,
     })
 }
 
@@ -188,7 +214,7 @@ impl Built {
         &self,
         scene: &Scene<'_>,
         list: &Self,
-        wrong: Option<Wrong>,
+        wrong: Option<Mismatch>,
         work: Option<Works>,
         options: &Options<'_>,
     ) -> Row {

@@ -5,7 +5,7 @@ use crate::picture_rays::PictureRaysError;
 use gridel_core::{BlobError, Format, Structure};
 use peak_alloc::PeakAlloc;
 
-/// What to compare, and how.
+/// Options of a comparison.
 #[derive(Clone, Debug)]
 pub struct Options<'o> {
     pub structures: Vec<Structure>,
@@ -14,7 +14,7 @@ pub struct Options<'o> {
     /// How everything else is compiled.
     pub compiling: compile::Options,
     pub format: Format,
-    /// Width and height of the picture whose rays are traced; one sample a pixel.
+    /// Width and height of the picture whose rays are traced; one sample per pixel.
     pub size: [u16; 2],
     /// How often everything is timed; 0 for counts alone.
     pub repeats: usize,

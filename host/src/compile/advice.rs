@@ -1,4 +1,4 @@
-//! What to change where a blob is larger than it may be.
+//! Advice for blobs that are larger than allowed.
 
 use super::layout::Layout;
 use super::options::Options;
@@ -8,10 +8,10 @@ use crate::blob::Blob;
 use crate::table::grouped;
 use gridel_core::{Prevalidated, Structure};
 
-/// What a structure takes of a blob.
+/// The bytes of a structure in a blob.
 pub struct Size {
     structure: Structure,
-    /// Of its own sections.
+    /// Bytes of its own sections.
     bytes: usize,
     uses_leaves: bool,
 }
@@ -27,7 +27,7 @@ impl Size {
     }
 }
 
-/// What makes a blob smaller, by its own figures and the bytes of the leaves that hierarchies share.
+/// Returns advice that makes a blob smaller, from its figures and the bytes of the leaves that hierarchies share.
 /// `bytes_with` compiles the scene with other options, and returns the size of the blob.
 pub fn advice(
     options: &Options,

@@ -1,4 +1,4 @@
-//! What structures are built from.
+//! The input of structures' builders.
 
 use super::candidates::target::Targets;
 use super::hierarchy::{Node, Primitive};
@@ -12,7 +12,7 @@ use crate::scene::Scene;
 use crate::shape::Lattice;
 use gridel_core::format::record::UnitBox;
 
-/// What structures are built from.
+/// The input of structures' builders.
 #[derive(Clone, Copy)]
 pub struct BuildContext<'g> {
     pub scene: &'g Scene,

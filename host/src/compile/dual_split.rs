@@ -10,7 +10,7 @@ use gridel_core::format::NodeWord;
 use gridel_core::format::record::{DualNode, UnitBox, plane_word};
 use rayon::prelude::*;
 
-/// What steps cost, in instructions of a Cortex-M4F.
+/// Costs of steps, in instructions of a Cortex-M4F.
 const VISIT: f64 = 18.0;
 const CARVE: f64 = 14.0;
 const SPLIT: f64 = 26.0;
@@ -151,7 +151,7 @@ fn choices_of_split(
     leaf.into_iter().chain(splits)
 }
 
-/// What carves leave of a region.
+/// Returns the rest of a region after carves.
 fn carved(region: &UnitBox, bounds: &UnitBox, carves: &[usize]) -> UnitBox {
     let mut left = *region;
     for &axis in carves {
@@ -161,7 +161,7 @@ fn carved(region: &UnitBox, bounds: &UnitBox, carves: &[usize]) -> UnitBox {
     left
 }
 
-/// What a split leaves of a region to the lower and the upper child.
+/// Returns the parts of a region that a split leaves to the lower and the upper child.
 fn split(region: &UnitBox, boxes: &[UnitBox; 2], axis: usize) -> [UnitBox; 2] {
     let [mut below, mut above] = [*region; 2];
     below.0[axis][1] = below.0[axis][1].min(boxes[0].0[axis][1]);

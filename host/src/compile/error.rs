@@ -65,7 +65,7 @@ pub enum CompileError {
     #[diagnostic(help("{remedy}"))]
     OverBudget {
         structure: &'static str,
-        /// Such as ` with 4 gridels a side` or ` with 8 by 8 by 2 cells`.
+        /// Such as ` with 4 gridels per side` or ` with 8 by 8 by 2 cells`.
         size: String,
         needed: u64,
         /// `at least ` where the whole was not worth counting.

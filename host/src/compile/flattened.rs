@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 type Point = [i32; 3];
 
-/// Whether a closed mesh with an inside lies in one plane once it is snapped. `vertices` are the
+/// Returns whether a closed mesh with an inside lies in one plane once it is snapped. `vertices` are the
 /// given and the snapped ones.
 ///
 /// A ray from within such a mesh meets nothing.
@@ -40,7 +40,7 @@ fn normal([a, b, c]: [Point; 3]) -> [i128; 3] {
     })
 }
 
-/// Whether an even number of triangles meet at every edge.
+/// Returns whether an even number of triangles meet at every edge.
 fn is_closed(triangles: impl Iterator<Item = [Point; 3]>) -> bool {
     let mut odd: HashMap<[Point; 2], bool> = HashMap::new();
     for [a, b, c] in triangles {
@@ -54,7 +54,7 @@ fn is_closed(triangles: impl Iterator<Item = [Point; 3]>) -> bool {
     odd.into_values().all(|is_odd| !is_odd)
 }
 
-/// Whether the given vertices of triangles lie in no plane with a normal, but for what an `f64`
+/// Returns whether the given vertices of triangles lie in no plane with a normal, but for what an `f64`
 /// rounds.
 fn has_thickness(vertices: &[DVec3], triangles: &[[u32; 3]], normal: DVec3) -> bool {
     /// Relative to the largest coordinate.
@@ -70,7 +70,7 @@ fn has_thickness(vertices: &[DVec3], triangles: &[[u32; 3]], normal: DVec3) -> b
     high - low > ROUNDED
 }
 
-/// Whether the corners lie on a line, exactly.
+/// Returns whether the corners lie on a line, exactly.
 pub fn is_degenerate([a, b, c]: [[i32; 3]; 3]) -> bool {
     let edge = |to: [i32; 3]| [0, 1, 2].map(|k| i64::from(to[k]) - i64::from(a[k]));
     let (p, q) = (edge(b), edge(c));

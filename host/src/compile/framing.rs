@@ -1,28 +1,52 @@
 //! The camera and the background of a scene that states none.
 
-use super::primitives::extent;
+use super::primitives::in_extent;
 use crate::scene::{Camera, Color, Scene};
 use glam::DVec3;
 
-/// What rays see that meet nothing, where a scene states neither a camera nor a background: a light
-/// grey, against which what is white is seen by its shades, and what is black by its outline.
+/// The background of a scene that states neither a camera nor a background: a light
+/// gray, against which what is white is seen by its shades, and what is black by its outline.
 pub const BACKGROUND: Color = [0.9, 0.92, 0.95];
 
-/// The part of the picture that the projected box of the scene takes, across or along.
+/// The part of the picture's width or height that the scene takes.
 const SHARE: f64 = 0.8;
 
 /// The full vertical field of view.
 const FOV_DEGREES: f64 = 40.0;
 
-/// A camera that looks at a scene from its front, so that the projected box of the scene takes 80 % of
-/// the picture's width or height. The front is that of the scene's [up](Scene::up): it is seen along
-/// -z where y is up, and along +y where z is up. What is flat, and would be seen from its edge, is seen
-/// from above or from its right.
+/// The least distance of the eye from the scene, as a part of the distance at which the scene would fit if it were
+/// flat. Only spikes towards the eye, narrower than the view, are this near.
+const NEAREST: f64 = 1.0 / 16.0;
+
+/// Returns a camera that looks at a scene from its front. The scene takes 80 % of the picture's width or height,
+/// and no more of the other; the picture's shape is that of `scene.render`.
+///
+/// The front is that of the scene's [up](Scene::up): the camera looks along -z where y is up, and along +y where z
+/// is up. A flat scene that would be seen from its edge is seen from above or from its right. Unbounded shapes do
+/// not count beside bounded ones.
+///
+/// ```
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// use gridel_host::compile::framing;
+///
+/// let camera = framing(&imported.scene, Some(30.0));
+/// assert_eq!(camera.target, glam::DVec3::ZERO);
+/// assert!(camera.eye.x == 0.0 && camera.eye.y == 0.0 && camera.eye.z > 1.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn framing(scene: &Scene, fov_degrees: Option<f64>) -> Camera {
     let fov_degrees = fov_degrees.unwrap_or(FOV_DEGREES);
-    let (lowest, highest) = extent(scene);
-    let target = lowest.midpoint(highest);
-    let half = highest - target;
+    let shapes = in_extent(scene);
+    let support = |direction: DVec3| {
+        let supports = shapes.clone().map(|shape| shape.support(direction));
+        let largest = supports.fold(f64::NEG_INFINITY, f64::max);
+        if largest.is_finite() { largest } else { 0.0 }
+    };
+    let highest = DVec3::from_array(DVec3::AXES.map(support));
+    let lowest = -DVec3::from_array(DVec3::AXES.map(|axis| support(-axis)));
+    let middle = lowest.midpoint(highest);
+    let half = highest - middle;
     let up = scene.up.vector();
     let right = DVec3::X;
     let forward = up.cross(right);
@@ -35,15 +59,25 @@ pub fn framing(scene: &Scene, fov_degrees: Option<f64>) -> Camera {
     };
     let right = forward.cross(up);
     let [across, along, deep] = [right, up, forward].map(extent_along);
+
     let aspect = f64::from(scene.render.width) / f64::from(scene.render.height);
-    let reach = SHARE * libm::tan(fov_degrees.to_radians() / 2.0);
-    let wide = (across / aspect).max(along) / reach;
-    let distance = deep
-        + match wide {
-            // A point.
-            0.0 => target.abs().max_element().max(1.0),
-            wide => wide,
-        };
+    let slope = SHARE * libm::tan(fov_degrees.to_radians() / 2.0);
+    let from_middle = |direction: DVec3| support(direction) - middle.dot(direction);
+    // The eye lies where two planes of this slope meet that touch the scene from opposite sides: its distance from
+    // the middle of the scene, and how far aside it is.
+    let touching = |axis: DVec3, slope: f64| {
+        let [one, other] = [axis, -axis].map(|side| from_middle(side - slope * forward));
+        ((one + other) / (2.0 * slope), (one - other) / 2.0)
+    };
+    let (for_width, aside) = touching(right, slope * aspect);
+    let (for_height, above) = touching(up, slope);
+    let least = match (across / aspect).max(along) / slope {
+        // A point, or a line away from the eye.
+        0.0 => middle.abs().max_element().max(1.0),
+        flat => NEAREST * flat,
+    };
+    let distance = for_width.max(for_height).max(deep + least);
+    let target = middle + aside * right + above * up;
     Camera {
         eye: target - distance * forward,
         target,
@@ -55,7 +89,8 @@ pub fn framing(scene: &Scene, fov_degrees: Option<f64>) -> Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Material, Object, Place, Shape, Up};
+    use crate::compile::primitives::extent;
+    use crate::scene::{Material, Object, Shape, SourceSpan, Up};
     use crate::shape::Cuboid;
 
     fn scene(min: [f64; 3], max: [f64; 3], up: Up) -> Scene {
@@ -64,7 +99,7 @@ mod tests {
             name: String::from("box"),
             material: 0,
             shape: Shape::Box(Cuboid { min, max }),
-            place: Place::default(),
+            place: SourceSpan::default(),
         };
         Scene {
             materials: vec![Material::default()],
@@ -142,6 +177,39 @@ mod tests {
     }
 
     #[test]
+    fn eye_stays_before_spikes_that_are_narrower_than_the_view() {
+        let mut needle = scene([0.0; 3], [1.0; 3], Up::Y);
+        let cone = crate::shape::Cone {
+            base: DVec3::ZERO,
+            base_radius: 1.0,
+            apex: DVec3::new(0.0, 0.0, 100.0),
+            apex_radius: 0.0,
+        };
+        needle.objects[0].shape = Shape::Cone(cone);
+        let camera = framing(&needle, None);
+        let flat = 1.0 / (0.8 * 20_f64.to_radians().tan());
+        let expected = 100.0 + flat / 16.0;
+        assert!((camera.eye.z - expected).abs() < 1e-9, "{}", camera.eye);
+        assert!(looks(&camera, DVec3::NEG_Z));
+    }
+
+    #[test]
+    fn vertices_of_no_triangle_are_not_framed() {
+        let mut mesh = scene([0.0; 3], [1.0; 3], Up::Y);
+        let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let mut frame = |vertices: &[DVec3]| {
+            mesh.objects[0].shape = Shape::Mesh {
+                vertices: vertices.to_vec(),
+                triangles: vec![[0, 1, 2]],
+            };
+            framing(&mesh, None)
+        };
+        let expected = frame(&triangle);
+        let with_another = [triangle.as_slice(), &[DVec3::splat(100.0)]].concat();
+        assert_eq!(frame(&with_another), expected);
+    }
+
+    #[test]
     fn y_up_is_seen_along_minus_z_and_z_up_along_y() {
         for (up, forward) in [(Up::Y, DVec3::NEG_Z), (Up::Z, DVec3::Y)] {
             let camera = framing(&scene([0.0; 3], [1.0, 2.0, 3.0], up), None);
@@ -152,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_flat_is_not_seen_from_its_edge() {
+    fn flat_scenes_are_not_seen_from_their_edge() {
         let floor = scene([0.0, 1.0, 0.0], [4.0, 1.0, 4.0], Up::Y);
         let camera = framing(&floor, None);
         assert!(looks(&camera, DVec3::NEG_Y));

@@ -29,7 +29,7 @@ impl Primitive {
         test_cost(self.kind)
     }
 
-    /// Twice the box's centre.
+    /// Twice the box's center.
     pub fn centroid(&self, axis: usize) -> i32 {
         let [low, high] = self.bounds.0[axis];
         i32::from(low) + i32::from(high)

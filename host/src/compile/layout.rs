@@ -1,4 +1,4 @@
-//! What one structure adds to a blob.
+//! The sections that one structure adds to a blob.
 
 use super::candidates::lists::Figures;
 use super::cells::Cells;
@@ -6,19 +6,19 @@ use super::pairs::Flat;
 use super::section::Section;
 use gridel_core::Structure;
 
-/// What one structure adds to a blob.
+/// The sections that one structure adds to a blob.
 #[derive(Clone, Debug)]
 pub struct Layout {
     pub structure: Structure,
     /// The sections that are this structure's alone.
     pub sections: Vec<Section>,
-    /// Whether it leads to the leaves that hierarchies share.
+    /// `true` if it leads to the leaves that hierarchies share.
     pub uses_leaves: bool,
     /// Entries that a walk's stack must hold.
     pub stack_depth: usize,
     /// Primitives of the longest list that it leads to.
     pub longest_list: usize,
-    /// What its lists of candidates came to, if it has such.
+    /// Figures of its lists of candidates, if it has any.
     pub table: Option<Figures>,
 }
 

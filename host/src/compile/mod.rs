@@ -62,7 +62,7 @@ pub struct Compiled {
     pub report: Report,
 }
 
-/// What compiling did.
+/// The compiler's report.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Report {
     /// Scene units of a lattice step.
@@ -96,7 +96,7 @@ pub struct Report {
     pub setup: Duration,
     /// Structures with tables of candidate lists.
     pub tables: Vec<TableStats>,
-    /// What became of the names; `None` where they are not asked for, or there are none.
+    /// The names in the blob; `None` if they are not asked for, or there are none.
     pub names: Option<KeptNames>,
 }
 
@@ -110,7 +110,7 @@ pub struct TableStats {
 
 /// Compiles a scene.
 ///
-/// The same scene and options give the same bytes on every machine and with any number of threads.
+/// A scene and its options give the same bytes on every machine and with any number of threads.
 ///
 /// # Errors
 /// If the scene does not fit a lattice, a count does not fit the format, or the blob is larger than
@@ -133,6 +133,24 @@ pub fn compile(scene: &Scene, options: &Options) -> Result<Compiled, CompileErro
 ///
 /// # Errors
 /// As [`compile`].
+///
+/// ```
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// use gridel_core::Structure;
+/// use gridel_host::compile::{Options, compile_with_progress};
+///
+/// let options = Options {
+///     structures: vec![Structure::CylinderCube],
+///     gridels: Some(4),
+///     ..Options::default()
+/// };
+/// let compiled = compile_with_progress(&imported.scene, &options, &|structure, done, of| {
+///     eprintln!("{}: {done} of {of} cells", structure.name());
+/// })?;
+/// assert!(compiled.blob.scene()?.holds(Structure::CylinderCube));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn compile_with_progress(
     scene: &Scene,
     options: &Options,
@@ -143,7 +161,9 @@ pub fn compile_with_progress(
     let (lattice, snapped) = snap(scene, extent, options.lattice_bits)?;
     let structures = held(&options.structures);
     let shading_data = shading_data::ShadingData::of(scene, &lattice, extent)?;
-    let started = Instant::now();
+    // WebAssembly without a system has no clock, and asking for the time would panic.
+    let has_clock = !cfg!(all(target_family = "wasm", target_os = "unknown"));
+    let started = has_clock.then(Instant::now);
     let Hierarchies {
         root,
         order,
@@ -173,7 +193,7 @@ pub fn compile_with_progress(
         .iter()
         .map(|&structure| structures::lay_out(structure, &context))
         .collect::<Result<Vec<_>, _>>()?;
-    let setup = started.elapsed();
+    let setup = started.map_or(Duration::ZERO, |started| started.elapsed());
     let tables = layouts
         .iter()
         .filter_map(|layout| {
@@ -278,9 +298,9 @@ fn held(asked: &[Structure]) -> Vec<Structure> {
     structures
 }
 
-/// What structures are laid out from.
+/// The input of the layout of structures.
 struct Hierarchies {
-    /// What all share that need one.
+    /// Shared by all structures that need one.
     root: Option<Node>,
     /// Primitives in the order of its leaves.
     order: Vec<Primitive>,
@@ -346,7 +366,7 @@ impl Hierarchies {
     }
 }
 
-/// Counts what the cylinder cube of a scene takes, with a number of gridels a side (1 to 64). Builds
+/// Counts what the cylinder cube of a scene takes, with a number of gridels per side (1 to 64). Builds
 /// nothing, so it takes time and no memory.
 ///
 /// # Errors

@@ -36,7 +36,7 @@ pub struct Names {
     pub shortened: usize,
 }
 
-/// What became of the names of a scene.
+/// The names of a scene in its blob.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct KeptNames {
     /// Names in the blob.

@@ -8,7 +8,7 @@ use gridel_core::format::Leaf;
 /// Most primitives of a leaf.
 pub const LARGEST_LEAF: usize = Leaf::MAX_COUNT as usize;
 
-/// What to put into a blob.
+/// Options of the compiler.
 ///
 /// ```
 /// use gridel_core::Structure;
@@ -37,9 +37,9 @@ pub struct Options {
     pub builder: Builder,
     /// Directions of slabs: 3, 7 or 13.
     pub slab_directions: usize,
-    /// Divisions of the grid along each axis, 1 to 1024; four cells a primitive without.
+    /// Divisions of the grid along each axis, 1 to 1024; four cells per primitive without.
     pub grid: Option<[u32; 3]>,
-    /// Refuse a blob that would be larger. Names that make it larger are left out.
+    /// Reject a blob that would be larger. Names that make it larger are left out.
     pub max_bytes: Option<u64>,
     /// Whether the blob has the names of objects, materials and lights.
     pub names: bool,

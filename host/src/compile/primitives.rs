@@ -36,7 +36,7 @@ pub struct Primitives {
     pub total: u32,
     /// For each object, its first primitive.
     pub object_first: Vec<u32>,
-    /// What the lattice leaves nothing of.
+    /// Primitives that collapse on the lattice.
     pub collapsed: LeftOut,
     /// Triangles without area.
     pub without_area: LeftOut,
@@ -88,13 +88,17 @@ impl Serialize for LeftOut {
     }
 }
 
+/// Returns the shapes that make up the extent of a scene: the bounded ones, or all if none is bounded.
+pub fn in_extent(scene: &Scene) -> impl Iterator<Item = &Shape> + Clone {
+    let shapes = scene.objects.iter().map(|object| &object.shape);
+    let none_bounded = !shapes.clone().any(Shape::is_bounded);
+    shapes.filter(move |shape| none_bounded || shape.is_bounded())
+}
+
 /// The box of everything in a scene that has one, or else of points of what has none; a point for an empty one.
 pub fn extent(scene: &Scene) -> (DVec3, DVec3) {
     let nowhere = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    let shapes = || scene.objects.iter().map(|object| &object.shape);
-    let none_bounded = !shapes().any(Shape::is_bounded);
-    let counted = shapes().filter(|shape| none_bounded || shape.is_bounded());
-    let [lowest, highest] = counted
+    let [lowest, highest] = in_extent(scene)
         .map(Shape::bounds)
         .fold(nowhere, |[low, high], [lowest, highest]| {
             [low.min(lowest), high.max(highest)]
@@ -119,7 +123,7 @@ impl Primitives {
         Ok(primitives)
     }
 
-    /// Cuts the neighbours of slivers at the slivers' corners.
+    /// Cuts the neighbors of slivers at the slivers' corners.
     fn cut(&mut self, vertex_numbers: &mut HashMap<[i32; 3], u32>) -> Result<(), CompileError> {
         let cuts = cuts::Cuts::around(&self.slivers);
         if cuts.is_empty() {

@@ -7,7 +7,7 @@ use gridel_core::format::record::{Sphere16, Sphere24, UnitBox, Vertex16};
 use gridel_core::geometry::Geometry;
 use gridel_core::{Kind, geometry};
 
-/// What became of a shape that was added.
+/// The result of adding a shape.
 pub struct Added {
     pub kind: Kind,
     /// How far apart the given and the snapped surface are at most, in 1/256 unit.

@@ -25,7 +25,7 @@ pub struct ShadingData {
     pub effects: Effects,
     /// The names of the effects, and of what calls for each.
     pub called_for: Vec<(String, Vec<String>)>,
-    /// What the scene lacks and was supplied.
+    /// Parts that the scene lacks and the compiler supplied.
     pub supplied: Vec<String>,
 }
 

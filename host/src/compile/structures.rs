@@ -1,4 +1,4 @@
-//! What each structure adds to a blob: the one place on the host that names them all.
+//! The sections that each structure adds to a blob: the one place on the host that names all structures.
 
 use super::candidates::budget::{self, Budget};
 use super::candidates::cylinder_cube::{self, Cylinders, Hulls};
@@ -129,7 +129,7 @@ fn budget<'t>(
     }
 }
 
-/// Whether a structure is laid out over the hierarchy; the others leave primitives as they are.
+/// Returns whether a structure is laid out over the hierarchy; the others leave primitives as they are.
 pub fn takes_hierarchy(structure: Structure) -> bool {
     !matches!(
         structure,

@@ -1,15 +1,15 @@
-//! The story of a ray or of a pixel: what was visited, what was met, what it brought.
+//! Explains a ray or a pixel: the nodes that are visited, the hits, and the light that they bring.
 //!
 //! The renderer reports it through [`Observer::event`]; this module only puts it in order: `walk.rs`
-//! keeps a query's way through a structure, `story.rs` the rays of a pixel and what they add up to,
+//! keeps a query's way through a structure, `explanation.rs` the rays of a pixel and what they add up to,
 //! `text.rs` writes it down for people.
 
-mod story;
+mod explanation;
 mod text;
 mod walk;
 
 pub use crate::compile::Names;
-pub use story::{Fall, Hit, Lighting, Ray, Sample, Story, Weighted};
+pub use explanation::{Explanation, Hit, LightOutcome, Lighting, Ray, Sample, Weighted};
 pub use text::Shown;
 pub use walk::{Candidate, Culled, Plane, Side, Step, Tested, Verdict, Walk};
 
@@ -23,7 +23,7 @@ use gridel_core::{
     Workspace,
 };
 
-/// What to explain.
+/// The subject of an explanation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Subject {
     /// A pixel of the picture that the settings ask for, from its upper left corner.
@@ -32,7 +32,7 @@ pub enum Subject {
     Ray(SceneRay),
 }
 
-/// Why there is no story.
+/// Why there is no explanation.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ExplainError {
     #[error(transparent)]
@@ -44,7 +44,7 @@ pub enum ExplainError {
     Ray(#[from] Rejection),
 }
 
-/// Tells the story of a pixel or of a ray.
+/// Explains a pixel or a ray.
 ///
 /// The code that is watched is that of [`render`](crate::render), compiled for effects with glass or
 /// without: what else it is compiled for changes neither bits nor ways.
@@ -66,8 +66,8 @@ pub enum ExplainError {
 ///     ..Settings::of(&scene)
 /// };
 /// let middle = Subject::Pixel([settings.width / 2, settings.height / 2]);
-/// let story = explain(&scene, Format::F32, Structure::DualSplit, settings, middle)?;
-/// let hit = story.samples[0].rays[0].hit.as_ref().ok_or("no hit")?;
+/// let explanation = explain(&scene, Format::F32, Structure::DualSplit, settings, middle)?;
+/// let hit = explanation.samples[0].rays[0].hit.as_ref().ok_or("no hit")?;
 /// assert_eq!(hit.object, 0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -77,23 +77,23 @@ pub fn explain(
     structure: Structure,
     settings: Settings,
     subject: Subject,
-) -> Result<Story, ExplainError> {
+) -> Result<Explanation, ExplainError> {
     let scene = &chosen(scene, structure)?;
     let (linear, recorder) = match format {
         Format::Fixed => with_format::<Fixed>(scene, settings, subject),
         Format::F32 => with_format::<f32>(scene, settings, subject),
         Format::F64 => with_format::<f64>(scene, settings, subject),
     }?;
-    let mut story = Story::of(scene, format, &subject, &recorder.events);
+    let mut explanation = Explanation::of(scene, format, &subject, &recorder.events);
     if let Subject::Pixel(pixel) = subject {
-        story.pixel = Some(pixel);
-        story.picture = Some([settings.width, settings.height]);
+        explanation.pixel = Some(pixel);
+        explanation.picture = Some([settings.width, settings.height]);
     }
-    story.format = format.name();
-    story.accel = structure.name();
-    story.linear = linear;
-    story.srgb = Rgb888::encode(linear, None).0;
-    Ok(story)
+    explanation.format = format.name();
+    explanation.accel = structure.name();
+    explanation.linear = linear;
+    explanation.srgb = Rgb888::encode(linear, None).0;
+    Ok(explanation)
 }
 
 type Recording = Result<([u16; 3], Recorder), ExplainError>;

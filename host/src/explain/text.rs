@@ -1,14 +1,14 @@
-//! A story for people.
+//! Explanations as text for people.
 
-use super::story::{Fall, Hit, Lighting, Ray, Sample, Story};
+use super::explanation::{Explanation, Hit, LightOutcome, Lighting, Ray, Sample};
 use super::walk::{Culled, Plane, Side, Step, Tested, Verdict, Walk};
 use crate::compile::Names;
 use crate::table::{counted, printable, significant};
 use std::fmt::{self, Display, Formatter};
 
-/// A story as text.
+/// An explanation as text.
 pub struct Shown<'s> {
-    pub story: &'s Story,
+    pub explanation: &'s Explanation,
     pub names: &'s Names,
     /// Whether the ways of all rays through the structure are shown, and not only the first one's.
     pub all_walks: bool,
@@ -16,7 +16,7 @@ pub struct Shown<'s> {
 
 impl Display for Shown<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Story {
+        let Explanation {
             pixel,
             picture,
             format,
@@ -24,7 +24,7 @@ impl Display for Shown<'_> {
             samples,
             linear,
             srgb,
-        } = self.story;
+        } = self.explanation;
         let [r, g, b] = srgb;
         match pixel.zip(*picture) {
             Some(([x, y], [width, height])) => write!(f, "Pixel {x},{y} of {width} x {height}")?,
@@ -96,8 +96,18 @@ impl Shown<'_> {
     /// Returns the sentences that most likely answer the question.
     fn sentences(&self) -> Vec<String> {
         let mut sentences = Vec::new();
-        let rays = || self.story.samples.iter().flat_map(|sample| &sample.rays);
-        let primary = || self.story.samples.iter().filter_map(|s| s.rays.first());
+        let rays = || {
+            self.explanation
+                .samples
+                .iter()
+                .flat_map(|sample| &sample.rays)
+        };
+        let primary = || {
+            self.explanation
+                .samples
+                .iter()
+                .filter_map(|s| s.rays.first())
+        };
         let background = primary().filter(|ray| ray.background).count();
         if background > 0 {
             let all = primary().count();
@@ -108,10 +118,13 @@ impl Shown<'_> {
             });
         }
         if let Some(unlit) = primary().find(|ray| {
-            let dark = ray.lights.iter().all(|light| light.fall != Fall::Lit);
+            let dark = ray
+                .lights
+                .iter()
+                .all(|light| light.outcome != LightOutcome::Lit);
             ray.hit.is_some() && !ray.lights.is_empty() && dark
         }) {
-            let reasons: Vec<_> = unlit.lights.iter().map(|l| self.fall(l)).collect();
+            let reasons: Vec<_> = unlit.lights.iter().map(|l| self.outcome(l)).collect();
             sentences.push(format!(
                 "No light reaches the first hit: {}.",
                 reasons.join("; ")
@@ -125,7 +138,7 @@ impl Shown<'_> {
             .map(|ray| peak(ray.weight))
             .collect();
         if !too_deep.is_empty() {
-            let lost: f64 = too_deep.iter().sum::<f64>() / self.story.samples.len() as f64;
+            let lost: f64 = too_deep.iter().sum::<f64>() / self.explanation.samples.len() as f64;
             sentences.push(format!(
                 "{} stopped at the ray depth; black replaces up to {} of white. Raise it with \
                  `--depth`.",
@@ -139,7 +152,7 @@ impl Shown<'_> {
             .filter(|&weight| weight > 0.0)
             .collect();
         if !dropped.is_empty() {
-            let lost: f64 = dropped.iter().sum::<f64>() / self.story.samples.len() as f64;
+            let lost: f64 = dropped.iter().sum::<f64>() / self.explanation.samples.len() as f64;
             sentences.push(format!(
                 "{} not traced, because the weight is below the scene's cutoff: {} of white in all.",
                 counted_were(dropped.len(), "ray"),
@@ -208,7 +221,7 @@ impl Shown<'_> {
             )?;
         }
         for lighting in &ray.lights {
-            writeln!(f, "{indent}  {}", self.fall(lighting))?;
+            writeln!(f, "{indent}  {}", self.outcome(lighting))?;
         }
         if let Some(reflected) = ray.reflected {
             writeln!(
@@ -235,7 +248,7 @@ impl Shown<'_> {
     }
 
     /// Returns what happens to a light, as a clause.
-    fn fall(&self, lighting: &Lighting) -> String {
+    fn outcome(&self, lighting: &Lighting) -> String {
         let light = self.light(lighting.light);
         let cosine = significant(lighting.cosine);
         let glass = match lighting.filtered.last() {
@@ -246,13 +259,13 @@ impl Shown<'_> {
             ),
             None => String::new(),
         };
-        match lighting.fall {
-            Fall::Lit => format!(
+        match lighting.outcome {
+            LightOutcome::Lit => format!(
                 "{light} reaches it with cosine {cosine}{glass}: {}",
                 color(lighting.radiance)
             ),
-            Fall::Behind => format!("{light} is behind the surface (cosine {cosine})"),
-            Fall::Blocked {
+            LightOutcome::Behind => format!("{light} is behind the surface (cosine {cosine})"),
+            LightOutcome::Blocked {
                 kind,
                 primitive,
                 object,
@@ -261,9 +274,9 @@ impl Shown<'_> {
                 self.object(object),
                 self.material(object)
             ),
-            Fall::Faded => format!("{light} is absorbed{glass}"),
-            Fall::Here => format!("{light} is at this point, so it has no direction"),
-            Fall::Unreflected => {
+            LightOutcome::Faded => format!("{light} is absorbed{glass}"),
+            LightOutcome::Here => format!("{light} is at this point, so it has no direction"),
+            LightOutcome::Unreflected => {
                 format!("{light} reaches it, but the material reflects none of it")
             }
         }

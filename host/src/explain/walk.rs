@@ -13,9 +13,9 @@ pub struct Walk {
     /// The origin as it was given: the caller's, the camera's, or the point that a secondary ray
     /// starts from.
     pub origin: [f64; 3],
-    /// Of length 1.
+    /// Direction of length 1.
     pub direction: [f64; 3],
-    /// What of the ray counts.
+    /// The interval of the ray that counts.
     pub interval: [f64; 2],
     /// Where the kernels start: at `origin`, or where a ray from outside comes to the scene's box.
     pub start: [f64; 3],
@@ -38,7 +38,7 @@ pub struct Walk {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Given {
     pub origin: DVec3,
-    /// Of any length; `None` where the kernels' own is as it was given.
+    /// The given direction, of any length; `None` if the kernels' own is equal.
     pub direction: Option<DVec3>,
 }
 
@@ -72,7 +72,7 @@ struct InUnits {
     aside: f64,
     /// How much further it is for every scene unit of distance.
     turned: f64,
-    /// What counts.
+    /// The interval that counts.
     interval: [f64; 2],
     /// The nearest hit so far.
     limit: f64,
@@ -154,7 +154,7 @@ pub enum Culled {
     NotInParent { plane: Plane, around: [f64; 2] },
     /// No single plane is the cause: the span is empty by less than culling allows for rounding.
     Margin,
-    /// What was tested has no planes on the axes: the ray is not in it where it counts.
+    /// A volume without planes on the axes: the ray is not in it within its interval.
     NotInVolume,
     /// It holds nothing.
     Empty,

@@ -6,7 +6,7 @@ use gridel_core::format::record::{Header, SectionEntry};
 use gridel_core::{Fixed, Format, Number, Scene, Workspace};
 use serde::Serialize;
 
-/// What the bytes of a blob hold; the parts add up to the blob.
+/// The content of a blob by bytes; the parts add up to the blob.
 #[derive(Clone, Debug, Serialize)]
 pub struct MemoryMap {
     /// Length of the blob.
@@ -27,7 +27,7 @@ pub struct Part {
     /// Bytes of a record.
     pub stride: usize,
     pub bytes: usize,
-    /// Of the blob, 0 to 1.
+    /// Share of the blob, 0 to 1.
     pub share: f64,
     /// `None` without primitives.
     pub bytes_per_primitive: Option<f64>,
@@ -92,7 +92,7 @@ impl MemoryMap {
     }
 }
 
-/// What the caller must provide to work in one number format, in bytes, beside the call stack.
+/// The memory that the caller provides in one number format, in bytes, beside the call stack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct WorkingMemory {
     /// Name of the number format.

@@ -7,7 +7,7 @@ use gridel_core::Rgb888;
 use gridel_core::render::Pixel;
 use serde::{Deserialize, Serialize};
 
-/// What is wrong with a picture, against the reference. Display values are sRGB, 0 to 1.
+/// Errors of a picture against the reference. Display values are sRGB, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
     /// Root of the mean square difference of display values, over all pixels and channels.
@@ -16,14 +16,14 @@ pub struct Errors {
     pub largest: f64,
     /// Pixels of which a display value is off by more than 1/255.
     pub pixels_off: usize,
-    /// Mean structural similarity of the grey pictures, in windows of 8 by 8 (Wang and others 2004);
+    /// Mean structural similarity of the gray pictures, in windows of 8 by 8 (Wang and others 2004);
     /// 1 is the same.
     pub ssim: f64,
     /// Mean of FLIP: 0 is the same, 1 as different as can be.
     pub flip: f64,
     /// Rays through the middles of pixels that meet another object than in the reference.
     pub other_objects: usize,
-    /// Of the rays that meet the same object: the median and the largest error of the distance, in
+    /// For rays that hit the same object: the median and the largest error of the distance, in
     /// units of its last place in single precision.
     pub t_ulps: [f64; 2],
 }

@@ -2,7 +2,7 @@
 //!
 //! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild, "FLIP: A Difference Evaluator for
 //! Alternating Images", HPG 2020. Both pictures are filtered by what the eye can resolve, compared in
-//! a perceptual colour space, and the difference is raised where edges or points differ.
+//! a perceptual color space, and the difference is raised where edges or points differ.
 
 /// Pixels a degree of the field of view: a display of 3840 pixels, 0.7 m wide, seen from 0.7 m.
 const PIXELS_PER_DEGREE: f64 = 67.020_64;
@@ -24,7 +24,7 @@ struct Planes {
 
 /// The difference at every pixel, 0 to 1; its mean is what is reported for a picture.
 ///
-/// Cost: some 2,000 multiplications a pixel.
+/// Cost: some 2,000 multiplications per pixel.
 pub fn flip(reference: Picture<'_>, test: Picture<'_>) -> Vec<f64> {
     let [reference, test] = [reference, test].map(opponent);
     let features = features(&reference, &test);
@@ -248,7 +248,7 @@ mod tests {
             .collect()
     }
 
-    /// What the authors' own program (version 1.2, 67 pixels a degree) gives.
+    /// The values of the authors' own program (version 1.2, 67 pixels per degree).
     #[test]
     fn differences_are_those_of_the_authors_program() {
         const CASES: [(Shade, Shade, f64, f64); 7] = [

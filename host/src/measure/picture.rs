@@ -8,7 +8,7 @@ use std::time::Instant;
 /// A picture, and what it took.
 pub struct Rendered {
     pub picture: Picture,
-    /// Of rendering alone, on the threads of the pool that it was called in.
+    /// Seconds of rendering alone, on the threads of the pool that it was called in.
     pub seconds: f64,
 }
 

@@ -107,7 +107,7 @@ fn ask_through<N: Number, A: Accel, C: Observer>(
     }
 }
 
-/// What some rays took.
+/// Tests and times of some rays.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Work {
     /// Rays that were traced.
@@ -138,7 +138,7 @@ impl Work {
     }
 }
 
-/// What tracing took, by what the rays were cast for.
+/// Tests and times by the purpose of the rays.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Works {
     pub primary: Work,

@@ -1,4 +1,4 @@
-//! Structural similarity of two grey pictures.
+//! Structural similarity of two gray pictures.
 //!
 //! Wang, Bovik, Sheikh, Simoncelli, "Image Quality Assessment: From Error Visibility to Structural
 //! Similarity", IEEE Transactions on Image Processing 13, 2004. Windows are tiles of 8 by 8 pixels that

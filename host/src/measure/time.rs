@@ -32,7 +32,7 @@ pub fn interval(seconds: &[f64]) -> Option<[f64; 2]> {
     (seconds.len() > 1).then_some([least, largest])
 }
 
-/// Whether every repeat took less than every repeat of another.
+/// Returns whether every repeat took less than every repeat of another.
 pub fn is_below(seconds: &[f64], other: &[f64]) -> bool {
     let both = interval(seconds).zip(interval(other));
     both.is_some_and(|([_, largest], [least, _])| largest < least)

@@ -21,7 +21,7 @@ const SIZE: (u32, u32) = (1080, 540);
 const CHART: u32 = 900;
 /// Grid lines.
 const GRID: RGBColor = RGBColor(222, 222, 222);
-/// Colours that colour-blind people can distinguish (Okabe and Ito, "Color universal
+/// Colors that color-blind people can distinguish (Okabe and Ito, "Color universal
 /// design", 2008), in the order in which series take them; then they return, and curves have other
 /// dashes and marks.
 const COLORS: [RGBColor; 7] = [
@@ -38,7 +38,7 @@ fn color(index: usize) -> RGBColor {
     COLORS[index % COLORS.len()]
 }
 
-/// Dashes of a curve and the gaps between them, in pixels; none the first time that colours are used.
+/// Dashes of a curve and the gaps between them, in pixels; none the first time that colors are used.
 fn dashes(index: usize) -> Option<(u32, u32)> {
     match index / COLORS.len() {
         0 => None,
@@ -47,7 +47,7 @@ fn dashes(index: usize) -> Option<(u32, u32)> {
     }
 }
 
-/// Whether the points of a curve are triangles. Others are discs, and rings when colours are used for
+/// Returns whether the points of a curve are triangles. Others are discs, and rings when colors are used for
 /// the third time.
 fn is_triangular(index: usize) -> bool {
     index / COLORS.len() == 1

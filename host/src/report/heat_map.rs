@@ -21,7 +21,7 @@ impl<'p> HeatMap<'p> {
         Self { picture, maximum }
     }
 
-    /// Writes the map as PNG: black is no work, white the maximum, which the file names. Colours go
+    /// Writes the map as PNG: black is no work, white the maximum, which the file names. Colors go
     /// by the square root of the work, or the few pixels with the most would leave all others black.
     ///
     /// # Errors
@@ -43,7 +43,7 @@ impl<'p> HeatMap<'p> {
     }
 }
 
-/// The linear colour for a place on the ramp, 0 to 1.
+/// The linear color for a place on the ramp, 0 to 1.
 ///
 /// A path through Oklab (Ottosson, "A perceptual color space for image processing", 2020), so that
 /// equal steps look equal: lightness rises evenly from black to white while the hue turns from blue

@@ -1,7 +1,7 @@
 //! A sphere of triangles.
 
 use super::lit;
-use crate::scene::{Material, Object, Place, Scene, Shape};
+use crate::scene::{Material, Object, Scene, Shape, SourceSpan};
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -42,7 +42,7 @@ pub fn icosphere(levels: u32) -> Scene {
             vertices,
             triangles,
         },
-        place: Place::default(),
+        place: SourceSpan::default(),
     };
     lit(
         Scene {

@@ -16,7 +16,7 @@ pub use obj::obj;
 pub use pdb::{PdbError, pdb};
 
 use crate::scene::molecule::{BoundingSphere, Element, Site, draw, perceive};
-use crate::scene::{Camera, Light, MoleculeStyle, Place, Scene};
+use crate::scene::{Camera, Light, MoleculeStyle, Scene, SourceSpan};
 use glam::DVec3;
 
 /// A molecule of carbon atoms at positions in angstroms.
@@ -38,7 +38,7 @@ fn carbon(positions: Vec<DVec3>, style: MoleculeStyle) -> Scene {
         .map(|(site, number)| BoundingSphere {
             site,
             name: format!("C{number}"),
-            place: Place::default(),
+            place: SourceSpan::default(),
         })
         .collect();
     let (materials, objects) = draw(balls, style, &bonds);

@@ -35,7 +35,7 @@ pub fn nanotube(n: u32, m: u32, length: f64) -> Scene {
     let mut atoms = Vec::new();
     for i in reach(0, n) {
         for j in reach(1, m) {
-            // Two atoms a cell, a third of its diagonal apart; integers count thirds.
+            // Two atoms per cell, a third of its diagonal apart; integers count thirds.
             for (i, j) in [(3 * i, 3 * j), (3 * i + 1, 3 * j + 1)] {
                 let around = i * (2 * n + m) + j * (n + 2 * m);
                 let along = n * j - m * i;

@@ -15,7 +15,7 @@ fn centers(scene: &Scene) -> Vec<DVec3> {
         .collect()
 }
 
-/// The lengths of all bonds, and how many atoms have how many neighbours.
+/// The lengths of all bonds, and how many atoms have how many neighbors.
 fn bonds(scene: &Scene) -> (Vec<f64>, HashMap<usize, usize>) {
     let atoms = centers(scene);
     let sites: Vec<Site> = atoms
@@ -162,7 +162,7 @@ fn molecules_come_back_from_pdb() {
 }
 
 #[test]
-fn what_pdb_does_not_hold() {
+fn scenes_that_pdb_cannot_hold_are_rejected() {
     assert_eq!(pdb(&icosphere(0)), Err(PdbError::NoAtoms));
     let mut scene = c60();
     let Shape::Sphere(Sphere { center, .. }) = &mut scene.objects[7].shape else {

@@ -4,7 +4,7 @@
 use super::{MoleculeOptions, load, test_scenes};
 use std::collections::BTreeSet;
 
-/// What a file comes to.
+/// The result of reading a file.
 enum Expected {
     /// As many objects, and a warning with each of these words, no more.
     Read(usize, &'static [&'static str]),

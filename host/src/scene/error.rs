@@ -12,7 +12,7 @@ pub struct SceneError {
     pub line: Option<usize>,
     /// The cause, in one sentence without a full stop.
     pub cause: String,
-    /// What to do about it, in one sentence without a full stop.
+    /// The remedy, in one sentence without a full stop.
     pub remedy: String,
     /// Boxed, so that results stay small where nothing is wrong.
     excerpt: Option<Box<Excerpt>>,

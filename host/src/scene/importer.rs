@@ -12,7 +12,7 @@ use std::path::Path;
 pub struct Importer {
     /// Name of the format.
     pub name: &'static str,
-    /// What the format holds, in one line.
+    /// The content of the format, in one line.
     pub about: &'static str,
     /// Extensions of its files, in lower case and without a dot, the usual one first. Behind each of
     /// them `.gz` may stand.
@@ -23,7 +23,7 @@ pub struct Importer {
     pub binary: bool,
     /// A small file in the format, which tests and fuzzers start from.
     pub example: &'static str,
-    /// Recognises a whole file by its content. At most one importer recognises a file.
+    /// Recognises a whole file by its content. At most one importer recognizes a file.
     pub(super) recognizes: fn(&[u8]) -> bool,
     /// Reads a file, all but the scene's `up`.
     pub(super) read: fn(Input<'_>) -> Result<Imported, SceneError>,
@@ -73,7 +73,7 @@ impl Importers {
         })
     }
 
-    /// The importer that recognises the content of a file.
+    /// The importer that recognizes the content of a file.
     fn of_content(self, path: &Path, bytes: &[u8]) -> Result<&'static Importer, SceneError> {
         check_encoding(path, bytes)?;
         let mut all = self.0.iter();
@@ -158,7 +158,7 @@ fn dotted(extensions: &[&str]) -> Vec<String> {
 
 /// A file on its way to an importer.
 pub(super) struct Input<'a> {
-    /// What a file that this one names is read by.
+    /// Importers of files that this one names.
     pub(super) importers: Importers,
     /// Names the file in messages, and its folder is where files are that it names.
     pub(super) path: &'a Path,

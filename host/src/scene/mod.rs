@@ -2,7 +2,7 @@
 //!
 //! All coordinates are `f64` scene units in one right-handed world space: importers bake the
 //! transforms of groups and instances into the geometry, so that nothing downstream knows of
-//! them. Colours are linear RGB, 1.0 being full display white, unless [`Scene::display_values`] says
+//! them. Colors are linear RGB, 1.0 being full display white, unless [`Scene::display_values`] says
 //! otherwise.
 
 mod access;
@@ -16,9 +16,9 @@ mod importer;
 mod model;
 pub(crate) mod molecule;
 mod options;
-mod place;
 mod polygon;
 mod size;
+mod source_span;
 #[cfg(test)]
 mod test_scenes;
 mod text;
@@ -29,8 +29,8 @@ pub use error::SceneError;
 pub use importer::Importer;
 pub use model::{Camera, Color, Diffuse, Light, Material, Object, RenderSettings, Scene, Up};
 pub use options::{ImportOptions, Imported, MoleculeOptions, MoleculeStyle};
-pub use place::Place;
 pub use size::MOST_INPUT;
+pub use source_span::SourceSpan;
 
 use access::Access;
 use importer::Importers;
@@ -86,6 +86,22 @@ pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneEr
 /// # Errors
 /// If the file cannot be read, its format is unknown, its content is broken, or it names a file
 /// outside of its folder and may not.
+///
+/// ```
+/// use gridel_host::scene::{ImportOptions, load_with};
+///
+/// let folder = tempfile::tempdir()?;
+/// let scene = folder.path().join("scenes/tree.toml");
+/// std::fs::create_dir(folder.path().join("scenes"))?;
+/// std::fs::write(folder.path().join("leaf.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")?;
+/// std::fs::write(&scene, "[[object]]\nkind = 'import'\nfile = '../leaf.obj'\n")?;
+///
+/// let mut options = ImportOptions::default();
+/// assert!(load_with(&scene, &options).is_err());
+/// options.allow_outside = true;
+/// assert_eq!(load_with(&scene, &options)?.scene.objects.len(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, SceneError> {
     let access = Access::of(path, options.allow_outside);
     let (importer, input) = Importers(IMPORTERS).open(path, &options.molecule, &access)?;

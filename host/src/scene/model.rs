@@ -1,10 +1,10 @@
 //! The scene as data.
 
-use super::place::Place;
+use super::source_span::SourceSpan;
 use crate::shape::{Shape, parallel};
 use glam::DVec3;
 
-/// A linear RGB colour; components at or above 0, 1.0 being display white.
+/// A linear RGB color; components at or above 0, 1.0 being display white.
 pub type Color = [f64; 3];
 
 /// Everything a scene file says.
@@ -15,13 +15,13 @@ pub struct Scene {
     pub camera: Option<Camera>,
     /// Which way is up, for that frame.
     pub up: Up,
-    /// What a ray that meets nothing sees; without one it is black, or light if there is no camera
+    /// The color of rays that hit nothing; without one it is black, or light if there is no camera
     /// either.
     pub background: Option<Color>,
-    /// Whether colours and lights are display values, which are added up and shown as they are: what
+    /// Whether colors and lights are display values, which are added up and shown as they are: what
     /// ray tracers did before pictures were encoded. Linear without.
     pub display_values: bool,
-    /// Light that reaches every surface from everywhere, multiplied with its diffuse colour.
+    /// Light that reaches every surface from everywhere, multiplied with its diffuse color.
     pub ambient: Color,
     /// Point and directional lights.
     pub lights: Vec<Light>,
@@ -67,7 +67,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Whether the camera looks along `up`, or one of both has no length.
+    /// Returns whether the camera looks along `up`, or one of both has no length.
     pub fn is_along_up(&self) -> bool {
         parallel(self.target - self.eye, self.up)
     }
@@ -81,7 +81,7 @@ pub enum Light {
     Directional { direction: DVec3, color: Color },
 }
 
-/// What a surface does with light. The parts add up: local light (diffuse and highlight), what
+/// The reflection and transmission of a surface. The parts add up: local light (diffuse and highlight), what
 /// a mirror ray brings, what glass lets through.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
@@ -105,7 +105,7 @@ pub struct Material {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Diffuse {
     Plain(Color),
-    /// Cubes of edge `size` (scene units, above 0) in two alternating colours, aligned with the axes;
+    /// Cubes of edge `size` (scene units, above 0) in two alternating colors, aligned with the axes;
     /// a corner of the pattern lies at `origin`.
     Checker {
         even: Color,
@@ -124,7 +124,7 @@ pub struct Object {
     pub material: usize,
     pub shape: Shape,
     /// Where the scene file says so, for messages.
-    pub place: Place,
+    pub place: SourceSpan,
 }
 
 /// Rendering defaults; the command line overrides them.

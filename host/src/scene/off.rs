@@ -1,8 +1,8 @@
 //! Reads OFF, the Object File Format of Geomview: the vertices and polygons of a mesh, as text.
 //!
 //! The keyword may be missing, and may have the prefixes `ST`, `C` and `N` of vertices with texture
-//! coordinates, colours and normals, which then stand on one line each. These are ignored, with a
-//! warning each, and so are the colours of faces. Vertices of other than three coordinates (`4OFF`,
+//! coordinates, colors and normals, which then stand on one line each. These are ignored, with a
+//! warning each, and so are the colors of faces. Vertices of other than three coordinates (`4OFF`,
 //! `nOFF`) and binary files are rejected. Comments begin with `#`.
 
 use super::importer::{Importer, Input, stem};
@@ -10,7 +10,7 @@ use super::polygon::{self, MAX_CONCAVE};
 use super::size::Size;
 use super::text::{Source, Warnings};
 use super::words::Words;
-use super::{Imported, Material, Object, Place, Scene, SceneError, Shape, Up};
+use super::{Imported, Material, Object, Scene, SceneError, Shape, SourceSpan, Up};
 use glam::DVec3;
 
 pub(super) const IMPORTER: Importer = Importer {
@@ -40,15 +40,15 @@ pub(super) const IMPORTER: Importer = Importer {
     read,
 };
 
-/// What the first word of a file says of its vertices.
+/// The properties of vertices that the first word of a file states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Keyword<'a> {
     textured: bool,
-    coloured: bool,
+    colored: bool,
     normals: bool,
     /// `4` or `n`, for vertices that have not three coordinates.
     dimension: &'a str,
-    /// What stands behind it without a space between, as in the files of ModelNet.
+    /// Numbers that follow without a space between, as in the files of ModelNet.
     rest: &'a str,
 }
 
@@ -60,23 +60,23 @@ impl<'a> Keyword<'a> {
             None => (false, text),
         };
         let (textured, prefix) = strip(prefix, "ST");
-        let (coloured, prefix) = strip(prefix, "C");
+        let (colored, prefix) = strip(prefix, "C");
         let (normals, dimension) = strip(prefix, "N");
         let is_whole = ["", "4", "n", "4n"].contains(&dimension)
             && rest.bytes().all(|byte| byte.is_ascii_digit());
         is_whole.then_some(Self {
             textured,
-            coloured,
+            colored,
             normals,
             dimension,
             rest,
         })
     }
 
-    /// The fewest numbers that a vertex has; a colour may lack its opacity.
+    /// The fewest numbers that a vertex has; a color may lack its opacity.
     fn fewest_numbers(self) -> usize {
         3 + 3 * usize::from(self.normals)
-            + 3 * usize::from(self.coloured)
+            + 3 * usize::from(self.colored)
             + 2 * usize::from(self.textured)
     }
 }
@@ -106,7 +106,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
                 vertices,
                 triangles,
             },
-            place: Place::of(&source.path),
+            place: SourceSpan::of(&source.path),
         }],
         ..Scene::default()
     };
@@ -199,8 +199,8 @@ fn read_vertices(
     }
     for (has, sentence) in [
         (
-            keyword.coloured,
-            "the colour of a vertex is ignored; the surface has one colour",
+            keyword.colored,
+            "the color of a vertex is ignored; the surface has one color",
         ),
         (
             keyword.normals,
@@ -255,7 +255,7 @@ fn read_faces(
             corners.push(corner as u32);
         }
         if words.skip_line() > 0 {
-            let sentence = "the colour of a face is ignored; the surface has one colour";
+            let sentence = "the color of a face is ignored; the surface has one color";
             warnings.add(source, words.line, sentence);
         }
         if corner_count < 3 {
@@ -355,7 +355,7 @@ mod tests {
             let lines = vertices.map(|vertex| format!("{vertex} {attributes}\n"));
             format!("{keyword}\n4 1 4\n{}4 0 1 2 3\n", lines.concat())
         };
-        let color = "thing.off:3: the colour of a vertex is ignored; the surface has one colour (and 3 times more)";
+        let color = "thing.off:3: the color of a vertex is ignored; the surface has one color (and 3 times more)";
         let normal = "thing.off:3: the normal of a vertex is ignored; the surface is shaded flat (and 3 times more)";
         let texture = "thing.off:3: the texture coordinates of a vertex are ignored; textures are not drawn (and 3 times more)";
         holds_the_square(&with("COFF", "1 0 0 1"), &[color]);
@@ -373,8 +373,8 @@ mod tests {
     }
 
     #[test]
-    fn colours_of_faces_are_ignored_with_a_warning() {
-        let warning = "thing.off:7: the colour of a face is ignored; the surface has one colour";
+    fn colors_of_faces_are_ignored_with_a_warning() {
+        let warning = "thing.off:7: the color of a face is ignored; the surface has one color";
         for color in [
             "7",
             "255 0 0",

@@ -2,7 +2,7 @@
 
 use super::model::Scene;
 
-/// What a molecule file does not say and a person may choose.
+/// Choices that a molecule file leaves to a person.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MoleculeOptions {
     pub style: MoleculeStyle,
@@ -16,7 +16,7 @@ pub struct MoleculeOptions {
 pub enum MoleculeStyle {
     /// Atoms as spheres of their van der Waals radius.
     SpaceFilling,
-    /// Small spheres, and bonds as cylinders in the colours of the atoms at their ends.
+    /// Small spheres, and bonds as cylinders in the colors of the atoms at their ends.
     BallAndStick,
 }
 
@@ -43,7 +43,7 @@ pub struct Imported {
 /// How a scene file is read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImportOptions {
-    /// What a molecule file leaves open.
+    /// Choices that a molecule file leaves open.
     pub molecule: MoleculeOptions,
     /// Whether the file may name files outside of its folder: imports, materials, buffers. A scene
     /// from elsewhere could read any file of the user's so.

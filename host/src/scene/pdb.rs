@@ -137,7 +137,7 @@ fn atom<'a>(
     })
 }
 
-/// Tells the element from the four columns of an atom's name, whose first two are the symbol,
+/// Returns the element from the four columns of an atom's name, whose first two are the symbol,
 /// right-justified: ` CA ` is a carbon, `CA  ` is calcium.
 fn element_of_name(field: &str, hetero: bool) -> Option<Element> {
     let letters = field.trim_start_matches(|c: char| c.is_whitespace() || c.is_ascii_digit());

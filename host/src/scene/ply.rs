@@ -1,13 +1,13 @@
 //! Reads PLY, binary and text: the vertices and faces of a mesh.
 //!
 //! Faces are cut into triangles, and triangle strips (the element `tristrips`, where -1 ends a
-//! strip) into theirs. Colours, normals, textures and elements of other names are ignored, with a
+//! strip) into theirs. Colors, normals, textures and elements of other names are ignored, with a
 //! warning each.
 
 use super::importer::{Importer, Input, stem};
 use super::polygon::{self, MAX_CONCAVE};
 use super::text::{Warnings, check_encoding};
-use super::{Imported, Material, Object, Place, Scene, SceneError, Shape, Up};
+use super::{Imported, Material, Object, Scene, SceneError, Shape, SourceSpan, Up};
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyAccessResult};
@@ -80,7 +80,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
                 let read = parser.read_payload_for_element(&mut reader, element, &header);
                 read.map_err(broken)?;
                 let sentence = format!("elements {name:?} are ignored");
-                warnings.add_times(Place::of(path), element.count.max(1), sentence);
+                warnings.add_times(SourceSpan::of(path), element.count.max(1), sentence);
             }
         }
     }
@@ -91,7 +91,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
             name: stem(path),
             material: 0,
             shape,
-            place: Place::of(path),
+            place: SourceSpan::of(path),
         }],
         ..Scene::default()
     };
@@ -113,8 +113,8 @@ const IGNORED: [(&[&str], &str, &str); 2] = [
             "diffuse_green",
             "diffuse_blue",
         ],
-        "colour",
-        "the surface has one colour",
+        "color",
+        "the surface has one color",
     ),
     (&["nx", "ny", "nz"], "normal", "the surface is shaded flat"),
 ];
@@ -128,9 +128,9 @@ fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
     let (mut element, mut count, mut is_reported) = (String::new(), 0, [false; IGNORED.len()]);
     for (number, line) in (1..).zip(header) {
         let words: Vec<&str> = line.split_whitespace().collect();
-        let place = Place {
+        let place = SourceSpan {
             line: number,
-            ..Place::of(path)
+            ..SourceSpan::of(path)
         };
         match words[..] {
             ["end_header", ..] => return,
@@ -140,7 +140,7 @@ fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
                 is_reported = [false; IGNORED.len()];
             }
             ["comment", "TextureFile", ..] => {
-                let sentence = "textures are not drawn; the plain colours are used";
+                let sentence = "textures are not drawn; the plain colors are used";
                 warnings.add_times(place, 1, sentence);
             }
             ["property", .., name] if ["vertex", "face"].contains(&&*element) && count > 0 => {
@@ -159,7 +159,7 @@ fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
     }
 }
 
-/// Refuses a number of elements that the file cannot hold: each takes a byte at least.
+/// Rejects a number of elements that the file cannot hold: each takes a byte at least.
 fn announced(path: &Path, element: &ElementDef, bytes: usize) -> Result<(), SceneError> {
     if element.count <= bytes && (!element.properties.is_empty() || element.count == 0) {
         return Ok(());
@@ -247,7 +247,7 @@ fn mesh(
         ),
     ] {
         if count > 0 {
-            warnings.add_times(Place::of(path), count, sentence);
+            warnings.add_times(SourceSpan::of(path), count, sentence);
         }
     }
     for (number, strip) in strips.iter().enumerate() {

@@ -9,7 +9,7 @@
 use glam::DVec3;
 use robust::{Coord, orient2d};
 
-/// Concave polygons beyond this many vertices are refused: clipping ears takes quadratic time,
+/// Concave polygons beyond this many vertices are rejected: clipping ears takes quadratic time,
 /// which for the worst outlines of this size, those that cross themselves, is half a second.
 pub(super) const MAX_CONCAVE: usize = 4_096;
 
@@ -66,7 +66,7 @@ pub(super) fn triangulate(vertices: &[DVec3]) -> Option<Triangulation> {
     })
 }
 
-/// Whether a polygon has an area, as seen along the dominant axis of its normal. One that crosses
+/// Returns whether a polygon has an area, as seen along the dominant axis of its normal. One that crosses
 /// itself may have none because its parts cancel out.
 pub(super) fn has_area(vertices: &[DVec3]) -> bool {
     project(vertices).is_some()
@@ -112,7 +112,7 @@ fn project(vertices: &[DVec3]) -> Option<Vec<Coord<f64>>> {
     )
 }
 
-/// Whether every corner turns left and the outline goes round once.
+/// Returns whether every corner turns left and the outline goes round once.
 fn is_strictly_convex(flat: &[Coord<f64>]) -> bool {
     let n = flat.len();
     let turns_left = (0..n).all(|i| orient2d(flat[i], flat[(i + 1) % n], flat[(i + 2) % n]) > 0.0);
@@ -125,7 +125,7 @@ fn is_strictly_convex(flat: &[Coord<f64>]) -> bool {
             == 1
 }
 
-/// Whether two sides cross inside both. Cutting alone does not show it: of a pentagram every corner can
+/// Returns whether two sides cross inside both. Cutting alone does not show it: of a pentagram every corner can
 /// be cut off.
 fn crosses_itself(flat: &[Coord<f64>]) -> bool {
     let n = flat.len();
@@ -169,7 +169,7 @@ enum Ear {
     /// A corner that turns left and into which nothing reaches.
     Clear,
     /// A corner without area: a repeated vertex, a spike, or a vertex in the middle of an edge.
-    /// It comes after the clear ears, which use vertices on edges, so that neighbours that share
+    /// It comes after the clear ears, which use vertices on edges, so that neighbors that share
     /// them leave no gap.
     Flat,
     /// Any corner that turns left; only an outline that crosses itself comes to this.
@@ -255,7 +255,7 @@ impl<'a> Clipper<'a> {
         self.next[after]
     }
 
-    /// Whether no part of the outline reaches into the corner at `tip`.
+    /// Returns whether no part of the outline reaches into the corner at `tip`.
     fn is_clear(&self, tip: usize) -> bool {
         let (before, after) = (self.previous[tip], self.next[tip]);
         let [a, b, c] = [before, tip, after].map(|i| self.flat[i]);
@@ -273,7 +273,7 @@ impl<'a> Clipper<'a> {
         true
     }
 
-    /// Whether the outline at vertex `i` keeps the corner `a b c` from being cut off.
+    /// Returns whether the outline at vertex `i` keeps the corner `a b c` from being cut off.
     fn blocks(&self, i: usize, a: Coord<f64>, b: Coord<f64>, c: Coord<f64>) -> bool {
         let p = self.flat[i];
         if p == a || p == c {

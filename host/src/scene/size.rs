@@ -21,7 +21,7 @@ const TRIANGLE: u64 = 224;
 /// How often a name is held: in the scene, and for messages.
 const NAMES: u64 = 2;
 
-/// What a scene holds, or a part of it.
+/// The content of a scene, or of a part, in numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Size {
     pub(super) objects: u64,
@@ -56,7 +56,7 @@ impl Size {
         }
     }
 
-    /// The same objects where each name has so many bytes more.
+    /// Returns the size with so many bytes more in each name.
     #[must_use]
     pub(super) fn with_longer_names(self, by: usize) -> Self {
         let more = self.objects.saturating_mul(by as u64);
@@ -76,7 +76,7 @@ impl Size {
         parts.into_iter().fold(0, u64::saturating_add)
     }
 
-    /// What it takes in words, if that is too much.
+    /// Returns the memory in words, if it is too much.
     pub(super) fn excess(self) -> Option<String> {
         let gigabytes = |bytes: u64| bytes as f64 / 1e9;
         (self.bytes() > MOST_BYTES).then(|| {

@@ -5,11 +5,11 @@
 //!
 //! Every solid of a text file is an object. Vertices are shared by their coordinates, so that
 //! triangles meet without a gap. Normals are passed over, since the order of the corners says the
-//! same, and so are the colours that some programs put into binary files, with a warning.
+//! same, and so are the colors that some programs put into binary files, with a warning.
 
 use super::importer::{Importer, Input, stem};
 use super::text::{Source, Warnings, check_encoding};
-use super::{Imported, Material, Object, Place, Scene, SceneError, Shape, Up};
+use super::{Imported, Material, Object, Scene, SceneError, Shape, SourceSpan, Up};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::path::Path;
@@ -70,7 +70,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
             let more = found - length(count);
             let mut warnings = Warnings::default();
             let sentence = format!("{more} bytes behind the last triangle are ignored");
-            warnings.add_times(Place::of(path), 1, sentence);
+            warnings.add_times(SourceSpan::of(path), 1, sentence);
             binary(path, &bytes, warnings)
         }
         Some(count) => Err(SceneError::new(
@@ -92,7 +92,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
 fn binary(path: &Path, bytes: &[u8], mut warnings: Warnings) -> Result<Imported, SceneError> {
     let count = announced(bytes).unwrap_or_default() as usize;
     let mut soup = Soup::default();
-    let mut coloured = 0;
+    let mut colored = 0;
     for (number, triangle) in bytes[HEAD..].chunks_exact(TRIANGLE).take(count).enumerate() {
         let mut corners = [DVec3::ZERO; 3];
         // The normal comes first.
@@ -111,15 +111,15 @@ fn binary(path: &Path, bytes: &[u8], mut warnings: Warnings) -> Result<Imported,
             }
         }
         soup.push(corners);
-        coloured += usize::from(triangle[48..] != [0; 2]);
+        colored += usize::from(triangle[48..] != [0; 2]);
     }
-    if coloured > 0 {
-        let sentence = "the attributes of a triangle, which some programs use for its colour, are \
-                        ignored; the surface has one colour";
-        warnings.add_times(Place::of(path), coloured, sentence);
+    if colored > 0 {
+        let sentence = "the attributes of a triangle, which some programs use for its color, are \
+                        ignored; the surface has one color";
+        warnings.add_times(SourceSpan::of(path), colored, sentence);
     }
     let objects = soup
-        .object(stem(path), Place::of(path))
+        .object(stem(path), SourceSpan::of(path))
         .into_iter()
         .collect();
     scene(path, objects, warnings.into_sentences())
@@ -236,7 +236,7 @@ impl Soup {
     }
 
     /// The mesh of the triangles, if there are any.
-    fn object(self, name: String, place: Place) -> Option<Object> {
+    fn object(self, name: String, place: SourceSpan) -> Option<Object> {
         let shape = Shape::Mesh {
             vertices: self.vertices,
             triangles: self.triangles,

@@ -1,4 +1,4 @@
-//! What the tests of all importers use: scenes from bytes and files, real scene files, which are not in
+//! Helpers of all importers' tests: scenes from bytes and files, real scene files, which are not in
 //! the repository because of their size or licence, and the meshes that came of a file.
 
 use super::{ImportOptions, Imported, Object, SceneError, Shape};

@@ -1,7 +1,7 @@
 //! Text files as the importers read them: words that know their place, finite numbers, and
 //! warnings that do not flood.
 
-use super::{Place, SceneError, gzip};
+use super::{SceneError, SourceSpan, gzip};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::string::FromUtf8Error;
@@ -45,8 +45,8 @@ impl Source {
             .map(|(index, line)| (index + 1, line))
     }
 
-    pub(super) fn place(&self, line: usize) -> Place {
-        Place {
+    pub(super) fn place(&self, line: usize) -> SourceSpan {
+        SourceSpan {
             file: Arc::clone(&self.path),
             line,
         }
@@ -130,12 +130,12 @@ pub(crate) fn check_encoding(path: &Path, bytes: &[u8]) -> Result<(), SceneError
     ))
 }
 
-/// What an importer passed over. The same sentence is kept once, with the first line it applies
+/// Warnings of an importer. A sentence is kept once, with the first line it applies
 /// to and how many lines follow it, so that a file of a million equal faults stays readable.
 #[derive(Default)]
 pub(super) struct Warnings {
     /// Sentence, first place, and the number of further places.
-    found: Vec<(String, Place, usize)>,
+    found: Vec<(String, SourceSpan, usize)>,
     index: HashMap<String, usize>,
 }
 
@@ -146,7 +146,12 @@ impl Warnings {
     }
 
     /// A sentence that holds at this place first, and so many times in all, at least once.
-    pub(super) fn add_times(&mut self, place: Place, times: usize, sentence: impl Into<String>) {
+    pub(super) fn add_times(
+        &mut self,
+        place: SourceSpan,
+        times: usize,
+        sentence: impl Into<String>,
+    ) {
         let sentence = sentence.into();
         if let Some(&index) = self.index.get(&sentence) {
             self.found[index].2 += times;

@@ -10,7 +10,7 @@ use std::str::Lines;
 pub(super) struct Words<'a> {
     source: &'a Source,
     lines: Peekable<Enumerate<Lines<'a>>>,
-    /// What is left of the line.
+    /// The rest of the line.
     rest: &'a str,
     /// Comes before the rest of the line.
     put_back: Option<&'a str>,
@@ -53,7 +53,7 @@ impl<'a> Words<'a> {
         self.put_back = Some(word);
     }
 
-    /// What is left of the line.
+    /// Returns the rest of the line.
     pub(super) fn rest_of_line(&self) -> &'a str {
         self.rest.trim()
     }

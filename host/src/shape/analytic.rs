@@ -59,8 +59,8 @@ pub trait Geometric {
         true
     }
 
-    /// Returns two spheres, as centres and radii. Their common box holds the primitive, and its middle lies
-    /// halfway between the centres.
+    /// Returns two spheres, as centers and radii. Their common box holds the primitive, and its middle lies
+    /// halfway between the centers.
     fn ends(&self) -> [(DVec3, f64); 2];
 
     /// Returns the kind of surface.
@@ -170,6 +170,10 @@ pub trait Analytic: Geometric + Sized {
 
     /// Returns the box, as its lowest and its highest corner.
     fn bounds(&self) -> [DVec3; 2];
+
+    /// Returns the largest `point.dot(direction)` over all points of the shape: its support function. An unbounded
+    /// shape counts as its point.
+    fn support(&self, direction: DVec3) -> f64;
 
     /// Returns the normals of flat parts, with lengths of twice their areas.
     fn faces(&self) -> Vec<DVec3> {

@@ -231,6 +231,11 @@ impl Analytic for Cone {
         [base[0].min(apex[0]), base[1].max(apex[1])]
     }
 
+    fn support(&self, direction: DVec3) -> f64 {
+        let [base, apex] = self.caps().map(|cap| cap.support(direction));
+        base.max(apex)
+    }
+
     /// They are convex, so as far as the farther pair of caps.
     fn displacement(&self, other: &Self) -> f64 {
         let (these, others) = (self.caps(), other.caps());

@@ -112,6 +112,12 @@ impl Analytic for Cuboid {
         [self.min, self.max]
     }
 
+    fn support(&self, direction: DVec3) -> f64 {
+        (self.min * direction)
+            .max(self.max * direction)
+            .element_sum()
+    }
+
     fn faces(&self) -> Vec<DVec3> {
         let size = self.max - self.min;
         let face = |k: usize| 2.0 * size[(k + 1) % 3] * size[(k + 2) % 3] * DVec3::AXES[k];

@@ -14,7 +14,7 @@ pub fn unit(vector: DVec3) -> DVec3 {
     (vector / vector.abs().max_element()).normalize()
 }
 
-/// Whether two vectors are parallel, or one of them has no length.
+/// Returns whether two vectors are parallel, or one of them has no length.
 pub fn parallel(a: DVec3, b: DVec3) -> bool {
     let sine = unit(a).cross(unit(b)).length();
     sine.is_nan() || sine <= TOLERANCE

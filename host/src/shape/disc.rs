@@ -100,11 +100,15 @@ impl Analytic for Disc {
         [self.center - reach, self.center + reach]
     }
 
+    fn support(&self, direction: DVec3) -> f64 {
+        self.center.dot(direction) + self.radius * unit(self.normal).cross(direction).length()
+    }
+
     fn faces(&self) -> Vec<DVec3> {
         vec![unit(self.normal) * (2.0 * std::f64::consts::PI * self.radius * self.radius)]
     }
 
-    /// How far two discs are apart at most: as far as their centres, their radii, and the smaller radius
+    /// How far two discs are apart at most: as far as their centers, their radii, and the smaller radius
     /// times the sine of the angle between them.
     fn displacement(&self, other: &Self) -> f64 {
         // Scaled, so that squares stay in range.

@@ -7,9 +7,11 @@
 mod analytic;
 mod crossing;
 mod direction;
+#[doc(hidden)]
 pub mod exact;
 mod keys;
 mod lattice;
+#[doc(hidden)]
 pub mod random;
 mod snapped;
 mod sphere;
@@ -140,7 +142,7 @@ macro_rules! registry {
         }
 
         impl Shape {
-            /// Whether it has a box. Shapes without one lie outside of all structures.
+            /// Returns whether it has a box. Shapes without one lie outside of all structures.
             pub(crate) fn is_bounded(&self) -> bool {
                 match self {
                     Self::Mesh { .. } | Self::Sphere(_) => true,
@@ -150,7 +152,7 @@ macro_rules! registry {
         }
 
         impl Solid {
-            /// Whether it has a box.
+            /// Returns whether it has a box.
             pub fn is_bounded(&self) -> bool {
                 match self {
                     Self::Triangle(_) | Self::Sphere(_) => true,
@@ -210,13 +212,13 @@ macro_rules! registry {
 gridel_core::shapes!(registry);
 
 impl Shape {
-    /// Whether all numbers are finite.
+    /// Returns whether all numbers are finite.
     pub(crate) fn is_finite(&self) -> bool {
         of_shape!(self, it => it.is_finite(),
             Self::Mesh { vertices, .. } => vertices.iter().all(|vertex| vertex.is_finite()))
     }
 
-    /// Whether there is something of it.
+    /// Returns whether there is something of it.
     pub(crate) fn has_extent(&self) -> bool {
         of_shape!(self, it => it.has_extent(), Self::Mesh { .. } => true)
     }
@@ -226,6 +228,16 @@ impl Shape {
         of_shape!(self, it => it.bounds(), Self::Mesh { vertices, .. } => {
             let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
             vertices.iter().fold(none, |[low, high], &it| [low.min(it), high.max(it)])
+        })
+    }
+
+    /// Returns the largest `point.dot(direction)` over all points: the support function. An unbounded shape counts as
+    /// its point; a mesh without triangles has minus infinity.
+    pub(crate) fn support(&self, direction: DVec3) -> f64 {
+        of_shape!(self, it => it.support(direction), Self::Mesh { vertices, triangles } => {
+            let corners = triangles.iter().flatten();
+            let along = corners.map(|&corner| vertices[corner as usize].dot(direction));
+            along.fold(f64::NEG_INFINITY, f64::max)
         })
     }
 

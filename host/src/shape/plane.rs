@@ -17,7 +17,7 @@ use gridel_core::geometry::plane;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     pub point: DVec3,
-    /// Of any length above 0.
+    /// The normal, of any length above 0.
     pub normal: DVec3,
 }
 
@@ -101,6 +101,10 @@ impl Analytic for Plane {
     /// Its point.
     fn bounds(&self) -> [DVec3; 2] {
         [self.point; 2]
+    }
+
+    fn support(&self, direction: DVec3) -> f64 {
+        self.point.dot(direction)
     }
 
     fn transformed(&self, by: &DAffine3) -> Result<Self, Misfit> {

@@ -38,7 +38,7 @@ impl Random {
         (low.ln() + self.unit() * (high.ln() - low.ln())).exp()
     }
 
-    /// Whether something happens that has one chance in `count`.
+    /// Returns whether something happens that has one chance in `count`.
     pub fn one_in(&mut self, count: usize) -> bool {
         self.below(count) == 0
     }

@@ -87,6 +87,10 @@ impl Analytic for Sphere {
         [self.center - self.radius, self.center + self.radius]
     }
 
+    fn support(&self, direction: DVec3) -> f64 {
+        self.center.dot(direction) + self.radius * direction.length()
+    }
+
     fn displacement(&self, other: &Self) -> f64 {
         let moved = self.center.distance(other.center);
         (moved + (self.radius - other.radius).abs()) * ROUNDED_UP

@@ -31,7 +31,7 @@ impl Torus {
         }
     }
 
-    /// How far it reaches from its centre along each axis of coordinates.
+    /// How far it reaches from its center along each axis of coordinates.
     fn reach(&self) -> DVec3 {
         disc_reach(self.axis) * self.major_radius + self.minor_radius
     }
@@ -124,8 +124,13 @@ impl Analytic for Torus {
         [self.center - reach, self.center + reach]
     }
 
+    fn support(&self, direction: DVec3) -> f64 {
+        let circle = self.major_radius * direction::unit(self.axis).cross(direction).length();
+        self.center.dot(direction) + circle + self.minor_radius * direction.length()
+    }
+
     /// As far as their circles and their minor radii. Circles are at most
-    /// as far apart as their centres, their radii and the ends of their axes, of the smaller radius's length.
+    /// as far apart as their centers, their radii and the ends of their axes, of the smaller radius's length.
     ///
     /// From a point beneath a surface the way outward is as short, unless it comes to the axis before, in the
     /// pit of a spindle torus: then it goes on along the axis.

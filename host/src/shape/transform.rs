@@ -1,4 +1,4 @@
-//! What transforms make of vectors and lengths.
+//! Vectors and lengths after transforms.
 
 use super::direction::{TOLERANCE, unit};
 use glam::{DAffine3, DMat3, DVec3};

@@ -1,6 +1,6 @@
-//! Puts one ray to every structure in one number format, and holds the answers to the promises.
+//! Traces one ray through every structure in one number format, and tests the properties of the answers.
 
-use super::judge::{Answer, GRAZING, Judge, RoundedRay, STEPS, Wrong, step};
+use super::judge::{Answer, GRAZING, Judge, Mismatch, RoundedRay, STEPS, step};
 use crate::shape::Solid;
 use crate::shape::random::Random;
 use gridel_core::accel::DynAccel;
@@ -10,53 +10,53 @@ use gridel_core::{
     closest_hit,
 };
 
-/// What a scene promises.
+/// A property that holds for every scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Promise {
+pub enum Property {
     /// Every structure gives the list's answer, bit for bit.
     Structures,
     /// Whether anything is met does not depend on how it is asked.
     AnyHit,
-    /// What is met is what exact arithmetic meets first, where it meets it, within [`STEPS`].
+    /// Hits are those of exact arithmetic, where it finds them, within [`STEPS`].
     Answers,
     /// Numbers of a hit are finite, its t lies in the interval, its normal has the length 1.
     Numbers,
     /// A ray that starts beside a hit does not meet the same surface again, and one that starts inside
     /// of a solid leaves it.
     SelfHits,
-    /// What lies in the dark by `f64` does not lie in the light of another format.
+    /// A point in shadow by `f64` is not lit in another format.
     Shadows,
     /// No ray leaves a closed mesh unseen.
     Leaks,
 }
 
-impl Promise {
-    /// What the promise says, for reports.
+impl Property {
+    /// Returns the property in words, for reports.
     pub const fn text(self) -> &'static str {
         match self {
-            Promise::Structures => "every structure agrees with brute force, bit for bit",
-            Promise::AnyHit => "any hit and closest hit agree on whether there is a hit",
-            Promise::Answers => "hits agree with exact arithmetic",
-            Promise::Numbers => "hits are finite and in the interval; normals have length 1",
-            Promise::SelfHits => "secondary rays do not hit the surface that they leave",
-            Promise::Shadows => "every shadow of `f64` is there in the other formats",
-            Promise::Leaks => "no ray leaves a closed mesh without a hit",
+            Property::Structures => "every structure agrees with brute force, bit for bit",
+            Property::AnyHit => "any hit and closest hit agree on whether there is a hit",
+            Property::Answers => "hits agree with exact arithmetic",
+            Property::Numbers => "hits are finite and in the interval; normals have length 1",
+            Property::SelfHits => "secondary rays do not hit the surface that they leave",
+            Property::Shadows => "every shadow of `f64` is there in the other formats",
+            Property::Leaks => "no ray leaves a closed mesh without a hit",
         }
     }
 }
 
-/// A promise that was broken.
+/// A violation of a property.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    pub promise: Promise,
+    pub property: Property,
     pub format: Format,
     pub structure: Structure,
-    /// What happened, as a clause.
+    /// The fault, as a clause.
     pub what: String,
 }
 
-/// What one structure answers.
+/// The answer of one structure.
 #[derive(Clone, Copy, Debug)]
 pub struct StructureAnswer<N: Number> {
     pub structure: Structure,
@@ -64,7 +64,7 @@ pub struct StructureAnswer<N: Number> {
     pub any: bool,
 }
 
-/// What a ray's answers come to.
+/// The result of checking a ray's answers.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
     pub faults: Vec<Fault>,
@@ -102,7 +102,7 @@ pub fn ask_all<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<StructureAnswe
     std::iter::once(list).chain(others).collect()
 }
 
-/// Holds what was heard to the promises. The first is the list's answer. `control` asks exact
+/// Tests the properties of answers. The first is the list's answer. `control` asks exact
 /// arithmetic even where nothing seems to be wrong.
 pub fn check<N: Number>(
     scene: &Scene<'_>,
@@ -115,9 +115,9 @@ pub fn check<N: Number>(
     let Some(list) = heard.first() else {
         return outcome;
     };
-    let mut fault = |promise, structure, what: String| {
+    let mut fault = |property, structure, what: String| {
         outcome.faults.push(Fault {
-            promise,
+            property,
             format: N::FORMAT,
             structure,
             what,
@@ -134,7 +134,7 @@ pub fn check<N: Number>(
                 described(&other.hit),
                 described(&list.hit)
             );
-            fault(Promise::Structures, other.structure, what);
+            fault(Property::Structures, other.structure, what);
         }
         if other.any != other.hit.is_some() {
             let what = format!(
@@ -142,13 +142,13 @@ pub fn check<N: Number>(
                 other.any,
                 described(&other.hit)
             );
-            fault(Promise::AnyHit, other.structure, what);
+            fault(Property::AnyHit, other.structure, what);
         }
     }
     let rounded = RoundedRay::of(ray);
     let hit = list.hit.as_ref();
     if let Some(what) = hit.and_then(|hit| numbers(&rounded, judge, hit)) {
-        fault(Promise::Numbers, list.structure, what);
+        fault(Property::Numbers, list.structure, what);
     }
 
     let answer = list.hit.as_ref().map(|hit| Answer {
@@ -182,20 +182,20 @@ pub fn check<N: Number>(
         outcome.judged = true;
         if let Err(wrong) = judge.check(N::FORMAT, &rounded, answer) {
             let what = match wrong {
-                Wrong::NotThere => {
+                Mismatch::NotThere => {
                     format!(
                         "hits {}, which exact arithmetic misses",
                         described(&list.hit)
                     )
                 }
-                Wrong::Missed { primitive, t } => format!(
+                Mismatch::Missed { primitive, t } => format!(
                     "hits {}; by exact arithmetic it hits primitive {primitive} before, at {:?}",
                     described(&list.hit),
                     t + rounded.moved
                 ),
             };
             outcome.faults.push(Fault {
-                promise: Promise::Answers,
+                property: Property::Answers,
                 format: N::FORMAT,
                 structure: list.structure,
                 what,
@@ -221,7 +221,7 @@ fn bits<N: Number>(hit: &Option<Hit<N>>) -> Option<(u32, u32, bool, [u64; 8])> {
     })
 }
 
-/// What is wrong with the numbers of a hit.
+/// Returns a fault of the numbers of a hit.
 fn numbers<N: Number>(ray: &RoundedRay, judge: &Judge, hit: &Hit<N>) -> Option<String> {
     let t = N::far_to_f64(hit.t);
     let point = hit.point.map(N::length_to_f64);
@@ -316,7 +316,7 @@ pub fn leave<N: Number>(
             _ => continue,
         };
         faults.push(Fault {
-            promise: Promise::SelfHits,
+            property: Property::SelfHits,
             format: N::FORMAT,
             structure: Structure::List,
             what: format!(
@@ -361,7 +361,7 @@ pub fn sealed<N: Number, A: Accel>(
             };
             let hidden = passed.iter().any(crosses);
             return (!hidden).then(|| Fault {
-                promise: Promise::Leaks,
+                property: Property::Leaks,
                 format: N::FORMAT,
                 structure: A::STRUCTURE,
                 what: format!("leaves the closed mesh of object {object} without a hit"),

@@ -1,4 +1,4 @@
-//! What is right, by arithmetic that owes nothing to the kernels: which primitive a ray meets first,
+//! Right answers, by arithmetic that owes nothing to the kernels: which primitive a ray hits first,
 //! within what a number format may be off by.
 
 use crate::shape::Solid;
@@ -36,9 +36,9 @@ pub fn step(format: Format, magnitude: f64) -> f64 {
 pub struct RoundedRay {
     pub start: [f64; 3],
     pub slope: [f64; 3],
-    /// What counts, from `start`.
+    /// The interval that counts, from `start`.
     pub interval: [f64; 2],
-    /// What counts of shapes without bounds, likewise.
+    /// The interval that counts for shapes without bounds.
     pub far_interval: [f64; 2],
     /// The t of `start` as hits count it.
     pub moved: f64,
@@ -57,7 +57,7 @@ impl RoundedRay {
         }
     }
 
-    /// The same ray in double precision.
+    /// Returns the ray in double precision.
     pub fn in_f64(&self, scene: &Scene<'_>) -> Option<Ray<f64>> {
         let mut kinds = Kind::ALL.into_iter();
         let bounded = kinds.all(|kind| kind.is_bounded() || scene.count(kind) == 0);
@@ -65,7 +65,7 @@ impl RoundedRay {
         Ray::from_f64(scene.bounds(), self.start, self.slope, first, last).ok()
     }
 
-    /// What counts, from `start`, of shapes with bounds or without.
+    /// Returns the interval that counts, from `start`, for shapes with bounds or without.
     pub fn interval_of(&self, bounded: bool) -> [f64; 2] {
         if bounded {
             self.interval
@@ -74,7 +74,7 @@ impl RoundedRay {
         }
     }
 
-    /// Of the angle between the ray and a vector of length 1.
+    /// Returns the cosine of the angle between the ray and a vector of length 1.
     pub fn cosine(&self, unit: [f64; 3]) -> f64 {
         let dot = |v: [f64; 3]| (0..3).map(|k| self.slope[k] * v[k]).sum::<f64>();
         dot(unit) / dot(self.slope).sqrt()
@@ -115,7 +115,7 @@ pub struct Answer {
 
 /// Why an answer is wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Wrong {
+pub enum Mismatch {
     /// The primitive is not met, or not there.
     NotThere,
     /// Another primitive is met before.
@@ -157,13 +157,13 @@ impl Judge {
             .map(|(_, _, solid)| solid)
     }
 
-    /// Whether an answer is right, within [`STEPS`].
+    /// Returns whether an answer is right, within [`STEPS`].
     pub fn check(
         &self,
         format: Format,
         ray: &RoundedRay,
         answer: Option<Answer>,
-    ) -> Result<(), Wrong> {
+    ) -> Result<(), Mismatch> {
         let line = ray.line();
         let met = answer.and_then(|answer| self.solid(answer.primitive));
         let [tmin, tmax] = ray.interval_of(met.is_none_or(Solid::is_bounded));
@@ -172,12 +172,12 @@ impl Judge {
         if let Some(answer) = answer {
             let pieces = || self.pieces(answer.primitive);
             let step = pieces().map(|solid| ray.step(format, answer.t, solid));
-            let off = STEPS * step.reduce(f64::max).ok_or(Wrong::NotThere)?;
+            let off = STEPS * step.reduce(f64::max).ok_or(Mismatch::NotThere)?;
             let there = pieces().any(|solid| {
                 Crossings::new(solid, &line, off).may_be_met_at(&Real::of(answer.t), &begin)
             });
             if !there || answer.t < tmin - off || answer.t > tmax + off {
-                return Err(Wrong::NotThere);
+                return Err(Mismatch::NotThere);
             }
             // Hits count from the ray's own start, which rounds once more.
             end = Some(answer.t - off);
@@ -201,7 +201,7 @@ impl Judge {
                 met => met,
             };
             if let Some(t) = met.filter(|t| *t < end) {
-                return Err(Wrong::Missed {
+                return Err(Mismatch::Missed {
                     primitive: *primitive,
                     t: t.to_f64(),
                 });
@@ -210,7 +210,7 @@ impl Judge {
         Ok(())
     }
 
-    /// Whether a ray meets a primitive at `t`, which may be as far off as `within`, or [`STEPS`] more.
+    /// Returns whether a ray meets a primitive at `t`, which may be as far off as `within`, or [`STEPS`] more.
     pub fn crosses(
         &self,
         format: Format,
@@ -244,7 +244,7 @@ impl<'c> Crossings<'c> {
         Self { solid, line, off }
     }
 
-    /// Whether one of the shapes is met at `t` by a ray that counts from `begin`.
+    /// Returns whether one of the shapes is met at `t` by a ray that counts from `begin`.
     pub fn may_be_met_at(&self, t: &Real, begin: &Real) -> bool {
         let largest = self.solid.spans(self.line, &self.off);
         let Some((first, last)) = largest.iter().find(|(first, last)| first <= t && t <= last)
@@ -282,7 +282,7 @@ impl<'c> Crossings<'c> {
     }
 }
 
-/// Whether a ray can meet a box, or one that is larger by a unit.
+/// Returns whether a ray can meet a box, or one that is larger by a unit.
 fn may_meet(ray: &RoundedRay, bounds: &UnitBox) -> bool {
     let mut span = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {

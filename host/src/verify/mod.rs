@@ -7,13 +7,15 @@
 
 mod check;
 mod closed;
+#[doc(hidden)]
 pub mod judge;
+#[doc(hidden)]
 pub mod rays;
 mod shadow;
 
 pub use crate::trace::UnitRay;
 pub use check::{
-    Fault, Outcome, Promise, StructureAnswer, ask, ask_all, check, depart, leave, sealed,
+    Fault, Outcome, Property, StructureAnswer, ask, ask_all, check, depart, leave, sealed,
 };
 pub use closed::ClosedMesh;
 pub use rays::Targets;
@@ -27,7 +29,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// What was found.
+/// The report of a verification.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
     /// Rays that were put to every structure in every format.
@@ -36,10 +38,10 @@ pub struct Report {
     pub formats: Vec<FormatReport>,
     /// Meshes whose every edge has its two triangles.
     pub closed_meshes: usize,
-    pub promises: Vec<PromiseReport>,
+    pub properties: Vec<PropertyReport>,
 }
 
-/// What was found in one format.
+/// The results in one format.
 #[derive(Clone, Debug, Serialize)]
 pub struct FormatReport {
     pub format: &'static str,
@@ -78,10 +80,10 @@ impl Worst {
     }
 }
 
-/// How a promise was kept.
+/// How often a property was tested, and how often it was violated.
 #[derive(Clone, Debug, Serialize)]
-pub struct PromiseReport {
-    pub promise: Promise,
+pub struct PropertyReport {
+    pub property: Property,
     pub text: &'static str,
     /// Answers that were held to it.
     pub checked: u64,
@@ -90,7 +92,7 @@ pub struct PromiseReport {
     pub examples: Vec<Example>,
 }
 
-/// A promise that was broken.
+/// A violation of a property.
 #[derive(Clone, Debug, Serialize)]
 pub struct Example {
     pub format: &'static str,
@@ -101,9 +103,9 @@ pub struct Example {
 }
 
 impl Report {
-    /// How often a promise was broken.
+    /// Returns how often a property was violated.
     pub fn broken(&self) -> u64 {
-        self.promises.iter().map(|promise| promise.broken).sum()
+        self.properties.iter().map(|property| property.broken).sum()
     }
 }
 
@@ -111,10 +113,10 @@ impl Report {
 pub const RAYS: u64 = 10_000;
 /// Rays of a chunk of work.
 const CHUNK: u64 = 128;
-/// Of so many rays one is judged by exact arithmetic whatever was answered, and one hit in so many is
+/// One ray in so many is judged by exact arithmetic whatever was answered, and one hit in so many is
 /// left by secondary rays.
 const CONTROL: u64 = 16;
-/// Examples that are kept of each promise.
+/// Examples that are kept per property.
 const EXAMPLES: usize = 5;
 
 /// Steps of the work, for progress: [`verify`] reports each.
@@ -227,7 +229,7 @@ fn aims(work: &Work<'_>, meshes: &[ClosedMesh], rays: u64) -> Vec<Aim> {
     aims
 }
 
-/// What checking a ray needs.
+/// The input of checking a ray.
 struct Work<'w> {
     scene: &'w Scene<'w>,
     judge: &'w Judge,
@@ -258,15 +260,15 @@ impl Work<'_> {
             entry.worst.take(outcome.error, ray);
         }
         let structures = heard.len() as u64;
-        tally.checked(Promise::Structures, structures - 1);
-        tally.checked(Promise::AnyHit, structures);
-        tally.checked(Promise::Answers, 1);
-        tally.checked(Promise::Numbers, u64::from(hit.is_some()));
+        tally.checked(Property::Structures, structures - 1);
+        tally.checked(Property::AnyHit, structures);
+        tally.checked(Property::Answers, 1);
+        tally.checked(Property::Numbers, u64::from(hit.is_some()));
         for fault in outcome.faults {
             tally.fault(fault, ray);
         }
         if let Some(hit) = hit.filter(|_| random.one_in(CONTROL as usize)) {
-            tally.checked(Promise::SelfHits, 2);
+            tally.checked(Property::SelfHits, 2);
             for fault in leave(self.scene, self.judge, &hit, random) {
                 tally.fault(fault, ray);
             }
@@ -278,7 +280,7 @@ impl Work<'_> {
         let Ok((ready, _)) = self.frame.ray::<N>(self.scene, ray) else {
             return;
         };
-        tally.checked(Promise::Shadows, 1);
+        tally.checked(Property::Shadows, 1);
         for fault in shadow::lost(self.scene, &ready) {
             tally.fault(fault, ray);
         }
@@ -325,7 +327,7 @@ impl Work<'_> {
             let Some(scene) = self.scene.choose(structure) else {
                 continue;
             };
-            tally.checked(Promise::Leaks, 1);
+            tally.checked(Property::Leaks, 1);
             let fault = sealed::<N, DynAccel>(&scene, self.judge, aim.object, origin, direction);
             if let Some(fault) = fault {
                 let ray = UnitRay::new(origin, direction);
@@ -341,12 +343,12 @@ fn held(scene: &Scene<'_>) -> impl Iterator<Item = Structure> {
     all.filter(|&structure| structure == Structure::List || scene.holds(structure))
 }
 
-/// What was found so far.
+/// The results so far.
 #[derive(Clone, Debug, Default)]
 struct Tally {
     formats: [FormatTally; 3],
-    checked: BTreeMap<Promise, u64>,
-    broken: BTreeMap<Promise, (u64, Vec<Example>)>,
+    checked: BTreeMap<Property, u64>,
+    broken: BTreeMap<Property, (u64, Vec<Example>)>,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -373,12 +375,12 @@ impl Tally {
         &mut self.formats[format as usize]
     }
 
-    fn checked(&mut self, promise: Promise, count: u64) {
-        *self.checked.entry(promise).or_default() += count;
+    fn checked(&mut self, property: Property, count: u64) {
+        *self.checked.entry(property).or_default() += count;
     }
 
     fn fault(&mut self, fault: Fault, ray: &SceneRay) {
-        let (count, examples) = self.broken.entry(fault.promise).or_default();
+        let (count, examples) = self.broken.entry(fault.property).or_default();
         *count += 1;
         if examples.len() < EXAMPLES {
             examples.push(Example {
@@ -394,11 +396,11 @@ impl Tally {
         for (mine, theirs) in self.formats.iter_mut().zip(other.formats) {
             *mine = std::mem::take(mine).plus(theirs);
         }
-        for (promise, count) in other.checked {
-            self.checked(promise, count);
+        for (property, count) in other.checked {
+            self.checked(property, count);
         }
-        for (promise, (count, examples)) in other.broken {
-            let mine = self.broken.entry(promise).or_default();
+        for (property, (count, examples)) in other.broken {
+            let mine = self.broken.entry(property).or_default();
             mine.0 += count;
             mine.1.extend(examples);
             mine.1.truncate(EXAMPLES);
@@ -417,21 +419,21 @@ impl Tally {
                 worst_grazing: tally.worst_grazing,
             }
         });
-        let promises = [
-            Promise::Structures,
-            Promise::AnyHit,
-            Promise::Answers,
-            Promise::Numbers,
-            Promise::SelfHits,
-            Promise::Shadows,
-            Promise::Leaks,
+        let properties = [
+            Property::Structures,
+            Property::AnyHit,
+            Property::Answers,
+            Property::Numbers,
+            Property::SelfHits,
+            Property::Shadows,
+            Property::Leaks,
         ];
-        let promises = promises.map(|promise| {
-            let (broken, examples) = self.broken.remove(&promise).unwrap_or_default();
-            PromiseReport {
-                promise,
-                text: promise.text(),
-                checked: self.checked.get(&promise).copied().unwrap_or(0),
+        let properties = properties.map(|property| {
+            let (broken, examples) = self.broken.remove(&property).unwrap_or_default();
+            PropertyReport {
+                property,
+                text: property.text(),
+                checked: self.checked.get(&property).copied().unwrap_or(0),
                 broken,
                 examples,
             }
@@ -441,7 +443,7 @@ impl Tally {
             structures: held(scene).map(Structure::name).collect(),
             formats: formats.to_vec(),
             closed_meshes,
-            promises: promises.to_vec(),
+            properties: properties.to_vec(),
         }
     }
 }

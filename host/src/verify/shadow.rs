@@ -1,6 +1,6 @@
 //! Contact shadows: what lies in the dark by `f64`, and what another format says of it.
 
-use super::check::{Fault, Promise, ask, depart};
+use super::check::{Fault, Property, ask, depart};
 use super::judge::{RoundedRay, step};
 use crate::shape::Solid;
 use crate::shape::random::Random;
@@ -63,7 +63,7 @@ fn to_light(light: &Light, from: DVec3) -> Option<DVec3> {
     (way != DVec3::ZERO).then_some(way)
 }
 
-/// What keeps a light from a hit, seen from where a ray leaves it: the nearest opaque primitive.
+/// Returns the nearest opaque primitive between a hit and a light, seen from where a ray leaves the hit.
 fn blocker<N: Number>(scene: &Scene<'_>, light: &Light, from: DVec3) -> Option<Hit<N>> {
     let way = to_light(light, from)?;
     let reach = if light.directional == 1 {
@@ -127,7 +127,7 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
             return None;
         }
         Some(Fault {
-            promise: Promise::Shadows,
+            property: Property::Shadows,
             format: N::FORMAT,
             structure: Structure::List,
             what: format!(

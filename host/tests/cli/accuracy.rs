@@ -23,7 +23,7 @@ fn folder() -> Folder {
 }
 
 #[test]
-fn what_a_single_repeat_cannot_tell_is_not_told() {
+fn single_repeat_reports_no_spread() {
     let folder = folder();
     let text = folder.done(&SMALL);
     let line = text
@@ -73,7 +73,7 @@ fn a_bound_that_is_too_tight_still_shows_the_table() {
     }
 }
 
-/// What is in the way is not replaced, and what an interrupted run has lost is made again.
+/// Other files are not replaced, and results that an interrupted run has lost are made again.
 #[test]
 fn only_the_same_run_goes_on_in_its_folder() {
     let folder = folder();

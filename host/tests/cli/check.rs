@@ -156,7 +156,7 @@ fn boards_that_are_missing_are_named() {
     assert_eq!(run.code, Some(1), "{}", run.stderr);
 }
 
-/// What the manifest reads is never written over, by whatever path it is reached.
+/// Files that the manifest reads are never overwritten, by whatever path they are reached.
 #[test]
 fn files_that_are_read_stay() {
     let folder = folder();
@@ -297,7 +297,7 @@ fn findings_are_not_lost_with_a_report() {
     folder.done(&["check", "check.toml"]);
 }
 
-/// What cannot be recorded is broken still, and nothing of it is recorded.
+/// Failures that cannot be recorded stay failures, and nothing of them is recorded.
 #[test]
 fn all_is_recorded_or_nothing() {
     let folder = folder();

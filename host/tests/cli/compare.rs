@@ -69,7 +69,7 @@ fn charts_are_written_whole() {
 }
 
 #[test]
-fn too_many_rays_are_refused() {
+fn too_many_rays_are_rejected() {
     let folder = Folder::with_quick();
     let large = [
         "compare",
@@ -84,7 +84,7 @@ fn too_many_rays_are_refused() {
 
 /// All are compared that can be; one that was asked for and cannot be is a failure.
 #[test]
-fn what_was_asked_for_and_does_not_fit_is_refused() {
+fn structures_that_were_asked_for_and_do_not_fit_are_rejected() {
     let folder = Folder::new();
     folder.write("quick.toml", &fixture("quick"));
     let compare = [

@@ -3,15 +3,15 @@
 use crate::program::Folder;
 use std::process::Stdio;
 
-const VERBS: [&str; 5] = ["build", "inspect", "render", "trace", "sample"];
+const COMMANDS: [&str; 5] = ["build", "inspect", "render", "trace", "sample"];
 
 #[test]
-fn help_tells_the_exit_codes() {
+fn help_lists_the_exit_codes() {
     let folder = Folder::new();
     let help = folder.done(&["--help"]);
-    for verb in VERBS {
-        assert!(help.contains(&format!("\n  {verb}")), "{help}");
-        let help = folder.done(&[verb, "--help"]);
+    for command in COMMANDS {
+        assert!(help.contains(&format!("\n  {command}")), "{help}");
+        let help = folder.done(&[command, "--help"]);
         assert!(help.contains("3    the scene does not fit"), "{help}");
     }
     assert!(folder.done(&["--version"]).starts_with("gridel "));
@@ -22,9 +22,9 @@ fn a_wrong_command_line_is_2() {
     let folder = Folder::new();
     folder.fails(2, &[], &["Usage: gridel"]);
     folder.fails(2, &["bild"], &["build"]);
-    for verb in &VERBS[..4] {
-        folder.fails(2, &[verb], &["required"]);
-        folder.fails(2, &[verb, "--nonsense"], &["--nonsense"]);
+    for command in &COMMANDS[..4] {
+        folder.fails(2, &[command], &["required"]);
+        folder.fails(2, &[command, "--nonsense"], &["--nonsense"]);
     }
 }
 

@@ -47,3 +47,22 @@ fn help_rejects_unknown_subjects() {
         run.stderr
     );
 }
+
+#[test]
+fn help_lists_target_behind_eye() {
+    let folder = Folder::new();
+    for command in ["render", "explain", "compare"] {
+        let help = folder.done(&[command, "--help"]);
+        let lines = help.lines().map(str::trim_start);
+        let options: Vec<_> = lines
+            .filter(|line| line.starts_with("--"))
+            .filter_map(|line| line.split_whitespace().next())
+            .collect();
+        let eye = options
+            .iter()
+            .position(|option| *option == "--eye")
+            .unwrap();
+        let view = ["--eye", "--target", "--up", "--fov", "--background"];
+        assert_eq!(options[eye..eye + 5], view, "{command}");
+    }
+}

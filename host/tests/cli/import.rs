@@ -1,4 +1,4 @@
-//! What is said of scene files that hold more than is drawn, name files elsewhere, or stand for more
+//! Messages about scene files that hold more than is drawn, name files elsewhere, or stand for more
 //! than memory holds.
 
 use crate::program::Folder;
@@ -7,7 +7,7 @@ use std::fmt::Write;
 const NORMALS: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//2\n";
 
 #[test]
-fn ignored_data_are_in_the_json_of_every_verb() {
+fn ignored_data_are_in_the_json_of_every_command() {
     let folder = Folder::new();
     folder.write("a.obj", NORMALS.as_bytes());
     let warning = "a.obj:4: vertex normals are ignored; the surface is shaded flat (and once more)";
@@ -44,7 +44,7 @@ fn ignored_data_are_in_the_json_of_every_verb() {
 }
 
 #[test]
-fn files_outside_of_the_folder_need_a_flag_in_every_verb() {
+fn files_outside_of_the_folder_need_a_flag_in_every_command() {
     let folder = Folder::new();
     std::fs::create_dir(folder.path("in")).unwrap();
     folder.write("out.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -67,10 +67,12 @@ fn files_outside_of_the_folder_need_a_flag_in_every_verb() {
         folder.fails(1, arguments, &words);
         folder.done(&[arguments, &["--allow-outside"]].concat());
     }
-    for verb in ["trace", "accuracy"] {
+    for command in ["trace", "accuracy"] {
         assert!(
-            folder.done(&[verb, "--help"]).contains("--allow-outside"),
-            "{verb}"
+            folder
+                .done(&[command, "--help"])
+                .contains("--allow-outside"),
+            "{command}"
         );
     }
     let check = "[[check]]\nscene = \"in/a.toml\"\nbudget = { blob_bytes = 1_000_000 }\n";

@@ -127,7 +127,7 @@ fn working_memory_is_what_the_compiler_says() {
 }
 
 #[test]
-fn broken_blobs_are_told() {
+fn broken_blobs_are_rejected_with_the_reason() {
     let folder = Folder::with_quick();
     let blob = folder.read("quick.gridel");
     let fails = |content: &[u8], words: &[&str]| {
@@ -220,7 +220,7 @@ fn sum(report: &Value, account: &str, word: &str) -> u64 {
     items.map(|item| item["bytes"].as_u64().unwrap()).sum()
 }
 
-/// What `quick` lacks.
+/// The names that `quick` lacks.
 const OTHER_SHAPES: &[u8] = b"
 [[object]]
 kind = 'torus'
@@ -298,10 +298,10 @@ fn the_call_stack_of_a_memory_report_is_enough_for_small_code() {
         folder.run(&["build", "quick.toml", "-o", "new.gridel", "--ram", &ram])
     };
     assert_eq!(build(all).code, Some(0));
-    let refused = build(all - more);
-    assert_eq!(refused.code, Some(3));
+    let rejected = build(all - more);
+    assert_eq!(rejected.code, Some(3));
     let advice = format!("without the feature `small` the call stack takes {more} bytes less");
-    assert!(refused.said().contains(&advice), "{}", refused.said());
+    assert!(rejected.said().contains(&advice), "{}", rejected.said());
 }
 
 /// The items of code add up to the program of the scene, and one part in a hundred more.
@@ -327,7 +327,7 @@ fn memory_report_lists_the_code_of_the_scenes_program() {
     }
 }
 
-/// Code is listed by shape and effect on every board, so that what calls for little is not refused.
+/// Code is listed by shape and effect on every board, so that what calls for little is not rejected.
 #[test]
 fn little_is_asked_of_every_board_for_a_scene_that_calls_for_little() {
     let folder = Folder::new();
@@ -359,7 +359,7 @@ fn little_is_asked_of_every_board_for_a_scene_that_calls_for_little() {
 
 /// Figures hold for what was measured: structures for boards, and formats that a board computes itself.
 #[test]
-fn what_was_not_measured_is_refused() {
+fn structures_that_were_not_measured_are_rejected() {
     let folder = Folder::new();
     folder.write("quick.toml", &fixture("quick"));
     let build = [
@@ -394,9 +394,9 @@ fn what_was_not_measured_is_refused() {
     assert!(!folder.path("soft.gridel").exists());
 }
 
-/// A scene that does not fit is shown all the same, and refused.
+/// A scene that does not fit is shown all the same, and rejected.
 #[test]
-fn a_memory_report_with_something_missing_is_refused() {
+fn memory_report_with_a_missing_part_is_rejected() {
     let folder = Folder::new();
     folder.write("quick.toml", &fixture("quick"));
     for json in [&[][..], &["--json"]] {

@@ -1,4 +1,4 @@
-//! The program as its users see it: verbs, files, exit codes.
+//! The program as its users see it: commands, files, exit codes.
 
 mod program;
 
@@ -15,6 +15,7 @@ mod names;
 mod options;
 mod pipe;
 mod plane;
+mod readme;
 mod render;
 mod sample;
 #[cfg(feature = "shell")]

@@ -30,7 +30,7 @@ fn parts_become_the_bytes_of_the_whole() {
 
 /// Rows are of one picture only if nothing that decides pixels differs, and all that does is named.
 #[test]
-fn parts_of_pictures_that_differ_are_refused() {
+fn parts_of_pictures_that_differ_are_rejected() {
     let folder = Folder::with_quick();
     folder.done(&[
         "build",
@@ -90,7 +90,7 @@ fn parts_of_pictures_that_differ_are_refused() {
 }
 
 #[test]
-fn parts_that_do_not_fit_are_refused() {
+fn parts_that_do_not_fit_are_rejected() {
     let folder = Folder::with_quick();
     render(&folder, "a.png", Some("0..20"));
     render(&folder, "b.png", Some("20..36"));

@@ -210,6 +210,25 @@ fn trace_writes_names_and_counts_hits_by_name() {
 }
 
 #[test]
+fn trace_prints_hits_by_name_where_names_has_no_file() {
+    let folder = folder();
+    folder.write("rays.npy", &rays());
+    let trace = [
+        "trace", "a.toml", "--rays", "rays.npy", "-o", "hits.npy", "--names",
+    ];
+    let text = folder.done(&trace);
+    let table = "\nobject                       hits\nball                            3\n\
+                 Käse\\u{1b}[31m\\nred     1\n";
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words(&text).ends_with(&words(table)), "{text}");
+    let traced = folder.json(&trace);
+    assert_eq!(traced["hits_by_name"], json!({"ball": 3, OBJECTS[2]: 1}));
+    assert_eq!(folder.names(), ["a.toml", "hits.npy", "rays.npy"]);
+    let any = [&trace[..], &["--any"]].concat();
+    folder.fails(2, &any, &["--any finds no objects", "--names names.json"]);
+}
+
+#[test]
 fn trace_never_writes_names_over_its_other_files() {
     let folder = folder();
     folder.write("rays.npy", &rays());

@@ -1,10 +1,10 @@
-//! Options that would change nothing are refused, and never ignored.
+//! Options that would change nothing are rejected, and never ignored.
 
 use crate::program::Folder;
 
-/// What each structure alone takes, where it is not built.
+/// Options of one structure alone, where it is not built.
 #[test]
-fn options_of_structures_that_are_not_built_are_refused() {
+fn options_of_structures_that_are_not_built_are_rejected() {
     let folder = Folder::with_quick();
     let fails = |arguments: &[&str], words: &[&str]| folder.fails(2, arguments, words);
     let build = ["build", "quick.toml", "-o", "new.gridel"];
@@ -76,9 +76,9 @@ fn options_of_structures_that_are_not_built_are_refused() {
     fails(&accuracy, &["--quality is for wide"]);
 }
 
-/// What scene files take, given with a blob; what a verb has no use for is no option of it.
+/// Options for scene files, given with a blob; options that a command does not use are unknown to it.
 #[test]
-fn options_that_a_verb_cannot_use_are_refused() {
+fn options_that_a_command_cannot_use_are_rejected() {
     let folder = Folder::with_quick();
     let fails = |arguments: &[&str], words: &[&str]| folder.fails(2, arguments, words);
     fails(
@@ -116,16 +116,16 @@ fn options_that_a_verb_cannot_use_are_refused() {
     let help = folder.done(&["accuracy", "--help"]);
     assert!(!help.contains("--lattice-bits"), "{help}");
     // Verbs that want a scene file say so of a blob.
-    for verb in ["compare", "accuracy"] {
+    for command in ["compare", "accuracy"] {
         folder.fails(
             1,
-            &[verb, "quick.gridel"],
+            &[command, "quick.gridel"],
             &["is a blob already, not a scene file"],
         );
     }
 }
 
-/// What is asked for twice is done once, and `--quality` reaches the builder.
+/// A structure that is asked for twice is built once, and `--quality` reaches the builder.
 #[test]
 fn compare_takes_its_options() {
     let folder = Folder::with_quick();

@@ -106,7 +106,7 @@ fn trace_reads_scene_or_rays_from_a_stream_and_writes_hits_to_one() {
 }
 
 #[test]
-fn faults_of_standard_input_are_told_of_stdin() {
+fn errors_of_standard_input_name_stdin() {
     let folder = Folder::with_quick();
     folder.write("near.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     let import = |file: &str| format!("[[object]]\nkind = \"import\"\nfile = \"{file}\"\n");

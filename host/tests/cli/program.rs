@@ -18,7 +18,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// What standard error says, in one line: messages are wrapped at the terminal's width.
+    /// Returns standard error in one line: messages are wrapped at the terminal's width.
     pub fn said(&self) -> String {
         let said = self.stderr.split_whitespace().collect::<Vec<_>>();
         said.join(" ").replace("│ ", "")

@@ -6,8 +6,8 @@ use serde_json::json;
 const SMALL: [&str; 2] = ["--size", "48x36"];
 
 fn render(folder: &Folder, output: &str, options: &[&str]) -> Vec<u8> {
-    let verb = ["render", "quick.gridel", "-o", output];
-    folder.done(&[&verb[..], &SMALL, options].concat());
+    let command = ["render", "quick.gridel", "-o", output];
+    folder.done(&[&command[..], &SMALL, options].concat());
     folder.read(output)
 }
 
@@ -34,12 +34,12 @@ fn threads_and_structures_change_no_byte() {
 fn a_scene_file_renders_as_its_blob() {
     let folder = Folder::with_quick();
     let expected = render(&folder, "a.png", &[]);
-    let verb = ["render", "quick.toml", "-o", "b.png"];
+    let command = ["render", "quick.toml", "-o", "b.png"];
     for options in [&[][..], &["--accel", "list"], &["--accel", "bvh"]] {
-        folder.done(&[&verb[..], &SMALL, options].concat());
+        folder.done(&[&command[..], &SMALL, options].concat());
         assert!(folder.read("b.png") == expected, "{options:?}");
     }
-    folder.done(&[&verb[..], &SMALL, &["--lattice-bits", "10"]].concat());
+    folder.done(&[&command[..], &SMALL, &["--lattice-bits", "10"]].concat());
     assert!(folder.read("b.png") != expected);
 }
 
@@ -83,7 +83,7 @@ fn rows_are_those_of_the_whole_picture() {
 #[test]
 fn stats_count_every_ray() {
     let folder = Folder::with_quick();
-    let verb = [
+    let command = [
         "render",
         "quick.gridel",
         "-o",
@@ -93,7 +93,7 @@ fn stats_count_every_ray() {
         "--samples",
         "2",
     ];
-    let report = folder.json(&[&verb[..], &["--stats", "--heat-map", "heat.png"]].concat());
+    let report = folder.json(&[&command[..], &["--stats", "--heat-map", "heat.png"]].concat());
     let stats = &report["stats"];
     assert_eq!(stats["primary"], 32 * 24 * 2);
     let number = |key: &str| stats[key].as_u64().unwrap();
@@ -102,21 +102,21 @@ fn stats_count_every_ray() {
     assert_eq!(number("rays"), kinds.iter().sum::<u64>());
     assert!(report["heat_map"]["maximum"].as_u64().unwrap() > 0);
     assert!(folder.read("heat.png").starts_with(b"\x89PNG"));
-    let shallow = folder.json(&[&verb[..], &["--stats", "--depth", "0"]].concat());
+    let shallow = folder.json(&[&command[..], &["--stats", "--depth", "0"]].concat());
     assert_eq!(shallow["stats"]["reflected"], 0);
     assert_eq!(shallow["stats"]["refracted"], 0);
 
-    let plain = folder.json(&verb);
+    let plain = folder.json(&command);
     assert!(plain.get("stats").is_none() && plain.get("heat_map").is_none());
     assert_eq!(plain["samples"], 2);
     assert_eq!(plain["rows"], json!([0, 24]));
-    let text = folder.done(&[&verb[..], &["--stats", "--heat-map", "heat.png"]].concat());
+    let text = folder.done(&[&command[..], &["--stats", "--heat-map", "heat.png"]].concat());
     for word in ["a.png: 32 x 24", "heat.png: white is", "rays per second"] {
         assert!(text.contains(word), "{text}");
     }
 }
 
-/// What a scene does not call for, it does not pay for.
+/// Effects that a scene does not require cost nothing.
 #[test]
 fn a_plain_scene_casts_no_secondary_ray() {
     let folder = Folder::new();
@@ -132,8 +132,8 @@ fn a_plain_scene_casts_no_secondary_ray() {
 fn wrong_numbers_are_usage_errors() {
     let folder = Folder::with_quick();
     let fails = |options: &[&str], words: &[&str]| {
-        let verb = ["render", "quick.gridel", "-o", "a.png"];
-        folder.fails(2, &[&verb[..], options].concat(), words);
+        let command = ["render", "quick.gridel", "-o", "a.png"];
+        folder.fails(2, &[&command[..], options].concat(), words);
     };
     fails(&["--size", "0x0"], &["at least one pixel"]);
     fails(&["--size", "640"], &["640x480"]);
@@ -179,7 +179,7 @@ fn wrong_numbers_are_usage_errors() {
 }
 
 #[test]
-fn a_structure_that_the_blob_lacks_is_told() {
+fn structure_that_the_blob_lacks_is_rejected_with_those_it_has() {
     let folder = Folder::new();
     folder.write("quick.toml", &fixture("quick"));
     folder.done(&["build", "quick.toml", "-o", "quick.gridel"]);
@@ -194,9 +194,9 @@ fn a_structure_that_the_blob_lacks_is_told() {
 }
 
 /// Whatever way a lone face lies, with the camera and the light that it gets it is seen: lit, and never
-/// of the background's colour.
+/// of the background's color.
 #[test]
-fn what_faces_the_supplied_camera_is_seen() {
+fn faces_towards_the_supplied_camera_are_lit() {
     let folder = Folder::new();
     let render = ["render", "face.obj", "-o", "a.ppm", "--size", "17x17"];
     for (u, v) in [
@@ -265,7 +265,7 @@ fn an_old_picture_survives_what_fails() {
 
 /// Before any work, and however two paths lead to one file.
 #[test]
-fn outputs_are_proved_and_told_apart() {
+fn outputs_are_checked_and_must_differ() {
     let folder = Folder::with_quick();
     let render = |output: &str, heat_map: &str, words: &[&str], code| {
         let render = [

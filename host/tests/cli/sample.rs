@@ -65,7 +65,7 @@ fn files_are_replaced_only_by_force() {
 }
 
 #[test]
-fn wrong_names_are_told() {
+fn wrong_names_are_rejected_with_the_samples() {
     let folder = Folder::new();
     folder.fails(2, &["sample", "teapot"], &["quick", "glass-chess"]);
     folder.fails(2, &["sample", "c60", "-o", "c60.toml"], &["ends with .pdb"]);

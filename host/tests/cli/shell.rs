@@ -3,7 +3,7 @@
 use crate::program::Folder;
 
 #[test]
-fn completions_name_verbs_and_options() {
+fn completions_name_commands_and_options() {
     let folder = Folder::new();
     for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
         let text = folder.done(&["completions", shell]);
@@ -15,20 +15,20 @@ fn completions_name_verbs_and_options() {
 }
 
 #[test]
-fn every_verb_has_a_page_of_the_manual() {
+fn every_command_has_a_page_of_the_manual() {
     let folder = Folder::new();
     folder.done(&["man", "man/man1"]);
     let help = folder.done(&["--help"]);
-    let verbs = help.lines().skip_while(|line| *line != "Commands:").skip(1);
-    let verbs = verbs.map_while(|line| line.split_whitespace().next());
-    let verbs: Vec<_> = verbs.filter(|verb| *verb != "help").collect();
-    assert!(verbs.len() >= 13, "{verbs:?}");
-    for verb in verbs {
-        let page = folder.read(&format!("man/man1/gridel-{verb}.1"));
+    let commands = help.lines().skip_while(|line| *line != "Commands:").skip(1);
+    let commands = commands.map_while(|line| line.split_whitespace().next());
+    let commands: Vec<_> = commands.filter(|command| *command != "help").collect();
+    assert!(commands.len() >= 13, "{commands:?}");
+    for command in commands {
+        let page = folder.read(&format!("man/man1/gridel-{command}.1"));
         let page = String::from_utf8(page).unwrap();
         assert!(
             page.contains(".SH SYNOPSIS") && page.contains("Exit codes"),
-            "{verb}"
+            "{command}"
         );
     }
     assert!(folder.path("man/man1/gridel.1").is_file());

@@ -257,7 +257,7 @@ fn the_report_has_counts_times_and_counters() {
 }
 
 #[test]
-fn broken_rays_and_wrong_options_are_told() {
+fn broken_rays_and_wrong_options_are_rejected() {
     let folder = Folder::with_quick();
     let whole = npy("<f8", &rows(10));
     folder.write("rays.npy", &whole);

@@ -5,12 +5,12 @@ use gridel_core::{Accel, NoCount, Number, Ray, Scene, StackView, closest_primiti
 /// Rays that are cast.
 pub const RAYS: u32 = 4096;
 
-/// What casts found.
+/// The results of casts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Casts {
     /// Those that met something.
     pub hits: u32,
-    /// Of each hit its length and its primitive, all in one word that tells their order, too.
+    /// The length and the primitive of each hit, all in one word that depends on their order, too.
     pub sum: u32,
 }
 

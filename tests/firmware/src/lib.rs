@@ -1,9 +1,9 @@
-//! What the firmware's programs share: the scene in flash, the board, and measuring on it.
+//! Shared parts of the firmware's programs: the scene in flash, the board, and measuring on it.
 //!
 //! | program | what it does |
 //! |---|---|
 //! | `picture` | renders the scene's picture into a file of the host, and counts what it and single rays cost |
-//! | `primary` | traces one ray a pixel and counts the hits |
+//! | `primary` | traces one ray per pixel and counts the hits |
 //! | `casts` | casts rays of its own, without a camera, and counts the hits |
 //! | `everywhere` | renders in every number format through every structure |
 //! | `emitted` | renders from what `gridel build --emit-rust` wrote |
@@ -35,7 +35,7 @@ pub use riscv_rt as rt;
 
 #[cfg(all(target_arch = "arm", feature = "small"))]
 unsafe extern "C" {
-    /// What cortex-m-rt does with an interrupt that nobody handles.
+    /// The handler of cortex-m-rt for an interrupt without one.
     fn DefaultHandler();
 }
 

@@ -1,8 +1,8 @@
-//! What a phase costs: instructions, and the depth of the stack.
+//! Costs of a phase: instructions, and the depth of the stack.
 
 use crate::board::{Counter, Paint};
 
-/// What a phase took; `None` where the board cannot tell.
+/// The costs of a phase; `None` where the board cannot count.
 #[derive(Clone, Copy, Debug)]
 pub struct Cost {
     /// Instructions.
@@ -27,7 +27,7 @@ impl Cost {
         }
     }
 
-    /// What this takes more instructions than another.
+    /// Returns the instructions by which this exceeds another.
     pub fn beyond(self, other: Self) -> Self {
         let instructions = self.instructions.zip(other.instructions);
         Self {

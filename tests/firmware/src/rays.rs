@@ -6,7 +6,7 @@ use gridel_core::format::record::Light;
 use gridel_core::number::{Convert, ErrorBounds, Products, Scalar};
 use gridel_core::{Hit, NoCount, Ray, Scene, StackView, any_hit, closest_primitive};
 
-/// What was traced.
+/// The results of tracing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rays {
     /// One a pixel.
@@ -24,7 +24,7 @@ pub struct Rays {
 pub enum Until {
     /// The primary ray, which is not traced.
     Camera,
-    /// What the primary ray meets first.
+    /// The first hit of the primary ray.
     Primitive,
     /// How the surface lies there, and the ray from it to the first light, which is not traced.
     Surface,
@@ -33,7 +33,7 @@ pub enum Until {
 }
 
 impl Rays {
-    /// Traces a ray a pixel of a row, and what follows from it.
+    /// Traces a ray per pixel of a row, and what follows from it.
     pub fn row(
         &mut self,
         until: Until,

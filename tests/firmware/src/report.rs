@@ -1,4 +1,4 @@
-//! What a program tells the host: a line a figure, a name and a number.
+//! The report of a program to the host: one line per figure, a name and a number.
 
 use crate::board::{exit, print};
 use crate::measure::Cost;

@@ -25,14 +25,14 @@ pub enum Trace<'c> {
 /// One way to trace rays.
 pub struct Contender<'c> {
     pub name: String,
-    /// What building took.
+    /// Time and memory of building.
     pub seconds: f64,
     /// Everything that tracing reads.
     pub bytes: usize,
     pub trace: Trace<'c>,
 }
 
-/// What a contender writes its answers to.
+/// The answers of a contender.
 pub enum Output {
     Answers(Vec<Answer>),
     Hits(Vec<SceneHit>),

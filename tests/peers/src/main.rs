@@ -39,16 +39,16 @@ use std::process::ExitCode;
 use std::time::Instant;
 use workload::{Answer, Geometry, Rays, Workload};
 
-/// What one contender did on one scene.
+/// The results of one contender on one scene.
 #[derive(Serialize)]
 struct Line {
     contender: String,
     bytes_a_primitive: f64,
     build_seconds: f64,
-    /// Of each kind of rays: millions a second, and how many answers are wrong.
+    /// For each kind of rays: millions per second, and how many answers are wrong.
     rates: Vec<f64>,
     wrong: Vec<usize>,
-    /// Of the rays at the seams of a closed mesh.
+    /// Leaks of the rays at the seams of a closed mesh.
     leaks: Option<usize>,
 }
 

@@ -145,7 +145,7 @@ fn bvh2_of_spheres(spheres: &[(Vec3, f32)]) -> Contender<'static> {
     let seconds = started.elapsed().as_secs_f64();
     let order = &structure.primitive_indices;
     let ordered: Vec<BoundingSphere> = order.iter().map(|&it| all[it as usize]).collect();
-    // Centre and radius fit 16 bytes.
+    // Center and radius fit 16 bytes.
     let bytes = size_of_val(&structure.nodes[..]) + size_of_val(&order[..]) + 16 * ordered.len();
     obvhs!("obvhs Bvh2", structure, ordered, seconds, bytes)
 }

@@ -1,4 +1,4 @@
-//! What is traced: scenes, and rays that are the same for everybody.
+//! Workloads: scenes, and rays that are the same for everybody.
 
 use glam::{DVec3, Vec3};
 use gridel_host::scene::{self, MoleculeOptions, Scene, Shape};
@@ -29,7 +29,7 @@ pub struct Query {
     pub direction: Vec3,
 }
 
-/// What a ray met.
+/// The answer to a ray.
 #[derive(Clone, Copy, PartialEq)]
 #[repr(transparent)]
 pub struct Answer {
@@ -303,7 +303,7 @@ fn ball() -> Workload {
             vertices,
             triangles,
         },
-        place: scene::Place::default(),
+        place: scene::SourceSpan::default(),
     });
     Workload::of(BALL, scene)
 }

@@ -1,6 +1,6 @@
 //! A forger of blobs, which knows header, sections and records.
 //!
-//! Bits flipped at random are nearly always refused. A forgery worth loading changes one field to a
+//! Bits flipped at random are nearly always rejected. A forgery worth loading changes one field to a
 //! value that means something, or changes fields that belong together, and states what follows from
 //! that in the header, too.
 
@@ -215,7 +215,7 @@ pub struct Forger {
 }
 
 impl Forger {
-    /// Of some blobs. The forgeries of a seed are always the same.
+    /// Returns a forger of some blobs; the forgeries of a seed are always the same.
     pub fn new(bases: Vec<Base>, seed: u64) -> Self {
         Self {
             bases,

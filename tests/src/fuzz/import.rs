@@ -26,7 +26,7 @@ pub fn import(data: &[u8]) {
     }
 }
 
-/// What fuzzing of an importer starts from: the format's example, and what a corpus has in the format.
+/// Returns seeds of an importer's fuzzing: the format's example, and the corpus of the format.
 pub fn seeds(importer: &Importer, corpus: &[Vec<u8>]) -> Vec<Vec<u8>> {
     let is_in_format = |input: &&Vec<u8>| {
         let mut extensions = importer.extensions.iter();

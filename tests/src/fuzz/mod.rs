@@ -1,4 +1,4 @@
-//! What fuzzers call: one function for each kind of input that comes from outside.
+//! Fuzz targets: one function for each kind of input that comes from outside.
 //!
 //! Each function takes any bytes, and panics where a promise is broken. The fuzz targets of
 //! `tests/fuzz` call them through libFuzzer; [`bounded`] calls them a fixed number of times with

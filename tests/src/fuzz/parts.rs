@@ -251,7 +251,7 @@ impl Base {
         }
     }
 
-    /// What became of it.
+    /// Returns the sealed blob.
     pub fn sealed(&self) -> Blob {
         self.parts.put_together()
     }

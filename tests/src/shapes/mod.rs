@@ -1,4 +1,4 @@
-//! What tests need of every shape: one file for each, as on the host.
+//! The tests' part of every shape: one file for each, as on the host.
 
 mod sample;
 mod sphere;

@@ -1,4 +1,4 @@
-//! What tests need of every shape.
+//! The trait that tests need of every shape.
 
 use crate::random::Random;
 use glam::DVec3;

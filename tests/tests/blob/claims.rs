@@ -35,7 +35,7 @@ fn with_header(bytes: &[u8], header: &Header) -> Vec<u8> {
 /// Only the sections of a structure make it one. In a blob of `wide` alone triangles and spheres have no
 /// records, so that a grid or an octree without any cells would list them all.
 #[test]
-fn structures_without_their_sections_are_refused() {
+fn structures_without_their_sections_are_rejected() {
     let ball = |x: f64| {
         Shape::Sphere(Sphere {
             center: DVec3::new(x, 0.0, 0.0),
@@ -59,7 +59,7 @@ fn structures_without_their_sections_are_refused() {
 }
 
 #[test]
-fn effects_that_nothing_calls_for_are_refused() {
+fn effects_that_nothing_calls_for_are_rejected() {
     let bytes = alone(Structure::List, &scenes::soup(3, 6, 0.4), 24);
     for (effect, name) in Effects::NAMED {
         let mut header = header_of(&bytes);
@@ -80,7 +80,7 @@ fn effects_that_nothing_calls_for_are_refused() {
 /// A radius of 65536 less what it was has the box of the old one, inside out, if coordinates wrap; among
 /// other spheres of the pack nobody sees it.
 #[test]
-fn pack_radii_that_wrap_are_refused() {
+fn pack_radii_that_wrap_are_rejected() {
     let spheres = (0..16).map(|number| {
         Shape::Sphere(Sphere {
             center: DVec3::new(f64::from(number % 4), f64::from(number / 4), 0.0),
@@ -105,10 +105,10 @@ fn pack_radii_that_wrap_are_refused() {
 /// A vertex beyond 32767 units has a box that ends at -32768, if it wraps; among other triangles of the
 /// strip nobody sees it.
 #[test]
-fn strip_vertices_that_wrap_are_refused_or_in_no_triangle() {
+fn strip_vertices_that_wrap_are_rejected_or_in_no_triangle() {
     let bytes = alone(Structure::Wide, &scenes::of([scenes::sheet(4)]), 24);
     let (_, strips) = section(&bytes, SectionKind::Strips);
-    let mut refused = 0;
+    let mut rejected = 0;
     for strip in 0..strips.count as usize {
         let start = strips.offset as usize + strip * size_of::<Strip24>();
         for (axis, lane) in (0..3).flat_map(|axis| (0..8).map(move |lane| (axis, lane))) {
@@ -120,17 +120,17 @@ fn strip_vertices_that_wrap_are_refused_or_in_no_triangle() {
                 Ok(scene) => agree(&scene, &some_rays(&scene, lane as u64)),
                 Err(error) => {
                     speaks(&error);
-                    refused += 1;
+                    rejected += 1;
                 }
             }
         }
     }
-    assert!(refused > 3 * strips.count, "{refused}");
+    assert!(rejected > 3 * strips.count, "{rejected}");
 }
 
 /// Slot locations lead to slots, so they need records in them.
 #[test]
-fn homes_of_triangles_without_records_are_refused() {
+fn homes_of_triangles_without_records_are_rejected() {
     let triangles = scenes::sheet(3);
     let ball = Shape::Sphere(Sphere {
         center: DVec3::ZERO,
@@ -159,10 +159,10 @@ fn homes_of_triangles_without_records_are_refused() {
     // Then nothing proves that the triangles' members are primitives.
     base.section(SectionKind::Members)[..2].fill(0xff);
     let stack = shared.scene().expect("a scene").stack_depth();
-    let refused = (0..=stack).all(|depth| {
+    let rejected = (0..=stack).all(|depth| {
         base.header().stack_depth = depth as u16;
         base.header().stack_bytes = 12 * depth as u32;
         base.sealed().scene().is_err()
     });
-    assert!(refused, "slot locations without records were accepted");
+    assert!(rejected, "slot locations without records were accepted");
 }

@@ -14,8 +14,8 @@ use gridel_tests::query::{UnitRay, held, through};
 use gridel_tests::scenes;
 use std::mem::offset_of;
 
-/// A forged header must be refused.
-fn refuses_header(what: &str, forge: impl Fn(&mut Header)) {
+/// A forged header must be rejected.
+fn rejects_header(what: &str, forge: impl Fn(&mut Header)) {
     let mut bytes = small_blob(24);
     let (start, _) = bytes.split_at_mut(size_of::<Header>());
     let mut header: Header = bytemuck::pod_read_unaligned(start);
@@ -30,36 +30,36 @@ fn refuses_header(what: &str, forge: impl Fn(&mut Header)) {
 }
 
 #[test]
-fn forged_headers_are_refused() {
-    refuses_header("stack depth 0", |h| (h.stack_depth, h.stack_bytes) = (0, 0));
-    refuses_header("stack depth 255", |h| {
+fn forged_headers_are_rejected() {
+    rejects_header("stack depth 0", |h| (h.stack_depth, h.stack_bytes) = (0, 0));
+    rejects_header("stack depth 255", |h| {
         (h.stack_depth, h.stack_bytes) = (255, 255 * 12)
     });
-    refuses_header("stack depth one too large", |h| {
+    rejects_header("stack depth one too large", |h| {
         h.stack_depth += 1;
         h.stack_bytes += 12;
     });
-    refuses_header("too few stack bytes", |h| h.stack_bytes -= 1);
-    refuses_header("no primitives", |h| h.primitives = 0);
-    refuses_header("4294967295 objects", |h| h.objects = u32::MAX);
-    refuses_header("no objects", |h| h.objects = 0);
-    refuses_header("65535 sections", |h| h.section_count = u16::MAX);
-    refuses_header("another byte order", |h| {
+    rejects_header("too few stack bytes", |h| h.stack_bytes -= 1);
+    rejects_header("no primitives", |h| h.primitives = 0);
+    rejects_header("4294967295 objects", |h| h.objects = u32::MAX);
+    rejects_header("no objects", |h| h.objects = 0);
+    rejects_header("65535 sections", |h| h.section_count = u16::MAX);
+    rejects_header("another byte order", |h| {
         h.endianness = h.endianness.swap_bytes()
     });
-    refuses_header("version 2", |h| h.version = 2);
-    refuses_header("unknown effects", |h| h.effects |= 1 << 31);
-    refuses_header("unknown structures", |h| h.structures |= 1 << 31);
-    refuses_header("a missing effect", |h| h.effects = 0);
-    refuses_header("longest leaf 0", |h| h.longest_leaf = 0);
-    refuses_header("a box of -32768", |h| h.bounds.0[1][0] = i16::MIN);
-    refuses_header("an inverted box", |h| h.bounds.0[2].reverse());
-    refuses_header("an empty box", |h| h.bounds.0 = [[0; 2]; 3]);
+    rejects_header("version 2", |h| h.version = 2);
+    rejects_header("unknown effects", |h| h.effects |= 1 << 31);
+    rejects_header("unknown structures", |h| h.structures |= 1 << 31);
+    rejects_header("a missing effect", |h| h.effects = 0);
+    rejects_header("longest leaf 0", |h| h.longest_leaf = 0);
+    rejects_header("a box of -32768", |h| h.bounds.0[1][0] = i16::MIN);
+    rejects_header("an inverted box", |h| h.bounds.0[2].reverse());
+    rejects_header("an empty box", |h| h.bounds.0 = [[0; 2]; 3]);
     for (axis, value) in [(0, f64::NAN), (1, f64::INFINITY), (2, f64::NEG_INFINITY)] {
-        refuses_header("an origin that is not finite", |h| h.origin[axis] = value);
+        rejects_header("an origin that is not finite", |h| h.origin[axis] = value);
     }
-    refuses_header("unit exponent -32768", |h| h.unit_exponent = i16::MIN);
-    refuses_header("unit exponent 32767", |h| h.unit_exponent = i16::MAX);
+    rejects_header("unit exponent -32768", |h| h.unit_exponent = i16::MIN);
+    rejects_header("unit exponent 32767", |h| h.unit_exponent = i16::MAX);
 }
 
 /// Primitives that the lattice took keep their numbers, so a scene may count more than there are.
@@ -102,7 +102,7 @@ pub fn section(bytes: &[u8], kind: SectionKind) -> (usize, SectionEntry) {
 }
 
 #[test]
-fn forged_sections_are_refused() {
+fn forged_sections_are_rejected() {
     let bytes = small_blob(24);
     for kind in SectionKind::ALL {
         let (place, entry) = section(&bytes, kind);
@@ -166,7 +166,7 @@ fn forged_sections_are_refused() {
 
 /// Children that lead to their own pair, backwards, beyond the end, or past a pair or a leaf.
 #[test]
-fn cycles_and_orphans_are_refused() {
+fn cycles_and_orphans_are_rejected() {
     let bytes = small_blob(24);
     let mut fate = Fate::default();
     let mut forge = |place: usize, forged: u32| {
@@ -254,12 +254,12 @@ fn cycles_and_orphans_are_refused() {
     }
     eprintln!("forged links: {fate:?}");
     // A leaf's pair may count no pairs before it and mean the same.
-    assert!(fate.refused > 20 * fate.accepted);
+    assert!(fate.rejected > 20 * fate.accepted);
 }
 
 /// Packs with holes, packs that are not full before the last, and radii that no sphere has.
 #[test]
-fn forged_packs_are_refused() {
+fn forged_packs_are_rejected() {
     let spheres = (0..21).map(|number| {
         Shape::Sphere(Sphere {
             center: DVec3::new(f64::from(number % 5), f64::from(number / 5), 0.0),
@@ -277,7 +277,7 @@ fn forged_packs_are_refused() {
     let words = || bytes[start..].chunks_exact(4);
     let radius = words().position(|word| word != [0; 4]).expect("a radius") as u8;
     let none = words().position(|word| word == [0; 4]).expect("no radius") as u8;
-    let refuses = |what: &str, at: usize, forged: &[u8]| {
+    let rejects = |what: &str, at: usize, forged: &[u8]| {
         let mut changed = bytes.clone();
         changed[at..at + forged.len()].copy_from_slice(forged);
         assert_ne!(changed, bytes, "{what}");
@@ -289,28 +289,28 @@ fn forged_packs_are_refused() {
         packs.offset as usize + (pack + 1) * size_of::<Pack24>() - 4
     };
     let two = |first: u8, second: u8| [first | second << 4];
-    refuses("a pack with a hole", of_pack(0) + 1, &two(none, radius));
-    refuses(
+    rejects("a pack with a hole", of_pack(0) + 1, &two(none, radius));
+    rejects(
         "a first pack that ends early",
         of_pack(0) + 3,
         &two(radius, none),
     );
-    refuses("a pack without spheres", of_pack(2), &[none * 17; 4]);
-    refuses(
+    rejects("a pack without spheres", of_pack(2), &[none * 17; 4]);
+    rejects(
         "a sphere behind the last",
         of_pack(2) + 3,
         &two(none, radius),
     );
-    refuses("a sphere too many", of_pack(2) + 2, &two(radius, radius));
+    rejects("a sphere too many", of_pack(2) + 2, &two(radius, radius));
     for forged in [-1, i32::MIN, i32::MAX, 16_776_705] {
-        refuses("a radius out of range", start + 60, &forged.to_le_bytes());
+        rejects("a radius out of range", start + 60, &forged.to_le_bytes());
     }
     let fewer = SectionEntry {
         stride: 8,
         count: radii.count / 2,
         ..radii
     };
-    refuses("half the radii", place, bytemuck::bytes_of(&fewer));
+    rejects("half the radii", place, bytemuck::bytes_of(&fewer));
 }
 
 /// A roof of many gables. All its triangles claim to be primitive 0; rays along the edges that two

@@ -14,7 +14,7 @@ fn corpus_folder(target: &str) -> PathBuf {
 }
 
 #[test]
-fn fuzzed_blobs_are_refused_or_answer_as_brute_force() {
+fn fuzzed_blobs_are_rejected_or_answer_as_brute_force() {
     run(
         &corpus(&fixture_folder().join("blobs")),
         part_of(20_000, 200_000),
@@ -23,7 +23,7 @@ fn fuzzed_blobs_are_refused_or_answer_as_brute_force() {
 }
 
 #[test]
-fn fuzzed_scene_files_are_refused_or_compile_and_load() {
+fn fuzzed_scene_files_are_rejected_or_compile_and_load() {
     let corpus = corpus(&corpus_folder("import"));
     for importer in IMPORTERS {
         run(&seeds(importer, &corpus), part_of(500, 5_000), import);
@@ -31,7 +31,7 @@ fn fuzzed_scene_files_are_refused_or_compile_and_load() {
 }
 
 #[test]
-fn fuzzed_toml_scenes_are_refused_or_compile_and_load() {
+fn fuzzed_toml_scenes_are_rejected_or_compile_and_load() {
     run(
         &corpus(&corpus_folder("toml")),
         part_of(2_000, 20_000),
@@ -40,7 +40,7 @@ fn fuzzed_toml_scenes_are_refused_or_compile_and_load() {
 }
 
 #[test]
-fn fuzzed_arrays_of_rays_are_refused_or_answer_as_brute_force() {
+fn fuzzed_arrays_of_rays_are_rejected_or_answer_as_brute_force() {
     run(
         &corpus(&corpus_folder("npy")),
         part_of(20_000, 200_000),

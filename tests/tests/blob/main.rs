@@ -1,4 +1,4 @@
-//! Broken blobs: refused with words that name the place, or else a scene that works.
+//! Broken blobs: rejected with words that name the place, or else a scene that works.
 
 mod claims;
 mod forged;
@@ -154,7 +154,7 @@ fn structures_agree<N: Number>(scene: &Scene<'_>, rays_each: usize) {
 /// Counts of what became of forged blobs.
 #[derive(Debug, Default)]
 struct Fate {
-    refused: usize,
+    rejected: usize,
     accepted: usize,
 }
 
@@ -166,7 +166,7 @@ impl Fate {
                 works(&scene, rays_each);
             }
             Err(error) => {
-                self.refused += 1;
+                self.rejected += 1;
                 speaks(&error);
             }
         }
@@ -184,7 +184,7 @@ fn the_blob_itself_works() {
 }
 
 #[test]
-fn a_blob_cut_off_anywhere_is_refused() {
+fn a_blob_cut_off_anywhere_is_rejected() {
     for lattice_bits in [16, 24] {
         let bytes = small_blob(lattice_bits);
         for length in 0..bytes.len() {
@@ -198,7 +198,7 @@ fn a_blob_cut_off_anywhere_is_refused() {
 }
 
 #[test]
-fn a_flipped_bit_is_refused_or_after_sealing_harmless() {
+fn a_flipped_bit_is_rejected_or_after_sealing_harmless() {
     for lattice_bits in [16, 24] {
         let mut bytes = small_blob(lattice_bits);
         let mut fate = Fate::default();
@@ -214,12 +214,12 @@ fn a_flipped_bit_is_refused_or_after_sealing_harmless() {
         }
         eprintln!("{lattice_bits} bits: bits flipped and sealed again: {fate:?}");
         let many = 1000 / step();
-        assert!(fate.refused > many && fate.accepted > many);
+        assert!(fate.rejected > many && fate.accepted > many);
     }
 }
 
 #[test]
-fn words_of_extreme_value_are_refused_or_harmless() {
+fn words_of_extreme_value_are_rejected_or_harmless() {
     let bytes = small_blob(24);
     let mut fate = Fate::default();
     let mut put = |offset: usize, value: &[u8]| {
@@ -248,7 +248,7 @@ fn words_of_extreme_value_are_refused_or_harmless() {
 }
 
 #[test]
-fn random_bytes_are_refused() {
+fn random_bytes_are_rejected() {
     let mut random = Random(5);
     let valid = small_blob(24);
     for round in 0..20_000 {
@@ -270,7 +270,7 @@ fn random_bytes_are_refused() {
 }
 
 #[test]
-fn bytes_changed_at_random_are_refused_or_harmless() {
+fn bytes_changed_at_random_are_rejected_or_harmless() {
     let mut random = Random(6);
     let valid = small_blob(24);
     let mut fate = Fate::default();
@@ -293,7 +293,7 @@ fn bytes_changed_at_random_are_refused_or_harmless() {
 }
 
 #[test]
-fn a_misaligned_blob_is_refused() {
+fn a_misaligned_blob_is_rejected() {
     let bytes = small_blob(24);
     let padded = Blob::new(&[&[0; 16][..], &bytes, &[0; 16]].concat());
     for offset in 1..16 {
@@ -304,12 +304,12 @@ fn a_misaligned_blob_is_refused() {
     assert!(Scene::from_bytes(&padded.bytes()[16..16 + bytes.len()]).is_ok());
 }
 
-/// A ray that is none is refused, whatever is wrong with it.
+/// A ray that is none is rejected, whatever is wrong with it.
 #[test]
-fn what_is_no_ray_is_refused() {
+fn invalid_rays_are_rejected() {
     let blob = Blob::new(&small_blob(24));
     let scene = blob.scene().expect("a scene");
-    fn refused<N: Number>(scene: &Scene<'_>) {
+    fn rejected<N: Number>(scene: &Scene<'_>) {
         let good = UnitRay::new([0.0; 3], [1.0, 0.5, 0.25]);
         assert!(good.ready::<N>(scene).is_some());
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
@@ -335,5 +335,5 @@ fn what_is_no_ray_is_refused() {
             assert!(UnitRay { direction, ..good }.ready::<N>(scene).is_none());
         }
     }
-    every_format!(refused(&scene));
+    every_format!(rejected(&scene));
 }

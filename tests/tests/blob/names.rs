@@ -140,9 +140,9 @@ fn names_that_exceed_the_largest_size_are_left_out() {
         max_bytes: Some(without.bytes().len() as u64 - 1),
         ..Options::default()
     };
-    let refused = compile(&scene, &options).expect_err("too large");
+    let rejected = compile(&scene, &options).expect_err("too large");
     assert!(matches!(
-        refused,
+        rejected,
         compile::CompileError::TooLarge { over: 1, .. }
     ));
 }

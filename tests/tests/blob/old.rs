@@ -1,5 +1,5 @@
 //! Blobs of every version that was ever written: this build reads them and answers as recorded, or
-//! refuses them and says which versions are meant.
+//! rejects them and says which versions are meant.
 //!
 //! `fixtures/blobs` holds one of each structure, built from `scene.toml` there with `gridel build` as it
 //! was when the format had that version. These files stay as they are: when the format changes, its
@@ -22,7 +22,7 @@ struct Recorded {
     hit: Option<(u32, f64)>,
 }
 
-/// What t may differ by: the 16-bit lattice moves surfaces by so much.
+/// Largest difference of t: the 16-bit lattice moves surfaces by so much.
 const TOLERANCE: f64 = 1e-3;
 
 fn folder() -> PathBuf {
@@ -107,7 +107,7 @@ fn answers_as_recorded<N: Number>(name: &str, scene: &Scene<'_>, answers: &[Reco
 }
 
 #[test]
-fn old_blobs_load_and_answer_as_recorded_or_are_refused_by_version() {
+fn old_blobs_load_and_answer_as_recorded_or_are_rejected_by_version() {
     let answers = answers();
     assert!(answers.len() >= 20);
     let mut loaded = Vec::new();
@@ -142,7 +142,7 @@ fn old_blobs_load_and_answer_as_recorded_or_are_refused_by_version() {
 }
 
 #[test]
-fn unknown_versions_are_refused_with_both_versions() {
+fn unknown_versions_are_rejected_with_both_versions() {
     for (name, bytes) in blobs() {
         for unknown in [0, VERSION + 1, u16::MAX] {
             let mut bytes = bytes.clone();

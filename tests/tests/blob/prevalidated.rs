@@ -85,7 +85,7 @@ fn damage_is_found() {
     }
 }
 
-/// Whatever leads elsewhere is refused.
+/// Whatever leads elsewhere is rejected.
 #[test]
 fn disorder_is_found() {
     let bytes = blob_for_boards(24);
@@ -152,10 +152,10 @@ fn tables_cannot_be_prevalidated() {
     feature = "strict-ranges",
     ignore = "numbers that nobody proves leave their ranges"
 )]
-fn nothing_depends_on_what_is_not_proved() {
+fn nothing_depends_on_unproved_sections() {
     let mut random = Random(7);
     let valid = [16, 24].map(blob_for_boards);
-    let (mut refused, mut loaded) = (0, 0);
+    let (mut rejected, mut loaded) = (0, 0);
     for round in 0..6000 {
         let mut bytes = valid[round % 2].clone();
         let leaves = section(&bytes, SectionKind::Leaves).1.count;
@@ -163,7 +163,7 @@ fn nothing_depends_on_what_is_not_proved() {
             if kind > SectionKind::DualNodes || random.below(3) == 0 {
                 continue;
             }
-            // The view is proved: what is no camera is refused.
+            // The view is proved: what is no camera is rejected.
             let changes = if kind == SectionKind::View {
                 1
             } else {
@@ -182,7 +182,7 @@ fn nothing_depends_on_what_is_not_proved() {
         }
         match prevalidated(&sealed(&bytes)) {
             Err(error) => {
-                refused += 1;
+                rejected += 1;
                 speaks(&error);
             }
             Ok(scene) => {
@@ -191,7 +191,7 @@ fn nothing_depends_on_what_is_not_proved() {
             }
         }
     }
-    eprintln!("{loaded} blobs of any content loaded, {refused} refused");
+    eprintln!("{loaded} blobs of any content loaded, {rejected} rejected");
     assert!(loaded > 2000);
 }
 
@@ -254,7 +254,7 @@ fn walks_end<N: Number>(scene: &Scene<'_>, leaves: u32, rays_each: usize) {
     }
 }
 
-/// What is read of a blob while a program is compiled is what is read of its scene.
+/// Requirements that are read while a program is compiled equal those of the scene.
 #[test]
 fn demands_are_those_of_the_scene() {
     for (name, scene) in scenes::fixtures() {
@@ -286,7 +286,7 @@ fn demands_are_those_of_the_scene() {
 
 /// Whatever a blob was made of, reading its demand ends.
 #[test]
-fn demands_of_broken_blobs_are_read_or_refused() {
+fn requirements_of_broken_blobs_are_read_or_rejected() {
     let whole = blob_for_boards(24);
     let sections = usize::from(whole[offset_of!(Header, section_count)]);
     let table = size_of::<Header>() + sections * size_of::<SectionEntry>();

@@ -1,5 +1,5 @@
-//! What code, call stacks and pictures cost, by shape, effect and structure: programs that the memory
-//! report tells of, and the README's tables.
+//! Costs of code, call stacks and pictures, by shape, effect and structure: programs that the memory
+//! report shows, and the README's tables.
 
 use crate::figures::Figures;
 use crate::firmware::{Build, WASM, board};
@@ -41,7 +41,7 @@ pub fn plan(plan: &mut Plan) {
         .run(small_code_fits_in_16_kib);
 }
 
-/// What every shape and effect takes where all cores of its kind are measured: the README's table is
+/// Costs of every shape and effect where all cores of its kind are measured: the README's table is
 /// that of the smallest board.
 fn core_pays_for_parts_one_by_one(board: &'static Board, format: Format) {
     let mut linked = Linked::new();
@@ -62,7 +62,7 @@ fn core_pays_for_parts_one_by_one(board: &'static Board, format: Format) {
     linked.check();
 }
 
-/// What some parts take on a board, by which the memory report scales the figures of a similar core.
+/// Costs of some parts on a board, by which the memory report scales the figures of a similar core.
 fn board_pays_for_few_parts(board: &'static Board, format: Format) {
     let scene = parts::sphere_and_triangle();
     let mut linked = Linked::new();
@@ -72,7 +72,7 @@ fn board_pays_for_few_parts(board: &'static Board, format: Format) {
     linked.check();
 }
 
-/// What every shape and effect costs rays on the smallest board: the README's table.
+/// Costs per ray of every shape and effect on the smallest board: the README's table.
 fn shapes_and_effects_are_paid_for_one_by_one() {
     let discovery = board("stm32vldiscovery");
     let mut figures = Figures::new();
@@ -110,7 +110,7 @@ fn shapes_and_effects_are_paid_for_one_by_one() {
     );
 }
 
-/// What a product with every shape and effect takes on a board, fast or small, and on one of each kind
+/// Costs of a product with every shape and effect on a board, fast or small, and on one of each kind
 /// of core through every structure that boards prevalidate: by which the memory report scales.
 fn everything_on_a_board(board: &'static Board, format: Format) {
     let scene = scenes::quick();
@@ -131,7 +131,7 @@ fn everything_on_a_board(board: &'static Board, format: Format) {
 /// included: at most this where it shall be small.
 const SMALL_CODE: u64 = 16 * 1024;
 
-/// What the feature `small` saves, and what rays pay for it: the README's table.
+/// Savings of the feature `small`, and its costs per ray: the README's table.
 fn small_code_fits_in_16_kib() {
     let discovery = board("stm32vldiscovery");
     let scene = parts::sphere_and_triangle();

@@ -1,4 +1,4 @@
-//! What a program holds.
+//! The content of a program.
 
 use crate::stack::{CallGraph, Path};
 use object::{File, Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionKind, SymbolKind};

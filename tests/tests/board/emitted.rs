@@ -1,4 +1,4 @@
-//! What `gridel build --emit-rust` writes, and blobs that a program prevalidates.
+//! Modules of `gridel build --emit-rust`, and blobs that a program prevalidates.
 
 use crate::figures::Figures;
 use crate::firmware::{Build, board};
@@ -30,7 +30,7 @@ pub fn plan(plan: &mut Plan) {
     }
 }
 
-/// What `gridel build --emit-rust` writes runs on a board; with a blob that is not the one that it
+/// A module of `gridel build --emit-rust` runs on a board; with a blob that is not the one that it
 /// was written for, or that has no room, it does not compile.
 fn emitted_modules_run_or_do_not_compile() {
     let discovery = board("stm32vldiscovery");

@@ -1,4 +1,4 @@
-//! What was measured before, and whether it grew.
+//! Recorded figures, and whether they grew.
 
 use crate::scenes::repository;
 use std::collections::BTreeMap;
@@ -80,7 +80,7 @@ fn path() -> PathBuf {
     repository().join("fixtures/recorded/board.json")
 }
 
-/// What is recorded is what the boards are held to. An entry of a grid has two bytes, and is looked up
+/// Boards are compared with the recorded figures. An entry of a grid has two bytes, and is looked up
 /// among its list: that alone takes more.
 pub fn loading_takes_less_than_40_instructions_a_byte() {
     let recorded = fs::read(path()).expect("fixtures/recorded/board.json");
@@ -92,6 +92,6 @@ pub fn loading_takes_less_than_40_instructions_a_byte() {
         };
         let most = if build.ends_with("grid") { 60.0 } else { 40.0 };
         let spent = load as f64 / bytes as f64;
-        assert!(spent < most, "{build}: {spent:.1} instructions a byte");
+        assert!(spent < most, "{build}: {spent:.1} instructions per byte");
     }
 }

@@ -4,7 +4,7 @@ use crate::elf::Elf;
 use crate::scenes::{Compiled, repository};
 use gridel_core::{Format, Structure};
 use gridel_host::measure::board::Board;
-use gridel_host::measure::board::programs::{Place, Profile};
+use gridel_host::measure::board::programs::{Profile, ProgramKey};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -60,7 +60,7 @@ fn linker(board: &Board) -> Option<String> {
     Some(format!("{processor}-linux-gnu-gcc"))
 }
 
-/// What is missing to build a board's programs and to run them.
+/// Missing tools to build a board's programs and to run them.
 pub fn missing_for(board: &Board) -> Vec<String> {
     static KNOWN: Mutex<BTreeMap<String, bool>> = Mutex::new(BTreeMap::new());
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
@@ -85,7 +85,7 @@ pub fn missing_for(board: &Board) -> Vec<String> {
     missing
 }
 
-/// What the firmware is built for.
+/// The configuration of a firmware build.
 pub struct Build<'b> {
     board: &'b Board,
     format: Format,
@@ -140,7 +140,7 @@ impl<'b> Build<'b> {
         }
     }
 
-    /// The same with all arithmetic checked for overflow, as debug builds check it.
+    /// The build with all arithmetic checked for overflow, as debug builds check it.
     pub fn with_overflow_checks(self) -> Self {
         Self {
             overflow_checks: true,
@@ -157,7 +157,7 @@ impl<'b> Build<'b> {
     }
 
     /// The board, and what it computes in and through.
-    pub fn place(&self) -> Place<'b> {
+    pub fn place(&self) -> ProgramKey<'b> {
         (self.board, self.format, self.structure)
     }
 

@@ -142,7 +142,7 @@ fn pictures(plan: &mut Plan) {
 }
 
 /// Every number format and every structure, where lanes are those of NEON or of none, is the host's to
-/// the bit. Where bytes lie the other way round, the blob is refused.
+/// the bit. Where bytes lie the other way round, the blob is rejected.
 fn other_processors(plan: &mut Plan) {
     fn program<'b>(board: &'b Board, scene: &'b Compiled) -> Program<'b> {
         Build::new(board, Format::Fixed, Structure::DualSplit, scene)
@@ -170,10 +170,10 @@ fn other_processors(plan: &mut Plan) {
     }
     let name = format!("{NAME}::{}", S390X.name);
     plan.test(name).on(&S390X).in_full().run(move || {
-        let refusal = program(&S390X, &scenes::quick_through_everything()).failure();
+        let rejection = program(&S390X, &scenes::quick_through_everything()).failure();
         assert!(
-            refusal.contains("little-endian and this machine must be too"),
-            "{refusal}"
+            rejection.contains("little-endian and this machine must be too"),
+            "{rejection}"
         );
     });
 }

@@ -1,11 +1,11 @@
-//! What each shape and effect costs in flash, stack and instructions: by building and running a
+//! Costs of each shape and effect in flash, stack and instructions: by building and running a
 //! small scene with and without it.
 
 use crate::scenes::{Compiled, compile_with, small};
 use glam::DVec3;
 use gridel_core::{Kind, Structure};
 use gridel_host::compile::Options;
-use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Place, Scene, Shape};
+use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Scene, Shape, SourceSpan};
 use gridel_host::shape::{Cuboid, Sphere};
 use gridel_tests::shapes::examples;
 
@@ -65,7 +65,7 @@ pub fn every_shape() -> Compiled {
     compile("every-shape", scene)
 }
 
-/// What scenes often call for together: shapes, and effects. Each takes eight builds, two on every kind
+/// Shapes and effects that scenes often require together. Each takes eight builds, two on every kind
 /// of core, so the list is short; the memory report bounds what is not on it.
 pub fn combinations() -> impl Iterator<Item = (Vec<&'static str>, Vec<&'static str>)> {
     const EVERY: &str = "shadow highlight mirror glass absorption checker";
@@ -137,7 +137,7 @@ pub fn combination(shapes: &[&str], effects: &[&str]) -> Compiled {
     compiled
 }
 
-/// What the bar for flash is about: spheres and triangles, diffuse, with shadows.
+/// The parts of the bar for flash: spheres and triangles, diffuse, with shadows.
 pub fn sphere_and_triangle() -> Compiled {
     let mut scene = base();
     scene.render.shadows = true;
@@ -225,7 +225,7 @@ fn object(shape: Shape) -> Object {
         name: String::from("thing"),
         material: 0,
         shape,
-        place: Place::default(),
+        place: SourceSpan::default(),
     }
 }
 

@@ -11,7 +11,7 @@ use crate::scenes::{self, Compiled, repository};
 use gridel_core::{Format, Structure};
 use gridel_host::measure::board::Board;
 use gridel_host::measure::board::programs::{
-    Footprint, Place, Profile, Programs, parts as all_parts,
+    Footprint, Profile, ProgramKey, Programs, parts as all_parts,
 };
 use gridel_host::measure::board::{MemoryReport, Target};
 use std::path::PathBuf;
@@ -50,7 +50,7 @@ pub struct Linked(Vec<LinkedProgram>);
 
 struct LinkedProgram {
     name: String,
-    place: Place<'static>,
+    place: ProgramKey<'static>,
     parts: Vec<String>,
     profile: Profile,
     footprint: Footprint,
@@ -159,7 +159,7 @@ fn build<'s>(
     }
 }
 
-/// What the usual scenes call for, with coordinates of 24 bits as they are by default.
+/// Parts that usual scenes require, with coordinates of 24 bits as they are by default.
 fn programs_take_what_is_recorded(board: &'static Board, format: Format) {
     let mut linked = Linked::new();
     for (shapes, effects) in parts::combinations() {

@@ -106,7 +106,7 @@ fn primary_rays_of_suzanne(board: &'static Board, format: Format) {
     figures.check();
 }
 
-/// What meshes for boards are compiled to: narrow vertices, dual-split nodes alone.
+/// Options of meshes for boards: narrow vertices, dual-split nodes alone.
 fn primary_rays_of_suzanne_in_16_bits(board: &'static Board, format: Format) {
     let suzanne = scenes::suzanne_in_16_bits();
     assert!(suzanne.blob.bytes().len() <= 32 * 1024);
@@ -140,7 +140,7 @@ fn primary_rays_of_a_molecule(board: &'static Board, molecule: &Compiled) {
 /// Stack and workspace of a closest hit at most where there is no camera, in integers and in floats.
 const CAST_RAM: u64 = 1024;
 
-/// What a range finder or a collision needs: hits alone, those of the host's list.
+/// Rays of a range finder or a collision: hits alone, those of the host's brute force.
 fn rays_without_a_camera(board: &'static Board, format: Format, scene: &Compiled) {
     let mut figures = Figures::new();
     let build = Build::new(board, format, Structure::DualSplit, scene);
@@ -160,7 +160,7 @@ fn rays_without_a_camera(board: &'static Board, format: Format, scene: &Compiled
     figures.check();
 }
 
-/// What the rays of `casts` meet on the host, each primitive tested.
+/// Hits of the rays of `casts` on the host, each primitive tested.
 fn casts_through_the_list(scene: &Compiled, format: Format) -> Casts {
     let scene = scene.blob.scene().expect("the compiler's own blob");
     let (mut casts, mut stack) = (Casts::default(), Stack::<0>::new());

@@ -7,7 +7,7 @@ use gridel_host::blob::Blob;
 use gridel_host::compile::{self, Options};
 use gridel_host::render::{Job, render};
 use gridel_host::sample;
-use gridel_host::scene::{self, Camera, Light, Material, Object, Place, Scene, Shape};
+use gridel_host::scene::{self, Camera, Light, Material, Object, Scene, Shape, SourceSpan};
 use gridel_tests::scenes::from_its_corner;
 use std::env;
 use std::f64::consts::TAU;
@@ -24,7 +24,7 @@ pub fn quick() -> Compiled {
     fixture("quick", [48, 36])
 }
 
-/// The same with every structure, small tables among them.
+/// That scene with every structure, small tables among them.
 pub fn quick_through_everything() -> Compiled {
     let options = Options {
         structures: Structure::ALL.to_vec(),
@@ -53,7 +53,7 @@ pub const PAPERS: [&str; 3] = ["paper-150", "paper-2800", "paper-27000"];
 /// The smaller crystal, seen from so near that it fills the picture.
 pub const CLOSE: &str = "paper-2800-close";
 
-/// One of these scenes, with some structures; the cylinder cubes with so many gridels a side.
+/// One of these scenes, with some structures; the cylinder cubes with so many gridels per side.
 pub fn paper(name: &'static str, structures: &[Structure], gridels: Option<u32>) -> Compiled {
     let mut scene = match name {
         "paper-150" => load(&fixture_path("glass-chess")),
@@ -144,7 +144,7 @@ pub fn torus_mesh() -> Compiled {
                     .collect(),
                 triangles: cells.flat_map(|(ring, step)| faces(ring, step)).collect(),
             },
-            place: Place::default(),
+            place: SourceSpan::default(),
         }],
         ..Scene::default()
     };
@@ -201,12 +201,12 @@ impl Compiled {
         scene.features().collect()
     }
 
-    /// The picture as the host renders it: three bytes a pixel.
+    /// The picture as the host renders it: three bytes per pixel.
     pub fn picture(&self, format: Format) -> Vec<u8> {
         self.picture_through(Structure::DualSplit, format)
     }
 
-    /// The same through a structure of choice.
+    /// Returns the picture through a structure of choice.
     pub fn picture_through(&self, structure: Structure, format: Format) -> Vec<u8> {
         let scene = self.blob.scene().expect("the compiler's own blob");
         let job = Job::whole(format, structure, Settings::of(&scene));
@@ -260,7 +260,7 @@ fn compile(name: &'static str, scene: Scene, size: [u32; 2]) -> Compiled {
     compile_with(name, scene, size, options)
 }
 
-/// What takes the least flash.
+/// Returns the options that take the least flash.
 pub fn small() -> Options {
     Options {
         structures: vec![Structure::DualSplit],

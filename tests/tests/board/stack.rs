@@ -5,7 +5,7 @@
 //! takes. The bound holds because nothing is called through a pointer that was handed on and nothing
 //! recurses: both are demanded here. Relocations show whose address is taken and where. Only code may
 //! take one, and counts as calling it: small code loads the address of what it calls more than twice,
-//! and calls the register. What calls a register without having taken an address is refused.
+//! and calls the register. What calls a register without having taken an address is rejected.
 
 use object::elf::{
     R_ARM_ABS32, R_ARM_MOVT_ABS, R_ARM_MOVW_ABS_NC, R_ARM_THM_MOVT_ABS, R_ARM_THM_MOVW_ABS_NC,
@@ -201,7 +201,7 @@ fn stated_frames(file: &File<'_>) -> BTreeMap<u64, u64> {
     frames
 }
 
-/// What only the hardware calls, by an address that the start-up code hands to it.
+/// Functions that only the hardware calls, by an address that the start-up code hands to it.
 const TRAPS: [&str; 3] = ["_start_trap", "_default_start_trap", "_default_abort"];
 /// The steps of riscv-rt's start-up code, which jumps through registers from one to the next.
 const STEPS: [&str; 2] = ["_abs_start", "_start_rust"];
@@ -275,7 +275,7 @@ struct Code<'d> {
     data_from: BTreeMap<u64, bool>,
 }
 
-/// What decoding a function found.
+/// The result of decoding a function.
 #[derive(Default)]
 struct Decoded {
     /// Bytes by which the stack pointer falls; `None` if that is unknown.

@@ -1,9 +1,9 @@
-//! What accuracy costs, as `gridel accuracy` recorded it.
+//! Costs of accuracy, as `gridel accuracy` recorded them.
 
 use super::{BENCHMARKS, README, holds_table, text};
 use serde_json::Value;
 
-/// Settings that differ from the first in one lever.
+/// Settings that differ from the first in one parameter.
 const SETTINGS: [(&str, Change); 11] = [
     ("1 sample per pixel", |_| ()),
     ("4 samples", |setting| setting.samples = 4),

@@ -6,18 +6,18 @@ use gridel_host::measure::board::Board;
 use gridel_host::measure::board::programs::{Footprint, Programs};
 use gridel_host::table::grouped;
 
-/// What the board tests recorded.
+/// The records of the board tests.
 pub fn boards() -> serde_json::Value {
     let recorded = text("fixtures/recorded/board.json");
     serde_json::from_str(&recorded).expect("a table")
 }
 
-/// What they recorded of a scene on a board, through dual-split nodes.
+/// Their records of a scene on a board, through dual-split nodes.
 fn on_board(scene: &str, board: &str, format: &str) -> impl Fn(&str) -> u64 {
     of_build(format!("{scene} {board} {format} dual-split"))
 }
 
-/// What they recorded of a build.
+/// Their records of a build.
 fn of_build(build: String) -> impl Fn(&str) -> u64 {
     let recorded = boards();
     move |name| {
@@ -151,7 +151,7 @@ fn memory_page_shows_recorded_pictures_and_rays() {
     holds_table(MEMORY, "rays", &rays);
 }
 
-/// What programs with code for triangles and a part take on the smallest board: the fast one, and that
+/// Costs of programs with code for triangles and a part on the smallest board: the fast one, and that
 /// of small code if it was built.
 fn program(part: &str) -> Vec<Footprint> {
     let parts = match part {

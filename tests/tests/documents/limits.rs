@@ -3,8 +3,11 @@
 use super::{BENCHMARKS, MEMORY, PAPER, README, STRUCTURES, repository, text};
 use std::path::Path;
 
-const DOCUMENTS: [&str; 9] = [
+const DOCUMENTS: [&str; 12] = [
     README,
+    "core/README.md",
+    "core/x86/README.md",
+    "host/README.md",
     "CONTRIBUTING.md",
     "CHANGELOG.md",
     "host/docs/SCENE.md",
@@ -70,5 +73,21 @@ fn documents_link_to_files_that_exist() {
             }
             assert!(folder.join(path).exists(), "{document}: {target}");
         }
+    }
+}
+
+/// A package holds its own folder alone: its page cannot link to files of the repository.
+#[test]
+fn pages_of_packages_have_no_relative_links() {
+    for package in ["core", "core/x86", "host"] {
+        let manifest = text(&format!("{package}/Cargo.toml"));
+        assert!(manifest.contains("\nreadme = \"README.md\"\n"), "{package}");
+        let page = text(&format!("{package}/README.md"));
+        let targets: Vec<_> = page.split("](").skip(1).collect();
+        assert!(!targets.is_empty(), "{package}");
+        assert!(
+            targets.iter().all(|it| it.starts_with("https://")),
+            "{package}"
+        );
     }
 }

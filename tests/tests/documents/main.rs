@@ -1,7 +1,10 @@
-//! What the documents show is what the project has: examples and dumps cannot fall behind.
+//! Documents show the project as it is: examples and dumps cannot fall behind.
 
 mod accuracy;
 mod boards;
+mod changelog;
+mod contributing;
+mod features;
 mod format;
 mod keys;
 mod limits;

@@ -1,10 +1,10 @@
-//! What `gridel compare` measured on a host: the paper's scenes, and how structures fare as one grows.
+//! Measurements of `gridel compare` on a host: the paper's scenes, and how structures fare as one grows.
 
 use super::{PAPER, STRUCTURES, holds_table, text};
 use gridel_host::table::grouped;
 use serde_json::Value;
 
-/// What `gridel compare --json` printed.
+/// The output of `gridel compare --json`.
 fn recorded(scene: &str) -> Value {
     let recorded = text(&format!("fixtures/recorded/compare/{scene}.json"));
     serde_json::from_str(&recorded).expect("a comparison")

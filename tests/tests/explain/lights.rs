@@ -1,14 +1,14 @@
 //! Lights at a hit, and what blocks them.
 
-use super::story;
+use super::explanation;
 use gridel_core::{Format, Settings, Structure};
-use gridel_host::explain::{Fall, Step, Subject, Verdict, explain};
-use gridel_host::scene::{Light, Object, Place, Shape};
+use gridel_host::explain::{LightOutcome, Step, Subject, Verdict, explain};
+use gridel_host::scene::{Light, Object, Shape, SourceSpan};
 use gridel_host::shape::{Cuboid, Sphere};
 use gridel_host::trace::SceneRay;
 use gridel_tests::scenes;
 
-/// What stands in a light's way is named, and what is culled says why.
+/// An object in a light's way is named, and culled nodes say why.
 #[test]
 fn reasons_are_true() {
     let ball = |x: f64, y: f64| {
@@ -25,7 +25,7 @@ fn reasons_are_true() {
             min: glam::DVec3::new(-20.0, -3.0, -20.0),
             max: glam::DVec3::new(20.0, -2.0, 20.0),
         }),
-        place: Place::default(),
+        place: SourceSpan::default(),
     });
     scene.lights = vec![
         Light::Directional {
@@ -46,23 +46,23 @@ fn reasons_are_true() {
         tmax: f64::INFINITY,
     };
     let settings = Settings::of(&scene);
-    let story = explain(
+    let explanation = explain(
         &scene,
         Format::F64,
         Structure::Bvh,
         settings,
         Subject::Ray(ray),
     );
-    let story = story.expect("a story");
-    let first = &story.samples[0].rays[0];
+    let explanation = explanation.expect("a explanation");
+    let first = &explanation.samples[0].rays[0];
     assert_eq!(first.hit.as_ref().map(|hit| hit.object), Some(0));
-    let falls: Vec<_> = first.lights.iter().map(|light| &light.fall).collect();
-    let blocked = Fall::Blocked {
+    let outcomes: Vec<_> = first.lights.iter().map(|light| &light.outcome).collect();
+    let blocked = LightOutcome::Blocked {
         kind: "sphere",
         primitive: 1,
         object: 1,
     };
-    assert_eq!(falls, [&blocked, &Fall::Behind]);
+    assert_eq!(outcomes, [&blocked, &LightOutcome::Behind]);
     let walk = first.walk.as_ref().expect("a walk");
     let verdicts = walk.steps.iter().filter_map(|step| match step {
         Step::Candidate(candidate) => Some((candidate.primitive, candidate.verdict)),
@@ -73,7 +73,7 @@ fn reasons_are_true() {
 
 /// A light that has no direction, because it lies where the ray to it would start, is reported, too.
 #[test]
-fn a_light_at_the_point_itself_is_told() {
+fn light_at_the_point_itself_is_reported() {
     let mut scene = scenes::of([Shape::Box(Cuboid {
         min: glam::DVec3::splat(-1.0),
         max: glam::DVec3::ONE,
@@ -97,19 +97,19 @@ fn a_light_at_the_point_itself_is_told() {
         ];
         let blob = scenes::blob(&scene, 24);
         let scene = blob.scene().expect("a scene");
-        let story = story(&scene, Format::Fixed, Structure::Bvh, ray);
-        let ray = &story.samples[0].rays[0];
-        let falls: Vec<_> = ray
+        let explanation = explanation(&scene, Format::Fixed, Structure::Bvh, ray);
+        let ray = &explanation.samples[0].rays[0];
+        let outcomes: Vec<_> = ray
             .lights
             .iter()
-            .map(|l| (l.light, l.fall.clone()))
+            .map(|l| (l.light, l.outcome.clone()))
             .collect();
         let hit = ray.hit.as_ref().expect("a hit");
         // Rays start on the face itself.
-        (falls, hit.point[1])
+        (outcomes, hit.point[1])
     };
     let (above, start) = falls_at(3.0);
-    assert_eq!(above, [(0, Fall::Lit), (1, Fall::Lit)]);
+    assert_eq!(above, [(0, LightOutcome::Lit), (1, LightOutcome::Lit)]);
     let (here, _) = falls_at(start);
-    assert_eq!(here, [(0, Fall::Here), (1, Fall::Lit)]);
+    assert_eq!(here, [(0, LightOutcome::Here), (1, LightOutcome::Lit)]);
 }

@@ -1,4 +1,4 @@
-//! The story of a pixel is that of the pixel that is rendered: the same hits, and parts that add up.
+//! The explanation of a pixel is that of the pixel that is rendered: the same hits, and parts that add up.
 
 mod lights;
 mod points;
@@ -6,17 +6,25 @@ mod sums;
 mod walks;
 
 use gridel_core::{Format, Scene, Settings, Structure};
-use gridel_host::explain::{Story, Subject, Walk, explain};
+use gridel_host::explain::{Explanation, Subject, Walk, explain};
 use gridel_host::trace::SceneRay;
 
-fn story(scene: &Scene<'_>, format: Format, structure: Structure, ray: SceneRay) -> Story {
+fn explanation(
+    scene: &Scene<'_>,
+    format: Format,
+    structure: Structure,
+    ray: SceneRay,
+) -> Explanation {
     let settings = Settings::of(scene);
-    explain(scene, format, structure, settings, Subject::Ray(ray)).expect("a story")
+    explain(scene, format, structure, settings, Subject::Ray(ray)).expect("a explanation")
 }
 
 /// The way of the ray itself.
-fn way(story: &Story) -> &Walk {
-    story.samples[0].rays[0].walk.as_ref().expect("a walk")
+fn way(explanation: &Explanation) -> &Walk {
+    explanation.samples[0].rays[0]
+        .walk
+        .as_ref()
+        .expect("a walk")
 }
 
 fn rays(seed: u64, count: usize) -> impl Iterator<Item = SceneRay> {

@@ -1,22 +1,22 @@
 //! Hits lie on their rays within the printed bound.
 
-use super::{rays, story, way};
+use super::{explanation, rays, way};
 use gridel_core::{Format, Settings, Structure};
-use gridel_host::explain::{Names, Shown, Story, Subject, explain};
+use gridel_host::explain::{Explanation, Names, Shown, Subject, explain};
 use gridel_host::trace::{Frame, SceneRay};
 use gridel_tests::scenes;
 
-/// Checks that `origin + distance * direction` is the point of every hit of a story, in JSON and
+/// Checks that `origin + distance * direction` is the point of every hit of a explanation, in JSON and
 /// in print. Returns the number of hits, and the largest bound.
-fn hits_lie_on_their_rays(story: &Story, about: &dyn Fn() -> String) -> (usize, f64) {
+fn hits_lie_on_their_rays(explanation: &Explanation, about: &dyn Fn() -> String) -> (usize, f64) {
     let names = Names::default();
     let text = Shown {
-        story,
+        explanation,
         names: &names,
         all_walks: false,
     };
     let text = text.to_string();
-    let json = serde_json::to_value(story).expect("JSON");
+    let json = serde_json::to_value(explanation).expect("JSON");
     let numbers = |value: &serde_json::Value| {
         let number = |k: usize| value[k].as_f64().expect("a number");
         glam::DVec3::new(number(0), number(1), number(2))
@@ -68,9 +68,9 @@ fn hits_lie_on_their_rays(story: &Story, about: &dyn Fn() -> String) -> (usize, 
     (hits, largest)
 }
 
-/// The origin in a story is the ray's own, wherever the kernels start, and distances count from it.
+/// The origin in a explanation is the ray's own, wherever the kernels start, and distances count from it.
 #[test]
-fn explain_tells_points_that_lie_on_the_ray_as_given() {
+fn explain_gives_points_that_lie_on_the_given_ray() {
     let blob = scenes::blob(&scenes::soup(13, 150, 0.3), 24);
     let scene = blob.scene().expect("a scene");
     let frame = Frame::of(&scene);
@@ -88,11 +88,11 @@ fn explain_tells_points_that_lie_on_the_ray_as_given() {
             };
             for format in Format::ALL {
                 for structure in [Structure::List, Structure::DualSplit, Structure::Wide] {
-                    let story = story(&scene, format, structure, ray);
+                    let explanation = explanation(&scene, format, structure, ray);
                     let about = || format!("{} {} {ray:?}", format.name(), structure.name());
-                    let walk = way(&story);
+                    let walk = way(&explanation);
                     assert_eq!(walk.origin, ray.origin.to_array(), "{}", about());
-                    let (found, error) = hits_lie_on_their_rays(&story, &about);
+                    let (found, error) = hits_lie_on_their_rays(&explanation, &about);
                     hits += found;
                     // The bound is no excuse: a few steps of the format, and of these numbers.
                     let (bits, digits) = match format {
@@ -105,7 +105,7 @@ fn explain_tells_points_that_lie_on_the_ray_as_given() {
                     assert!(error <= most, "{}: {error:e} {most:e}", about());
                     // The rest of the way counts from the same place.
                     let met = walk.met().and_then(|met| met.crossing);
-                    let hit = story.samples[0].rays[0].hit.as_ref();
+                    let hit = explanation.samples[0].rays[0].hit.as_ref();
                     if let (Some([enter, leave]), Some(hit)) = (met, hit) {
                         let apart = |t: f64| (t - hit.distance).abs();
                         let nearest = apart(enter).min(apart(leave));
@@ -118,9 +118,9 @@ fn explain_tells_points_that_lie_on_the_ray_as_given() {
     }
 }
 
-/// Rays from the camera, through glass and off mirrors lie on the lines of their stories, too.
+/// Rays from the camera, through glass and off mirrors lie on the lines of their explanations, too.
 #[test]
-fn explain_tells_points_that_lie_on_the_rays_of_pixels() {
+fn explain_gives_points_that_lie_on_the_rays_of_pixels() {
     for (name, scene) in scenes::fixtures() {
         let blob = scenes::blob(&scene, 24);
         let view = blob.scene().expect("a scene");
@@ -135,10 +135,10 @@ fn explain_tells_points_that_lie_on_the_rays_of_pixels() {
             for place in (0..32 * 24).step_by(11) {
                 let pixel = [(place % 32) as u16, (place / 32) as u16];
                 let subject = Subject::Pixel(pixel);
-                let story = explain(&view, format, Structure::DualSplit, settings, subject);
-                let story = story.expect("a story");
+                let explanation = explain(&view, format, Structure::DualSplit, settings, subject);
+                let explanation = explanation.expect("a explanation");
                 let about = || format!("{name} {} {pixel:?}", format.name());
-                hits += hits_lie_on_their_rays(&story, &about).0;
+                hits += hits_lie_on_their_rays(&explanation, &about).0;
             }
         }
         assert!(hits > 10, "{name}: {hits} hits");

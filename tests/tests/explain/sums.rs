@@ -39,12 +39,15 @@ fn parts_add_up(name: &str, scene: &Scene<'_>, samples: u16) {
         for place in (0..picture.pixels.len()).step_by(7) {
             let pixel = [(place % 32) as u16, (place / 32) as u16];
             let about = || format!("{name} {} {} {pixel:?}", format.name(), structure.name());
-            let story = explain(scene, format, structure, settings, Subject::Pixel(pixel));
-            let story = story.expect("a story");
-            assert_eq!(story.linear, picture.pixels[place], "{}", about());
-            assert_eq!((story.pixel, story.picture), (Some(pixel), Some([32, 24])));
-            assert_eq!(story.samples.len(), usize::from(samples));
-            for sample in &story.samples {
+            let explanation = explain(scene, format, structure, settings, Subject::Pixel(pixel));
+            let explanation = explanation.expect("a explanation");
+            assert_eq!(explanation.linear, picture.pixels[place], "{}", about());
+            assert_eq!(
+                (explanation.pixel, explanation.picture),
+                (Some(pixel), Some([32, 24]))
+            );
+            assert_eq!(explanation.samples.len(), usize::from(samples));
+            for sample in &explanation.samples {
                 assert_eq!(sum(format, sample), sample.radiance, "{}", about());
                 for (number, ray) in sample.rays.iter().enumerate() {
                     hits += usize::from(ray.hit.is_some());
@@ -64,12 +67,16 @@ fn parts_add_up(name: &str, scene: &Scene<'_>, samples: u16) {
                     );
                 }
             }
-            // The story has as many tests as were counted, those of shadow rays included.
+            // The explanation has as many tests as were counted, those of shadow rays included.
             let walks = || {
-                story.samples.iter().flat_map(|s| &s.rays).flat_map(|ray| {
-                    let shadows = ray.lights.iter().flat_map(|light| &light.shadow);
-                    ray.walk.iter().chain(shadows)
-                })
+                explanation
+                    .samples
+                    .iter()
+                    .flat_map(|s| &s.rays)
+                    .flat_map(|ray| {
+                        let shadows = ray.lights.iter().flat_map(|light| &light.shadow);
+                        ray.walk.iter().chain(shadows)
+                    })
             };
             let candidates: usize = walks().map(|walk| walk.candidates).sum();
             let tested: usize = walks()
@@ -105,7 +112,7 @@ fn parts_add_up_to_the_pixel() {
     }
 }
 
-/// A ray's own story has the hit that `trace` returns.
+/// A ray's own explanation has the hit that `trace` returns.
 #[test]
 fn a_rays_hit_is_the_one_that_is_traced() {
     let blob = scenes::blob(&scenes::soup(11, 200, 0.3), 24);
@@ -128,9 +135,9 @@ fn a_rays_hit_is_the_one_that_is_traced() {
             trace(&scene, &[ray], query, &mut hits);
             let settings = Settings::of(&scene);
             let subject = Subject::Ray(ray);
-            let story = explain(&scene, format, Structure::Flagged, settings, subject);
-            let story = story.expect("a story");
-            let hit = story.samples[0].rays[0].hit.as_ref();
+            let explanation = explain(&scene, format, Structure::Flagged, settings, subject);
+            let explanation = explanation.expect("a explanation");
+            let hit = explanation.samples[0].rays[0].hit.as_ref();
             let [traced] = hits;
             assert_eq!(hit.map_or(u32::MAX, |hit| hit.primitive), traced.primitive);
             if let Some(hit) = hit {

@@ -1,6 +1,6 @@
 //! Nodes and planes that a ray tests.
 
-use super::{rays, story, way};
+use super::{explanation, rays, way};
 use gridel_core::{Format, Structure};
 use gridel_host::explain::{Culled, Names, Shown, Step, Walk};
 use gridel_host::trace::{Frame, SceneRay};
@@ -9,7 +9,7 @@ use std::collections::HashMap;
 
 /// Whether a hierarchy culls in integers or in lanes, it reports where a ray is in the same units.
 #[test]
-fn spans_are_told_in_units() {
+fn spans_are_reported_in_units() {
     let blob = scenes::blob(&scenes::soup(12, 120, 0.1), 24);
     let scene = blob.scene().expect("a scene");
     let unit = Frame::of(&scene).length(1.0);
@@ -25,12 +25,13 @@ fn spans_are_told_in_units() {
             along.min_element() > 0.2 * along.max_element()
         };
         for ray in rays(6, 400).filter(steep) {
-            let [fixed, f32, f64] = Format::ALL.map(|format| story(&scene, format, structure, ray));
+            let [fixed, f32, f64] =
+                Format::ALL.map(|format| explanation(&scene, format, structure, ray));
             if fixed.samples[0].rays[0].hit.is_some() {
                 continue;
             }
             let fixed = spans(way(&fixed));
-            for other in [&f32, &f64].map(|story| spans(way(story))) {
+            for other in [&f32, &f64].map(|explanation| spans(way(explanation))) {
                 for (place, fixed) in &fixed {
                     let other = other.get(place).into_iter().flatten();
                     for (a, b) in fixed.iter().zip(other) {
@@ -67,7 +68,7 @@ fn spans(walk: &Walk) -> HashMap<&str, Vec<[f64; 2]>> {
 
 /// Places that are reported as culled are not opened; all others are opened or given up.
 #[test]
-fn what_is_told_is_what_is_done() {
+fn reported_walks_are_the_walks_of_queries() {
     let path = scenes::fixture_folder().join("glass-chess.toml");
     let blob = scenes::blob(&scenes::read(&path), 24);
     let scene = blob.scene().expect("a scene");
@@ -90,10 +91,10 @@ fn what_is_told_is_what_is_done() {
     for (format, structure) in held.iter().flat_map(|&s| Format::ALL.map(|f| (f, s))) {
         let mut empty = 0;
         for ray in &rays {
-            let story = story(&scene, format, structure, *ray);
+            let explanation = explanation(&scene, format, structure, *ray);
             let about = || format!("{} {} {ray:?}", format.name(), structure.name());
             let (mut left_out, mut opened, mut entered) = (vec![], vec![], vec![]);
-            for step in &way(&story).steps {
+            for step in &way(&explanation).steps {
                 match step {
                     Step::Tested(tested) if tested.culled.is_some() => {
                         left_out.push(&tested.place);
@@ -116,7 +117,7 @@ fn what_is_told_is_what_is_done() {
             // No two tests read the same.
             let names = Names::default();
             let shown = Shown {
-                story: &story,
+                explanation: &explanation,
                 names: &names,
                 all_walks: false,
             };

@@ -1,4 +1,4 @@
-//! Closed meshes stay closed where triangles collapse: their neighbours are cut.
+//! Closed meshes stay closed where triangles collapse: their neighbors are cut.
 
 use super::meshes::{Mesh, cut_box, stretched, torus};
 use glam::DVec3;
@@ -239,7 +239,7 @@ fn chains_of_slivers_cut_their_neighbours() {
 
 /// Slivers in a zigzag would need more pieces than there are triangles.
 #[test]
-fn zigzags_of_slivers_are_refused() {
+fn zigzags_of_slivers_are_rejected() {
     const POINTS: u32 = 60;
     let mut vertices = vec![DVec3::ZERO];
     vertices.extend((0..POINTS).map(|k| {
@@ -264,7 +264,7 @@ fn zigzags_of_slivers_are_refused() {
 
 /// A closed mesh that lies in one plane has no inside that a ray could be in.
 #[test]
-fn flattened_closed_meshes_are_refused() {
+fn flattened_closed_meshes_are_rejected() {
     let flat = DVec3::new(65_536.0, 1.0, 1.0 / 1024.0);
     for (name, mesh, _) in meshes() {
         let error = compiled(stretched(mesh.clone(), flat), 24)

@@ -258,7 +258,7 @@ fn disc_with_small_integer_normal_is_exact() {
         };
         let stored = DVec3::from_array(disc.normal.map(f64::from));
         assert!(stored.abs().max_element() <= 7.0, "{stored}");
-        // From twice the normal, back along it, through the centre.
+        // From twice the normal, back along it, through the center.
         let ray = UnitRay::new((stored * 1000.0).to_array(), (-stored).to_array());
         let ray = ray.ready::<f64>(&blob).expect("a ray");
         let hit = closest::<f64, Bvh>(&blob, &ray, &mut NoCount).expect("a hit");
@@ -278,7 +278,7 @@ fn disc_with_small_integer_normal_is_exact() {
     );
 }
 
-/// What the lattice does not move is said not to be moved.
+/// Surfaces that the lattice does not move have displacement 0.
 #[test]
 fn surfaces_on_the_lattice_have_no_displacement() {
     let on_lattice = |k: u32| f64::from(k) / 64.0;

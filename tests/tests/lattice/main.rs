@@ -1,4 +1,4 @@
-//! What snapping does to surfaces, to closed meshes, and to grids over what is stretched.
+//! Effects of snapping on surfaces, on closed meshes, and on grids over stretched objects.
 
 mod closed;
 mod displacement;

@@ -4,7 +4,7 @@ use super::paths::{Named, absolute, paths};
 use super::source::{Module, Source, module};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What is wrong with the imports of some files.
+/// Returns the faults of the imports of some files.
 pub(super) fn faults(sources: &[Source], order: &[&str]) -> Vec<String> {
     let files: BTreeMap<Module, &Source> = sources
         .iter()
@@ -25,10 +25,13 @@ pub(super) fn faults(sources: &[Source], order: &[&str]) -> Vec<String> {
                 continue;
             };
             let name = alias.or(path.last().cloned()).unwrap_or_default();
+            // A module passes on what its own files declare without importing anything.
+            let is_own = is_public && target.starts_with(module);
+            if !module.is_empty() && !is_own {
+                named.push((module.clone(), target.clone(), line));
+            }
             if is_public {
                 passed_on.insert([&module[..], &[name]].concat(), target);
-            } else if !module.is_empty() {
-                named.push((module.clone(), target, line));
             }
         }
     }
@@ -146,6 +149,36 @@ fn a_cycle_within_a_layer_is_found() {
         [
             "low/a.rs:2: `low::b` is part of a cycle",
             "low/b.rs:2: `low::a` is part of a cycle",
+        ]
+    );
+}
+
+#[test]
+fn re_export_of_a_higher_layer_is_found() {
+    for re_export in [
+        "pub use crate::high::Thing;\n",
+        "pub(crate) use super::high::{self, Thing as Other};\n",
+    ] {
+        let found = made_up(&[("low.rs", re_export), ("high.rs", "pub struct Thing;")]);
+        let expected = "low.rs:1: `low` imports `high` of a higher layer";
+        assert!(
+            !found.is_empty() && found.iter().all(|it| it == expected),
+            "{found:?}"
+        );
+    }
+}
+
+#[test]
+fn cycle_through_a_re_export_is_found() {
+    let files = [
+        ("low/a.rs", "pub use super::b::B;\npub struct A;\n"),
+        ("low/b.rs", "use super::a::A;\npub struct B;\n"),
+    ];
+    assert_eq!(
+        made_up(&files),
+        [
+            "low/a.rs:1: `low::b` is part of a cycle",
+            "low/b.rs:1: `low::a` is part of a cycle",
         ]
     );
 }

@@ -20,6 +20,7 @@ const CORE: Layers = Layers {
     order: &[
         "axis target simd format observe",
         "number ray geometry accel scene query shade render selftest",
+        "shared",
     ],
 };
 

@@ -56,7 +56,7 @@ pub(super) fn endless(origin: DVec3, direction: DVec3) -> SceneRay {
     }
 }
 
-/// What t may be off by: its own rounding, and the ball's.
+/// The error bound of t: its own rounding, and the ball's.
 fn slack(format: Format, t: f64, unit: f64) -> f64 {
     let rounding = match format {
         Format::Fixed => 0.0,

@@ -95,7 +95,7 @@ fn judge_far_rays<N: Number>(
     worst
 }
 
-/// What is answered is right for the ray that was given, not for one beside it.
+/// Answers are right for the given ray, not for one beside it.
 #[test]
 fn far_rays_keep_their_place() {
     let blob = scenes::compact_blob(&scenes::soup(0x0516, 24, 0.6), 24);

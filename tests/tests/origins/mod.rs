@@ -1,6 +1,6 @@
 //! Origins and directions of every magnitude (hard cases F: origins at 10^k, directions of 10^-k).
 //!
-//! What is answered is right within the bounds of a hit in the scene, not of the distance that the ray
+//! Answers are right within the bounds of a hit in the scene, not of the distance that the ray
 //! comes from; t is rounded once more. What is not answered is rejected with a reason. Nothing else.
 
 mod answers;

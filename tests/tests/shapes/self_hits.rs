@@ -183,7 +183,7 @@ fn ground(random: &mut Random, shape: usize) -> (Solid, f64) {
     (solid, height)
 }
 
-/// What meets a ground as large as the scene from close by leaves it, though the bound is that of the place
+/// A ray that hits a ground as large as the scene from close by leaves it, though the bound is that of the place
 /// and not of the scene.
 #[test]
 fn rays_that_leave_a_large_ground_do_not_meet_it() {

@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 /// A torus as a ray is aimed at it.
 struct Target {
     center: DVec3,
-    /// Of length 1, like those across it, which are at right angles.
+    /// Direction of length 1, like those across it, which are at right angles.
     axis: DVec3,
     outward: DVec3,
     around: DVec3,
@@ -213,7 +213,7 @@ fn rings_of_one_step() {
 }
 
 /// Radii at both ends of their ranges: a step each, and a reach as large as the lattice, around an axis of
-/// coordinates and around a diagonal, where it reaches beyond the lattice's end from the centre.
+/// coordinates and around a diagonal, where it reaches beyond the lattice's end from the center.
 #[test]
 fn tori_at_the_ends_of_the_lattice() {
     let mut random = Random(75);

@@ -17,7 +17,7 @@ pub struct Board {
     /// The file with the picture that the program writes.
     pub picture: Option<String>,
     pub format: Format,
-    /// Of `-icount`: an instruction takes 2^shift ns on the board's clock.
+    /// The value of `-icount`: an instruction takes 2^shift ns on the board's clock.
     pub shift: u32,
     pub seconds: u32,
     /// The most for each figure that the program prints.

@@ -114,7 +114,7 @@ fn another_picture_is_broken_and_shown() {
 }
 
 #[test]
-fn what_cannot_be_read_is_broken_and_the_rest_goes_on() {
+fn unreadable_files_fail_and_other_checks_go_on() {
     let folder = Folder::new();
     fs::write(folder.path("broken.gridel"), "GRIDEL, or not").unwrap();
     fs::write(folder.path("bad.toml"), "object = 3").unwrap();

@@ -19,7 +19,7 @@ use std::path::PathBuf;
 ///   RMSE           root of the mean square difference, over all pixels and channels
 ///   largest        largest difference
 ///   pixels off     pixels with a channel that differs by more than 1/255
-///   SSIM           mean structural similarity of the grey pictures in windows of 8 by 8; 1 is equal
+///   SSIM           mean structural similarity of the gray pictures in windows of 8 by 8; 1 is equal
 ///   FLIP           mean difference that an eye sees when pictures alternate; 0 is equal
 ///   other objects  rays through the middles of pixels that hit another object, or none
 ///   t              error of the distance of the others, in units of the last place of single

@@ -22,7 +22,7 @@ pub fn encoded(pixels: &[[u16; 3]]) -> Vec<u8> {
     pixels.collect()
 }
 
-/// What an earlier run measured of the same. Another's results, or files of other sorts, are not replaced.
+/// Returns the results of an earlier run with the same key. Results of other runs, and other files, are not replaced.
 pub fn kept(folder: &Path, key: &str) -> Result<Option<Results>, Failure> {
     let file = folder.join(RESULTS);
     let foreign = |path: &Path| {
@@ -75,7 +75,7 @@ pub fn write_picture(
     })
 }
 
-/// The reference, and the pictures of levers that were turned alone.
+/// The reference, and the pictures of parameters that were changed alone.
 pub fn comparisons(
     folder: &Path,
     size: [u16; 2],

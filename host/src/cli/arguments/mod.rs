@@ -1,4 +1,4 @@
-//! Options that several verbs have, and how their values are written.
+//! Options that several commands have, and how their values are written.
 //!
 //! | file | what it holds |
 //! |---|---|
@@ -14,7 +14,9 @@ mod target;
 mod values;
 mod view;
 
-pub use scene::{Aim, GeometryOptions, ImportOptions, SceneOptions, scene_help, scene_long_help};
+pub use scene::{
+    GeometryOptions, ImportOptions, SceneOptions, TargetPoint, scene_help, scene_long_help,
+};
 pub use structures::{StructureOptions, check_hierarchy, check_quality};
 pub use target::TargetOptions;
 pub use values::{
@@ -28,7 +30,7 @@ use gridel_core::{Format, Scene, Settings, Structure};
 use gridel_host::compile::Quality;
 use values::first_given;
 
-/// What rays are traced with.
+/// Options of tracing.
 #[derive(Args, Clone, Debug)]
 pub struct TraceOptions {
     /// Number format
@@ -45,12 +47,12 @@ pub struct TraceOptions {
     pub quality: Option<Quality>,
 }
 
-/// What of a picture's settings is not as the scene states it.
+/// Options of pictures that replace the scene's settings.
 #[derive(Args, Clone, Debug)]
 pub struct PictureOptions {
     /// Size of the whole picture, such as 640x480 [default: that of the scene]
     #[arg(long, value_name = "WxH", value_parser = size)]
-    size: Option<[u16; 2]>,
+    pub size: Option<[u16; 2]>,
 
     /// Samples per pixel, 1 to 256 [default: that of the scene]
     #[arg(

@@ -25,7 +25,7 @@ pub fn scene_long_help() -> String {
     )
 }
 
-/// How a scene file is read and compiled, for verbs that make pictures of it.
+/// How a scene file is read and compiled, for commands that make pictures of it.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Options for scene files")]
 pub struct SceneOptions {
@@ -101,6 +101,14 @@ impl SceneOptions {
     }
 }
 
+impl SceneOptions {
+    /// Sets the size of the picture, if one is given.
+    pub fn sized(mut self, size: Option<[u16; 2]>) -> Self {
+        self.view.size = size;
+        self
+    }
+}
+
 impl From<GeometryOptions> for SceneOptions {
     fn from(geometry: GeometryOptions) -> Self {
         Self {
@@ -112,7 +120,7 @@ impl From<GeometryOptions> for SceneOptions {
 }
 
 impl ImportOptions {
-    /// What was given, as it is written behind a file's name.
+    /// Returns the given options as they follow a file's name.
     pub fn written(&self) -> String {
         let outside = if self.allow_outside {
             " --allow-outside"
@@ -162,18 +170,19 @@ impl MoleculeOptions {
     }
 }
 
-/// The option `--target` of verbs that take no board.
+/// The option `--target` of commands that take no board.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for scene files")]
-pub struct Aim {
+pub struct TargetPoint {
     /// Look at this point [default: the file's, or the middle of the scene]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
+        display_order = 101)]
     target: Option<DVec3>,
 }
 
-impl Aim {
+impl TargetPoint {
     /// The options for scene files, with this point.
-    pub fn aimed(&self, options: &SceneOptions) -> SceneOptions {
+    pub fn with_target(&self, options: &SceneOptions) -> SceneOptions {
         let mut options = options.clone();
         options.view.target = self.target;
         options

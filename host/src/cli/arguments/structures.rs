@@ -70,7 +70,7 @@ impl StructureOptions {
     }
 }
 
-/// Refuses an option that only structures take of which none is built.
+/// Rejects an option that only structures take of which none is built.
 ///
 /// # Errors
 /// If it was given.
@@ -96,7 +96,7 @@ pub fn check_takers(
     ))
 }
 
-/// Refuses `--quality` where the structure wide is not built.
+/// Rejects `--quality` where the structure wide is not built.
 ///
 /// # Errors
 /// If it was given.
@@ -106,7 +106,7 @@ pub fn check_quality(quality: Option<Quality>, built: &[Structure]) -> Result<()
     })
 }
 
-/// Refuses an option of hierarchies where none is built.
+/// Rejects an option of hierarchies where none is built.
 ///
 /// # Errors
 /// If it was given.

@@ -49,7 +49,7 @@ impl TargetOptions {
     ///
     /// # Errors
     /// If two boards or two points were given.
-    pub fn aimed(&self, options: &SceneOptions) -> Result<SceneOptions, Failure> {
+    pub fn with_target(&self, options: &SceneOptions) -> Result<SceneOptions, Failure> {
         let mut points = self.target.iter().filter_map(BoardOrPoint::point);
         let boards = self.target.iter().filter_map(BoardOrPoint::board);
         if points.clone().count() > 1 || boards.count() > 1 {
@@ -63,7 +63,7 @@ impl TargetOptions {
         Ok(options)
     }
 
-    /// What a scene takes of it, in a number format of the board's.
+    /// Returns the memory report of a scene, in a number format of the board.
     ///
     /// # Errors
     /// If the best structure that the blob holds was not measured on boards.
@@ -92,7 +92,7 @@ impl TargetOptions {
     }
 }
 
-/// What `--target` names where both make sense.
+/// The meaning of `--target` where both are possible.
 #[derive(Clone, Copy, Debug)]
 enum BoardOrPoint {
     Board(&'static Board),

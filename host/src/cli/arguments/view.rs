@@ -7,29 +7,38 @@ use glam::DVec3;
 use gridel_host::compile;
 use gridel_host::scene::{Color, Scene, Up};
 
-/// From where a scene file is seen, in place of what it states.
+/// From where a scene file is seen, in place of what it states. Help lists these options last, in their order,
+/// with `--target` behind `--eye`.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for scene files")]
 pub struct ViewOptions {
     /// Place the camera here, in scene units [default: the file's, or where everything is seen]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
+        display_order = 100)]
     eye: Option<DVec3>,
 
-    /// What the option `Aim` holds, or `--target` of a verb that takes boards, too.
+    /// The point of `TargetPoint`, or of `--target` in a command that takes boards too.
     #[arg(skip)]
     pub target: Option<DVec3>,
 
+    /// Size of the picture, which a camera that Gridel supplies shows the scene in.
+    #[arg(skip)]
+    pub size: Option<[u16; 2]>,
+
     /// Point this direction up [default: the file's, or y; z for STL and NFF]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
+        display_order = 102)]
     up: Option<DVec3>,
 
     /// See this vertical angle, in degrees between 0 and 180 [default: the file's, or 40]
-    #[arg(long, value_name = "DEG", value_parser = degrees, allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEG", value_parser = degrees, allow_hyphen_values = true,
+        display_order = 103)]
     fov: Option<f64>,
 
-    /// Show this linear colour where nothing is, 1 being display white [default: the file's, else black;
-    /// light grey for a file without a camera]
-    #[arg(long, value_name = "R,G,B", value_parser = color, allow_hyphen_values = true)]
+    /// Show this linear color where nothing is, 1 being display white [default: the file's, else black;
+    /// light gray for a file without a camera]
+    #[arg(long, value_name = "R,G,B", value_parser = color, allow_hyphen_values = true,
+        display_order = 104)]
     background: Option<Color>,
 }
 
@@ -45,12 +54,15 @@ impl ViewOptions {
         ]
     }
 
-    /// Changes the scene's camera and background.
+    /// Changes the scene's camera and background, and the size of its picture.
     ///
     /// # Errors
     /// If the camera would look nowhere, or along the direction that points up.
     pub fn apply(&self, scene: &mut Scene) -> Result<(), Failure> {
         scene.background = self.background.or(scene.background);
+        if let Some([width, height]) = self.size {
+            (scene.render.width, scene.render.height) = (width.into(), height.into());
+        }
         let [camera @ .., _] = self.given();
         if camera.iter().all(|(given, _)| !given) {
             return Ok(());
@@ -106,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn vectors_colours_and_angles_are_finite_and_in_range() {
+    fn vectors_colors_and_angles_are_finite_and_in_range() {
         assert_eq!(vector("1, -2,3e2"), Ok(DVec3::new(1.0, -2.0, 300.0)));
         for wrong in ["", "1,2", "1,2,3,4", "1,2,a", "1,2,nan", "inf,0,0", "1 2 3"] {
             assert!(vector(wrong).is_err(), "{wrong}");
@@ -122,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_given_is_the_scenes() {
+    fn options_that_are_not_given_keep_the_scenes_view() {
         let mut scene = Scene::default();
         ViewOptions::default().apply(&mut scene).unwrap();
         assert_eq!(scene, Scene::default());
@@ -154,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn cameras_that_look_nowhere_are_refused() {
+    fn cameras_that_look_nowhere_are_rejected() {
         for (eye, target, up) in [
             ([1.0; 3], [1.0; 3], [0.0, 1.0, 0.0]),
             ([0.0; 3], [0.0, 5.0, 0.0], [0.0, -2.0, 0.0]),

@@ -1,4 +1,4 @@
-//! The ways to build a hierarchy: the paper's, its foils, and the best there is time for offline.
+//! Builders of hierarchies: the paper's, simple ones to compare with, and the best for a compiler that has time.
 //!
 //! | file | builders |
 //! |---|---|
@@ -9,7 +9,7 @@
 //! | `reinsertion.rs` | swept, then improved by taking subtrees out and putting them back |
 //! | `tree.rs` | the tree that all but the first build, and how it becomes a hierarchy |
 //!
-//! All are bounded: none takes more than `O(n log n)` steps a level or pass, some hundred bytes a
+//! All are bounded: none takes more than `O(n log n)` steps per level or pass, some hundred bytes per
 //! primitive, and [`MAX_LEVELS`](gridel_core::format::limits::MAX_LEVELS) levels: below where a
 //! tree would be deeper, its subtrees are halved instead.
 
@@ -28,7 +28,7 @@ pub enum Builder {
     /// where there are many.
     #[default]
     Sah,
-    /// The same with bins throughout.
+    /// As [`Sah`](Self::Sah), with bins throughout.
     Binned,
     /// That of [`Sah`](Self::Sah), improved by reinsertion: takes longest, and is best for boxes.
     Reinsertion,

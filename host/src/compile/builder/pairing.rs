@@ -23,7 +23,7 @@ pub fn random(primitives: &[Primitive]) -> Tree {
     tree
 }
 
-/// On how many neighbours of either side along the curve the nearest is sought.
+/// On how many neighbors of either side along the curve the nearest is sought.
 const NEIGHBOURS: usize = 16;
 
 /// Pairs the nearest two: those whose common box has the least surface.
@@ -76,7 +76,7 @@ fn leaves(tree: &mut Tree, primitives: &[Primitive]) -> Vec<usize> {
     primitives.iter().enumerate().map(leaf).collect()
 }
 
-/// The place of a box's centre on the Z-order curve.
+/// The place of a box's center on the Z-order curve.
 fn morton(primitive: &Primitive) -> u64 {
     let mut code = 0;
     for axis in 0..3 {

@@ -14,7 +14,7 @@ pub struct TreeNode {
     pub below: Below,
 }
 
-/// What is below a node.
+/// The subtree below a node.
 #[derive(Clone, Debug)]
 pub enum Below {
     Children([usize; 2]),
@@ -152,7 +152,7 @@ impl Tree {
     }
 }
 
-/// What is known of a subtree.
+/// Figures of a subtree.
 #[derive(Clone, Copy, Default)]
 struct Facts {
     count: usize,

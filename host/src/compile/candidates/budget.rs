@@ -7,7 +7,7 @@ use gridel_core::Structure;
 /// The limits of a table, and the callback for progress.
 #[derive(Clone, Copy)]
 pub struct Budget<'t> {
-    /// Gridels a side, if that is asked for.
+    /// Gridels per side, if that is asked for.
     pub gridels: Option<u32>,
     /// Most bytes of a table.
     pub bytes: u64,
@@ -21,7 +21,7 @@ pub type OnProgress<'t> = &'t (dyn Fn(u64, u64) + Sync);
 #[derive(Clone, Copy, Debug)]
 pub struct OverBudget {
     structure: Structure,
-    /// Gridels a side, for tables of pairs of them.
+    /// Gridels per side, for tables of pairs of them.
     gridels: Option<u32>,
     needed: u64,
     at_least: bool,
@@ -51,7 +51,7 @@ impl From<OverBudget> for CompileError {
         CompileError::OverBudget {
             structure: over.structure.name(),
             size: over.gridels.map_or_else(String::new, |count| {
-                format!(" with {} a side", counted(count as usize, "gridel"))
+                format!(" with {} per side", counted(count as usize, "gridel"))
             }),
             needed: over.needed,
             at_least: if over.at_least { "at least " } else { "" },

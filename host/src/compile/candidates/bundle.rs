@@ -19,7 +19,7 @@ pub struct Bundle {
     pub rays: Rays,
 }
 
-/// What the rays of a bundle have in common, on the two axes that follow the major one.
+/// The common limits of the rays of a bundle, on the two axes that follow the major one.
 #[derive(Clone, Copy, Debug)]
 pub enum Rays {
     /// All pass a point; they differ by their slopes away from it.
@@ -32,7 +32,7 @@ pub enum Rays {
 pub type Ranges = [[f64; 2]; 2];
 
 impl Bundle {
-    /// What a slope of 1 or a unit of a place is in the window's records.
+    /// Returns a slope of 1, or a unit of a place, in the window's records.
     pub fn one(&self) -> f64 {
         match self.rays {
             Rays::Through(_) => f64::from(1 << 30),

@@ -48,7 +48,7 @@ pub struct CubeCensus {
     pub opposite: Census,
     /// Cylinders between all different faces, 15 n^4: what serves every ray.
     pub all: Census,
-    /// The same with hulls in place of cylinders, tested against the objects themselves.
+    /// Counts with hulls in place of cylinders, tested against the objects themselves.
     pub tight: Census,
 }
 

@@ -32,7 +32,7 @@ pub const FACES: [[u32; 2]; Gridels::FACE_PAIRS as usize] = {
     faces
 };
 
-/// Numbers of gridels a side that are tried, where none is asked for.
+/// Numbers of gridels per side that are tried, where none is asked for.
 const SIZES: [u32; 19] = [
     1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 64,
 ];
@@ -44,7 +44,7 @@ pub trait Form: Sync {
     const STRUCTURE: Structure;
     /// Whether lists are sorted along the way and have keys.
     const KEYED: bool;
-    /// Most gridels a side that are tried, where none is asked for.
+    /// Most gridels per side that are tried, where none is asked for.
     const MOST: u32;
 
     /// The number beyond the largest candidate.
@@ -202,7 +202,7 @@ impl Form for Cylinders {
 /// A cylinder without ends.
 struct Cylinder {
     middle: DVec3,
-    /// Of length 1.
+    /// Direction of length 1.
     axis: DVec3,
     radius: f64,
 }

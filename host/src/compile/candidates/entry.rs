@@ -79,7 +79,7 @@ impl Form for EntryNodes<'_> {
 }
 
 impl EntryNodes<'_> {
-    /// What a ray is tested against first where it enters at a node: two boxes, which count as one
+    /// Returns the first tests of a ray that enters at a node: two boxes, which count as one
     /// test, or all primitives of a leaf.
     fn tests(&self, node: Node) -> f64 {
         match self.0.children(node) {
@@ -88,7 +88,7 @@ impl EntryNodes<'_> {
         }
     }
 
-    /// Whether a shaft meets a primitive below a node.
+    /// Returns whether a shaft meets a primitive below a node.
     fn leads_on(&self, node: Node, shaft: &Shaft) -> bool {
         match self.0.children(node) {
             Some(children) => children.iter().any(|(child, bounds)| {
@@ -114,7 +114,7 @@ impl<'p> Samples<'p> {
         Self { pair, rays }
     }
 
-    /// What part of the rays meets a box.
+    /// Returns the part of the rays that hit a box.
     fn chance(&self, bounds: &[[f64; 2]; 3]) -> f64 {
         let rays = self
             .rays

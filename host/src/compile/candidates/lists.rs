@@ -3,7 +3,7 @@
 //! Every list is computed twice. The first pass keeps a fingerprint of each, which shows how many
 //! differ and how many bytes they take; only if these fit the budget is the table allocated, at its
 //! exact size, and the lists that differ are computed again, straight into their places. Beside the
-//! table itself a build takes at most 72 bytes a cell, and nothing that grows with the lists' length.
+//! table itself a build takes at most 72 bytes per cell, and nothing that grows with the lists' length.
 
 use super::budget::OnProgress;
 use rayon::prelude::*;
@@ -23,7 +23,7 @@ pub struct Lists {
     pub figures: Figures,
 }
 
-/// What a table of lists came to.
+/// Figures of a finished table of lists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Figures {
     /// Cells of the table.

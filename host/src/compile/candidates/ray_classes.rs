@@ -41,17 +41,17 @@ struct Class {
     range: ClassRange,
     /// The scene's rays in it.
     rays: Vec<u32>,
-    /// What its rays can meet, by slots, and where on their way.
+    /// The slots that its rays can hit, and where along the rays.
     met: Vec<(u32, f64)>,
 }
 
 impl Class {
-    /// What testing costs all the scene's rays in the class.
+    /// Returns the cost of the tests for all the scene's rays in the class.
     fn cost(&self) -> u64 {
         self.rays.len() as u64 * self.met.len() as u64
     }
 
-    /// Whether it gets a list.
+    /// Returns whether it gets a list.
     fn is_listed(&self) -> bool {
         !self.rays.is_empty() && self.met.len() <= LONG
     }

@@ -21,7 +21,7 @@ pub struct Target {
     surface: Surface,
 }
 
-/// What is known of a primitive beyond its box.
+/// The geometry of a primitive beyond its box.
 #[derive(Clone, Copy, Debug)]
 enum Surface {
     Box,

@@ -3,8 +3,8 @@
 //! Clusters are found in the mesh and among the spheres as they are, not in the leaves of a tree:
 //! so strips are long and packs full, and the tree is built over a fifth of the objects. The tree
 //! is swept by the surface area heuristic on all three axes, improved by reinsertion, and collapsed
-//! to eight children a node by dynamic programming. All of it gives the same bytes with any number
-//! of threads. Memory is linear: some 100 bytes a triangle.
+//! to eight children per node by dynamic programming. All of it gives the same bytes with any number
+//! of threads. Memory is linear: some 100 bytes per triangle.
 
 mod collapse;
 mod hull;
@@ -69,7 +69,7 @@ pub struct Wide {
     pub stack_depth: usize,
 }
 
-/// What the tree is built over.
+/// The items that the tree is built over.
 enum Item {
     Strip(usize),
     Pack(usize),
@@ -326,7 +326,7 @@ impl Wide {
         })
     }
 
-    /// Centres and radii of every pack; lanes that are not needed repeat the last centre, with no
+    /// Centers and radii of every pack; lanes that are not needed repeat the last center, with no
     /// radius.
     fn pack_rows(
         &self,

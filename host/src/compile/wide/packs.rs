@@ -13,7 +13,7 @@ pub struct Pack {
 }
 
 impl Pack {
-    /// Whether every lane has a sphere: all packs but one.
+    /// Returns whether every lane has a sphere: all packs but one.
     pub fn is_full(&self) -> bool {
         self.spheres.len() == LANES
     }

@@ -1,6 +1,6 @@
 //! Finds generalised strips in a mesh: up to 6 triangles on 8 vertices, each on three in a row.
 //!
-//! Greedy: the triangle with the fewest neighbours that are still free goes first, along that path
+//! Greedy: the triangle with the fewest neighbors that are still free goes first, along that path
 //! through it that zigzags over free triangles whose box is smallest for the square of their number:
 //! rays are spared one strip in twelve that they would test if the longest path were always taken, and
 //! the bytes come back where short strips are joined, the two that make the smallest box before
@@ -21,11 +21,11 @@ pub struct Strip {
     pub bounds: Hull,
 }
 
-/// No triangle, as a neighbour.
+/// No triangle, as a neighbor.
 const NOBODY: u32 = u32::MAX;
 /// Strips that are looked at, in the order of their places in space, to join one with.
 const REACH: usize = 48;
-/// What a joined box may cost, the sum of the two being 1: there is one strip less, and a node has one
+/// The most that a joined box may cost, the sum of the two being 1: there is one strip less, and a node has one
 /// child less. More than a ray's time alone would allow, for their bytes.
 const JOINED_COST: f64 = 3.0;
 
@@ -60,7 +60,7 @@ struct Mesh<'m> {
     /// The box of each vertex.
     vertices: Vec<Hull>,
     triangles: &'m [[u32; 3]],
-    /// For each triangle, the neighbour over the edge opposite to each corner.
+    /// For each triangle, the neighbor over the edge opposite to each corner.
     neighbours: Vec<[u32; 3]>,
 }
 
@@ -127,7 +127,7 @@ impl Mesh<'_> {
             let free = neighbours.filter(|&&it| it != NOBODY && free[it as usize]);
             free.count()
         };
-        // By how many neighbours are free; what was left last goes on first. Entries may be out of
+        // By how many neighbors are free; what was left last goes on first. Entries may be out of
         // date.
         let mut waiting: [Vec<u32>; 4] = Default::default();
         for triangle in (0..self.triangles.len() as u32).rev() {
@@ -326,7 +326,7 @@ impl Strip {
     }
 }
 
-/// The place of a box's middle along a curve that keeps neighbours together.
+/// The place of a box's middle along a curve that keeps neighbors together.
 fn morton(bounds: &Hull) -> u64 {
     let spread = |axis: usize| {
         let mut bits = (bounds.middle(axis) + (1 << 16)) as u64 & 0x1_ffff;

@@ -16,7 +16,7 @@ pub struct Tree {
     pub root: u32,
     bounds: Vec<Hull>,
     parents: Vec<u32>,
-    /// Of the nodes that are no items.
+    /// Figures of the nodes that are no items.
     children: Vec<[u32; 2]>,
 }
 

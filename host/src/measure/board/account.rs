@@ -1,4 +1,4 @@
-//! What takes flash or RAM.
+//! The parts of flash and RAM.
 
 use serde::Serialize;
 

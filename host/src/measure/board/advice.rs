@@ -1,4 +1,4 @@
-//! What makes a scene take less of a board.
+//! Advice that makes a scene take less of a board's memory.
 
 use super::memory::MemoryReport;
 use crate::table::grouped;
@@ -26,7 +26,7 @@ impl MemoryReport {
         steps.join("; ")
     }
 
-    /// What makes RAM smaller.
+    /// Returns advice that saves RAM.
     pub fn ram_advice(&self, scene: &Scene<'_>) -> Vec<String> {
         let view = scene.view();
         let place = if self.format == Format::F64.name() {
@@ -57,7 +57,7 @@ impl MemoryReport {
         steps
     }
 
-    /// What makes the call stack smaller.
+    /// Returns advice that makes the call stack smaller.
     pub fn call_stack_advice(&self, scene: &Scene<'_>) -> Vec<String> {
         let effects = scene.effects();
         let effects = (effects != Effects::NONE)
@@ -65,7 +65,7 @@ impl MemoryReport {
         self.small_advice().into_iter().chain(effects).collect()
     }
 
-    /// What the call stack takes less without the feature `small`.
+    /// Returns the bytes of call stack that are saved without the feature `small`.
     fn small_advice(&self) -> Option<String> {
         let stacks = self.fast.call_stack.zip(self.small.call_stack);
         let (fast, small) = stacks.filter(|(fast, small)| fast < small)?;
@@ -75,7 +75,7 @@ impl MemoryReport {
         ))
     }
 
-    /// What makes flash smaller, the blob apart.
+    /// Returns advice that saves flash, the blob apart.
     pub fn flash_advice(&self, scene: &Scene<'_>) -> Vec<String> {
         let mut steps = Vec::new();
         let code = self.fast.code.zip(self.small.code);

@@ -10,7 +10,7 @@
 
 use gridel_core::Format;
 
-/// What recorded pictures cost on a board in one number format.
+/// Recorded costs of pictures on a board in one number format.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PictureCost {
     /// The name of its core.

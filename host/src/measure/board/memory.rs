@@ -37,7 +37,7 @@ pub struct MemoryReport {
     pub board: &'static str,
     pub core: &'static str,
     pub format: &'static str,
-    /// What walks the rays.
+    /// The structure that rays walk through.
     pub structure: &'static str,
     /// The core and number format on which parts and structures were measured.
     pub measured_on: String,
@@ -47,7 +47,7 @@ pub struct MemoryReport {
     pub ram: Account,
     /// The scene's program, built for speed.
     pub fast: Sizes,
-    /// The same with the feature `small`.
+    /// The report with the feature `small`.
     pub small: Sizes,
 }
 
@@ -64,7 +64,7 @@ pub enum Fit {
     Fits,
     /// The kinds of memory that are short, and by how much.
     Short(String),
-    /// What is not known.
+    /// The parts that are not known.
     Undecided(String),
 }
 
@@ -111,7 +111,7 @@ impl MemoryReport {
         Self::by(&Programs::recorded(), scene, blob, target, format)
     }
 
-    /// The same, with figures of programs of one's own.
+    /// Returns the report with figures of programs of your own.
     fn by(
         programs: &Programs,
         scene: &Scene<'_>,
@@ -206,7 +206,7 @@ impl MemoryReport {
         )
     }
 
-    /// Whether the scene fits, and why not.
+    /// Returns whether the scene fits, and why not.
     pub fn fit(&self) -> Fit {
         let accounts = [("flash", &self.flash), ("RAM", &self.ram)];
         let short: Vec<_> = accounts
@@ -234,7 +234,7 @@ impl MemoryReport {
         }
     }
 
-    /// What is not known, and why. `None` where all is.
+    /// Returns the parts that are not known, and why; `None` if all are.
     pub fn undecided(&self) -> Option<String> {
         let accounts = [("flash", &self.flash), ("RAM", &self.ram)];
         let unknown: Vec<_> = accounts
@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn measured_program_is_told_exactly() {
+    fn measured_program_is_reported_exactly() {
         let report = report(&programs(&BOARDS[0], &PARTS, &PROFILES), 128 << 10);
         assert!(report.measured);
         assert_eq!(bytes(&report.flash, CODE), Some(30_300));
@@ -360,7 +360,7 @@ mod tests {
         }
     }
 
-    /// What is known may be too much by itself.
+    /// The known part can be too much by itself.
     #[test]
     fn unknown_figures_do_not_hide_what_is_short() {
         let report = report(&Programs::default(), 100);

@@ -16,6 +16,7 @@ mod advice;
 mod estimate;
 mod instructions;
 mod memory;
+#[doc(hidden)]
 pub mod programs;
 
 pub use account::{Account, Item};

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 
 /// The figures that the tests recorded.
 const RECORDED: &str = include_str!("programs.json");
-/// Forms of storage and of colours that programs have code for, or have not.
+/// Forms of storage and of colors that programs have code for, or have not.
 const FORMS: [&str; 3] = ["wide-lattice", "wide-indices", "display-values"];
 
 /// Bytes of a linked program.
@@ -44,7 +44,7 @@ pub struct Program {
 }
 
 impl Program {
-    /// What it takes in a profile.
+    /// Returns its footprint in a profile.
     pub fn footprint(&self, profile: Profile) -> Option<Footprint> {
         match profile {
             Profile::Fast => self.fast,
@@ -62,7 +62,7 @@ type Built = BTreeMap<String, Program>;
 pub struct Programs(BTreeMap<String, Built>);
 
 /// Where a program runs, and through which structure.
-pub type Place<'p> = (&'p Board, Format, Structure);
+pub type ProgramKey<'p> = (&'p Board, Format, Structure);
 
 /// A figure of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,19 +79,19 @@ impl Programs {
     }
 
     /// A program that was built with code for some parts and no others.
-    pub fn get(&self, place: Place<'_>, parts: &[&str]) -> Option<&Program> {
-        self.at(place)?.get(&key(parts))
+    pub fn get(&self, program_key: ProgramKey<'_>, parts: &[&str]) -> Option<&Program> {
+        self.at(program_key)?.get(&key(parts))
     }
 
-    /// Adds a program, in place of what was known of it.
+    /// Adds a program, in program_key of what was known of it.
     pub fn insert(
         &mut self,
-        place: Place<'_>,
+        program_key: ProgramKey<'_>,
         parts: &[&str],
         profile: Profile,
         footprint: Footprint,
     ) {
-        let built = self.0.entry(place_key(place)).or_default();
+        let built = self.0.entry(key_text(program_key)).or_default();
         let program = built.entry(key(parts)).or_default();
         match profile {
             Profile::Fast => program.fast = Some(footprint),
@@ -99,20 +99,20 @@ impl Programs {
         }
     }
 
-    fn at(&self, place: Place<'_>) -> Option<&Built> {
-        self.0.get(&place_key(place))
+    fn at(&self, program_key: ProgramKey<'_>) -> Option<&Built> {
+        self.0.get(&key_text(program_key))
     }
 
     /// A figure of a program with code for some parts: measured, or bounded by the programs with code
     /// for more. `None` if there is no such program.
     pub fn figure(
         &self,
-        place: Place<'_>,
+        program_key: ProgramKey<'_>,
         parts: &[&str],
         profile: Profile,
         figure: fn(&Footprint) -> u64,
     ) -> Option<Known> {
-        let built = self.at(place)?;
+        let built = self.at(program_key)?;
         let of = |program: &Program| program.footprint(profile).as_ref().map(figure);
         if let Some(bytes) = built.get(&key(parts)).and_then(of) {
             return Some(Known {
@@ -142,10 +142,10 @@ impl Programs {
         })
     }
 
-    /// What a part adds to programs that were built with and without it, in the middle; `None` where
+    /// Returns the median of what a part adds to programs that were built with and without it; `None` where
     /// there is no such pair.
-    pub fn share(&self, place: Place<'_>, part: &str, profile: Profile) -> Option<u64> {
-        let built = self.at(place)?;
+    pub fn share(&self, program_key: ProgramKey<'_>, part: &str, profile: Profile) -> Option<u64> {
+        let built = self.at(program_key)?;
         let code = |program: &Program| program.footprint(profile).map(|it| it.code);
         let mut added: Vec<u64> = built
             .iter()
@@ -176,7 +176,7 @@ fn key(called_for: &[&str]) -> String {
     called_for.collect::<Vec<_>>().join(" ")
 }
 
-fn place_key((board, format, structure): Place<'_>) -> String {
+fn key_text((board, format, structure): ProgramKey<'_>) -> String {
     format!("{} {} {}", board.name, format.name(), structure.name())
 }
 
@@ -185,7 +185,7 @@ mod tests {
     use super::*;
     use crate::measure::board::BOARDS;
 
-    const PLACE: Place<'static> = (&BOARDS[0], Format::Fixed, Structure::DualSplit);
+    const PROGRAM: ProgramKey<'static> = (&BOARDS[0], Format::Fixed, Structure::DualSplit);
 
     fn programs(all: &[(&[&str], u64)]) -> Programs {
         let mut programs = Programs::default();
@@ -194,17 +194,17 @@ mod tests {
                 code,
                 call_stack: 100,
             };
-            programs.insert(PLACE, parts, Profile::Fast, footprint);
+            programs.insert(PROGRAM, parts, Profile::Fast, footprint);
         }
         programs
     }
 
     fn code(programs: &Programs, parts: &[&str]) -> Option<Known> {
-        programs.figure(PLACE, parts, Profile::Fast, |it| it.code)
+        programs.figure(PROGRAM, parts, Profile::Fast, |it| it.code)
     }
 
     #[test]
-    fn program_that_was_built_is_told_exactly() {
+    fn program_that_was_built_is_reported_exactly() {
         let programs = programs(&[(&["sphere"], 1000), (&["sphere", "shadow"], 1200)]);
         let known = code(&programs, &["shadow", "sphere"]);
         assert_eq!(known.map(|it| (it.bytes, it.measured)), Some((1200, true)));
@@ -229,14 +229,14 @@ mod tests {
     fn program_beyond_all_that_were_built_is_unknown() {
         let programs = programs(&[(&["sphere"], 1000)]);
         assert_eq!(code(&programs, &["sphere", "shadow"]), None);
-        let small = programs.figure(PLACE, &["sphere"], Profile::Small, |it| it.code);
+        let small = programs.figure(PROGRAM, &["sphere"], Profile::Small, |it| it.code);
         assert_eq!(small, None);
         let elsewhere = (&BOARDS[1], Format::Fixed, Structure::DualSplit);
         let figure = programs.figure(elsewhere, &["sphere"], Profile::Fast, |it| it.code);
         assert_eq!(figure, None);
     }
 
-    /// What is recorded can be read, and every program in it has a name that parts make.
+    /// The records can be read, and the name of every program consists of parts.
     #[test]
     fn recorded_programs_have_known_parts() {
         let recorded: Programs = serde_json::from_str(RECORDED).unwrap();

@@ -206,7 +206,7 @@ fn narrow<const N: usize>(bytes: &[u8]) -> u32 {
     bytes.fold(0, |number, &byte| number << 8 | u32::from(byte))
 }
 
-/// What a URI stands for: bytes in base 64, or a file beside the scene's.
+/// Reads a URI: bytes in base 64, or a file beside the scene's.
 fn fetch(
     path: &Path,
     buffer: &Buffer<'_>,

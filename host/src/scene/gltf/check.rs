@@ -1,4 +1,4 @@
-//! What holds of a whole glTF file, whether it is drawn or not.
+//! Checks of a whole glTF file, whether its parts are drawn or not.
 
 use super::buffers::MOST;
 use super::{Importer, place};

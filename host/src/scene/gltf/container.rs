@@ -1,6 +1,6 @@
 //! The container of glTF: text as it is, or the chunks of a binary file (glTF 2.0, chapter 4).
 
-use crate::scene::Place;
+use crate::scene::SourceSpan;
 use crate::scene::SceneError;
 use crate::scene::importer::extension;
 use crate::scene::text::{Warnings, check_encoding};
@@ -36,7 +36,7 @@ pub(super) fn split<'b>(
     let text = bytes.strip_prefix(b"\xef\xbb\xbf");
     if text.is_some() {
         let sentence = "the text begins with a byte order mark, which glTF forbids; it is ignored";
-        warnings.add_times(Place::of(path), 1, sentence);
+        warnings.add_times(SourceSpan::of(path), 1, sentence);
     }
     let text = text.unwrap_or(bytes);
     let named_binary = extension(path).is_some_and(|it| it == "glb");

@@ -2,7 +2,7 @@
 
 use super::container::{self, Container};
 use crate::scene::text::Warnings;
-use crate::scene::{Place, SceneError};
+use crate::scene::{SourceSpan, SceneError};
 use gltf::Document;
 use gltf::json::camera::Type;
 use gltf::json::validation::{Checked, Error, Validate};
@@ -89,11 +89,11 @@ fn leave_out_shapeless(path: &Path, root: &mut Root, warnings: &mut Warnings) {
     }
     if let Some((mesh, part)) = first {
         let sentence = format!("mesh {mesh}, primitive {part} has no positions; it is left out");
-        warnings.add_times(Place::of(path), count, sentence);
+        warnings.add_times(SourceSpan::of(path), count, sentence);
     }
 }
 
-/// What the crate looks up without having validated it.
+/// Checks the indices that the crate looks up without having validated them.
 fn check_indices(path: &Path, root: &Root) -> Result<(), SceneError> {
     let lacks = |camera: &gltf::json::Camera| match camera.type_ {
         Checked::Valid(Type::Perspective) => camera.perspective.is_none(),

@@ -1,6 +1,6 @@
 //! The materials of glTF in terms of light that is diffuse, mirrored, or let through.
 //!
-//! With base colour c, metalness m, roughness r and transmission t:
+//! With base color c, metalness m, roughness r and transmission t:
 //!
 //! | here | from |
 //! |---|---|
@@ -10,7 +10,7 @@
 //! | shininess n | 2 / r^4 - 2, from 1 to 1024, the Blinn-Phong exponent of that roughness |
 //! | transmit | c t (1 - m) |
 //! | index of refraction | that of `KHR_materials_ior` where the glass has a volume, else 1: a pane |
-//! | absorption | -ln(attenuation colour) / attenuation distance |
+//! | absorption | -ln(attenuation color) / attenuation distance |
 //!
 //! Where the alpha mode is `BLEND`, alpha is what of the material is there, and the rest is a pane.
 
@@ -90,7 +90,7 @@ pub(super) fn read(material: &gltf::Material<'_>) -> Material {
     }
 }
 
-/// The coefficient of Beer's law by which white light turns into a colour over a distance.
+/// The coefficient of Beer's law by which white light turns into a color over a distance.
 fn absorption(color: [f32; 3], distance: f32) -> Color {
     let distance = f64::from(distance);
     if !distance.is_finite() || distance <= 0.0 {

@@ -3,7 +3,7 @@
 //!
 //! Each set of triangles of each node becomes an object, in the order of the nodes; a mesh that
 //! several nodes share is copied. Meshes stand as they are at rest: skins, morph targets and
-//! animations are ignored, and so are normals, textures and vertex colours. A warning names
+//! animations are ignored, and so are normals, textures and vertex colors. A warning names
 //! those of them that a file has. Images are never read, wherever they lie.
 
 mod buffers;
@@ -16,7 +16,7 @@ mod view;
 use super::importer::{Importer as Entry, Input};
 use super::size::Size;
 use super::text::Warnings;
-use super::{Imported, Object, Place, Scene, SceneError, Shape, Up};
+use super::{Imported, Object, SourceSpan, Scene, SceneError, Shape, Up};
 use buffers::{Buffers, MOST};
 use glam::{DMat4, DQuat, DVec3};
 use gltf::mesh::Mode;
@@ -67,7 +67,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     drop(bytes);
     let mut importer = Importer {
         path,
-        place: Place::of(path),
+        place: SourceSpan::of(path),
         buffers: Buffers::read(path, &document, blob, access)?,
         scene: Scene::default(),
         materials: HashMap::new(),
@@ -100,10 +100,10 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     })
 }
 
-/// What a file has come to so far.
+/// The scene so far.
 struct Importer<'a> {
     path: &'a Path,
-    place: Place,
+    place: SourceSpan,
     buffers: Buffers<'a>,
     scene: Scene,
     /// Materials in use, by their number in the file; the default has none.
@@ -145,11 +145,11 @@ impl Importer<'_> {
         );
         self.warn_of(
             with(Semantic::Colors(0)),
-            "COLOR_0 of a primitive is ignored; its surface has its material's colour",
+            "COLOR_0 of a primitive is ignored; its surface has its material's color",
         );
         self.warn_of(
             document.textures().len(),
-            "textures are not drawn; the plain colours are used",
+            "textures are not drawn; the plain colors are used",
         );
         self.warn_of(
             document.animations().len() + document.skins().len(),
@@ -381,7 +381,7 @@ impl Importer<'_> {
     }
 }
 
-/// What messages call a part of a mesh.
+/// Returns the name of a part of a mesh in messages.
 fn place(mesh: &gltf::Mesh<'_>, part: &Primitive<'_>) -> String {
     format!("mesh {}, primitive {}", mesh.index(), part.index())
 }

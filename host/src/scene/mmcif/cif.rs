@@ -19,7 +19,7 @@ pub(super) enum Token<'a> {
 
 pub(super) struct Tokens<'a> {
     source: &'a Source,
-    /// What is left of the text.
+    /// The rest of the text.
     rest: &'a str,
     /// The line of the last token, counted from 1.
     pub(super) line: usize,

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 /// Chem.* 12 (1991) 891, also the rule of Open Babel.
 const SLACK: f64 = 0.45;
 
-/// Atoms closer than this are copies of each other, not neighbours: no bond is so short (H-H is
+/// Atoms closer than this are copies of each other, not neighbors: no bond is so short (H-H is
 /// 0.74).
 const CLOSEST: f64 = 0.4;
 

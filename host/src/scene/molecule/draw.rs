@@ -2,7 +2,7 @@
 
 use super::element::Element;
 use super::parsed::Site;
-use crate::scene::{Diffuse, Material, MoleculeStyle, Object, Place, Shape};
+use crate::scene::{Diffuse, Material, MoleculeStyle, Object, Shape, SourceSpan};
 use crate::shape::{Cone, Sphere};
 use std::collections::HashMap;
 
@@ -15,11 +15,11 @@ const STICK: f64 = 0.15;
 pub(crate) struct BoundingSphere {
     pub(crate) site: Site,
     pub(crate) name: String,
-    pub(crate) place: Place,
+    pub(crate) place: SourceSpan,
 }
 
 /// Makes spheres of atoms, one object each, and then two half cylinders of each bond, in the
-/// colours of the atoms at their ends. Materials are one for each element, in the order of their
+/// colors of the atoms at their ends. Materials are one for each element, in the order of their
 /// first atom, named by its symbol.
 pub(crate) fn draw(
     balls: Vec<BoundingSphere>,
@@ -78,7 +78,7 @@ pub(crate) fn draw(
     (materials, objects)
 }
 
-/// The element's colour, with a small highlight that lets a sphere look round.
+/// The element's color, with a small highlight that lets a sphere look round.
 fn material(element: Element) -> Material {
     Material {
         name: element.symbol().to_owned(),

@@ -1,4 +1,4 @@
-//! The elements: radii and colours of their atoms.
+//! The elements: radii and colors of their atoms.
 
 use crate::scene::Color;
 
@@ -7,7 +7,7 @@ use crate::scene::Color;
 pub(crate) struct Element(u8);
 
 impl Element {
-    /// What is no element of the table: a dummy atom or an unreadable symbol.
+    /// No element of the table: a dummy atom or an unreadable symbol.
     pub(crate) const UNKNOWN: Self = Self(0);
     pub(crate) const HYDROGEN: Self = Self(1);
     pub(crate) const CARBON: Self = Self(6);
@@ -42,7 +42,7 @@ impl Element {
     }
 
     /// The covalent radius in angstroms, by which bonds are found; `None` for elements that are
-    /// seen as ions (the alkali and alkaline earth metals), whose neighbours are not bonded.
+    /// seen as ions (the alkali and alkaline earth metals), whose neighbors are not bonded.
     pub(crate) fn covalent(self) -> Option<f64> {
         let is_ion = matches!(
             self.0,
@@ -51,7 +51,7 @@ impl Element {
         (self != Self::UNKNOWN && !is_ion).then_some(ELEMENTS[usize::from(self.0)].2)
     }
 
-    /// The conventional colour.
+    /// The conventional color.
     pub(crate) fn color(self) -> Color {
         let rgb = ELEMENTS[usize::from(self.0)].3;
         [rgb >> 16, rgb >> 8, rgb].map(|channel| linear(f64::from(channel & 0xFF) / 255.0))
@@ -67,7 +67,7 @@ fn linear(channel: f64) -> f64 {
     }
 }
 
-/// Symbol, van der Waals radius, covalent radius (both in angstroms), colour (sRGB), by atomic
+/// Symbol, van der Waals radius, covalent radius (both in angstroms), color (sRGB), by atomic
 /// number.
 ///
 /// * Van der Waals radii of the main groups: A. Bondi, *J. Phys. Chem.* 68 (1964) 441, as
@@ -75,7 +75,7 @@ fn linear(channel: f64) -> f64 {
 ///   hydrogen. All others: S. Alvarez, *Dalton Trans.* 42 (2013) 8617.
 /// * Covalent radii: B. Cordero et al., *Dalton Trans.* (2008) 2832; of carbon the sp3 value, of
 ///   Mn, Fe and Co the low-spin value.
-/// * Colours: those of the molecule viewer Jmol, which extend the colours of Corey, Pauling and
+/// * Colors: those of the molecule viewer Jmol, which extend the colors of Corey, Pauling and
 ///   Koltun's models to all elements; the unknown is deep pink, with the radius of carbon.
 ///
 /// Where a source ends, its last value goes on (van der Waals from Fm, covalent from Bk); Pm has
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_are_linear() {
+    fn colors_are_linear() {
         assert_eq!(Element::HYDROGEN.color(), [1.0; 3]);
         assert!((Element::CARBON.color()[0] - 0.2789).abs() < 1e-4);
     }

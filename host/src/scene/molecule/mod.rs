@@ -121,7 +121,7 @@ fn missing_ends(source: &Source, parsed: &Parsed<'_>, warnings: &mut Warnings) {
     warnings.add_times(source.place(line), 1 + all.count(), sentence);
 }
 
-/// What bonds call an atom.
+/// Returns the names of an atom in bonds.
 fn ends_of<'a>(atom: &Atom<'a>) -> [End<'a>; 2] {
     let name = [atom.chain, atom.number, atom.insertion, atom.name];
     [End::Serial(atom.serial), End::Name(name)]

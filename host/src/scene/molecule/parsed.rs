@@ -1,4 +1,4 @@
-//! What a molecule file says.
+//! The content of a molecule file.
 
 use super::element::Element;
 use glam::DVec3;
@@ -66,7 +66,7 @@ pub(in crate::scene) struct Model<'a> {
     pub(in crate::scene) line: usize,
 }
 
-/// What a file says, before one model and one set of alternate locations is chosen.
+/// The content of a file, before one model and one set of alternate locations is chosen.
 #[derive(Default)]
 pub(in crate::scene) struct Parsed<'a> {
     pub(in crate::scene) atoms: Vec<Atom<'a>>,

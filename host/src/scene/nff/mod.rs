@@ -1,14 +1,14 @@
 //! Reads NFF, the Neutral File Format of Eric Haines's Standard Procedural Databases (version
 //! 3.1 of its text, 1992).
 //!
-//! What the format leaves open is settled as the databases' reference pictures show it:
-//! * Colours and lights are display values: they are added up and shown as they are.
-//! * A light without a colour has intensity 1 / sqrt(n), n being the number of lights.
+//! Where the format leaves a meaning open, the databases' reference pictures decide:
+//! * Colors and lights are display values: they are added up and shown as they are.
+//! * A light without a color has intensity 1 / sqrt(n), n being the number of lights.
 //! * Ambient light, of which the format knows nothing, is what materials leave of 1 beside Kd, Ks
 //!   and T, relative to Kd: the mean of all materials that objects have, each at most 1.
 //! * `angle` is the full vertical field of view. `hither` is not needed.
-//! * Of `f`, Kd (1 - T) weighs the colour, Ks is the grey mirror and, up to 1 - Ks, the white
-//!   highlight, and T filters by the colour what is transmitted. Shine is the exponent of Phong's
+//! * Of `f`, Kd (1 - T) weighs the color, Ks is the gray mirror and, up to 1 - Ks, the white
+//!   highlight, and T filters by the color what is transmitted. Shine is the exponent of Phong's
 //!   cosine, between the view and the mirrored light; the halfway vector leans half as far, which
 //!   four times the exponent makes up for.
 //! * The normals of `pp` are ignored, with a warning. A negative radius (only the inside is
@@ -26,7 +26,7 @@ use glam::DVec3;
 use reader::{Line, Lines};
 use std::collections::{BTreeSet, HashMap};
 
-/// What turns the exponent of Phong's cosine into that of the halfway vector's.
+/// The factor from the exponent of Phong's cosine to that of the halfway vector's.
 const PHONG_TO_HALFWAY: f64 = 4.0;
 
 pub(super) const IMPORTER: Entry = Entry {
@@ -80,7 +80,7 @@ struct Importer<'a> {
     source: &'a Source,
     scene: Scene,
     warnings: Warnings,
-    /// Lights whose colour is to be set once all are counted.
+    /// Lights whose color is to be set once all are counted.
     plain_lights: Vec<usize>,
     /// Index of a material by the bits of its eight numbers.
     materials: HashMap<[u64; 8], usize>,
@@ -152,7 +152,7 @@ impl<'a> Importer<'a> {
             _ => {
                 return Err(self.source.error_at(
                     line.text,
-                    format!("a light has a position (3 numbers) or a position and a colour (6), not {given} numbers"),
+                    format!("a light has a position (3 numbers) or a position and a color (6), not {given} numbers"),
                     "write `l x y z` or `l x y z r g b`",
                 ));
             }
@@ -170,12 +170,12 @@ impl<'a> Importer<'a> {
         Ok(())
     }
 
-    /// Checks a colour that may not be negative.
+    /// Checks a color that may not be negative.
     fn color(&self, line: &Line<'a>, color: Color) -> Result<Color, SceneError> {
         if color.iter().any(|&c| c < 0.0) {
             return Err(self.source.error_at(
                 line.text,
-                "a colour is negative",
+                "a color is negative",
                 "write numbers from 0 to 1",
             ));
         }

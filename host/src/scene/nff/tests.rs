@@ -139,7 +139,7 @@ fn faults_name_line_and_cause() {
     );
     assert_eq!(
         fault("l 1 2 3 4\n"),
-        "t.nff:1: a light has a position (3 numbers) or a position and a colour (6), not 4 numbers"
+        "t.nff:1: a light has a position (3 numbers) or a position and a color (6), not 4 numbers"
     );
     assert_eq!(
         fault("f 1 1 1 1 0\n"),
@@ -300,9 +300,9 @@ fn pictures_are_as_bright_as_the_databases_own() {
         };
         let picture = crate::render::render(&scene, &job, &|| ()).unwrap();
         let mut encoded = Vec::new();
-        let making = crate::picture::Making::of(&scene, &job);
+        let metadata = crate::picture::RenderMetadata::of(&scene, &job);
         crate::picture::PictureFormat::Ppm
-            .write(&mut encoded, &picture, &making)
+            .write(&mut encoded, &picture, &metadata)
             .unwrap();
         let found = means(&encoded[encoded.len() - 3 * 256 * 256..]);
         println!("{name}: {found:.1?} for {expected:.1?}");
@@ -322,7 +322,7 @@ fn means(pixels: &[u8]) -> [f64; 3] {
     })
 }
 
-/// A grey of 0.5 is shown as 0.5, also where lights add up to it.
+/// A gray of 0.5 is shown as 0.5, also where lights add up to it.
 #[test]
 fn display_values_are_shown_as_they_are() {
     let text = format!(
@@ -349,9 +349,9 @@ fn display_values_are_shown_as_they_are() {
         };
         let picture = crate::render::render(&scene, &job, &|| ()).unwrap();
         let mut encoded = Vec::new();
-        let making = crate::picture::Making::of(&scene, &job);
+        let metadata = crate::picture::RenderMetadata::of(&scene, &job);
         let ppm = crate::picture::PictureFormat::Ppm;
-        ppm.write(&mut encoded, &picture, &making).unwrap();
+        ppm.write(&mut encoded, &picture, &metadata).unwrap();
         let row = &encoded[encoded.len() - 3 * 64..];
         for code in [row[3 * 20], row[3 * 60]] {
             assert!((127..=128).contains(&code), "{}: {row:?}", format.name());

@@ -1,13 +1,13 @@
 //! Reads Wavefront OBJ with its MTL materials.
 //!
 //! The parser is our own. The crate `tobj` was tried first, but it divides positions by `w`, makes
-//! triangles of polylines (`l`), lets NaN through, refuses comments and continuations on face
-//! lines, panics on a colour of two numbers, and never says in which line anything is, so that all
+//! triangles of polylines (`l`), lets NaN through, rejects comments and continuations on face
+//! lines, panics on a color of two numbers, and never says in which line anything is, so that all
 //! of a file would have had to be parsed before it was handed over.
 //!
 //! Every `o`, `g` and change of `usemtl` starts a new mesh, in file order, which holds only the
 //! vertices that it uses. Faces are cut into triangles in file order. Normals, smoothing groups,
-//! textures and vertex colours are ignored, with a warning each. Zero-area triangles are kept for
+//! textures and vertex colors are ignored, with a warning each. Zero-area triangles are kept for
 //! the compiler to report.
 
 mod mtl;

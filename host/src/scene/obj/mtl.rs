@@ -1,15 +1,15 @@
 //! Reads MTL, the materials of OBJ.
 //!
-//! `Kd` is the diffuse colour. `Ks` and `Ns` are the highlight, unless `illum` is 0 or 1, which
+//! `Kd` is the diffuse color. `Ks` and `Ns` are the highlight, unless `illum` is 0 or 1, which
 //! have none. `illum` 3, 5 and 8 mirror with `Ks`. `illum` 4, 6, 7 and 9 are glass of index `Ni`
 //! that lets `Tf` through. Otherwise `d` below 1 (or `Tr` above 0, of which `d` takes precedence)
 //! is a pane that does not bend light: glass of index 1. `Ka` is not needed, because ambient light
-//! takes the diffuse colour. Everything else is ignored, with a warning.
+//! takes the diffuse color. Everything else is ignored, with a warning.
 
 use crate::scene::text::{Source, Warnings};
 use crate::scene::{Color, Diffuse, Material, SceneError};
 
-/// What a file says of one material.
+/// One material of a file.
 #[derive(Default)]
 struct Statements {
     name: String,
@@ -90,7 +90,7 @@ pub(super) fn read(
                 warnings.add(
                     source,
                     number,
-                    "textures are not drawn; the plain colours are used",
+                    "textures are not drawn; the plain colors are used",
                 );
             }
             _ => {
@@ -186,11 +186,11 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads a colour of one number (grey) or three, from 0 to 1; `None` where it is given in
+    /// Reads a color of one number (gray) or three, from 0 to 1; `None` where it is given in
     /// another way.
     fn color(&self, line: usize, warnings: &mut Warnings) -> Result<Option<Color>, SceneError> {
         if let Some(way @ (&"spectral" | &"xyz")) = self.values.first() {
-            let sentence = format!("a colour given as {way:?} is not read; the default is used");
+            let sentence = format!("a color given as {way:?} is not read; the default is used");
             warnings.add(self.source, line, sentence);
             return Ok(None);
         }

@@ -9,7 +9,7 @@ pub(super) struct Parsed<'a> {
     pub(super) vertices: Vec<DVec3>,
     /// In file order; each has at least one face.
     pub(super) parts: Vec<Part<'a>>,
-    /// What follows each `mtllib`, with its line.
+    /// The text behind each `mtllib`, with its line.
     pub(super) libraries: Vec<(usize, &'a str)>,
 }
 
@@ -109,9 +109,9 @@ impl<'a> Parser<'a> {
                 &format!("the {} coordinate of a vertex", ["x", "y", "z"][axis]),
             )?;
         }
-        // What may follow is a weight, which only curved surfaces use, or a colour.
+        // What may follow is a weight, which only curved surfaces use, or a color.
         if words.len() >= 6 {
-            let sentence = "vertex colours are ignored; the surface has its material's colour";
+            let sentence = "vertex colors are ignored; the surface has its material's color";
             warnings.add(self.source, number, sentence);
         }
         for word in &words[3..] {
@@ -218,7 +218,7 @@ impl<'a> Parser<'a> {
             "usemap" if !["", "off"].contains(&rest) => warnings.add(
                 self.source,
                 number,
-                "textures are not drawn; the plain colours are used",
+                "textures are not drawn; the plain colors are used",
             ),
             "" | "s" | "usemap" => {}
             _ if keyword.starts_with('#') || PASSED_OVER.contains(&keyword) => {}

@@ -56,7 +56,7 @@ fn faces_may_come_before_their_vertices() {
 }
 
 #[test]
-fn weights_colours_and_lines_are_no_geometry() {
+fn weights_colors_and_lines_are_no_geometry() {
     let text = "v 1 2 3 .5\nv 0 1 0 1 0 0\nv 0 0 1\nl 1 2 3\np 1\nf 1 2 3\n";
     let Imported {
         scene, warnings, ..
@@ -66,7 +66,7 @@ fn weights_colours_and_lines_are_no_geometry() {
     assert_eq!(
         warnings,
         [
-            "t.obj:2: vertex colours are ignored; the surface has its material's colour",
+            "t.obj:2: vertex colors are ignored; the surface has its material's color",
             "t.obj:4: points and lines have no surface and are skipped (and once more)"
         ]
     );
@@ -296,13 +296,13 @@ fn known_meshes() {
 }
 
 #[test]
-fn what_smooths_or_colours_a_surface_is_warned_of_once_with_a_count() {
+fn ignored_smoothing_and_colors_cause_one_warning_with_a_count() {
     let colored = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\n";
     let text = format!("{colored}vn 0 0 1\nvn 0 0 1\ns off\ns 0\ns 1\nusemap off\nf 1 2 3\n");
     assert_eq!(
         read(&text).unwrap().warnings,
         [
-            "t.obj:1: vertex colours are ignored; the surface has its material's colour (and 2 \
+            "t.obj:1: vertex colors are ignored; the surface has its material's color (and 2 \
              times more)",
             "t.obj:4: vertex normals are ignored; the surface is shaded flat (and once more)",
             "t.obj:8: smoothing groups are ignored; the surface is shaded flat",

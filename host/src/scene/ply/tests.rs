@@ -1,7 +1,7 @@
 use super::*;
 use crate::scene::test_scenes::{self, load, mesh};
 
-/// A square and a line, with colours and an element that nobody knows.
+/// A square and a line, with colors and an element that nobody knows.
 pub(in crate::scene) const SQUARE: &str = "\
 ply
 format ascii 1.0
@@ -37,7 +37,7 @@ fn faces_become_triangles() {
     assert_eq!(triangles, [[0, 1, 2], [0, 2, 3]]);
     assert_eq!(imported.scene.objects[0].name, "thing");
     assert_eq!(imported.warnings.len(), 3, "{:?}", imported.warnings);
-    assert!(imported.warnings[0].contains("thing.ply:8: the colour of a vertex is ignored; the surface has one colour (and 3 times more)"));
+    assert!(imported.warnings[0].contains("thing.ply:8: the color of a vertex is ignored; the surface has one color (and 3 times more)"));
     assert!(imported.warnings[1].contains("elements \"wheel\" are ignored"));
     assert!(imported.warnings[2].contains("a face has fewer than three vertices"));
 }
@@ -135,7 +135,7 @@ fn with_properties(vertex: &str, face: &str) -> String {
 }
 
 #[test]
-fn colours_normals_and_textures_are_warned_of() {
+fn colors_normals_and_textures_are_warned_of() {
     let text = with_properties(
         "property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\n",
         "property uchar red\n",
@@ -148,10 +148,10 @@ fn colours_normals_and_textures_are_warned_of() {
     assert_eq!(
         ends,
         [
-            "3: textures are not drawn; the plain colours are used",
+            "3: textures are not drawn; the plain colors are used",
             "8: the normal of a vertex is ignored; the surface is shaded flat (and 2 times more)",
-            "11: the colour of a vertex is ignored; the surface has one colour (and 2 times more)",
-            "14: the colour of a face is ignored; the surface has one colour",
+            "11: the color of a vertex is ignored; the surface has one color (and 2 times more)",
+            "14: the color of a face is ignored; the surface has one color",
         ]
     );
 }

@@ -151,7 +151,7 @@ fn extreme_coordinates() {
 }
 
 #[test]
-fn too_many_concave_vertices_are_refused() {
+fn too_many_concave_vertices_are_rejected() {
     let star = |n: usize| -> Vec<DVec3> {
         let point = |i: usize| {
             let (sin, cos) = (i as f64 * std::f64::consts::TAU / n as f64).sin_cos();

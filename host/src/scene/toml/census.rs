@@ -13,7 +13,7 @@ pub(super) const MAX_PRIMITIVES: u64 = 16_777_216;
 /// How deep groups may be nested; reading and placing them takes stack.
 pub(super) const MAX_NESTING: usize = 64;
 
-/// What placing some objects costs.
+/// The cost of placing some objects.
 #[derive(Clone, Copy, Default)]
 struct Cost {
     /// Primitives, or as much memory as they would take.
@@ -33,8 +33,8 @@ impl Cost {
     }
 }
 
-/// What the census found.
-pub(super) struct Taken {
+/// The result of the census.
+pub(super) struct Usage {
     /// How many objects the scene's own list comes to.
     pub(super) objects: usize,
     /// About groups that the scene does not use.
@@ -69,7 +69,7 @@ impl<'c> Census<'c> {
     }
 
     /// Proves it for a scene.
-    pub(super) fn take(mut self, items: &'c [Item]) -> Result<Taken, SceneError> {
+    pub(super) fn take(mut self, items: &'c [Item]) -> Result<Usage, SceneError> {
         let objects = self.items(items, 0)?.size.objects;
         let used = |name: &String| self.known.contains_key(name.as_str());
         let unused: Vec<_> = self.groups.iter().filter(|(name, _)| !used(name)).collect();
@@ -82,7 +82,7 @@ impl<'c> Census<'c> {
             self.items(&group.items, 1)?;
             self.open.pop();
         }
-        Ok(Taken {
+        Ok(Usage {
             objects: objects as usize,
             warnings,
         })
@@ -227,7 +227,7 @@ fn imported(objects: &[Object]) -> u64 {
     objects.iter().map(|object| primitives(&object.shape)).sum()
 }
 
-/// How many primitives a shape is; vertices that no triangle uses weigh as triangles would.
+/// Returns how many primitives a shape is; vertices that no triangle uses weigh as triangles would.
 pub(super) fn primitives(shape: &Shape) -> u64 {
     match shape {
         Shape::Mesh {

@@ -16,7 +16,7 @@ type Read = fn(Input<'_>, &mut Imports) -> Result<Scene, SceneError>;
 
 /// The files that were imported, and those that are being read right now.
 pub(super) struct Imports {
-    /// What reads files of this format, and the format's name.
+    /// The function that reads files of this format, and the format's name.
     own: (&'static str, Read),
     importers: Importers,
     /// Which files may be imported.

@@ -97,7 +97,7 @@ fn material(table: Value<'_>) -> Result<Material, SceneError> {
     let diffuse = match (fields.get("diffuse"), fields.get("checker")) {
         (Some(_), Some(checker)) => {
             return Err(checker.error(
-                "a material has either a `diffuse` colour or a `checker`",
+                "a material has either a `diffuse` color or a `checker`",
                 "remove one of the two",
             ));
         }

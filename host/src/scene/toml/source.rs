@@ -1,7 +1,7 @@
 //! The text of a TOML file, and errors and places in it.
 
 use crate::scene::text::{check_encoding, read_file};
-use crate::scene::{Place, SceneError};
+use crate::scene::{SourceSpan, SceneError};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -84,11 +84,11 @@ impl Source {
         )
     }
 
-    pub(crate) fn place(&self, span: &Span) -> Place {
+    pub(crate) fn place(&self, span: &Span) -> SourceSpan {
         let line = self
             .line_starts
             .partition_point(|&start| start <= span.start);
-        Place {
+        SourceSpan {
             file: Arc::clone(&self.path),
             line,
         }

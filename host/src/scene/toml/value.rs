@@ -19,7 +19,7 @@ pub(crate) struct Value<'a> {
 pub(crate) struct Fields<'a> {
     pub(crate) source: &'a Source,
     pub(crate) span: Span,
-    /// What the table describes, for messages.
+    /// The subject of the table, for messages.
     what: &'a str,
     table: &'a DeTable<'a>,
 }
@@ -144,12 +144,12 @@ impl<'a> Value<'a> {
         Ok(vector)
     }
 
-    /// A linear colour: three numbers, one number for grey, or an sRGB string.
+    /// A linear color: three numbers, one number for gray, or an sRGB string.
     pub(crate) fn color(self) -> Result<Color, SceneError> {
         match self.node.get_ref() {
             DeValue::String(text) => srgb(text).ok_or_else(|| {
                 self.error(
-                    format!("`{}` is {text:?}, which is no colour", self.key),
+                    format!("`{}` is {text:?}, which is no color", self.key),
                     "write \"#rrggbb\" with six hexadecimal digits, or three linear numbers like [0.8, 0.1, 0.1]",
                 )
             }),
@@ -341,7 +341,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// What `read` makes of the key's value, or `default` without one.
+    /// Returns the key's value as `read` converts it, or `default` without one.
     pub(crate) fn or<T>(
         &self,
         key: &str,
@@ -352,7 +352,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// The linear colour of "#rrggbb" (IEC 61966-2-1).
+/// The linear color of "#rrggbb" (IEC 61966-2-1).
 fn srgb(text: &str) -> Option<Color> {
     let digits = text.strip_prefix('#')?;
     if digits.len() != 6 || !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {

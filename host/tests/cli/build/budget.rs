@@ -4,7 +4,7 @@ use crate::program::{Folder, fixture};
 use gridel_host::table::grouped;
 
 #[test]
-fn a_budget_refuses_before_writing() {
+fn a_budget_rejects_before_writing() {
     let folder = Folder::with_quick();
     let accels = ["--accel", "bvh", "--accel", "flagged", "--strip-names"];
     folder.done(&[&["build", "quick.toml", "-o", "quick.gridel"], &accels[..]].concat());
@@ -34,7 +34,7 @@ fn a_budget_refuses_before_writing() {
     run("some", &|arguments| folder.fails(2, arguments, &["64K"]));
 }
 
-/// What would be saved is what is saved.
+/// The advised change saves the bytes that the advice states.
 #[test]
 fn the_advice_for_a_budget_is_exact() {
     let folder = Folder::with_quick();
@@ -84,7 +84,7 @@ fn the_advice_for_a_budget_is_exact() {
 }
 
 #[test]
-fn a_table_beyond_its_budget_is_refused_as_a_blob_is() {
+fn a_table_beyond_its_budget_is_rejected_as_a_blob_is() {
     let folder = Folder::with_quick();
     let build = [
         "build",
@@ -98,25 +98,25 @@ fn a_table_beyond_its_budget_is_refused_as_a_blob_is() {
     folder.fails(
         3,
         &[&build[..], &tight].concat(),
-        &["1 gridel a side", "--budget"],
+        &["1 gridel per side", "--budget"],
     );
 }
 
 /// Code and stack of the boards were measured, so they can change: what is asked for here lies far
 /// from any border.
 #[test]
-fn a_scene_that_does_not_fit_a_board_is_refused_with_figures() {
+fn a_scene_that_does_not_fit_a_board_is_rejected_with_figures() {
     let folder = Folder::new();
     folder.write("quick.toml", &fixture("quick"));
     let build = ["build", "quick.toml", "-o", "quick.gridel"];
     let with = |options: &[&'static str]| [&build, options].concat();
 
-    let refused = |arguments: &[&str]| {
+    let rejected = |arguments: &[&str]| {
         let run = folder.run(arguments);
         assert_eq!(run.code, Some(3), "{arguments:?}: {}", run.stderr);
         run.said()
     };
-    let text = refused(&with(&["--target", "stm32vldiscovery", "--ram", "1K"]));
+    let text = rejected(&with(&["--target", "stm32vldiscovery", "--ram", "1K"]));
     assert!(
         text.contains("bytes of RAM") && text.contains("more than the 1,024"),
         "{text}"
@@ -127,16 +127,16 @@ fn a_scene_that_does_not_fit_a_board_is_refused_with_figures() {
     );
     // Rows are counted whole, so parts of them are no advice.
     assert!(!text.contains("parts of rows"), "{text}");
-    let text = refused(&with(&["--flash", "8K"]));
+    let text = rejected(&with(&["--flash", "8K"]));
     assert!(text.contains("bytes of flash"), "{text}");
     assert!(text.contains("with the feature `small`"), "{text}");
-    let text = refused(&with(&["--flash", "8K", "--ram", "1K"]));
+    let text = rejected(&with(&["--flash", "8K", "--ram", "1K"]));
     assert_eq!(text.matches("`--accel list`").count(), 1, "{text}");
     assert_eq!(folder.names(), ["quick.toml"]);
     folder.done(&with(&["--target", "mps2-an386"]));
 }
 
-/// What is said to make a blob smaller is what it does, whether its own bytes are bounded or a board's.
+/// Advice is true for budgets of the blob and of a board.
 #[test]
 fn advice_on_flash_is_what_it_saves() {
     let folder = Folder::new();
@@ -148,8 +148,9 @@ fn advice_on_flash_is_what_it_saves() {
         folder.read("tube.gridel").len()
     };
     let all = bytes(&[]);
-    for refusing in [["--flash", "8K"], ["--max-bytes", "8K"]] {
-        let run = folder.run(&[&["build", "tube.pdb", "-o", "new.gridel"], &refusing[..]].concat());
+    for rejecting in [["--flash", "8K"], ["--max-bytes", "8K"]] {
+        let run =
+            folder.run(&[&["build", "tube.pdb", "-o", "new.gridel"], &rejecting[..]].concat());
         assert_eq!(run.code, Some(3), "{}", run.stderr);
         for option in [
             ["--lattice-bits", "16"],

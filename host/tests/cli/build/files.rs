@@ -21,7 +21,7 @@ fn the_input_is_never_overwritten() {
 }
 
 #[test]
-fn what_is_no_scene_is_told() {
+fn files_that_are_no_scene_are_rejected_with_the_reason() {
     let folder = Folder::with_quick();
     let fails = |scene: &str, words: &[&str]| {
         folder.fails(1, &["build", scene, "-o", "new.gridel"], words);
@@ -74,7 +74,7 @@ fn numbers_without_end_are_short() {
 }
 
 #[test]
-fn names_that_mean_something_else_are_refused() {
+fn names_that_mean_something_else_are_rejected() {
     let folder = Folder::with_quick();
     for name in ["x.png", "x.toml", "x.obj", "x.npy", "x.txt"] {
         folder.fails(2, &["build", "quick.toml", "-o", name], &[name, ".gridel"]);
@@ -137,7 +137,7 @@ fn nothing_of_the_users_own_is_written_over() {
 
 /// The blob and the module's two files come together or not at all.
 #[test]
-fn what_belongs_together_is_written_together() {
+fn files_that_belong_together_are_written_together() {
     let folder = Folder::with_quick();
     folder.write("n.gridel", b"old");
     for name in ["scene.rs", "scene.gridel"] {

@@ -136,7 +136,7 @@ fn molecules_have_a_style_a_model_and_alternates() {
     folder.fails(2, &[&build[..], &["--altloc", "AB"]].concat(), &[]);
 }
 
-/// What the text says reads well: numbers of one thing, what is left out, what remains on a board.
+/// The text reads well: numbers of one thing, what is left out, what remains on a board.
 #[test]
 fn the_text_counts_and_explains() {
     let folder = Folder::new();

@@ -18,7 +18,7 @@ fn run(stack: &'static mut Memory) {
     let mut scene = None;
     meter.run(|| scene = load(BLOB).ok());
     let Some(scene) = &scene else {
-        fail("the blob is refused")
+        fail("the blob is rejected")
     };
     let mut casts = Casts::default();
     let spent = meter.run(|| casts.run::<Number, Accel>(scene, stack.as_view()));

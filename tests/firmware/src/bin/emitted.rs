@@ -34,7 +34,7 @@ fn run(memory: &'static mut Memory) {
     let mut loaded = None;
     let load = meter.run(|| loaded = scene::load().ok());
     let Some(scene) = &loaded else {
-        fail("the blob is refused")
+        fail("the blob is rejected")
     };
     let Ok(picture) = scene::Picture::with_settings(scene, Settings::of(scene)) else {
         fail("the scene is not for this renderer")

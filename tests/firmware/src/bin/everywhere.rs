@@ -40,7 +40,7 @@ fn run(memory: &'static mut Memory) {
         Ok(scene) => scene,
         Err(error) => {
             words(format_args!("{error}\n"));
-            fail("the blob is refused")
+            fail("the blob is rejected")
         }
     };
     let Some(file) = File::create(c"pictures.rgb") else {

@@ -38,7 +38,7 @@ fn run(memory: &'static mut Memory) {
     let mut scene = None;
     let load = meter.run(|| scene = load(BLOB).ok());
     let Some(scene) = &scene else {
-        fail("the blob is refused")
+        fail("the blob is rejected")
     };
     let settings = Settings::of(scene);
     let Ok(renderer) = SceneRenderer::with_settings(scene, settings) else {

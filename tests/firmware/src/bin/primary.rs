@@ -1,4 +1,4 @@
-//! One ray a pixel, without shading: the hits, and what they cost.
+//! One ray per pixel, without shading: the hits, and what they cost.
 #![no_std]
 #![no_main]
 
@@ -18,7 +18,7 @@ fn run(stack: &'static mut Memory) {
     let mut scene = None;
     let load = meter.run(|| scene = load(BLOB).ok());
     let Some(scene) = &scene else {
-        fail("the blob is refused")
+        fail("the blob is rejected")
     };
     line("blob-bytes", BLOB.len() as u64);
     line("workspace-bytes", size_of::<Memory>() as u64);

@@ -1,4 +1,4 @@
-//! What QEMU does for the program, by Arm's semihosting. The leanest way, without formatting or
+//! Services of QEMU for the program, by Arm's semihosting. The leanest way, without formatting or
 //! buffers: the program shares 8 KiB with it.
 
 use core::arch::asm;

@@ -1,4 +1,4 @@
-//! What stands in for counters where nothing can be counted: in WebAssembly and in QEMU's user mode.
+//! Stand-ins for counters where nothing can be counted: in WebAssembly and in QEMU's user mode.
 
 /// Counts nothing: nobody says how many instructions ran,
 pub struct Counter;

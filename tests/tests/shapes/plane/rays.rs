@@ -172,7 +172,7 @@ fn planes_of_small_integers_have_exact_sides() {
     }
 }
 
-/// What leaves a plane does not meet it again, however far from the scene's box that is.
+/// A ray that leaves a plane does not hit it again, however far from the scene's box that is.
 #[test]
 fn rays_that_leave_a_plane_do_not_meet_it_again() {
     fn judge<N: Number>(normal: DVec3, farthest: f64) {

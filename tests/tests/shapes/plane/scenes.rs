@@ -45,7 +45,7 @@ fn all_structures_agree_on_scenes_with_planes() {
     every_format!(one("planes and tables", &blob.scene().expect("a scene")));
 }
 
-/// Of planes and boxes that coincide the one that comes first in the scene file counts.
+/// Where planes and boxes coincide, the first in the scene file counts.
 #[test]
 fn coincident_planes_and_boxes_are_met_in_file_order() {
     fn one<N: Number>(scene: &gridel_core::Scene<'_>, first: u32) {
@@ -119,7 +119,7 @@ fn scenes_of_planes_alone_work() {
 }
 
 #[test]
-fn a_plane_that_is_too_far_away_or_not_finite_is_refused() {
+fn a_plane_that_is_too_far_away_or_not_finite_is_rejected() {
     let speck = Shape::Sphere(Sphere {
         center: DVec3::ZERO,
         radius: 0.99,
@@ -158,7 +158,7 @@ fn verify_holds_scenes_with_planes_to_every_promise() {
         }];
         let blob = scenes::blob(&scene, 24);
         let report = verify(&blob.scene().expect("a scene"), 3000, &|| ());
-        assert_eq!(report.broken(), 0, "{:#?}", report.promises);
+        assert_eq!(report.broken(), 0, "{:#?}", report.properties);
     }
 }
 

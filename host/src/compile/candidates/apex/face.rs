@@ -14,7 +14,7 @@ pub(super) const ONE: f64 = 1_073_741_824.0;
 /// A face of a cube of directions, and what is seen through it.
 pub(super) struct Face {
     pub(super) bundle: Bundle,
-    /// What a window there must hold.
+    /// The content of a window there.
     pub(super) window: Ranges,
     /// The targets that are seen, the nearest first.
     pub(super) seen: Vec<Seen>,
@@ -31,7 +31,7 @@ pub(super) struct Seen {
 }
 
 impl Face {
-    /// What is seen from a point through a face; `None` for nothing.
+    /// Returns the face as seen from a point; `None` if nothing is seen.
     pub(super) fn of_point(
         targets: &[Target],
         at: [i32; 3],
@@ -56,7 +56,7 @@ impl Face {
         Some(Self { window, ..face })
     }
 
-    /// What is seen from a direction.
+    /// Returns the face as seen from a direction.
     pub(super) fn of_direction(targets: &[Target], direction: &ApexDirection) -> Option<Self> {
         let axis = usize::from(direction.major);
         let up = direction.slope[axis] < 0;
@@ -71,7 +71,7 @@ impl Face {
         Self::of(bundle, targets, [[f64::NEG_INFINITY, f64::INFINITY]; 2])
     }
 
-    /// What is seen by rays within limits.
+    /// Returns the part that rays within limits reach.
     fn of(bundle: Bundle, targets: &[Target], limits: Ranges) -> Option<Self> {
         let mut window = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
         let mut seen = Vec::new();

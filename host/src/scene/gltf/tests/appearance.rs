@@ -106,7 +106,7 @@ fn ignored_attributes_are_counted_in_one_warning_each() {
         warnings(&document),
         [
             "NORMAL of a primitive is ignored; its surface is shaded flat (and 2 times more)",
-            "COLOR_0 of a primitive is ignored; its surface has its material's colour (and 2 times \
+            "COLOR_0 of a primitive is ignored; its surface has its material's color (and 2 times \
              more)",
             "the alpha mask of material \"leaf\" is ignored; it is opaque",
             "material \"lamp\" glows, which is ignored; it is not brighter",
@@ -142,7 +142,7 @@ fn textures_without_a_source_are_read() {
         document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": 1});
         assert_eq!(
             warnings(&document),
-            ["textures are not drawn; the plain colours are used (and 2 times more)"]
+            ["textures are not drawn; the plain colors are used (and 2 times more)"]
         );
     }
     let mut document = document();

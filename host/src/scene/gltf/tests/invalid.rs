@@ -75,7 +75,7 @@ fn broken_documents() {
 
 /// Instances count against what a blob can hold before they are made.
 #[test]
-fn a_million_instances_are_refused() {
+fn a_million_instances_are_rejected() {
     let mut document = document();
     let count = 100_000;
     document["nodes"] = json!(vec![json!({"mesh": 0}); count]);
@@ -128,7 +128,7 @@ fn a_projective_matrix_is_rejected() {
 
 /// Nodes and meshes that no scene shows must be valid all the same.
 #[test]
-fn what_is_not_shown_is_checked() {
+fn meshes_that_are_not_shown_are_checked() {
     let mut document = document();
     document["scenes"] = json!([{"nodes": []}]);
     document["nodes"] = json!([{"children": [1]}, {"children": [2]}, {"children": [0]}]);

@@ -1,6 +1,6 @@
 //! Every error: its line, its cause and its remedy.
 
-use super::refusal;
+use super::rejection;
 use miette::{GraphicalReportHandler, GraphicalTheme};
 
 #[test]
@@ -17,7 +17,7 @@ fn every_error_shows_line_cause_and_remedy() {
             panic!("not one mark in:\n{text}")
         };
         let (cause, remedy) = words.split_once('|').unwrap();
-        let error = refusal(text);
+        let error = rejection(text);
         let message = format!("{error}; {}\n{text}", error.remedy);
         assert_eq!(error.line, Some(line), "{message}");
         assert!(error.file.ends_with("scene.toml"), "{message}");
@@ -30,7 +30,7 @@ fn every_error_shows_line_cause_and_remedy() {
 
 #[test]
 fn miette_underlines_the_value() {
-    let error = refusal("[material.red]\ndiffuse = [1, 0, -2]\n");
+    let error = rejection("[material.red]\ndiffuse = [1, 0, -2]\n");
     let mut report = String::new();
     let handler = GraphicalReportHandler::new_themed(GraphicalTheme::unicode_nocolor());
     handler.render_report(&mut report, &error).unwrap();

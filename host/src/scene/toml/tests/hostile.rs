@@ -1,10 +1,10 @@
 //! Files that are broken at random, or made to cost without end.
 
-use super::{example, load, load_in, refusal};
+use super::{example, load, load_in, rejection};
 use miette::{GraphicalReportHandler, GraphicalTheme};
 use std::fmt::Write;
 
-/// Loads a text and, where it is refused, renders the error as the program would.
+/// Loads a text and, where it is rejected, renders the error as the program would.
 fn survive(folder: &std::path::Path, text: &str) {
     if let Err(error) = load_in(folder, text) {
         assert!(!error.cause.is_empty() && !error.remedy.is_empty());
@@ -79,8 +79,8 @@ fn tower(floors: usize, times: usize, ground: &str) -> String {
 }
 
 #[test]
-fn groups_that_multiply_beyond_all_memory_are_refused_before() {
-    let error = refusal(&tower(40, 10, DOT));
+fn groups_that_multiply_beyond_all_memory_are_rejected_before() {
+    let error = rejection(&tower(40, 10, DOT));
     assert!(error.cause.contains("GB of memory, for"), "{error}");
     assert!(error.cause.contains("the limit is 3.8 GB"), "{error}");
     assert!(error.line.is_some());
@@ -96,7 +96,7 @@ fn vertices_without_faces_do_not_multiply_for_free() {
     let ground = format!(
         "object = [{{ kind = \"mesh\", vertices = [{vertices} [1, 0, 0], [0, 1, 0]], faces = [[0, 3000, 3001]] }}]\n"
     );
-    let error = refusal(&tower(5, 10, &ground));
+    let error = rejection(&tower(5, 10, &ground));
     assert!(
         error.cause.contains("more than 16777216 primitives"),
         "{error}"
@@ -106,7 +106,7 @@ fn vertices_without_faces_do_not_multiply_for_free() {
 /// As many spheres as fit into a blob, and more than fit into 4 GB.
 #[test]
 fn two_to_the_23_instances_are_rejected_with_the_figure() {
-    let error = refusal(&tower(23, 2, DOT));
+    let error = rejection(&tower(23, 2, DOT));
     assert!(
         error
             .cause
@@ -120,33 +120,33 @@ fn two_to_the_23_instances_are_rejected_with_the_figure() {
     assert!(error.remedy.contains("use fewer instances"));
     // Long names multiply as well.
     let named = DOT.replace("kind", &format!("name = \"{}\", kind", "n".repeat(100_000)));
-    let error = refusal(&tower(5, 10, &named));
+    let error = rejection(&tower(5, 10, &named));
     assert!(error.cause.contains("of memory, for"), "{error}");
 }
 
 #[test]
 fn towers_of_groups_end_at_a_depth() {
     assert_eq!(load(&tower(63, 1, DOT)).unwrap().scene.objects.len(), 1);
-    let error = refusal(&tower(64, 1, DOT));
+    let error = rejection(&tower(64, 1, DOT));
     assert!(error.cause.contains("nested deeper than 64"), "{error}");
     assert!(
-        refusal(&tower(20_000, 1, DOT))
+        rejection(&tower(20_000, 1, DOT))
             .cause
             .contains("nested deeper than 64")
     );
 }
 
 #[test]
-fn brackets_without_end_are_refused() {
+fn brackets_without_end_are_rejected() {
     for open in ["[", "{a=", "[{a="] {
-        let error = refusal(&format!("object = {}", open.repeat(100_000)));
+        let error = rejection(&format!("object = {}", open.repeat(100_000)));
         assert!(error.cause.starts_with("this is not TOML"), "{error}");
     }
-    let dotted = refusal(&format!("{}a = 1", "a.".repeat(100_000)));
+    let dotted = rejection(&format!("{}a = 1", "a.".repeat(100_000)));
     assert!(dotted.cause.starts_with("this is not TOML"), "{dotted}");
     let nested = "{ kind = \"group\", object = [".repeat(30) + &"] }".repeat(30);
     assert!(
-        refusal(&format!("object = [{nested}]"))
+        rejection(&format!("object = [{nested}]"))
             .cause
             .contains("holds no object")
     );
@@ -174,11 +174,11 @@ fn burrow(headings: usize, inline: usize, object: &str) -> String {
     text
 }
 
-/// As deep as TOML allows; reading must not run out of stack before it is refused.
+/// As deep as TOML allows; reading must not run out of stack before it is rejected.
 #[test]
-fn deep_groups_are_refused() {
+fn deep_groups_are_rejected() {
     let dot = "{ kind = \"sphere\", center = [0, 0, 0], radius = 1 }";
-    let error = refusal(&burrow(75, 35, dot));
+    let error = rejection(&burrow(75, 35, dot));
     assert!(
         error.cause.contains("groups are nested deeper than 64"),
         "{error}"
@@ -187,7 +187,7 @@ fn deep_groups_are_refused() {
 }
 
 #[test]
-fn deep_groups_in_deep_imports_are_refused() {
+fn deep_groups_in_deep_imports_are_rejected() {
     for (depth, cause) in [
         (5, "groups are nested deeper than 64"),
         (3, "nested deeper than 16 files"),

@@ -74,7 +74,7 @@ fn an_import_brings_objects_and_lends_the_view() {
 }
 
 #[test]
-fn what_the_importing_scene_states_counts() {
+fn settings_of_the_importing_scene_come_first() {
     let folder = folder(&[("parts/ball.toml", &ball())]);
     let own = "background = 0\n[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\n[[light]]\nkind = \"point\"\nposition = [0, 9, 0]\n";
     let scene = load_in(folder.path(), &format!("{own}{}", importing("")))
@@ -165,7 +165,7 @@ fn an_error_inside_an_import_names_both_places() {
 }
 
 #[test]
-fn circles_of_imports_are_refused() {
+fn circles_of_imports_are_rejected() {
     let back = "[[object]]\nkind = \"import\"\nfile = \"../scene.toml\"\n";
     let around = folder(&[("parts/ball.toml", back)]);
     let error = load_in(around.path(), &importing("")).unwrap_err();
@@ -182,7 +182,7 @@ fn circles_of_imports_are_refused() {
 }
 
 #[test]
-fn long_chains_of_imports_are_refused() {
+fn long_chains_of_imports_are_rejected() {
     let chain: Vec<_> = (0..40)
         .map(|index| {
             let text = format!(

@@ -30,8 +30,8 @@ fn scene(text: &str) -> Scene {
         .scene
 }
 
-/// The error of a text that must be refused.
-fn refusal(text: &str) -> SceneError {
+/// The error of a text that must be rejected.
+fn rejection(text: &str) -> SceneError {
     match load(text) {
         Ok(_) => panic!("accepted:\n{text}"),
         Err(error) => error,

@@ -1,4 +1,4 @@
-//! What valid files come to.
+//! Objects of valid files.
 
 use crate::shape::{Cone, Cuboid, Sphere};
 use super::{example, load, material_of, named, scene};
@@ -94,7 +94,7 @@ fn a_material_called_default_serves_objects_without_one() {
 }
 
 #[test]
-fn colours_have_three_spellings() {
+fn colors_have_three_spellings() {
     assert_eq!(scene("background = 0.5").background, Some([0.5; 3]));
     assert_eq!(
         scene("background = [0, 0.5, 2]").background,

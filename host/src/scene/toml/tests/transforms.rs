@@ -1,7 +1,7 @@
-//! What transforms make of shapes.
+//! Shapes after transforms.
 
 use crate::shape::{Cone, Cuboid, Disc, Sphere};
-use super::{assert_near, named, refusal, scene, volume};
+use super::{assert_near, named, rejection, scene, volume};
 use crate::scene::{Scene, Shape};
 use glam::DVec3;
 
@@ -234,7 +234,7 @@ fn planes_take_every_transform() {
     assert!(turned.normal.angle_between(DVec3::new(-1.0, 1.0, 0.0)) < 1e-12);
     let mirrored = moved(&["scale = [-1, 1, 1]"]);
     assert!(mirrored.normal.angle_between(DVec3::new(-1.0, 1.0, 0.0)) < 1e-12);
-    let flattened = refusal(&nested(PLANE, &["scale = [1, 0, 1]"]));
+    let flattened = rejection(&nested(PLANE, &["scale = [1, 0, 1]"]));
     assert!(flattened.cause.contains("flattens"), "{flattened}");
 }
 
@@ -251,13 +251,13 @@ fn uneven_scales_that_cancel_out_are_even() {
 }
 
 #[test]
-fn round_shapes_refuse_uneven_scales() {
+fn round_shapes_reject_uneven_scales() {
     for object in [SPHERE, DISC, CONE] {
         for transforms in [
             &["scale = [1, 2, 1]"][..],
             &["scale = [1, 1, 1.0001]", "rotate = [0, 45, 0]"],
         ] {
-            let error = refusal(&nested(object, transforms));
+            let error = rejection(&nested(object, transforms));
             assert!(error.cause.contains("/it\" is scaled unevenly"), "{error}");
             assert!(error.remedy.contains("the same number on every axis"));
             assert_eq!(error.line, Some(1));
@@ -266,20 +266,20 @@ fn round_shapes_refuse_uneven_scales() {
 }
 
 #[test]
-fn what_rounds_to_nothing_or_to_infinity_is_refused() {
+fn shapes_that_round_to_nothing_or_infinity_are_rejected() {
     let tiny = ["scale = 1e-200", "scale = 1e-200"];
     for object in [SPHERE, BOX, DISC, CONE, TETRAHEDRON] {
-        let error = refusal(&nested(object, &tiny));
+        let error = rejection(&nested(object, &tiny));
         assert!(
             error.cause.contains("range of numbers") || error.cause.contains("flattened"),
             "{error}"
         );
-        let huge = refusal(&nested(object, &["scale = 1e200", "scale = 1e200"]));
+        let huge = rejection(&nested(object, &["scale = 1e200", "scale = 1e200"]));
         assert!(huge.cause.contains("range of numbers"), "{huge}");
     }
-    let lost = refusal(&nested(CONE, &["translate = [0, 1e30, 0]"]));
+    let lost = rejection(&nested(CONE, &["translate = [0, 1e30, 0]"]));
     assert!(lost.cause.contains("range of numbers"), "{lost}");
-    let flat = refusal(&nested(
+    let flat = rejection(&nested(
         TETRAHEDRON,
         &["scale = [1, 1e-300, 1]", "scale = [1, 1e-300, 1]"],
     ));

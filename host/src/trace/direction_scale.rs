@@ -6,29 +6,29 @@ use glam::DVec3;
 /// The largest component of a direction in units, by which t is larger in the core: a factor and a
 /// power of two, because units and directions may be as small and as large as numbers are.
 #[derive(Clone, Copy, Debug)]
-pub struct Stride {
+pub struct DirectionScale {
     factor: f64,
     exponent: i32,
     /// The length at which the core's ray counts 0.
     begin: f64,
 }
 
-impl Stride {
+impl DirectionScale {
     /// Powers of two up to which no product with a length leaves the range of numbers.
     const ORDINARY: std::ops::Range<f64> = 1.0 / (1_u128 << 100) as f64..(1_u128 << 100) as f64;
 
-    /// The stride of a direction, and the direction with its length brought near 1 where it is extreme.
+    /// The direction_scale of a direction, and the direction with its length brought near 1 where it is extreme.
     #[inline(always)]
     pub(super) fn of(direction: DVec3, unit: f64, per_unit: f64) -> (Self, DVec3) {
         let largest = direction.abs().max_element();
         let factor = largest * per_unit;
         if Self::ORDINARY.contains(&factor) && Self::ORDINARY.contains(&largest) {
-            let stride = Self {
+            let direction_scale = Self {
                 factor,
                 exponent: 0,
                 begin: 0.0,
             };
-            return (stride, direction);
+            return (direction_scale, direction);
         }
         Self::of_extremes(direction, unit)
     }
@@ -39,7 +39,7 @@ impl Stride {
         let (factor, exponent) = libm::frexp(direction.abs().max_element());
         let (_, one) = libm::frexp(unit);
         // A unit is a power of two, which is half of two to its exponent.
-        let stride = Self {
+        let direction_scale = Self {
             factor,
             exponent: exponent - (one - 1),
             begin: 0.0,
@@ -47,7 +47,7 @@ impl Stride {
         let scaled = direction
             .to_array()
             .map(|component| libm::scalbn(component, -exponent));
-        (stride, DVec3::from_array(scaled))
+        (direction_scale, DVec3::from_array(scaled))
     }
 
     /// From now on lengths of hits count from so far along the ray.

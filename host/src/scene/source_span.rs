@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 /// A place in a scene file, for messages.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Place {
+pub struct SourceSpan {
     /// Shared by all objects of the file.
     pub file: Arc<PathBuf>,
     /// Line, counted from 1; 0 where the format has no lines.
     pub line: usize,
 }
 
-impl Place {
+impl SourceSpan {
     /// A whole file.
     pub(super) fn of(path: &Path) -> Self {
         Self {
@@ -22,7 +22,7 @@ impl Place {
     }
 }
 
-impl std::fmt::Display for Place {
+impl std::fmt::Display for SourceSpan {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.line {
             0 => write!(f, "{}", self.file.display()),

@@ -7,9 +7,9 @@ use gridel_core::observe::event::{QueryHit, Source};
 use gridel_core::{Event, Format, RayKind, Scene};
 use serde::Serialize;
 
-/// A pixel, or a ray of one's own, explained. Colours are linear, 1 being display white.
+/// A pixel, or a ray of one's own, explained. Colors are linear, 1 being display white.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Story {
+pub struct Explanation {
     /// From the picture's upper left corner; `None` for a ray of one's own.
     pub pixel: Option<[u16; 2]>,
     /// The picture's columns and rows; `None` for a ray of one's own.
@@ -19,9 +19,9 @@ pub struct Story {
     /// Structure.
     pub accel: &'static str,
     pub samples: Vec<Sample>,
-    /// The pixel's linear colour; 65535 is white.
+    /// The pixel's linear color; 65535 is white.
     pub linear: [u16; 3],
-    /// The pixel's colour in sRGB, as displays take it.
+    /// The pixel's color in sRGB, as displays take it.
     pub srgb: [u8; 3],
 }
 
@@ -93,7 +93,7 @@ pub struct Hit {
 #[derive(Clone, Debug, Serialize)]
 pub struct Lighting {
     pub light: u32,
-    /// Of the angle between the surface's normal and the light.
+    /// Cosine of the angle between the surface's normal and the light.
     pub cosine: f64,
     /// The way to the light, surface of glass by surface of glass.
     pub shadow: Vec<Walk>,
@@ -101,13 +101,13 @@ pub struct Lighting {
     pub filtered: Vec<[f64; 3]>,
     /// The radiance that the light adds to the surface, without the ray's weight.
     pub radiance: [f64; 3],
-    pub fall: Fall,
+    pub outcome: LightOutcome,
 }
 
-/// What becomes of a light.
+/// The outcome of a light at a surface.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "fall", rename_all = "kebab-case")]
-pub enum Fall {
+#[serde(tag = "outcome", rename_all = "kebab-case")]
+pub enum LightOutcome {
     /// It shines on the surface.
     Lit,
     /// The surface is turned away from it.
@@ -136,7 +136,7 @@ fn kind_name(kind: RayKind) -> &'static str {
     }
 }
 
-impl Story {
+impl Explanation {
     /// Puts events in order.
     pub(super) fn of(
         scene: &Scene<'_>,
@@ -144,21 +144,21 @@ impl Story {
         subject: &Subject,
         events: &[Event],
     ) -> Self {
-        let mut story = Story::default();
-        let mut teller = Teller::new(scene, format, subject);
+        let mut explanation = Explanation::default();
+        let mut reader = Reader::new(scene, format, subject);
         for event in events {
             if let Event::SampleFinished { place, radiance } = *event {
-                story.samples.push(teller.finish(place, radiance));
+                explanation.samples.push(reader.finish(place, radiance));
             } else {
-                teller.take(event);
+                reader.take(event);
             }
         }
-        story
+        explanation
     }
 }
 
 /// A sample, as far as its events were read.
-struct Teller<'t> {
+struct Reader<'t> {
     scene: &'t Scene<'t>,
     frame: Frame,
     format: Format,
@@ -171,7 +171,7 @@ struct Teller<'t> {
     light: bool,
 }
 
-impl<'t> Teller<'t> {
+impl<'t> Reader<'t> {
     fn new(scene: &'t Scene<'t>, format: Format, subject: &Subject) -> Self {
         let frame = Frame::of(scene);
         Self {
@@ -278,7 +278,8 @@ impl Ray {
             }
             Event::Light { number, cosine } => {
                 *light = true;
-                self.lights.push(Lighting::new(number, cosine, Fall::Lit));
+                self.lights
+                    .push(Lighting::new(number, cosine, LightOutcome::Lit));
             }
             Event::Filtered { left } => {
                 if let Some(lighting) = self.lights.last_mut() {
@@ -290,10 +291,12 @@ impl Ray {
                 match self.lights.last_mut().filter(|l| l.light == number) {
                     Some(lighting) => {
                         lighting.radiance = radiance;
-                        lighting.fall = lighting.fall(scene);
+                        lighting.outcome = lighting.outcome(scene);
                     }
                     // The light had no event before.
-                    None => self.lights.push(Lighting::new(number, 0.0, Fall::Here)),
+                    None => self
+                        .lights
+                        .push(Lighting::new(number, 0.0, LightOutcome::Here)),
                 }
             }
             Event::Absorbed { weight } => self.absorbed = Some(weight),
@@ -335,36 +338,36 @@ impl Hit {
 }
 
 impl Lighting {
-    fn new(light: u32, cosine: f64, fall: Fall) -> Self {
+    fn new(light: u32, cosine: f64, outcome: LightOutcome) -> Self {
         Self {
             light,
             cosine,
             shadow: Vec::new(),
             filtered: Vec::new(),
             radiance: [0.0; 3],
-            fall,
+            outcome,
         }
     }
 
-    fn fall(&self, scene: &Scene<'_>) -> Fall {
+    fn outcome(&self, scene: &Scene<'_>) -> LightOutcome {
         if self.radiance != [0.0; 3] {
-            return Fall::Lit;
+            return LightOutcome::Lit;
         }
         if self.cosine <= 0.0 {
-            return Fall::Behind;
+            return LightOutcome::Behind;
         }
         let Some(last) = self.shadow.last() else {
-            return Fall::Unreflected;
+            return LightOutcome::Unreflected;
         };
         // Glass that was met let the rest through, or too little of it.
         match last.met() {
-            Some(_) if self.filtered.len() == self.shadow.len() => Fall::Faded,
-            Some(met) => Fall::Blocked {
+            Some(_) if self.filtered.len() == self.shadow.len() => LightOutcome::Faded,
+            Some(met) => LightOutcome::Blocked {
                 kind: met.kind,
                 primitive: met.primitive,
                 object: scene.object(met.primitive),
             },
-            None => Fall::Unreflected,
+            None => LightOutcome::Unreflected,
         }
     }
 }
