@@ -3,11 +3,13 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `scene.rs` | how a scene file is read and compiled |
-//! | `view.rs` | from where a scene file is seen |
+//! | `view.rs` | from where a scene is seen |
+//! | `light.rs` | changes of lights |
 //! | `structures.rs` | how structures are built |
 //! | `target.rs` | boards and their memory |
 //! | `values.rs` | names, sizes, ranges and vectors |
 
+mod light;
 mod scene;
 mod structures;
 mod target;
