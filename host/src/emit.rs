@@ -113,6 +113,10 @@ impl Emitted<'_> {
              pub const WIDTH: usize = {width};\n\
              /// Rows.\n\
              pub const HEIGHT: usize = {height};\n\
+             /// A step of `gridel_core::Position` is 2 to this power scene units, counted from\n\
+             /// {origin}.\n\
+             #[allow(dead_code)]\n\
+             pub const COORDINATE_EXPONENT: i32 = {exponent};\n\
              \n\
              /// The number format.\n\
              pub type Number = {number};\n\
@@ -126,7 +130,7 @@ impl Emitted<'_> {
              pub type Space = gridel_core::Workspace<Number, STACK_DEPTH, WORK_DEPTH>;\n\
              /// The renderer, with the code of the scene's effects.\n\
              #[allow(dead_code)]\n\
-             pub type Picture<'s> = gridel_core::Renderer<'s, 'static, Number, Accel, EFFECTS>;\n\
+             pub type Picture<'s> = gridel_core::Renderer<'s, 's, Number, Accel, EFFECTS>;\n\
              \n\
              {load}\
              \n\
@@ -152,6 +156,11 @@ impl Emitted<'_> {
              }};\n",
             features = features.join(", "),
             stack = scene.stack_depth(),
+            exponent = scene.coordinate_exponent(),
+            origin = match scene.header() {
+                header if header.coordinate_origin == 0 => format!("{:?}", header.origin),
+                _ => String::from("the scene's origin"),
+            },
             waiting = scene.effects().work_depth(view.depth),
             effects = scene.effects(),
             bits = scene.effects().0,

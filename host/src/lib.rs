@@ -11,6 +11,7 @@
 //! | know the boards that blobs are for | [`measure::board`] |
 //! | write a blob as a Rust module | [`emit`] |
 //! | render a blob on all cores | [`render`], then [`picture`] to encode what comes out |
+//! | change the camera and the lights of a blob | [`live`] |
 //! | compare structures on a scene | [`compare`] |
 //! | put parts of a picture together | [`merge`] |
 //! | trace rays of one's own | [`trace`], and [`npy`] for NumPy's files |
@@ -50,6 +51,7 @@ pub mod compare;
 pub mod compile;
 pub mod emit;
 pub mod explain;
+pub mod live;
 pub mod measure;
 pub mod merge;
 pub mod npy;

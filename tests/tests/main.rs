@@ -17,6 +17,7 @@ mod large_scenes;
 #[path = "lattice/main.rs"]
 mod lattice;
 mod layers;
+mod live;
 mod origins;
 mod reference;
 mod render;

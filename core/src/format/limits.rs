@@ -24,6 +24,10 @@ pub const fn work_depth(depth: u8) -> usize {
 /// Eyes and lights of a blob are no farther away.
 pub const FARTHEST: i64 = 1 << 50;
 
+/// The coarsest step of scene coordinates is a unit times 2 to the power of this less 13, so that a coordinate
+/// reaches [`FARTHEST`].
+pub const MAX_COORDINATE_SHIFT: u8 = 19;
+
 /// Shapes without bounds are met at less than 2^49 units from a ray's origin, or from where it comes to the scene's box,
 /// with 13 fraction bits.
 pub const FARTHEST_HIT: i64 = 1 << 62;

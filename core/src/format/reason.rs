@@ -47,6 +47,8 @@ texts! {
         LatticeBits => "number of lattice bits",
         StorageBits => "number of storage bits",
         UnitExponent => "unit exponent",
+        CoordinateShift => "coordinate shift",
+        CoordinateOrigin => "coordinate origin",
         LongestLeaf => "longest leaf",
         Slots => "number of slots",
         Kind => "kind",

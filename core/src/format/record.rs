@@ -57,8 +57,13 @@ pub struct Header {
     pub bounds: UnitBox,
     /// Bytes of the traversal stack: `stack_depth` entries.
     pub stack_bytes: u32,
+    /// One step of scene coordinates (see [`Position`](crate::Position)) is a unit times 2 to the power of
+    /// this less 13; at most [`MAX_COORDINATE_SHIFT`](crate::format::limits::MAX_COORDINATE_SHIFT).
+    pub coordinate_shift: u8,
+    /// What scene coordinates are counted from: 0 for the lattice's origin, 1 for the scene's.
+    pub coordinate_origin: u8,
     /// Zero.
-    pub spare: [u32; 2],
+    pub spare: [u16; 3],
 }
 
 /// One line of the section table.
@@ -396,7 +401,8 @@ const _: () = {
     assert!(offset_of!(Header, objects) == 40 && offset_of!(Header, lattice_bits) == 44);
     assert!(offset_of!(Header, storage_bits) == 45 && offset_of!(Header, unit_exponent) == 46);
     assert!(offset_of!(Header, origin) == 48 && offset_of!(Header, bounds) == 72);
-    assert!(offset_of!(Header, stack_bytes) == 84);
+    assert!(offset_of!(Header, stack_bytes) == 84 && offset_of!(Header, coordinate_shift) == 88);
+    assert!(offset_of!(Header, coordinate_origin) == 89);
     assert!(size_of::<SectionEntry>() == 16);
     assert!(size_of::<View>() == 96 && align_of::<View>() == 8);
     assert!(offset_of!(View, forward) == 24 && offset_of!(View, background) == 60);

@@ -18,6 +18,7 @@
 //! The operators of [`Fixed`] wrap and never panic. That no kernel wraps is a matter of ranges,
 //! which the ray's set-up establishes (see [`crate::ray`]) and every kernel keeps.
 
+mod angle;
 mod arithmetic;
 mod convert;
 mod error_bounds;
@@ -30,6 +31,7 @@ mod products;
 mod scalar;
 mod vectors;
 
+pub use angle::Angle;
 pub use arithmetic::Arithmetic;
 pub use convert::Convert;
 pub use error_bounds::ErrorBounds;

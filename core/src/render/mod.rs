@@ -2,7 +2,8 @@
 //!
 //! | step | file |
 //! |---|---|
-//! | where in the pixel, and in which direction | `sample.rs`, `camera.rs` |
+//! | a camera that the program places | `camera.rs` |
+//! | where in the pixel, and in which direction | `sample.rs`, `pixel_rays.rs` |
 //! | what the ray and those it causes bring | `trace.rs` |
 //! | without a choice of format, structure and effects | `defaults.rs` |
 //! | the samples of a pixel, all pixels of a rectangle | `samples.rs`, `rows.rs` |
@@ -17,12 +18,14 @@ mod defaults;
 #[cfg(feature = "embedded-graphics-core")]
 mod display;
 mod pixel;
+mod pixel_rays;
 mod renderer;
 mod rows;
 mod sample;
 mod samples;
 mod trace;
 
+pub use camera::{Camera, CameraError, Up};
 pub use cursor::Cursor;
 pub use pixel::{Pixel, Rgb565, Rgb888};
 pub use renderer::{RenderError, Renderer, Settings};

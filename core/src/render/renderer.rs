@@ -5,9 +5,9 @@ use crate::format::limits::{DISPLAY_VALUES, MAX_RAY_DEPTH, MAX_SAMPLES};
 use crate::format::{Effects, Structure};
 use crate::number::Format;
 use crate::ray::{Ray, RayError};
-use crate::render::camera;
-use crate::render::camera::Camera;
 use crate::render::pixel::{Linear, from_display};
+use crate::render::pixel_rays;
+use crate::render::pixel_rays::PixelRays;
 use crate::render::sample::SUBPIXELS;
 use crate::render::trace::{Loop, WorkspaceView};
 use crate::scene::Scene;
@@ -145,7 +145,7 @@ impl core::error::Error for RenderError {}
 pub struct Renderer<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> {
     scene: &'s Scene<'a>,
     settings: Settings,
-    camera: Camera<N>,
+    rays: PixelRays<N>,
     structure: PhantomData<A>,
 }
 
@@ -195,14 +195,14 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         if missing != Effects::NONE {
             return Err(RenderError::Effects(missing));
         }
-        if !SMALL && !camera::resolves::<N>(scene.view(), height) {
+        if !SMALL && !pixel_rays::resolves::<N>(scene.view(), height) {
             return Err(RenderError::Resolution(N::FORMAT));
         }
-        let camera = Camera::new(scene.bounds(), scene.view(), width, height);
+        let rays = PixelRays::new(scene.bounds(), scene.view(), width, height);
         Ok(Self {
             scene,
             settings,
-            camera,
+            rays,
             structure: PhantomData,
         })
     }
@@ -286,7 +286,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     /// The ray from the eye through a point given in subpixels from the upper left corner.
     #[inline(always)]
     pub(super) fn ray_through(&self, x: i32, y: i32) -> Result<Ray<N>, RayError> {
-        self.camera.ray(&self.camera.row(y), x)
+        self.rays.ray(&self.rays.row(y), x)
     }
 
     /// A pixel's value in the steps of a picture.

@@ -17,6 +17,7 @@ pub struct Scene<'a> {
     pub(crate) space: Space<'a>,
     /// The records of its structures.
     pub(crate) structures: StructureViews<'a>,
+    pub(in crate::scene) effects: Effects,
     pub(crate) view: &'a View,
     pub(crate) lights: &'a [Light],
     pub(crate) materials: &'a [Material],
@@ -99,7 +100,7 @@ impl<'a> Scene<'a> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn effects(&self) -> Effects {
-        Effects(self.space.header.effects)
+        self.effects
     }
 
     /// Entries that the traversal stack needs.

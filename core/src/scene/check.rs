@@ -2,7 +2,7 @@
 
 use crate::accel::StructureViews;
 use crate::format::range::{At, exactly};
-use crate::format::record::Header;
+use crate::format::record::{Header, Light, Material};
 use crate::format::{
     BlobError, Effects, Field, Kind, Leaf, Location, Reason, SectionKind, Sections, checksum,
 };
@@ -36,17 +36,21 @@ pub(crate) fn check<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<()
 const ONE: i64 = 1 << 30;
 
 fn check_lights(scene: &Scene<'_>) -> Result<(), BlobError> {
+    let mut lights = scene.lights.iter().enumerate();
+    lights.try_for_each(|(index, light)| check_light(index, light))
+}
+
+/// Proves the ranges of a light.
+#[inline(always)]
+pub(super) fn check_light(index: usize, light: &Light) -> Result<(), BlobError> {
     let section = SectionKind::Lights;
-    for (index, light) in scene.lights.iter().enumerate() {
-        let at = At { section, index };
-        at.within(Field::Kind, light.directional.into(), 0, 1)?;
-        at.all_within(Field::Color, &light.color, 0, RADIANCE)?;
-        let most = if light.directional == 1 { ONE } else { FAR };
-        at.all_within(Field::PositionOrDirection, &light.vector, -most, most)?;
-        let zero = light.directional == 1 && light.vector == [0; 3];
-        at.ensure(!zero, Reason::ZeroDirection)?;
-    }
-    Ok(())
+    let at = At { section, index };
+    at.within(Field::Kind, light.directional.into(), 0, 1)?;
+    at.all_within(Field::Color, &light.color, 0, RADIANCE)?;
+    let most = if light.directional == 1 { ONE } else { FAR };
+    at.all_within(Field::PositionOrDirection, &light.vector, -most, most)?;
+    let zero = light.directional == 1 && light.vector == [0; 3];
+    at.ensure(!zero, Reason::ZeroDirection)
 }
 
 fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
@@ -61,24 +65,9 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
         });
     }
     for (index, material) in materials.iter().enumerate() {
-        let at = At { section, index };
-        let colors = [
-            (Field::Diffuse, material.diffuse),
-            (Field::Odd, material.odd),
-            (Field::Highlight, material.highlight),
-            (Field::Mirror, material.mirror),
-            (Field::Transmittance, material.transmit),
-        ];
-        for (field, color) in colors {
-            at.all_within(field, &color, 0, ONE)?;
-        }
-        at.within(Field::InverseIor, material.inverse_ior.into(), ONE / 4, ONE)?;
-        at.within(Field::Shininess, material.shininess.into(), 1, 1024)?;
-        // The pattern repeats after two cells, which are a length, too.
-        at.within(Field::CheckerSize, material.checker_size.into(), 0, ONE - 1)?;
-        at.all_within(Field::CheckerOrigin, &material.checker_origin, -ONE, ONE)?;
-        at.ensure(material.spare == 0, Reason::SpareNotZero)?;
+        check_material(index, material)?;
         let uncalled = material.effects().without(Effects(header.effects));
+        let at = At { section, index };
         at.ensure(uncalled == Effects::NONE, Reason::MissingEffect)?;
         called = called.with(material.effects());
     }
@@ -89,6 +78,29 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
     }
     let unneeded = Effects(header.effects).without(called);
     Location::Header.ensure(unneeded == Effects::NONE, Reason::UnneededEffects)
+}
+
+/// Proves the ranges of a material.
+#[inline(always)]
+pub(super) fn check_material(index: usize, material: &Material) -> Result<(), BlobError> {
+    let section = SectionKind::Materials;
+    let at = At { section, index };
+    let colors = [
+        (Field::Diffuse, material.diffuse),
+        (Field::Odd, material.odd),
+        (Field::Highlight, material.highlight),
+        (Field::Mirror, material.mirror),
+        (Field::Transmittance, material.transmit),
+    ];
+    for (field, color) in colors {
+        at.all_within(field, &color, 0, ONE)?;
+    }
+    at.within(Field::InverseIor, material.inverse_ior.into(), ONE / 4, ONE)?;
+    at.within(Field::Shininess, material.shininess.into(), 1, 1024)?;
+    // The pattern repeats after two cells, which are a length, too.
+    at.within(Field::CheckerSize, material.checker_size.into(), 0, ONE - 1)?;
+    at.all_within(Field::CheckerOrigin, &material.checker_origin, -ONE, ONE)?;
+    at.ensure(material.spare == 0, Reason::SpareNotZero)
 }
 
 fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {

@@ -4,7 +4,9 @@
 //! primitives, the structures their trees and lists.
 
 mod blob;
+mod changes;
 mod check;
+mod coordinates;
 mod features;
 mod load;
 mod names;
@@ -12,5 +14,6 @@ mod prevalidated;
 mod read;
 
 pub use blob::Scene;
+pub use coordinates::Position;
 pub use names::Names;
 pub use prevalidated::Prevalidated;

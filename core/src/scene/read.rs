@@ -4,7 +4,7 @@ use crate::accel::StructureViews;
 use crate::accel::space::Space;
 use crate::accel::stack::Entry;
 use crate::format::limits::{
-    DISPLAY_VALUES, FARTHEST, MAX_RAY_DEPTH, MAX_SAMPLES, MAX_STACK_DEPTH,
+    DISPLAY_VALUES, FARTHEST, MAX_COORDINATE_SHIFT, MAX_RAY_DEPTH, MAX_SAMPLES, MAX_STACK_DEPTH,
 };
 use crate::format::range::{At, at_most, exactly};
 use crate::format::record::{ALIGNMENT, ENDIANNESS, Header, MAGIC, VERSION, View};
@@ -63,7 +63,7 @@ pub(crate) fn scene<'a>(
     sections: &Sections<'a>,
 ) -> Result<Scene<'a>, BlobError> {
     check_limits(header)?;
-    let view = check_view(sections)?;
+    let view = the_view(sections)?;
     let shapes = Shapes::read(sections, header)?;
     Ok(Scene {
         space: Space {
@@ -74,6 +74,7 @@ pub(crate) fn scene<'a>(
             simd: WideOnly::new(SimdLevel::default),
         },
         structures: StructureViews::read(sections)?,
+        effects: Effects(header.effects),
         view,
         lights: sections.records(SectionKind::Lights)?,
         materials: sections.records(SectionKind::Materials)?,
@@ -124,11 +125,17 @@ fn check_limits(header: &Header) -> Result<(), BlobError> {
         sides.all(|[low, _]| *low != i16::MIN),
         Reason::ReservedBounds,
     )?;
-    header_has(header.spare == [0; 2], Reason::SpareNotZero)?;
+    at_most(
+        Field::CoordinateShift,
+        header.coordinate_shift.into(),
+        MAX_COORDINATE_SHIFT.into(),
+    )?;
+    at_most(Field::CoordinateOrigin, header.coordinate_origin.into(), 1)?;
+    header_has(header.spare == [0; 3], Reason::SpareNotZero)?;
     Ok(())
 }
 
-fn check_view<'a>(sections: &Sections<'a>) -> Result<&'a View, BlobError> {
+fn the_view<'a>(sections: &Sections<'a>) -> Result<&'a View, BlobError> {
     let section = SectionKind::View;
     let views: &[View] = sections.records(section)?;
     let [view] = views else {
@@ -138,6 +145,13 @@ fn check_view<'a>(sections: &Sections<'a>) -> Result<&'a View, BlobError> {
             expected: 1,
         });
     };
+    check_view(view)?;
+    Ok(view)
+}
+
+/// Proves the ranges of a view, and that this build has what it calls for.
+pub(super) fn check_view(view: &View) -> Result<(), BlobError> {
+    let section = SectionKind::View;
     let at = At { section, index: 0 };
     at.all_within(Field::Eye, &view.eye, -FAR, FAR)?;
     for vector in [view.forward, view.right, view.up] {
@@ -155,5 +169,5 @@ fn check_view<'a>(sections: &Sections<'a>) -> Result<&'a View, BlobError> {
         let missing = "display-values";
         return Err(BlobError::MissingPart { missing });
     }
-    Ok(view)
+    Ok(())
 }

@@ -8,7 +8,7 @@ mod report;
 
 pub use arguments::Arguments;
 
-use super::arguments::{GeometryOptions, SceneOptions, ViewOptions, check_quality};
+use super::arguments::{GeometryOptions, SceneOptions, check_quality};
 use super::failure::Failure;
 use super::output::{check_writable, print, print_json_warned, write_texts};
 use super::source::import;
@@ -45,11 +45,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     check_quality(arguments.quality, &[arguments.accel])?;
     let options = SceneOptions {
         cutoff: arguments.cutoff,
-        view: ViewOptions::default(),
         geometry: GeometryOptions {
             lattice_bits: None,
             import: arguments.import.clone(),
         },
+        ..SceneOptions::default()
     };
     let imported = import(path, &options)?;
     let stem = path.file_stem().unwrap_or_default().display().to_string();

@@ -65,6 +65,10 @@ struct Limits {
     unit: f64,
     /// Scene units of a step of the lattice.
     step: f64,
+    /// Scene units of a step of the integer coordinates that programs place cameras and rays by.
+    coordinate_step: f64,
+    /// Scene coordinates from where those are counted.
+    coordinate_origin: [f64; 3],
     /// The scene's box in scene units, lowest and highest corner.
     bounds: [[f64; 3]; 2],
 }
@@ -170,6 +174,11 @@ fn limits(scene: &Scene<'_>) -> Limits {
         storage_bits: header.storage_bits,
         unit,
         step: unit * f64::powi(2.0, 16 - i32::from(header.lattice_bits)),
+        coordinate_step: f64::powi(2.0, header.coordinate_exponent()),
+        coordinate_origin: match header.coordinate_origin {
+            0 => header.origin,
+            _ => [0.0; 3],
+        },
         bounds: [corner(0), corner(1)],
     }
 }
@@ -291,6 +300,14 @@ impl Inspection {
         );
         let [low, high] = limits.bounds;
         let corner = |[x, y, z]: [f64; 3]| format!("({x}, {y}, {z})");
+        line(
+            "coordinates",
+            format!(
+                "steps of {} scene units from {}",
+                power_of_two(limits.coordinate_step),
+                corner(limits.coordinate_origin)
+            ),
+        );
         line(
             "bounds",
             format!("{} to {} scene units", corner(low), corner(high)),

@@ -6,12 +6,14 @@ use super::failure::Failure;
 use super::input::Input;
 use super::output::warn;
 use super::progress::Progress;
+use gridel_core::format::record::{self, View};
 use gridel_core::{BlobError, Format, Scene, Structure};
 use gridel_host::blob::{self, Blob};
 use gridel_host::compile::{self, CompileError, Compiled, Names};
+use gridel_host::live;
 use gridel_host::measure::board::{Fit, MemoryReport};
 use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
-use gridel_host::scene::{self, Imported};
+use gridel_host::scene::{self, Imported, Light};
 use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::Path;
 
@@ -23,6 +25,8 @@ pub struct Source {
     pub report: Option<compile::Report>,
     /// The importer's warnings, and those about objects that the lattice moves far.
     pub warnings: Vec<String>,
+    /// What is to be otherwise than in a blob.
+    changes: Option<Changes>,
     /// The names of a scene file.
     names: Option<Names>,
     /// How a scene file was read and compiled.
@@ -48,7 +52,13 @@ impl Source {
         if quality.is_some() && !input.is_blob()? {
             check_quality(with.quality, &compiling.structures)?;
         }
-        Self::read(input, options, quality, compiling)
+        let other = options.geometry.given().or(quality);
+        let mut source = Self::read(input, options, other, compiling)?;
+        if source.report.is_none() && options.given_for_pictures().is_some() {
+            let changes = Changes::of(&source.scene()?, options)?;
+            source.changes = Some(changes);
+        }
+        Ok(source)
     }
 
     /// Reads a blob, or compiles a scene file; the lattice's bits are those of `options`. A blob is
@@ -59,19 +69,25 @@ impl Source {
         other: Option<&'static str>,
         compiling: compile::Options,
     ) -> Result<Self, Failure> {
-        Self::read(Input::open(path)?, options, other, compiling)
+        Self::read(
+            Input::open(path)?,
+            options,
+            options.given().or(other),
+            compiling,
+        )
     }
 
+    /// Reads a blob, unless an option was given that is for scene files; or compiles a scene file.
     fn read(
         input: Input,
         options: &SceneOptions,
-        other: Option<&'static str>,
+        for_scenes: Option<&'static str>,
         compiling: compile::Options,
     ) -> Result<Self, Failure> {
         if !input.is_blob()? {
             return Self::build(input, options, compiling);
         }
-        if let Some(option) = options.given().or(other) {
+        if let Some(option) = for_scenes {
             return Err(Failure::usage(
                 format!(
                     "{option} is for scene files, and {} is a blob",
@@ -85,6 +101,7 @@ impl Source {
             input,
             report: None,
             warnings: Vec::new(),
+            changes: None,
             names: None,
             made_by: None,
         })
@@ -133,6 +150,7 @@ impl Source {
             blob,
             report: Some(report),
             warnings,
+            changes: None,
             names: Some(Names::of_scene(&imported.scene)),
             made_by: Some((options.geometry.import.for_import(), compiling)),
         })
@@ -167,11 +185,14 @@ impl Source {
         }
     }
 
-    /// The checked view of the blob, whose names are valid as well.
+    /// The checked view of the blob, whose names are valid as well, with what is to be otherwise.
     pub fn scene(&self) -> Result<Scene<'_>, Failure> {
         let checked = self.blob.scene().and_then(|scene| {
             gridel_core::Names::from_bytes(self.blob.bytes())?;
-            Ok(scene)
+            match &self.changes {
+                Some(changes) => scene.with_view(&changes.view)?.with_lights(&changes.lights),
+                None => Ok(scene),
+            }
         });
         checked.map_err(|error| {
             let remedy = match (&self.report, error) {
@@ -236,6 +257,40 @@ impl Source {
                 ));
             }
         }
+    }
+}
+
+/// What is to be otherwise than in a blob.
+struct Changes {
+    view: View,
+    lights: Vec<record::Light>,
+}
+
+impl Changes {
+    fn of(scene: &Scene<'_>, options: &SceneOptions) -> Result<Self, Failure> {
+        let mut view = options.view.in_blob(scene)?;
+        if let Some(cutoff) = options.cutoff {
+            [view.cutoff, ..] = live::radiance([cutoff; 3]);
+        }
+        let own = scene.lights();
+        let mut lights: Vec<Light> = own.iter().map(|it| Light::of_blob(scene, it)).collect();
+        let before = lights.clone();
+        for change in &options.lights {
+            change.apply(&mut lights)?;
+        }
+        let records = lights.iter().enumerate().map(|(number, light)| {
+            // Those that stay keep their bits.
+            if before[number] == *light {
+                Ok(own[number])
+            } else {
+                light.in_blob(scene, number)
+            }
+        });
+        let lights = records.collect::<Result<_, _>>();
+        Ok(Self {
+            view,
+            lights: lights.map_err(|error| Failure::Usage(miette::Report::new(error)))?,
+        })
     }
 }
 
@@ -345,5 +400,8 @@ fn import_from(input: &Input, options: &SceneOptions) -> Result<Imported, Failur
         imported.scene.render.cutoff = cutoff;
     }
     options.view.apply(&mut imported.scene)?;
+    for change in &options.lights {
+        change.apply(&mut imported.scene.lights)?;
+    }
     Ok(imported)
 }

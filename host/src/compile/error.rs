@@ -1,6 +1,7 @@
 //! Why a scene cannot be compiled.
 
 use glam::DVec3;
+use gridel_core::render::CameraError;
 
 /// Why a scene cannot be compiled.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -39,6 +40,9 @@ pub enum CompileError {
     #[error("{object} passes the middle of the other objects at more than {most:.3e} scene units")]
     #[diagnostic(help("move it nearer, or add an object beside it"))]
     OutOfReach { object: String, most: f64 },
+    #[error("{source}")]
+    #[diagnostic(help("change the camera's `eye`, `target`, `up` or `fov`"))]
+    Camera { source: CameraError },
     #[error("{bits} lattice bits are not possible")]
     #[diagnostic(help("use 10 to 24"))]
     LatticeBits { bits: u8 },

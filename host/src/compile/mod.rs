@@ -2,9 +2,11 @@
 
 mod advice;
 mod builder;
+mod camera;
 mod candidates;
 mod cells;
 mod context;
+mod coordinates;
 mod cuts;
 mod dual_split;
 mod error;
@@ -28,6 +30,7 @@ mod wide;
 mod writer;
 
 pub use builder::Builder;
+pub(crate) use camera::place;
 pub use candidates::census::{Census, CubeCensus};
 pub use candidates::lists::Figures;
 pub use error::CompileError;
@@ -36,6 +39,7 @@ pub use lattice::BITS as LATTICE_BITS;
 pub use names::{KeptNames, Names};
 pub use options::{LARGEST_LEAF, OnProgress, Options};
 pub use primitives::LeftOut;
+pub(crate) use shading_data::{light_record, radiance};
 pub use structures::{takes_hierarchy, usual_budget};
 pub use wide::Quality;
 

@@ -1,14 +1,17 @@
 //! Camera, lights and materials as records, and the effects that they call for.
 
 use super::CompileError;
+use super::camera::place;
+use super::coordinates::Coordinates;
 use super::framing::{BACKGROUND, framing};
-use crate::scene::{Camera, Color, Diffuse, Light, Material, Scene};
+use crate::scene::{Camera, Color, Diffuse, Light, Material, RenderSettings, Scene};
 use crate::shape::{Lattice, unit};
 use crate::table::printable;
+use bytemuck::Zeroable;
 use glam::DVec3;
 use gridel_core::Effects;
 use gridel_core::format::limits::FARTHEST;
-use gridel_core::format::record;
+use gridel_core::format::record::{self, View};
 
 /// The ambient light that is supplied with a light, so that shadows are not black.
 const AMBIENT: f64 = 0.15;
@@ -16,7 +19,8 @@ const AMBIENT: f64 = 0.15;
 /// Everything of a blob that is not geometry.
 #[derive(Debug)]
 pub struct ShadingData {
-    pub view: record::View,
+    pub view: View,
+    pub coordinates: Coordinates,
     pub lights: Vec<record::Light>,
     /// Materials that an object has.
     pub materials: Vec<record::Material>,
@@ -62,20 +66,7 @@ impl ShadingData {
             supplied.push(String::from("a light background"));
         }
         let size = (highest - lowest).max_element();
-        let far = |what: String, point: DVec3| -> Result<[i64; 3], CompileError> {
-            let q13 = lattice.in_units(point) * 8192.0;
-            let largest = q13.abs().max_element();
-            if largest.is_nan() || largest > FARTHEST as f64 {
-                let distance = (point - lattice.origin).length();
-                return Err(CompileError::FarAway {
-                    what,
-                    distance,
-                    size,
-                });
-            }
-            Ok(q13.round().to_array().map(|x| x as i64))
-        };
-
+        let far = |what, point| on_lattice(lattice, size, what, point);
         let mut numbers: Vec<Option<u32>> = vec![None; scene.materials.len()];
         let mut materials = Vec::new();
         let mut called_for: Vec<(Effects, String)> = Vec::new();
@@ -96,7 +87,7 @@ impl ShadingData {
         let lights = lights
             .iter()
             .enumerate()
-            .map(|(number, light)| light_record(light, number, &far))
+            .map(|(number, light)| light_record(light, lattice, size, number))
             .collect::<Result<Vec<_>, _>>()?;
         // A scene file may turn shadows off.
         let unwanted = if scene.render.shadows {
@@ -127,14 +118,18 @@ impl ShadingData {
             })
             .collect();
 
-        let view = view_record(
-            scene,
-            [background, ambient],
-            &camera,
-            far(String::from("camera"), camera.eye)?,
-        );
+        far(String::from("camera"), camera.eye)?;
+        let coordinates =
+            Coordinates::choose(lattice, [lowest, highest], camera.eye, &scene.lights);
+        let view = View {
+            background: radiance(background),
+            ambient: radiance(ambient),
+            ..view_record(&scene.render, scene.display_values)
+        };
+        let placed = place(&camera, &coordinates.header)?;
         Ok(Self {
-            view,
+            view: placed.replace_in(&view, &coordinates.header),
+            coordinates,
             lights,
             materials,
             object_material,
@@ -169,48 +164,49 @@ fn over_a_shoulder(scene: &Scene, camera: &Camera) -> (DVec3, &'static str) {
     }
 }
 
-/// Vectors of the picture's frame, scaled so that their largest component has 28 bits.
-fn view_record(
-    scene: &Scene,
-    [background, ambient]: [Color; 2],
-    camera: &Camera,
-    eye: [i64; 3],
-) -> record::View {
-    let forward = unit(camera.target - camera.eye);
-    let right = unit(forward.cross(unit(camera.up)));
-    let half = (camera.fov_degrees.to_radians() * 0.5).tan();
-    let frame = [forward, right * half, right.cross(forward) * half];
-    let largest = frame
-        .iter()
-        .map(|v| v.abs().max_element())
-        .fold(0.0, f64::max);
-    let scale = f64::from(1 << 28) / largest;
-    let [forward, right, up] = frame.map(|v| (v * scale).round().to_array().map(|x| x as i32));
-    let render = &scene.render;
-    record::View {
-        eye,
-        forward,
-        right,
-        up,
-        background: radiance(background),
-        ambient: radiance(ambient),
+/// The defaults of a picture; the camera is placed afterwards.
+fn view_record(render: &RenderSettings, display_values: bool) -> View {
+    View {
         cutoff: radiance([render.cutoff; 3])[0],
         width: render.width.clamp(1, u16::MAX.into()) as u16,
         height: render.height.clamp(1, u16::MAX.into()) as u16,
         samples: render.samples,
         depth: render.depth,
-        display_values: u8::from(scene.display_values),
+        display_values: u8::from(display_values),
+        ..View::zeroed()
     }
 }
 
-fn light_record(
+/// A place that may lie beyond the scene, in units with 13 fraction bits.
+fn on_lattice(
+    lattice: &Lattice,
+    size: f64,
+    what: String,
+    point: DVec3,
+) -> Result<[i64; 3], CompileError> {
+    let q13 = lattice.in_units(point) * 8192.0;
+    let largest = q13.abs().max_element();
+    if largest.is_nan() || largest > FARTHEST as f64 {
+        let distance = (point - lattice.origin).length();
+        return Err(CompileError::FarAway {
+            what,
+            distance,
+            size,
+        });
+    }
+    Ok(q13.round().to_array().map(|x| x as i64))
+}
+
+/// A light of a scene of some size.
+pub fn light_record(
     light: &Light,
+    lattice: &Lattice,
+    size: f64,
     number: usize,
-    far: &impl Fn(String, DVec3) -> Result<[i64; 3], CompileError>,
 ) -> Result<record::Light, CompileError> {
     Ok(match *light {
         Light::Point { position, color } => record::Light {
-            vector: far(format!("light {number}"), position)?,
+            vector: on_lattice(lattice, size, format!("light {number}"), position)?,
             color: radiance(color),
             directional: 0,
         },
@@ -274,7 +270,7 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
 }
 
 /// Radiance with 20 fraction bits; saturates.
-fn radiance(color: Color) -> [i32; 3] {
+pub fn radiance(color: Color) -> [i32; 3] {
     color.map(|channel| (channel * f64::from(1 << 20)).round().max(0.0) as i32)
 }
 

@@ -152,7 +152,9 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
         origin: lattice.origin.to_array(),
         bounds: context.bounds,
         stack_bytes: u32::from(stack_depth) * size_of::<Entry>() as u32,
-        spare: [0; 2],
+        coordinate_shift: shading_data.coordinates.header.coordinate_shift,
+        coordinate_origin: shading_data.coordinates.header.coordinate_origin,
+        spare: [0; 3],
     };
     Parts { header, sections }
 }

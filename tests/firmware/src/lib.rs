@@ -10,6 +10,7 @@
 //! | `selftest` | runs the core's own tests |
 //! | `bare` | renders and talks to nobody: what it links is what a product would flash |
 //! | `range` | casts rays down onto the scene and prints their lengths |
+//! | `orbit` | turns a camera around the scene in 64 frames |
 //! | `example` | the README's example |
 //!
 //! The first five run in QEMU, or in Node, and print what they measured, a line each: a name and
@@ -24,6 +25,7 @@
 pub mod board;
 pub mod casts;
 pub mod measure;
+pub mod orbit;
 pub mod rays;
 pub mod report;
 pub mod scene;

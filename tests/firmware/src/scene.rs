@@ -53,4 +53,4 @@ pub fn load(_: &'static [u8]) -> Result<Scene<'static>, BlobError> {
 /// A workspace that is exactly large enough.
 pub type Space = Workspace<Number, STACK_DEPTH, WORK_DEPTH>;
 /// The renderer for the scene.
-pub type SceneRenderer<'s> = Renderer<'s, 'static, Number, Accel, EFFECTS>;
+pub type SceneRenderer<'s> = Renderer<'s, 's, Number, Accel, EFFECTS>;

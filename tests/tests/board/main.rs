@@ -14,6 +14,9 @@ mod elf;
 mod emitted;
 mod figures;
 mod firmware;
+mod live;
+#[path = "../../firmware/src/orbit.rs"]
+mod orbit;
 mod parts;
 mod plan;
 mod programs;
@@ -47,6 +50,7 @@ fn main() {
     programs::plan(&mut plan);
     emitted::plan(&mut plan);
     rays::plan(&mut plan);
+    live::plan(&mut plan);
     structures::plan(&mut plan);
     plan.test("memory_maps_are_the_boards")
         .run(memory_maps_are_the_boards);

@@ -103,6 +103,15 @@ pub fn protein() -> Compiled {
 
 /// A torus of 2,048 triangles, lit from the side on which it is seen.
 pub fn torus_mesh() -> Compiled {
+    compile_with("torus-mesh", torus_mesh_scene(), [64, 64], small())
+}
+
+/// The torus in a picture that is rendered often.
+pub fn torus_mesh_in_few_pixels() -> Compiled {
+    compile_with("torus-mesh-24", torus_mesh_scene(), [24, 18], small())
+}
+
+fn torus_mesh_scene() -> Scene {
     const AROUND: u32 = 32;
     let angle = |step: u32| f64::from(step) * TAU / f64::from(AROUND);
     let vertex = |ring: u32, step: u32| {
@@ -121,7 +130,7 @@ pub fn torus_mesh() -> Compiled {
     };
     let cells = |ring| (0..AROUND).map(move |step| (ring, step));
     let cells = (0..AROUND).flat_map(cells);
-    let scene = Scene {
+    Scene {
         camera: Some(Camera {
             eye: DVec3::new(0.6, -3.2, 2.4),
             target: DVec3::ZERO,
@@ -147,8 +156,7 @@ pub fn torus_mesh() -> Compiled {
             place: SourceSpan::default(),
         }],
         ..Scene::default()
-    };
-    compile_with("torus-mesh", scene, [64, 64], small())
+    }
 }
 
 /// The mesh on which tracers for boards are compared: seen from 3.2 before its middle, in a square
@@ -209,14 +217,17 @@ impl Compiled {
     /// Returns the picture through a structure of choice.
     pub fn picture_through(&self, structure: Structure, format: Format) -> Vec<u8> {
         let scene = self.blob.scene().expect("the compiler's own blob");
-        let job = Job::whole(format, structure, Settings::of(&scene));
-        let picture = render(&scene, &job, &|| ()).expect("the blob holds the structure");
-        let encoded = picture
-            .pixels
-            .iter()
-            .map(|&linear| Rgb888::encode(linear, None).0);
-        encoded.flatten().collect()
+        picture(&scene, structure, format)
     }
+}
+
+/// A scene's picture as the host renders it: three bytes a pixel.
+pub fn picture(scene: &gridel_core::Scene<'_>, structure: Structure, format: Format) -> Vec<u8> {
+    let job = Job::whole(format, structure, Settings::of(scene));
+    let picture = render(scene, &job, &|| ()).expect("the blob holds the structure");
+    let encoded = picture.pixels.iter();
+    let encoded = encoded.map(|&linear| Rgb888::encode(linear, None).0);
+    encoded.flatten().collect()
 }
 
 fn fixture(name: &'static str, size: [u32; 2]) -> Compiled {

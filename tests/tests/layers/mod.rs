@@ -29,7 +29,7 @@ const HOST: Layers = Layers {
     order: &[
         "output simd table blob picture_rays shape",
         "scene sample compile",
-        "render trace npy picture merge resolution report",
+        "live render trace npy picture merge resolution report",
         "measure emit",
         "accuracy compare verify explain check",
         "cli main",

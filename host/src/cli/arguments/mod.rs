@@ -3,11 +3,13 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `scene.rs` | how a scene file is read and compiled |
-//! | `view.rs` | from where a scene file is seen |
+//! | `view.rs` | from where a scene is seen |
+//! | `light.rs` | changes of lights |
 //! | `structures.rs` | how structures are built |
 //! | `target.rs` | boards and their memory |
 //! | `values.rs` | names, sizes, ranges and vectors |
 
+mod light;
 mod scene;
 mod structures;
 mod target;
@@ -22,7 +24,6 @@ pub use target::TargetOptions;
 pub use values::{
     builder, bytes, cutoff, distinct, format, quoted, rows, size, structure, threads,
 };
-pub use view::ViewOptions;
 
 use clap::Args;
 use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_SAMPLES};

@@ -1,5 +1,6 @@
 //! How a scene file is read and compiled.
 
+use super::light::{LightChange, light};
 use super::values::{cutoff, first_given, quoted, vector};
 use super::view::ViewOptions;
 use clap::Args;
@@ -26,7 +27,7 @@ pub fn scene_long_help() -> String {
 }
 
 /// How a scene file is read and compiled, for commands that make pictures of it.
-#[derive(Args, Clone, Debug)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for scene files")]
 pub struct SceneOptions {
     /// Do not trace secondary rays that change every channel by less than this; 1 is display white
@@ -36,6 +37,11 @@ pub struct SceneOptions {
 
     #[command(flatten)]
     pub view: ViewOptions,
+
+    /// Change the position, direction or color of a light, counted from 0, such as 0.position=1,2.5,-3; may
+    /// be repeated
+    #[arg(long = "light", value_name = "N.NAME=X,Y,Z", value_parser = light)]
+    pub lights: Vec<LightChange>,
 
     #[command(flatten)]
     pub geometry: GeometryOptions,
@@ -86,18 +92,27 @@ pub struct MoleculeOptions {
 impl SceneOptions {
     /// The name of an option that was given, if one was.
     pub fn given(&self) -> Option<&'static str> {
-        let Self {
-            cutoff,
-            view,
-            geometry,
-        } = self;
+        self.geometry.given().or(self.given_for_pictures())
+    }
+
+    /// The name of an option that was given and concerns what a blob holds beside its geometry.
+    pub fn given_for_pictures(&self) -> Option<&'static str> {
         first_given([
-            (geometry.lattice_bits.is_some(), "--lattice-bits"),
-            (cutoff.is_some(), "--cutoff"),
-            (geometry.import.allow_outside, "--allow-outside"),
+            (self.cutoff.is_some(), "--cutoff"),
+            (!self.lights.is_empty(), "--light"),
         ])
-        .or(first_given(view.given()))
-        .or(geometry.import.molecule.given())
+        .or(first_given(self.view.given()))
+    }
+}
+
+impl GeometryOptions {
+    /// The name of an option that was given, if one was.
+    pub fn given(&self) -> Option<&'static str> {
+        first_given([
+            (self.lattice_bits.is_some(), "--lattice-bits"),
+            (self.import.allow_outside, "--allow-outside"),
+        ])
+        .or(self.import.molecule.given())
     }
 }
 
@@ -112,9 +127,8 @@ impl SceneOptions {
 impl From<GeometryOptions> for SceneOptions {
     fn from(geometry: GeometryOptions) -> Self {
         Self {
-            cutoff: None,
-            view: ViewOptions::default(),
             geometry,
+            ..Self::default()
         }
     }
 }

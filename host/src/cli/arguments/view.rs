@@ -1,14 +1,16 @@
-//! Options that say from where a scene file is seen.
+//! Options that say from where a scene is seen.
 
 use super::values::{numbers, vector};
 use crate::cli::failure::Failure;
 use clap::Args;
 use glam::DVec3;
+use gridel_core::format::record::View;
 use gridel_host::compile;
-use gridel_host::scene::{Color, Scene, Up};
+use gridel_host::live;
+use gridel_host::scene::{Camera, Color, Scene, Up};
 
-/// From where a scene file is seen, in place of what it states. Help lists these options last, in their order,
-/// with `--target` behind `--eye`.
+/// From where a scene is seen, in place of what its file or blob states. Help lists these options last, in their
+/// order, with `--target` behind `--eye`.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for scene files")]
 pub struct ViewOptions {
@@ -63,8 +65,7 @@ impl ViewOptions {
         if let Some([width, height]) = self.size {
             (scene.render.width, scene.render.height) = (width.into(), height.into());
         }
-        let [camera @ .., _] = self.given();
-        if camera.iter().all(|(given, _)| !given) {
+        if !self.moves_camera() {
             return Ok(());
         }
         if scene.camera.is_none() {
@@ -76,13 +77,43 @@ impl ViewOptions {
                 }
             }
         }
-        let mut camera = scene
+        let camera = scene
             .camera
             .unwrap_or_else(|| compile::framing(scene, self.fov));
-        camera.eye = self.eye.unwrap_or(camera.eye);
-        camera.target = self.target.unwrap_or(camera.target);
-        camera.up = self.up.unwrap_or(camera.up);
-        camera.fov_degrees = self.fov.unwrap_or(camera.fov_degrees);
+        scene.camera = Some(self.moved(camera)?);
+        Ok(())
+    }
+
+    /// The view of a blob with another camera and background.
+    ///
+    /// # Errors
+    /// As [`apply`](Self::apply), and if the camera is out of the blob's reach.
+    pub fn in_blob(&self, scene: &gridel_core::Scene<'_>) -> Result<View, Failure> {
+        let mut view = *scene.view();
+        if self.moves_camera() {
+            let camera = self.moved(Camera::of_blob(scene))?;
+            let placed = camera.in_blob(scene);
+            view = placed.map_err(|error| Failure::Usage(miette::Report::new(error)))?;
+        }
+        if let Some(background) = self.background {
+            view.background = live::radiance(background);
+        }
+        Ok(view)
+    }
+
+    fn moves_camera(&self) -> bool {
+        let [camera @ .., _] = self.given();
+        camera.iter().any(|(given, _)| *given)
+    }
+
+    /// A camera with what was given in place of its own.
+    fn moved(&self, camera: Camera) -> Result<Camera, Failure> {
+        let camera = Camera {
+            eye: self.eye.unwrap_or(camera.eye),
+            target: self.target.unwrap_or(camera.target),
+            up: self.up.unwrap_or(camera.up),
+            fov_degrees: self.fov.unwrap_or(camera.fov_degrees),
+        };
         if camera.eye == camera.target {
             return Err(Failure::usage(
                 "the camera's eye and target are the same point",
@@ -95,8 +126,7 @@ impl ViewOptions {
                 "give an `--up` across the view, such as 0,0,1 for a view from above",
             ));
         }
-        scene.camera = Some(camera);
-        Ok(())
+        Ok(camera)
     }
 }
 

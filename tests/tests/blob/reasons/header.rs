@@ -58,7 +58,13 @@ pub(super) fn headers() -> Errors {
     errors.reason(header, Reason::ReservedBounds, |it| {
         it.header().bounds.0[1][0] = i16::MIN
     });
-    for word in 0..2 {
+    errors.field(header, Field::CoordinateShift, |it| {
+        it.header().coordinate_shift = 20
+    });
+    errors.field(header, Field::CoordinateOrigin, |it| {
+        it.header().coordinate_origin = 2
+    });
+    for word in 0..3 {
         errors.reason(header, Reason::SpareNotZero, |it| {
             it.header().spare[word] = 1
         });

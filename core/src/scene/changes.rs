@@ -1,0 +1,130 @@
+//! What a program may put in place of the blob's own values: camera, lights and materials.
+//!
+//! Nothing of a blob is written to. A changed scene borrows the new values beside the blob, each proved in
+//! constant time by the checks that [`Scene::from_bytes`] makes. A program that changes nothing holds no
+//! code for it.
+
+use crate::format::record::{Light, Material, View};
+use crate::format::{BlobError, Effects, SectionKind};
+use crate::scene::Scene;
+use crate::scene::check::{check_light, check_material};
+use crate::scene::read::check_view;
+
+impl<'a> Scene<'a> {
+    /// The scene seen by another camera, in other surroundings or with other defaults for pictures.
+    ///
+    /// A view is a copy of the blob's with what is to change; [`Camera::view`](crate::Camera::view) makes one
+    /// with another camera.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{NoCount, Renderer, Scene, Workspace};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut view = *scene.view();
+    /// view.background = [1 << 20; 3];
+    /// let bright = scene.with_view(&view)?;
+    /// let renderer = Renderer::new(&bright)?;
+    /// let mut space = Workspace::for_any_scene();
+    /// assert_eq!(renderer.linear(0, 0, &mut space.as_view(), &mut NoCount), [65_535; 3]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If a number is out of its range, or this build lacks what the view calls for.
+    pub fn with_view(&self, view: &'a View) -> Result<Self, BlobError> {
+        check_view(view)?;
+        Ok(Self { view, ..*self })
+    }
+
+    /// The scene under other lights, of which there may be more or fewer than before.
+    ///
+    /// They cast shadows where the scene's own do; in a scene without lights of its own they call for
+    /// [`Effects::SHADOW`].
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::Scene;
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut lights = [scene.lights()[0]];
+    /// lights[0].color = [1 << 19, 0, 0];
+    /// let red = scene.with_lights(&lights)?;
+    /// assert_eq!(red.lights()[0].color[0], 1 << 19);
+    /// assert!(scene.with_lights(&[])?.lights().is_empty());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If a number is out of its range, or this build lacks an effect that a light calls for.
+    pub fn with_lights(&self, lights: &'a [Light]) -> Result<Self, BlobError> {
+        let mut effects = self.effects;
+        for (index, light) in lights.iter().enumerate() {
+            check_light(index, light)?;
+            if self.lights.is_empty() {
+                effects = effects.with(light.effects());
+            }
+        }
+        check_available(effects)?;
+        Ok(Self {
+            effects,
+            lights,
+            ..*self
+        })
+    }
+
+    /// The scene with other materials in place of the blob's, one for each and in their order.
+    ///
+    /// An effect that a material calls for becomes one of the [scene's](Self::effects): a renderer that was
+    /// not compiled for it is refused with its name.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::format::record::Material;
+    /// use gridel_core::{Effects, Scene};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut materials: Vec<Material> = scene.materials().to_vec();
+    /// materials[0].highlight = [1 << 29; 3];
+    /// let shiny = scene.with_materials(&materials)?;
+    /// assert!(shiny.effects().contains(Effects::HIGHLIGHT));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If there are more or fewer than the blob has, a number is out of its range, or this build lacks an
+    /// effect that a material calls for.
+    pub fn with_materials(&self, materials: &'a [Material]) -> Result<Self, BlobError> {
+        if materials.len() != self.materials.len() {
+            return Err(BlobError::Count {
+                section: SectionKind::Materials,
+                found: materials.len(),
+                expected: self.materials.len(),
+            });
+        }
+        let mut effects = self.effects;
+        for (index, material) in materials.iter().enumerate() {
+            check_material(index, material)?;
+            effects = effects.with(material.effects());
+        }
+        check_available(effects)?;
+        Ok(Self {
+            effects,
+            materials,
+            ..*self
+        })
+    }
+}
+
+/// An error if this build lacks an effect.
+fn check_available(effects: Effects) -> Result<(), BlobError> {
+    let missing = effects.without(Effects::AVAILABLE);
+    if missing == Effects::NONE {
+        Ok(())
+    } else {
+        Err(BlobError::MissingEffects { missing })
+    }
+}

@@ -1,0 +1,219 @@
+//! Scene coordinates as integers: from those of the scene file to those of the lattice.
+
+use crate::accel::Number;
+use crate::format::limits::{FARTHEST, MAX_COORDINATE_SHIFT};
+use crate::format::record::Header;
+use crate::ray::{Ray, RayError};
+use crate::scene::Scene;
+
+/// A place in scene coordinates, in multiples of the scene's step: 2 to the power of
+/// [`Scene::coordinate_exponent`] scene units.
+///
+/// Coordinates are counted from the scene file's own origin, or from the
+/// [lattice's](crate::format::record::Header::origin) where a scene lies too far from its own for 32 bits;
+/// `gridel inspect` says so. They reach at least 4 times as far as the scene, its eye and its lights.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Position(pub [i32; 3]);
+
+/// Fraction bits of lengths.
+const LENGTH_BITS: i32 = 13;
+
+impl Scene<'_> {
+    /// One step of scene coordinates is 2 to this power scene units.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// // Coordinates are multiples of 2^-25 scene units here.
+    /// assert_eq!(scene.coordinate_exponent(), -25);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn coordinate_exponent(&self) -> i32 {
+        self.header().coordinate_exponent()
+    }
+
+    /// A place on the scene's lattice, in units with 13 fraction bits: what records hold, and
+    /// [`far`](crate::number::Convert::far) takes. A place beyond
+    /// [`FARTHEST`](crate::format::limits::FARTHEST) is moved there.
+    pub fn on_lattice(&self, position: Position) -> [i64; 3] {
+        self.header().on_lattice(position)
+    }
+
+    /// The nearest place in scene coordinates to one on the lattice, in units with 13 fraction bits; one out of
+    /// their range is at its end.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::Position;
+    ///
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// let eye = scene.position(scene.view().eye);
+    /// assert_eq!(scene.on_lattice(eye), scene.view().eye);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn position(&self, q13: [i64; 3]) -> Position {
+        self.header().position(q13)
+    }
+
+    /// The ray without end from a place in a direction of any length but 0. Its `t` are units along the
+    /// direction's largest component: see [`Ray`].
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{DualSplit, Fixed, NoCount, Position, Scene, Stack, closest_hit};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// // Straight down from 4 scene units above the origin.
+    /// let ray = scene.ray_from::<Fixed>(Position([0, 4 << 25, 0]), [0, -1, 0])?;
+    /// let mut stack = Stack::<32>::new();
+    /// let hit = closest_hit::<_, DualSplit, _>(&scene, &ray, stack.as_view(), &mut NoCount);
+    /// assert!(hit.is_some());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the direction is zero.
+    pub fn ray_from<N: Number>(
+        &self,
+        position: Position,
+        direction: [i32; 3],
+    ) -> Result<Ray<N>, RayError> {
+        let origin = self.on_lattice(position).map(N::far);
+        let direction = direction.map(|component| N::far(component.into()));
+        let [start, end] = [N::far(0), N::far(i64::MAX)];
+        Ray::new(self.bounds(), origin, direction, start, end)
+    }
+}
+
+impl Header {
+    /// One step of scene coordinates is 2 to this power scene units.
+    pub fn coordinate_exponent(&self) -> i32 {
+        let shift = i32::from(self.coordinate_shift);
+        i32::from(self.unit_exponent) - LENGTH_BITS + shift
+    }
+
+    /// A place on the lattice: units with 13 fraction bits, at most [`FARTHEST`] in magnitude.
+    pub fn on_lattice(&self, position: Position) -> [i64; 3] {
+        let shift = self.coordinate_shift.min(MAX_COORDINATE_SHIFT);
+        let coordinate = |coordinate: i32, origin: f64| {
+            let steps = i64::from(coordinate).wrapping_shl(shift.into());
+            let place = steps.saturating_sub(self.origin_on_lattice(origin));
+            place.clamp(-FARTHEST, FARTHEST)
+        };
+        let ([x, y, z], [origin_x, origin_y, origin_z]) = (position.0, self.origin);
+        [
+            coordinate(x, origin_x),
+            coordinate(y, origin_y),
+            coordinate(z, origin_z),
+        ]
+    }
+
+    /// The nearest place in scene coordinates to one on the lattice.
+    fn position(&self, q13: [i64; 3]) -> Position {
+        let shift = self.coordinate_shift.min(MAX_COORDINATE_SHIFT);
+        let half = (1_i64 << shift) >> 1;
+        let coordinate = |place: i64, origin: f64| {
+            let from_origin = place.saturating_add(self.origin_on_lattice(origin));
+            let steps = from_origin.saturating_add(half).wrapping_shr(shift.into());
+            steps.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+        };
+        let ([x, y, z], [origin_x, origin_y, origin_z]) = (q13, self.origin);
+        Position([
+            coordinate(x, origin_x),
+            coordinate(y, origin_y),
+            coordinate(z, origin_z),
+        ])
+    }
+
+    /// A coordinate of the lattice's origin, a multiple of a step, as scene coordinates are counted: in units
+    /// with 13 fraction bits. Taken from its bits, so that no floating-point code is needed; at its end where
+    /// it is out of range.
+    fn origin_on_lattice(&self, origin: f64) -> i64 {
+        if self.coordinate_origin == 0 {
+            return 0;
+        }
+        const FRACTION: u32 = f64::MANTISSA_DIGITS - 1;
+        let bits = origin.to_bits();
+        let exponent = (bits >> FRACTION) as i32 & 0x7ff;
+        if exponent == 0 {
+            // Zero, or too small to be a step.
+            return 0;
+        }
+        let mantissa = (bits & ((1 << FRACTION) - 1)) | 1 << FRACTION;
+        let up = exponent - 1075 + LENGTH_BITS - i32::from(self.unit_exponent);
+        let magnitude = match up {
+            ..=-64 => 0,
+            -63..=-1 => mantissa.wrapping_shr(up.unsigned_abs()),
+            0..=10 => mantissa.wrapping_shl(up.unsigned_abs()),
+            _ => i64::MAX as u64,
+        };
+        let magnitude = magnitude as i64;
+        if bits >> 63 == 1 {
+            magnitude.wrapping_neg()
+        } else {
+            magnitude
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bytemuck::Zeroable;
+
+    fn header(unit_exponent: i16, coordinate_shift: u8, origin: f64) -> Header {
+        Header {
+            unit_exponent,
+            coordinate_shift,
+            coordinate_origin: 1,
+            origin: [origin; 3],
+            ..Header::zeroed()
+        }
+    }
+
+    #[test]
+    fn places_are_counted_from_the_scenes_origin() {
+        for (unit_exponent, shift, origin) in [
+            (0, 0, 0.0),
+            (0, 0, 12.0),
+            (0, 5, -12.0),
+            (-15, 0, 1.5),
+            (-15, 3, -1_000_000.25),
+            (300, 0, f64::powi(2.0, 310)),
+            (-900, 0, -f64::powi(2.0, -890)),
+        ] {
+            let header = header(unit_exponent, shift, origin);
+            let step = f64::powi(2.0, header.coordinate_exponent());
+            let length = f64::powi(2.0, i32::from(unit_exponent) - LENGTH_BITS);
+            for position in [0, 1, -1, 123_456_789, i32::MIN, i32::MAX] {
+                let expected = (f64::from(position) * step - origin) / length;
+                let expected = expected.clamp(-(FARTHEST as f64), FARTHEST as f64);
+                let found = header.on_lattice(Position([position; 3]));
+                assert_eq!(found, [expected as i64; 3], "{position} from {origin}");
+                if expected.abs() < FARTHEST as f64 {
+                    assert_eq!(header.position(found), Position([position; 3]));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_header_makes_a_place_leave_its_range() {
+        for origin in [f64::MAX, f64::MIN, f64::NAN, f64::INFINITY, 5e-324, -0.0] {
+            for unit_exponent in [i16::MIN, -1000, 0, 1000, i16::MAX] {
+                for shift in [0, MAX_COORDINATE_SHIFT, u8::MAX] {
+                    let header = header(unit_exponent, shift, origin);
+                    for position in [i32::MIN, 0, i32::MAX] {
+                        let found = header.on_lattice(Position([position; 3]));
+                        assert!(found.iter().all(|x| x.abs() <= FARTHEST));
+                    }
+                }
+            }
+        }
+        let header = header(-15, MAX_COORDINATE_SHIFT, 0.0);
+        assert_eq!(header.on_lattice(Position([i32::MIN; 3])), [-FARTHEST; 3]);
+    }
+}

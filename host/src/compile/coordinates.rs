@@ -1,0 +1,68 @@
+//! The choice of a scene's integer coordinates: see [`gridel_core::Position`].
+
+use crate::scene::Light;
+use crate::shape::{Lattice, exp2};
+use bytemuck::Zeroable;
+use glam::DVec3;
+use gridel_core::Position;
+use gridel_core::format::limits::MAX_COORDINATE_SHIFT;
+use gridel_core::format::record::Header;
+
+/// How many times as far as the scene and its eye coordinates reach, so that both can move.
+const ROOM: f64 = 4.0;
+
+/// How many powers of two coarser the step may be for coordinates that are counted from the scene's own
+/// origin.
+const COARSER: u8 = 4;
+
+/// Scene coordinates as integers.
+#[derive(Clone, Copy, Debug)]
+pub struct Coordinates {
+    /// The fields of a blob's header that say so; the others are 0.
+    pub header: Header,
+}
+
+impl Coordinates {
+    /// The finest step of which the scene's box, the eye and the lights are few enough multiples, counted
+    /// from the scene's own origin where that costs little precision, else from the lattice's.
+    pub fn choose(lattice: &Lattice, bounds: [DVec3; 2], eye: DVec3, lights: &[Light]) -> Self {
+        let lights = lights.iter().filter_map(|light| match *light {
+            Light::Point { position, .. } => Some(position),
+            Light::Directional { .. } => None,
+        });
+        let places: Vec<DVec3> = bounds.into_iter().chain([eye]).chain(lights).collect();
+        // The smallest shift of which all places, counted from `origin`, are few enough multiples.
+        let shift = |origin: DVec3| {
+            let far = places
+                .iter()
+                .map(|&place| (place - origin).abs().max_element());
+            let far = far.fold(0.0, f64::max) * ROOM / lattice.unit();
+            let reach = |shift: u8| exp2(31 - 13 + i32::from(shift));
+            (0..MAX_COORDINATE_SHIFT)
+                .find(|&shift| far < reach(shift))
+                .unwrap_or(MAX_COORDINATE_SHIFT)
+        };
+        let [from_scene, from_lattice] = [DVec3::ZERO, lattice.origin].map(shift);
+        let own = from_scene <= from_lattice + COARSER;
+        Self {
+            header: Header {
+                unit_exponent: lattice.unit_exponent,
+                origin: lattice.origin.to_array(),
+                coordinate_shift: if own { from_scene } else { from_lattice },
+                coordinate_origin: own.into(),
+                ..Header::zeroed()
+            },
+        }
+    }
+}
+
+/// The nearest place in a scene's integer coordinates; `None` where they do not reach it.
+pub fn position(header: &Header, place: DVec3) -> Option<Position> {
+    let origin = match header.coordinate_origin {
+        0 => DVec3::from_array(header.origin),
+        _ => DVec3::ZERO,
+    };
+    let steps = ((place - origin) / exp2(header.coordinate_exponent())).round();
+    let reach = f64::from(i32::MAX);
+    (steps.abs().max_element() <= reach).then(|| Position(steps.to_array().map(|x| x as i32)))
+}

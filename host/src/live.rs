@@ -1,0 +1,114 @@
+//! Camera and lights of a blob in scene units: read from it, and placed in it as a program on a device places
+//! its own.
+
+use crate::compile::{self, CompileError, light_record, place};
+use crate::scene::{Camera, Color, Light};
+use crate::shape::{Lattice, exp2};
+use glam::DVec3;
+use gridel_core::Scene;
+use gridel_core::format::record::{self, View};
+
+impl Camera {
+    /// The camera of a blob. Its target lies in the middle of the picture, as deep as the middle of the scene.
+    ///
+    /// ```
+    /// # use gridel_host::compile::{Options, compile};
+    /// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n\
+    /// #     [camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\nfov = 40";
+    /// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+    /// # let blob = compile(&imported.scene, &Options::default())?.blob;
+    /// # let scene = blob.scene()?;
+    /// use gridel_host::scene::Camera;
+    ///
+    /// let camera = Camera::of_blob(&scene);
+    /// assert_eq!(camera.eye.to_array(), [0.0, 0.0, 5.0]);
+    /// assert!((camera.fov_degrees - 40.0).abs() < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn of_blob(scene: &Scene<'_>) -> Self {
+        let view = scene.view();
+        let lattice = Lattice::of_blob(scene);
+        let [forward, up] = [view.forward, view.up].map(vector);
+        let eye = lattice.place(view.eye);
+        let direction = forward.normalize();
+        let [low, high] =
+            [0, 1].map(|side| scene.bounds().0.map(|axis| i64::from(axis[side]) << 13));
+        let [low, high] = [low, high].map(|corner| lattice.place(corner));
+        let depth = (low.midpoint(high) - eye).dot(direction);
+        // From within or behind the scene, anything ahead.
+        let depth = if depth > 0.0 {
+            depth
+        } else {
+            (high - low).max_element().max(lattice.unit())
+        };
+        Self {
+            eye,
+            target: eye + depth * direction,
+            up,
+            fov_degrees: 2.0 * libm::atan2(up.length(), forward.length()).to_degrees(),
+        }
+    }
+
+    /// The view of a blob with this camera in place of its own, to the bit as if it were compiled with it.
+    ///
+    /// # Errors
+    /// If the camera looks nowhere or along the direction that points up, or its eye lies beyond the blob's
+    /// scene coordinates.
+    pub fn in_blob(&self, scene: &Scene<'_>) -> Result<View, CompileError> {
+        Ok(place(self, scene.header())?.view(scene))
+    }
+}
+
+impl Light {
+    /// A light of a blob.
+    pub fn of_blob(scene: &Scene<'_>, light: &record::Light) -> Self {
+        let color = light.color.map(|channel| f64::from(channel) / exp2(20));
+        if light.directional == 1 {
+            let direction = -DVec3::from_array(light.vector.map(|x| x as f64));
+            Self::Directional { direction, color }
+        } else {
+            let position = Lattice::of_blob(scene).place(light.vector);
+            Self::Point { position, color }
+        }
+    }
+
+    /// This light as a record of a blob.
+    ///
+    /// # Errors
+    /// If it lies too far away.
+    pub fn in_blob(&self, scene: &Scene<'_>, number: usize) -> Result<record::Light, CompileError> {
+        let sides = scene
+            .bounds()
+            .0
+            .map(|[low, high]| f64::from(high) - f64::from(low));
+        let lattice = Lattice::of_blob(scene);
+        let size = sides.into_iter().fold(0.0, f64::max) * lattice.unit();
+        light_record(self, &lattice, size, number)
+    }
+}
+
+impl Lattice {
+    /// The lattice of a blob.
+    fn of_blob(scene: &Scene<'_>) -> Self {
+        let header = scene.header();
+        Self {
+            bits: header.lattice_bits,
+            unit_exponent: header.unit_exponent,
+            origin: DVec3::from_array(header.origin),
+        }
+    }
+
+    /// A place in units with 13 fraction bits, in scene units.
+    fn place(&self, q13: [i64; 3]) -> DVec3 {
+        self.origin + DVec3::from_array(q13.map(|x| x as f64)) * (self.unit() * exp2(-13))
+    }
+}
+
+/// A colour of light as records of a blob hold it; saturates.
+pub fn radiance(color: Color) -> [i32; 3] {
+    compile::radiance(color)
+}
+
+fn vector(components: [i32; 3]) -> DVec3 {
+    DVec3::from_array(components.map(f64::from))
+}
