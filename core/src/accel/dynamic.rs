@@ -11,9 +11,9 @@ use crate::format::{Leaf, Structure};
 use crate::observe::count::Observer;
 use crate::ray::Ray;
 
-/// The structure that was chosen for a scene while the program runs, by [`Scene::choose`](crate::Scene::choose): what is
-/// built around queries is compiled once for it, and not for every structure. Costs a branch and the
-/// set-up of a culling form a query more than the structure itself.
+/// The structure that is chosen for a scene while the program runs, by [`Scene::choose`](crate::Scene::choose). Code
+/// around queries is compiled once for it, and not for every structure. Costs a branch and the set-up of a culling form
+/// per query more than the structure itself.
 #[derive(Clone, Copy, Debug)]
 pub enum DynAccel {}
 

@@ -46,7 +46,7 @@ pub const fn checksum(blob: &[u8]) -> u32 {
 #[repr(C, align(16))]
 pub struct Aligned<T: ?Sized>(pub T);
 
-/// Embeds a blob file with the alignment that [`Scene::from_bytes`](crate::Scene::from_bytes) asks for.
+/// Embeds a blob file with the alignment that [`Scene::from_bytes`](crate::Scene::from_bytes) requires.
 ///
 /// ```
 /// # macro_rules! scene { () => { concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel") } }

@@ -6,7 +6,7 @@ pub const MAX_STACK_DEPTH: usize = 160;
 /// Most levels of a hierarchy of pairs, and the largest stack depth that one needs.
 pub const MAX_LEVELS: usize = 48;
 
-/// The largest ray depth that a scene can ask for.
+/// The largest ray depth of a scene.
 pub const MAX_RAY_DEPTH: usize = 16;
 
 /// Most samples per pixel.

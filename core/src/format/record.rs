@@ -16,7 +16,7 @@ pub const VERSION: u16 = 1;
 /// Alignment of the blob and of every section, in bytes.
 pub const ALIGNMENT: usize = 16;
 
-/// The blob's first record: what it is, what it needs, how large everything is.
+/// The blob's first record: version, requirements and sizes.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Header {

@@ -9,8 +9,8 @@ use core::mem::offset_of;
 
 /// The requirements of a blob on the program that it is compiled into.
 ///
-/// [`Requirements::of`] is a `const fn`: a program that compares what it provides with what its blob asks for,
-/// as the modules of `gridel build --emit-rust` do, does not compile with a blob that has outgrown it.
+/// [`Requirements::of`] is a `const fn`. A program that compares it with what it provides, as the modules of
+/// `gridel build --emit-rust` do, does not compile with a blob that requires more.
 ///
 /// ```
 /// # macro_rules! scene { () => { concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel") } }
@@ -18,10 +18,10 @@ use core::mem::offset_of;
 /// const STACK_DEPTH: usize = 32;
 ///
 /// const _: () = {
-///     let Ok(demand) = gridel_core::Requirements::of(BLOB) else {
+///     let Ok(requirements) = gridel_core::Requirements::of(BLOB) else {
 ///         panic!("the blob was damaged")
 ///     };
-///     assert!(demand.stack_depth <= STACK_DEPTH);
+///     assert!(requirements.stack_depth <= STACK_DEPTH);
 /// };
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

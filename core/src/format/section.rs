@@ -138,11 +138,11 @@ macro_rules! sections {
             /// For each slot, where the primitive lies in the eight-wide hierarchy: `u32` each. Only where
             /// the blob has other structures.
             SlotLocations = 46, "slot-locations", "slot location" of "wide";
-            /// The planes of the root of slabs, a word a direction.
+            /// The planes of the root of slabs, a word per direction.
             SlabRoot = 47, "slab-root", "direction" of "slabs";
             /// Pairs of slabs: see [`slabs`](crate::accel::hierarchy::slabs).
             SlabPairs = 48, "slab-pairs", "pair" of "slabs";
-            /// The planes of the root of flagged slabs, a word a direction.
+            /// The planes of the root of flagged slabs, a word per direction.
             FlaggedSlabRoot = 49, "flagged-slab-root", "direction" of "flagged-slabs";
             /// Flagged pairs of slabs.
             FlaggedSlabPairs = 50, "flagged-slab-pairs", "pair" of "flagged-slabs";

@@ -20,7 +20,7 @@ fn bytes_of<'a>(blob: &'a [u8], entry: &SectionEntry) -> Option<&'a [u8]> {
     blob.get(start..start.checked_add(length)?)
 }
 
-/// The sections of a blob, found in its table when they are asked for; absent ones are empty.
+/// The sections of a blob, looked up in its table at each use; absent ones are empty.
 pub(crate) struct Sections<'a> {
     blob: &'a [u8],
     table: &'a [SectionEntry],

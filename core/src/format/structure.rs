@@ -96,7 +96,7 @@ impl Structure {
         1 << self as u32
     }
 
-    /// The structure of a set that answers fastest, by and large; `set` holds their [bits](Self::bit).
+    /// The structure of a set that is fastest for most scenes; `set` holds their [bits](Self::bit).
     pub(crate) fn fastest(set: u32) -> Self {
         let first = [Self::Wide, Self::DualSplit, Self::Flagged, Self::Bvh];
         let all = first.into_iter().chain(Self::ALL.into_iter().rev());
@@ -104,9 +104,9 @@ impl Structure {
         held.next().unwrap_or(Self::List)
     }
 
-    /// Whether loading a blob proves that this structure answers as the list does. That lists of
-    /// candidates lack nothing cannot be seen in linear time: whoever compiled the blob answers for
-    /// it. A walk through them ends all the same, and hits only what is there.
+    /// Returns whether loading a blob proves that this structure gives the answers of the list. For lists of
+    /// candidates it does not, because their completeness cannot be proved in linear time: the blob's compiler is
+    /// trusted there. A walk through them still ends, and every hit is a true one.
     ///
     /// ```
     /// use gridel_core::Structure;

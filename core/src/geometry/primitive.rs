@@ -29,19 +29,19 @@ pub(crate) trait Primitive: Pod {
     /// The box on the box lattice; that of all points where the shape has none.
     fn bounds(&self) -> UnitBox;
 
-    /// Where the line of a ray enters and leaves the shape, behind the origin too. `recip_norm2` is
+    /// The crossing of a ray's line: where it enters and leaves the shape, behind the origin too. `recip_norm2` is
     /// [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2) of the ray's slopes, where it is needed.
     ///
     /// A shape that a line can enter more than once chooses the first interval that ends at or after the ray's `tmin`.
     fn cross<N: Arithmetic>(&self, ray: &Ray<N>, recip_norm2: N) -> Option<Crossing<N>>;
 
-    /// How far from a place of a ray its line crosses a shape without a box; no [`cross`](Self::cross) is asked for of
-    /// those.
+    /// The distance from a point of a ray to where its line crosses a shape without a box, for which
+    /// [`cross`](Self::cross) is not called.
     fn cross_far<N: Arithmetic>(&self, _place: [N::Wide; 3], _slope: [N; 3]) -> Option<N::Wide> {
         None
     }
 
-    /// How the surface lies where a ray meets it: the normal points outward, or to the front. `part` is that of the
+    /// The surface where a ray meets it: the normal points outward, or to the front. `part` is that of the
     /// crossing, with [`LEAVING`](crate::geometry::LEAVING) where the ray leaves.
     fn surface<N: Arithmetic>(&self, ray: &Ray<N>, part: Part, point: [N; 3]) -> Surface<N>;
 

@@ -4,7 +4,7 @@ use crate::number::convert::Convert;
 use crate::number::error_bounds::ErrorBounds;
 use crate::number::vectors::Vectors;
 
-/// The arithmetic of a number format. Kernels of rays ask for more: see [`Number`](crate::number::Arithmetic).
+/// The arithmetic of a number format. Kernels of rays require more: see [`Number`](crate::number::Arithmetic).
 pub trait Arithmetic: Convert + Vectors + ErrorBounds {}
 
 impl<N: Convert + Vectors + ErrorBounds> Arithmetic for N {}

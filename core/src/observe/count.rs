@@ -1,4 +1,4 @@
-//! Counters of work, and the story of a ray, which cost nothing where nobody asks for them.
+//! Counters of work and events of rays. They cost nothing in programs that do not use them.
 
 use crate::observe::event::{Event, RayKind};
 use core::any::Any;

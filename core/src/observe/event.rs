@@ -139,7 +139,7 @@ pub enum Event {
         /// The factor that its radiance would have had.
         weight: [f64; 3],
     },
-    /// A mirror or glass was met at the largest depth: what it would show is left black.
+    /// A ray meets a mirror or glass at the largest depth. Its reflection or refraction stays black.
     TooDeep,
     /// A sample is done.
     SampleFinished {

@@ -21,7 +21,7 @@ pub struct PrimitiveHit<N: Number> {
 
 impl<N: Number> PrimitiveHit<N> {
     inline_on_hosts!(
-        /// The whole hit: the point and how the surface lies there. `scene` and `ray` are those of the
+        /// Returns the whole hit, with point and surface. `scene` and `ray` are those of the
         /// query.
         ///
         /// ```
@@ -64,7 +64,7 @@ impl<N: Number> PrimitiveHit<N> {
     );
 }
 
-/// Where a ray meets a primitive, and how the surface lies there.
+/// The point where a ray meets a primitive, and the surface there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit<N: Number> {
     /// Where on the ray: a length in units along the ray's major axis (see [`Ray`]).
@@ -102,8 +102,8 @@ pub struct Hit<N: Number> {
 }
 
 impl<N: Number> Hit<N> {
-    /// Where a ray starts that goes on from here on the normal's side, so that it does not meet
-    /// what it leaves: beside the surface by the hit's error bound.
+    /// Returns the origin for a ray that goes on from here on the normal's side and must not meet this surface again:
+    /// the point, moved along the normal by the error bound.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -123,9 +123,9 @@ impl<N: Number> Hit<N> {
         [axis(0), axis(1), axis(2)]
     }
 
-    /// Where a ray starts that goes on from here on the other side, `scene` being the one that was
-    /// asked. Of a solid that is beneath *all* of its faces by their error bounds, so that the ray
-    /// leaves the solid again; where the solid is thinner, halfway between them.
+    /// Returns the origin for a ray that goes on from here on the other side. `scene` is that of the query. In a solid
+    /// it lies beneath *all* faces by their error bounds, so that the ray leaves the solid again; where the solid is
+    /// thinner than that, halfway between them.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -180,8 +180,8 @@ impl<N: Number> Hit<N> {
         }
     }
 
-    /// Where a ray starts on the normal's side that leads away from the surface and has a t above 0: without
-    /// any step where the point lies on the surface exactly.
+    /// The origin for a ray that leads away from the surface on the normal's side and has a t above 0: the point itself
+    /// where it lies on the surface exactly.
     pub(crate) fn offset_point(&self) -> [N; 3] {
         if self.is_exact {
             self.point

@@ -1,4 +1,4 @@
-//! Queries: what does a ray meet first, does it meet anything at all?
+//! Queries: the first hit of a ray, and any hit.
 //!
 //! `search` tests the primitives to which a structure leads, `clusters` those in leaves of eight, `unbounded`
 //! those that lie in no structure; `hit` is the answer.

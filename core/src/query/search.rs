@@ -266,9 +266,9 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
 
     /// Tests the triangles of the slots before `end`.
     ///
-    /// A slot is counted only where it is asked for, and the vertices lie where they are borrowed
-    /// from: what is handed on and kept is little.
-    // Apart from the walk both keep more of what they need in the few registers of small cores.
+    /// Slots are counted only where a hit needs its number, and vertices are read through the borrowed slice, so that
+    /// few values stay in registers.
+    // Out of line, the walk and the test each have more of the few registers of small cores.
     #[cfg_attr(not(feature = "wide"), inline(never))]
     fn triangles_along<const MAJOR: usize, V: Vertex, I: Corners, C: Observer>(
         &mut self,

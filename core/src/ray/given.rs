@@ -13,11 +13,11 @@ pub(crate) type Given<N> = InSomeBuilds<GivenRay<N>, { UNBOUNDED as usize }>;
 pub(crate) struct GivenRay<N: Arithmetic> {
     origin: [N::Wide; 3],
     pub(super) interval: [N::Wide; 2],
-    /// Whether the ray's start is a place on it. It is none where the ray passes the scene far away.
+    /// Whether the ray's start is a point of the ray. It is not where the ray passes the scene far away.
     pub(super) holds_start: bool,
 }
 
-/// A place on a ray, and its t, counted from the origin.
+/// A point of a ray, and its t, counted from the origin.
 pub(super) type RayPoint<N> = (
     [<N as crate::number::Scalar>::Wide; 3],
     <N as crate::number::Scalar>::Wide,

@@ -227,7 +227,7 @@ impl<N: Arithmetic> Ray<N> {
         self.slope
     }
 
-    /// Where the ray starts inside of the kernels, in units: its own origin, or where it comes to the
+    /// The ray's start inside of the kernels, in units: its origin, or the point where it comes to the
     /// scene's box.
     ///
     /// ```
@@ -248,19 +248,19 @@ impl<N: Arithmetic> Ray<N> {
         self.start_t
     }
 
-    /// The interval that counts, from [`start`](Self::start).
+    /// The interval in which hits are reported, counted from [`start`](Self::start).
     pub fn interval(&self) -> [N; 2] {
         [self.tmin, self.tmax]
     }
 
-    /// The interval as the caller gave it, counted from the origin: it can begin before [`start`](Self::start). It counts
-    /// for shapes without bounds, and is empty in builds without them.
+    /// The interval as the caller gave it, counted from the origin: it can begin before [`start`](Self::start). Hits of
+    /// unbounded shapes are reported in it; it is empty in builds without them.
     pub fn given_interval(&self) -> [N::Wide; 2] {
         let none = [N::far(1), N::Wide::default()];
         self.given.get().map_or(none, |ray| ray.interval)
     }
 
-    /// A place on the ray, and its t as the caller counts it: the ray's [`start`](Self::start), or its origin where
+    /// A point of the ray, and its t as the caller counts it: the ray's [`start`](Self::start), or its origin where
     /// it passes the scene so far away that it has no start.
     pub fn reference_point(&self) -> ([N::Wide; 3], N::Wide) {
         let start = self.start_point();
@@ -269,7 +269,7 @@ impl<N: Arithmetic> Ray<N> {
             .map_or(start, |ray| ray.reference_point(start))
     }
 
-    /// Whether the start is a place on the ray.
+    /// Whether the start is a point of the ray.
     fn holds_start(&self) -> bool {
         self.given.get().is_none_or(|ray| ray.holds_start)
     }

@@ -1,5 +1,5 @@
-//! Where rendering is: the sample of a pixel, the pixel of a rectangle. It can stop behind any ray
-//! and go on later, so a call takes a bounded time and the picture is the same bit for bit.
+//! The state of rendering: the sample of a pixel, the pixel of a rectangle. Rendering can stop after any ray and go
+//! on later, so a call takes a bounded time, and the picture is the same bit for bit.
 
 use crate::accel::{Accel, Number};
 use crate::observe::count::Observer;

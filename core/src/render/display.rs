@@ -51,7 +51,7 @@ macro_rules! pixels_of_grey {
 
 pixels_of_grey!(Gray2, Gray4, Gray8);
 
-/// On where a grey would be nearer to white; wants dithering.
+/// On where a grey is nearer to white; use it with dithering.
 impl Pixel for BinaryColor {
     fn encode(linear: [u16; 3], dither: Option<[u16; 2]>) -> Self {
         Self::from(quantize(luminance(linear), 1, dither) > 0)

@@ -1,14 +1,14 @@
-//! Pictures: from a pixel to rays, through what they meet, and back to a pixel.
+//! Pictures: from pixels to rays, and from radiance to pixels.
 //!
 //! | step | file |
 //! |---|---|
 //! | a camera that the program places | `camera.rs` |
-//! | where in the pixel, and in which direction | `sample.rs`, `pixel_rays.rs` |
-//! | what the ray and those it causes bring | `trace.rs` |
-//! | without a choice of format, structure and effects | `defaults.rs` |
-//! | the samples of a pixel, all pixels of a rectangle | `samples.rs`, `rows.rs` |
-//! | where rendering is between two calls | `cursor.rs` |
-//! | onto a display of `embedded-graphics`, where the feature is on | `display.rs` |
+//! | the point of a sample in its pixel, and the direction of its ray | `sample.rs`, `pixel_rays.rs` |
+//! | the radiance of a ray, with its secondary rays | `trace.rs` |
+//! | renderers without a choice of format, structure and effects | `defaults.rs` |
+//! | the samples of a pixel, the pixels of a rectangle | `samples.rs`, `rows.rs` |
+//! | the state of rendering between two calls | `cursor.rs` |
+//! | displays of `embedded-graphics`, with that feature | `display.rs` |
 //! | from radiance to the bytes of a display | `pixel.rs` |
 
 mod camera;

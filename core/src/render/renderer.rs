@@ -59,9 +59,9 @@ impl Settings {
 pub enum RenderError {
     /// The picture has no pixels, or is more than 64 times as wide as high.
     Size {
-        /// The width asked for.
+        /// The requested width.
         width: u16,
-        /// The height asked for.
+        /// The requested height.
         height: u16,
     },
     /// Not 1 to 256 samples.
@@ -238,8 +238,8 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     /// ```
     ///
     /// # Errors
-    /// If it is not, with what it lacks. Rendering in it all the same is safe, but rays that find
-    /// no room see nothing.
+    /// If it is too small, with the missing size. Rendering with it is safe, but rays without room
+    /// bring no light.
     pub fn check_workspace(&self, space: &WorkspaceView<'_, N>) -> Result<(), RenderError> {
         let rooms = [
             ("stack", space.stack.capacity(), self.scene.stack_depth()),

@@ -1,16 +1,16 @@
-//! The ray loop: what one ray from the camera brings, with all the rays that it causes.
+//! The ray loop: traces a ray from the camera and all secondary rays.
 //!
-//! There is no recursion. Rays wait in a work list that the caller owns. One ray is taken and at
-//! most two are put back, one generation deeper, so `depth + 1` places are enough. A ray is put
-//! back only if the scene's depth allows and its weight is above the scene's cutoff.
+//! There is no recursion. Rays wait in a work list that the caller owns. Each step takes one ray and adds at
+//! most two, one generation deeper, so `depth + 1` entries are enough. A ray is added only if the scene's depth
+//! allows it and its weight is above the scene's cutoff.
 //!
 //! Secondary rays start beside the surface, on the side to which they go, at the distance of the
 //! hit's own error bound (see [`Hit::error`]): close enough to lose no contact, and too far to meet
 //! the surface again.
 //! A ray that goes on inside of a solid starts beneath all of its faces (see [`Hit::inside`]).
 //!
-//! Everything is compiled for a set of effects: what is not in it costs neither code nor time. The loop
-//! names no effect; it calls their list at the places that `shade` lists.
+//! The loop is compiled for a set of effects; others cost neither code nor time. It names no effect, and calls the
+//! list of effects at the places that `shade` lists.
 
 use crate::accel::stack::{Stack, StackView};
 use crate::accel::{Accel, Number};
@@ -98,8 +98,8 @@ pub(super) struct Loop<'s, 'a> {
 }
 
 impl Loop<'_, '_> {
-    /// Traces one ray and the shadow rays of what it meets: the last that waits, or else the one
-    /// from the camera, of a sample. Returns whether none waits any more.
+    /// Traces one ray of a sample and the shadow rays of its hit: the last ray that waits, or else the one from the
+    /// camera. Returns whether no ray waits any more.
     #[inline(always)]
     pub(super) fn step<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
         &self,

@@ -1,8 +1,8 @@
 //! The core's tests that run everywhere: on a host by `cargo test`, on a board through whatever
 //! it can print with. Needs the feature `selftest`.
 //!
-//! A test knows nothing of where it runs. What it wants of the world is a [`Host`]; the feature
-//! `std` has one, and a board's firmware brings its own.
+//! A test does not depend on the machine that it runs on. A [`Host`] prints for it; the feature `std` has one, and
+//! firmware supplies its own.
 //!
 //! ```text
 //! let failures = gridel_core::selftest::run(&mut host);

@@ -1,4 +1,4 @@
-//! Pixels are encoded as the display wants them, and a picture has the same bytes everywhere.
+//! Pixels are encoded as the display requires, and a picture has the same bytes everywhere.
 
 use crate::accel::Number;
 use crate::accel::list::List;

@@ -182,7 +182,7 @@ places! {
     /// A ray has come to a hit: the ratio of the light from there that arrives at the eye may change.
     fn arrive(ray: &Ray<N>, hit: &Hit<N>, material: &Material, weight: &mut Color<N>);
 
-    /// A ray hits a surface: the diffuse colour may change.
+    /// A ray hits a surface: the diffuse colour and the shading normal may change.
     fn surface(ray: &Ray<N>, surface: &mut Surface<'_, N>);
 
     /// A surface reflects a light that it faces: the reflected ratio may change.
@@ -194,13 +194,13 @@ places! {
     /// A surface is in the way of light to another one: it may let a part through.
     fn filter(ray: &Ray<N>, filter: &mut Filter<'_, N>);
 
-    /// A ray hits nothing: what it brings, first the background, may change.
+    /// A ray hits nothing: its radiance, first the background, may change.
     fn miss(ray: &Ray<N>, radiance: &mut Color<N>);
 
     /// A surface may send rays on, if the ray depth allows more.
     fn bounce(surface: &Surface<'_, N>, bounce: &mut Bounce<N>);
 
-    /// All rays of a sample were traced: its radiance may change before it is limited to what a
-    /// display shows. The state is a new one.
+    /// All rays of a sample were traced: its radiance may change before it is limited to the
+    /// range of a display. The state is a new one.
     fn pixel(radiance: &mut Color<N>);
 }

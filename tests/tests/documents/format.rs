@@ -13,7 +13,7 @@ use gridel_core::geometry::{cone, cuboid, disc, plane, torus};
 use gridel_core::shared::DIRECTION_COUNTS;
 use gridel_core::{Effects, Structure};
 use gridel_host::compile::{Options, compile};
-use gridel_host::scene::{Light, Shape};
+use gridel_host::scene::{self, Shape};
 use gridel_host::shape::{Plane, Torus};
 use gridel_tests::scenes;
 use std::collections::BTreeSet;
@@ -135,7 +135,7 @@ fn blobs() -> Vec<Vec<u8>> {
         normal: DVec3::Y,
     });
     let mut scene = scenes::of([torus, plane]);
-    scene.lights = vec![Light::Directional {
+    scene.lights = vec![scene::Light::Directional {
         direction: DVec3::new(-1.0, -2.0, -0.5),
         color: [0.8; 3],
     }];

@@ -10,7 +10,7 @@
 //! what the rays of the cell can meet, sorted by where on the way from the apex that may begin. A
 //! ray whose line passes an apex closely, and that only looks for hits on one side of it, takes its
 //! list from there: rays from the eye, shadow rays to a light. All others walk the hierarchy
-//! ([`Bvh`]); so a camera that was moved is noticed by itself, and costs time alone.
+//! ([`Bvh`]). So pictures stay right when a program moves the camera; they only take longer.
 //!
 //! A directional light is an apex infinitely far away. Its rays differ by where they pass a *plane*
 //! across their major axis that lies beyond the space, and its one window is a rectangle of that
@@ -31,11 +31,11 @@
 //! that the cell, a rectangle of the plane widened by [`Apex::REACH`], sweeps when it moves along the
 //! direction itself.
 //!
-//! **Lists may be cut.** What lies behind others is hardly ever asked for, and most of what lists would
-//! hold lies there. A last entry that is no slot stands for all that begins at its key or later: a
-//! ray that comes to it goes on in the hierarchy. So where a list is cut does not matter to an answer.
+//! **Lists may be cut.** Most primitives of a full list lie behind others and are rarely needed. A last entry that is
+//! no slot stands for all primitives that begin at its key or later: a ray that comes to it goes on in the
+//! hierarchy. So the place of the cut does not change an answer.
 //!
-//! Memory: 24 bytes an apex, 20 a direction, 32 a window, and the lists. Cost: three comparisons for
+//! Memory: 24 bytes per apex, 20 per direction, 32 per window, and the lists. Cost: three comparisons for
 //! each direction and two multiplications for each apex that is tried, two to four more for the
 //! cell, and one to four primitives.
 

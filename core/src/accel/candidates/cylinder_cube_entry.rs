@@ -1,9 +1,9 @@
-//! The cylinder cube as a door into the hierarchy: for every pair of gridels a few nodes that
-//! together hold all that a ray between the two can meet.
+//! The cylinder cube with entry nodes: for every pair of gridels, a few nodes of the hierarchy that together contain
+//! every primitive that a ray between the two can meet.
 //!
 //! A ray enters the hierarchy ([`Bvh`](crate::accel::Bvh)) at these nodes and skips the top of the tree;
-//! where nothing lies between two gridels it does nothing at all. The table's size hardly depends on
-//! the scene: a pair has at most [`CylinderCubeEntry::MOST_NODES`] nodes, most have one to four.
+//! where nothing lies between two gridels it stops at once. The table's size depends little on the scene: a pair
+//! has at most [`CylinderCubeEntry::MOST_NODES`] nodes, most have one to four.
 //! Nodes are sorted along the way from one gridel to the other, as the primitives of the
 //! [tight cube](crate::accel::candidates::cylinder_cube_tight) are.
 

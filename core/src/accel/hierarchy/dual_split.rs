@@ -43,8 +43,8 @@ use crate::ray::Ray;
 use crate::target::{NARROW_PRODUCTS, SMALL};
 use core::hint::black_box;
 
-/// Whether the compiler is kept from knowing a ray's form by heart: cores that load two words at once,
-/// and have too few registers for what it would know, read the form of an axis faster where it lies.
+/// Whether a ray's form stays in memory, hidden from the optimiser. Cores that load two words at once and have few
+/// registers read the form of an axis faster from there.
 const FORM_IN_MEMORY: bool = cfg!(target_arch = "arm") && !NARROW_PRODUCTS;
 
 /// A hierarchy of 16 bytes per node; a ray tests two to four planes per node.

@@ -15,7 +15,7 @@ use crate::format::{Leaf, Structure};
 use crate::observe::count::Observer;
 use crate::ray::Ray;
 
-/// The hierarchy of slabs with two planes a direction and pair.
+/// The hierarchy of slabs with two planes per direction and pair.
 #[derive(Clone, Copy, Debug)]
 pub enum FlaggedSlabs {}
 

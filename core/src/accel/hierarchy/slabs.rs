@@ -8,8 +8,8 @@
 //! holds here: `y` errs by no more than the coordinates do. What volumes must hold is more than the
 //! primitives: see [`Reach`].
 //!
-//! Plain, all planes of both children are tested, four a direction. Flagged, those that coincide
-//! with the parent's are neither stored nor tested, exactly as with boxes: two a direction. See
+//! Plain, all planes of both children are tested, four per direction. Flagged, those that coincide
+//! with the parent's are neither stored nor tested, exactly as with boxes: two per direction. See
 //! `flagged_slabs.rs`.
 
 use crate::accel::cull::Cull;
@@ -86,7 +86,7 @@ pub(in crate::accel) fn root_interval(
 /// The records of one hierarchy: so many words each.
 #[derive(Clone, Copy, Debug)]
 pub struct SlabPairs<'a, const FLAGGED: bool> {
-    /// The root's volume, a word a direction.
+    /// The root's volume, a word per direction.
     pub(in crate::accel) root: &'a [u32],
     words: &'a [u32],
 }

@@ -2,7 +2,7 @@
 
 use core::ops::{Add, Neg, Sub};
 
-/// A number in fixed point. Where its binary point lies depends on what it stands for: a length
+/// A number in fixed point. The place of its binary point depends on the quantity: a length
 /// has 13 fraction bits, a ratio 30, a radiance 20 (see [`Number`](crate::Number)).
 ///
 /// All operators wrap; none panics, whatever the build's overflow checks. Kernels stay within ranges

@@ -1,5 +1,5 @@
 //! Quotients that are compared before anything is divided: of the three times at which a ray enters a
-//! box's slabs, only the last is asked for.
+//! box's slabs, only the last is needed.
 
 use crate::number::fixed::base::{Fixed, with_sign};
 use crate::number::fixed::halves::{product, product_unsigned};
