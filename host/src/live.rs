@@ -9,7 +9,8 @@ use gridel_core::Scene;
 use gridel_core::format::record::{self, View};
 
 impl Camera {
-    /// The camera of a blob. Its target lies in the middle of the picture, as deep as the middle of the scene.
+    /// The camera of a blob. Its target lies in the middle of the picture, as deep as the middle of the scene; up
+    /// is an axis, if the camera stands upright on it.
     ///
     /// ```
     /// # use gridel_host::compile::{Options, compile};
@@ -44,7 +45,7 @@ impl Camera {
         Self {
             eye,
             target: eye + depth * direction,
-            up,
+            up: upright(view).unwrap_or(up),
             fov_degrees: 2.0 * libm::atan2(up.length(), forward.length()).to_degrees(),
         }
     }
@@ -57,6 +58,13 @@ impl Camera {
     pub fn in_blob(&self, scene: &Scene<'_>) -> Result<View, CompileError> {
         Ok(place(self, scene.header())?.view(scene))
     }
+}
+
+/// The axis across which the picture's rows run, with the sign of what points up.
+fn upright(view: &View) -> Option<DVec3> {
+    let across = (0..3).filter(|&axis| view.right[axis].abs() <= 1 && view.up[axis] != 0);
+    let axis = across.max_by_key(|&axis| view.up[axis].abs())?;
+    Some(DVec3::AXES[axis] * f64::from(view.up[axis].signum()))
 }
 
 impl Light {

@@ -10,6 +10,7 @@ mod ending;
 mod help;
 mod import;
 mod inspect;
+mod live;
 mod merge;
 mod names;
 mod options;

@@ -230,9 +230,10 @@ fn cameras_that_cannot_be_and_flags_for_blobs_are_rejected() {
         &["--eye", "1,9,2", "--target", "1,1,2"],
         &["looks along `--up`"],
     );
-    for option in ["--eye", "--target", "--up", "--background"] {
-        let render = ["render", "quick.gridel", "-o", "a.png", option, "1,2,3"];
-        folder.fails(2, &render, &[&format!("{option} is for scene files")]);
+    // What a blob holds is inspected as it is.
+    for option in ["--eye", "--up", "--background"] {
+        let inspect = ["inspect", "quick.gridel", option, "1,2,3"];
+        folder.fails(2, &inspect, &[&format!("{option} is for scene files")]);
     }
     let build = [
         "build", "a.obj", "-o", "a.gridel", "--target", "1,2,3", "--target",
