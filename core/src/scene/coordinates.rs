@@ -34,7 +34,7 @@ impl Scene<'_> {
     }
 
     /// A place on the scene's lattice, in units with 13 fraction bits: what records hold, and
-    /// [`far`](crate::number::Convert::far) takes. A place beyond
+    /// [`far`](crate::number::Products::far) takes. A place beyond
     /// [`FARTHEST`](crate::format::limits::FARTHEST) is moved there.
     pub fn on_lattice(&self, position: Position) -> [i64; 3] {
         self.header().on_lattice(position)
