@@ -5,13 +5,13 @@ mod boards;
 mod changelog;
 mod contributing;
 mod features;
-mod format;
 mod keys;
 mod limits;
 mod memory;
 mod paper;
 mod peers;
 mod pictures;
+mod tables;
 mod times;
 mod variables;
 
