@@ -36,7 +36,7 @@ pub struct Emitted<'s> {
 }
 
 impl Emitted<'_> {
-    /// The Cargo features of `gridel-core` that the scene calls for.
+    /// The Cargo features of `gridel-core` that the scene requires.
     pub fn features(&self) -> Vec<&'static str> {
         let structure = Some(self.structure.name()).filter(|_| self.structure != Structure::List);
         structure.into_iter().chain(self.scene.features()).collect()
@@ -89,7 +89,7 @@ impl Emitted<'_> {
             "{FIRST}; the scene is in `{BLOB}` beside this file.\n\
              // In `src`, `mod scene;` takes both in; elsewhere, `#[path = \"...\"]` before it leads here.\n\
              //\n\
-             // In Cargo.toml, exactly what the scene calls for:\n\
+             // In Cargo.toml, exactly what the scene requires:\n\
              //\n\
              // gridel-core = {{ default-features = false, features = [{features}] }}\n\
              //\n\
@@ -107,7 +107,7 @@ impl Emitted<'_> {
              pub const STACK_DEPTH: usize = {stack};\n\
              /// Places for rays that wait.\n\
              pub const WORK_DEPTH: usize = {waiting};\n\
-             /// The effects that the scene calls for: {effects}.\n\
+             /// The effects that the scene requires: {effects}.\n\
              pub const EFFECTS: u32 = {bits};\n\
              /// Pixels of a row.\n\
              pub const WIDTH: usize = {width};\n\
@@ -141,7 +141,7 @@ impl Emitted<'_> {
              let Ok(demand) = gridel_core::Requirements::of(BYTES) else {{\n        \
              panic!(\"the blob was cut off: write it and this module again\")\n    }};\n    \
              assert!(\n        gridel_core::Effects(EFFECTS).contains(demand.effects),\n        \
-             \"the blob calls for effects beyond EFFECTS: write this module again\"\n    );\n    \
+             \"the blob requires effects beyond EFFECTS: write this module again\"\n    );\n    \
              assert!(\n        demand.stack_depth <= STACK_DEPTH,\n        \
              \"the blob outgrew STACK_DEPTH: write this module again\"\n    );\n    \
              assert!(\n        demand.work_depth <= WORK_DEPTH,\n        \

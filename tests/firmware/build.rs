@@ -31,7 +31,7 @@ fn main() {
          pub const STACK_DEPTH: usize = {};\n\
          /// Places for rays that wait.\n\
          pub const WORK_DEPTH: usize = {};\n\
-         /// The effects that the scene calls for.\n\
+         /// The effects that the scene requires.\n\
          pub const EFFECTS: u32 = {};\n\
          /// Pixels of a row.\n\
          pub const WIDTH: usize = {};\n\

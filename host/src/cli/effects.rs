@@ -1,4 +1,4 @@
-//! The effects of a scene, and what calls for each.
+//! The effects of a scene, and what requires each.
 
 use gridel_core::format::record::{Light, Material};
 use gridel_core::{Effects, Scene};
@@ -6,7 +6,7 @@ use gridel_host::compile::Report;
 use serde::Serialize;
 use std::fmt;
 
-/// An effect, and the names of what calls for it.
+/// An effect, and the names of what requires it.
 #[derive(Serialize)]
 pub struct CalledFor {
     effect: String,
@@ -41,7 +41,7 @@ impl CalledFor {
     }
 }
 
-/// The names of those that call for an effect, counted from 0.
+/// The names of those that require an effect, counted from 0.
 fn numbers_of(
     what: &str,
     effect: Effects,

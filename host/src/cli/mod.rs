@@ -6,7 +6,7 @@
 //! | `arguments/` | options that several commands have |
 //! | `input.rs` | a file or standard input |
 //! | `source.rs` | the blob or scene file that a command works on |
-//! | `effects.rs` | what calls for the effects of a scene |
+//! | `effects.rs` | what requires the effects of a scene |
 //! | `output.rs` | files and standard output |
 //! | `shell.rs` | completion scripts for shells, and man pages |
 //! | `progress.rs` | the sign of life of long work |

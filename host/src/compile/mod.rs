@@ -91,7 +91,7 @@ pub struct Report {
     pub bytes: usize,
     /// Primitives of the longest list that a ray can be led to.
     pub longest_list: usize,
-    /// Effects and the names of what calls for each.
+    /// Effects and the names of what requires each.
     pub effects: Vec<(String, Vec<String>)>,
     /// Parts that the compiler supplied because the scene has none.
     pub supplied: Vec<String>,
@@ -250,7 +250,7 @@ pub fn compile_with_progress(
         sah_cost,
         bytes,
         longest_list,
-        effects: shading_data.called_for.clone(),
+        effects: shading_data.required_by.clone(),
         supplied: shading_data.supplied.clone(),
         setup,
         tables,

@@ -1,4 +1,4 @@
-//! Camera, lights and materials as records, and the effects that they call for.
+//! Camera, lights and materials as records, and the effects that they require.
 
 use super::CompileError;
 use super::camera::place;
@@ -27,8 +27,8 @@ pub struct ShadingData {
     /// For each object, its place in `materials`.
     pub object_material: Vec<u32>,
     pub effects: Effects,
-    /// The names of the effects, and of what calls for each.
-    pub called_for: Vec<(String, Vec<String>)>,
+    /// The names of the effects, and of what requires each.
+    pub required_by: Vec<(String, Vec<String>)>,
     /// Parts that the scene lacks and the compiler supplied.
     pub supplied: Vec<String>,
 }
@@ -69,13 +69,13 @@ impl ShadingData {
         let far = |what, point| on_lattice(lattice, size, what, point);
         let mut numbers: Vec<Option<u32>> = vec![None; scene.materials.len()];
         let mut materials = Vec::new();
-        let mut called_for: Vec<(Effects, String)> = Vec::new();
+        let mut required_by: Vec<(Effects, String)> = Vec::new();
         let mut object_material = Vec::with_capacity(scene.objects.len());
         for object in &scene.objects {
             let number = *numbers[object.material].get_or_insert_with(|| {
                 let material = &scene.materials[object.material];
                 let record = material_record(material, lattice);
-                called_for.push((
+                required_by.push((
                     record.effects(),
                     format!("material {}", printable(&material.name)),
                 ));
@@ -97,18 +97,18 @@ impl ShadingData {
         };
         if !scene.objects.is_empty() {
             let effects = (0..).zip(lights.iter().map(record::Light::effects));
-            called_for.extend(effects.map(|(number, effects): (usize, _)| {
+            required_by.extend(effects.map(|(number, effects): (usize, _)| {
                 (effects.without(unwanted), format!("light {number}"))
             }));
         }
-        let effects = called_for
+        let effects = required_by
             .iter()
             .fold(Effects::NONE, |all, (effects, _)| all.with(*effects));
-        let called_for = Effects::NAMED
+        let required_by = Effects::NAMED
             .iter()
             .filter(|(effect, _)| effects.contains(*effect))
             .map(|(effect, name)| {
-                let callers = called_for
+                let callers = required_by
                     .iter()
                     .filter(|(effects, _)| effects.contains(*effect));
                 (
@@ -134,7 +134,7 @@ impl ShadingData {
             materials,
             object_material,
             effects,
-            called_for,
+            required_by,
             supplied,
         })
     }

@@ -266,7 +266,7 @@ fn the_call_stack_of_a_memory_report_is_enough_for_small_code() {
             });
             let reported = sum(&report, "ram", "call stack");
             assert_eq!(reported, fast.max(small));
-            // The scene calls for all but vertex indices of more than 16 bits.
+            // The scene requires all but vertex indices of more than 16 bits.
             let most = everything(board, format, accel).map(|build| build.call_stack);
             let most = most[0].max(most[1]);
             assert!(
@@ -318,7 +318,7 @@ fn memory_report_lists_the_code_of_the_scenes_program() {
         let report = folder.json(&["inspect", "quick.toml", "--target", board]);
         let listed = sum(&report, "flash", "code");
         assert_eq!(report["memory_report"]["fast"]["code"], listed);
-        // What the scene does not call for.
+        // Parts that the scene does not require.
         let others = ["torus", "plane", "wide-indices", "display-values"];
         let parts: Vec<&str> = parts().filter(|it| !others.contains(it)).collect();
         let [fast, _] = program(board, format, "dual-split", &parts);
@@ -327,7 +327,7 @@ fn memory_report_lists_the_code_of_the_scenes_program() {
     }
 }
 
-/// Code is listed by shape and effect on every board, so that what calls for little is not rejected.
+/// Code is listed by shape and effect on every board, so that what requires little is not rejected.
 #[test]
 fn little_is_asked_of_every_board_for_a_scene_that_calls_for_little() {
     let folder = Folder::new();

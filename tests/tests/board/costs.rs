@@ -87,7 +87,7 @@ fn shapes_and_effects_are_paid_for_one_by_one() {
         figures.add(&build.to_string(), &report);
     }
     figures.check();
-    // The code of effects that nothing calls for costs next to nothing. That of shapes and wider
+    // The code of effects that nothing requires costs next to nothing. That of shapes and wider
     // storage does: leaves choose between them.
     let base = &scenes[0];
     let build = Build::new(discovery, Format::Fixed, Structure::DualSplit, base);

@@ -174,7 +174,7 @@ impl<'b> Build<'b> {
         self.small
     }
 
-    /// Builds one of the firmware's programs with what the scene calls for, and nothing else.
+    /// Builds one of the firmware's programs with what the scene requires, and nothing else.
     pub fn program(&self, name: &str) -> Program<'b> {
         self.program_with(name, &self.scene.features())
     }

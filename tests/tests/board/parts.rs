@@ -14,7 +14,7 @@ pub const BASE: &str = "base";
 
 const TRIANGLE: &str = Kind::Triangle.name();
 
-/// A part's name, and how to call for it.
+/// A part's name, and how to require it.
 type Effects = [(&'static str, fn(&mut Scene)); 6];
 
 const EFFECTS: Effects = [
@@ -163,7 +163,7 @@ pub fn outgrown() -> [(&'static str, Compiled); 6] {
     };
     let wider = compile_with("wider", base(), [33, 32], small());
     [
-        ("the blob calls for effects beyond EFFECTS", mirrors),
+        ("the blob requires effects beyond EFFECTS", mirrors),
         ("the blob's picture has another size", wider),
         ("the scene requires `box`", compile("box", cuboid)),
         (

@@ -203,7 +203,7 @@ fn suzanne_scene() -> Scene {
 }
 
 impl Compiled {
-    /// The Cargo features of the core that the scene calls for.
+    /// The Cargo features of the core that the scene requires.
     pub fn features(&self) -> Vec<&'static str> {
         let scene = self.blob.scene().expect("the compiler's own blob");
         scene.features().collect()

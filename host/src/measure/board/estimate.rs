@@ -62,7 +62,7 @@ impl ProgramEstimate<'_> {
             here,
             similar,
             structure,
-            parts: called_for,
+            parts: required,
         } = *self;
         let of = |(board, format): (&Board, Format), structure, parts: &[&str]| {
             programs.figure((board, format, structure), parts, profile, figure)
@@ -71,13 +71,13 @@ impl ProgramEstimate<'_> {
             let known = of(place, structure, parts).filter(|known| known.measured);
             known.map(|known| known.bytes)
         };
-        if let Some(bytes) = built(here, structure, called_for) {
+        if let Some(bytes) = built(here, structure, required) {
             return Some(Known {
                 bytes,
                 measured: true,
             });
         }
-        let known = of(similar, Structure::DualSplit, called_for)?;
+        let known = of(similar, Structure::DualSplit, required)?;
         let everything: Vec<&str> = parts().collect();
         let mut bytes = known.bytes;
         if structure != Structure::DualSplit {

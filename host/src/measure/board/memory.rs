@@ -124,13 +124,13 @@ impl MemoryReport {
         if !Self::STRUCTURES.contains(&structure) {
             return Err(NotMeasured(structure));
         }
-        let called_for: Vec<&str> = scene.features().collect();
+        let required: Vec<&str> = scene.features().collect();
         let program = ProgramEstimate {
             programs,
             here: (board, format),
             similar: board.similar(format),
             structure,
-            parts: &called_for,
+            parts: &required,
         };
         let (mut flash, mut ram) = (Account::new(target.flash), Account::new(target.ram));
         for part in MemoryMap::of(scene, blob).parts {

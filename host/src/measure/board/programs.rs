@@ -171,9 +171,9 @@ pub fn parts() -> impl Iterator<Item = &'static str> {
 }
 
 /// How a program is called: its parts in their order.
-fn key(called_for: &[&str]) -> String {
-    let called_for = parts().filter(|part| called_for.contains(part));
-    called_for.collect::<Vec<_>>().join(" ")
+fn key(required: &[&str]) -> String {
+    let required = parts().filter(|part| required.contains(part));
+    required.collect::<Vec<_>>().join(" ")
 }
 
 fn key_text((board, format, structure): ProgramKey<'_>) -> String {

@@ -85,7 +85,7 @@ struct Importer<'a> {
     /// Index of a material by the bits of its eight numbers.
     materials: HashMap<[u64; 8], usize>,
     material: Option<usize>,
-    /// Ambient light that a material calls for.
+    /// Ambient light that a material states.
     ambient: HashMap<usize, f64>,
     /// How many spheres, cones and polygons there are, for their names.
     counts: [usize; 3],
@@ -269,8 +269,8 @@ impl<'a> Importer<'a> {
             }
         }
         let used: BTreeSet<usize> = self.scene.objects.iter().map(|o| o.material).collect();
-        let called_for = |index| self.ambient.get(index).copied().unwrap_or(0.0);
-        let ambient = used.iter().map(called_for).sum::<f64>() / used.len() as f64;
+        let stated = |index| self.ambient.get(index).copied().unwrap_or(0.0);
+        let ambient = used.iter().map(stated).sum::<f64>() / used.len() as f64;
         self.scene.ambient = [ambient; 3];
         Ok(Imported {
             scene: self.scene,
