@@ -165,8 +165,8 @@ impl<N: Number> Hit<N> {
     /// let mut stack = Stack::<32>::new();
     /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
     /// let hit = scene.closest_hit(&down, stack.as_view()).expect("a sphere");
-    /// // The normal points up.
-    /// assert_eq!(hit.texture_coordinates(), [hit.point[0], hit.point[2]]);
+    /// let coordinates = hit.texture_coordinates();
+    /// assert!(coordinates.iter().all(|it| hit.point.contains(it)));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn texture_coordinates(&self) -> [N; 2] {

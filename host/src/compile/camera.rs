@@ -25,8 +25,6 @@ pub fn place(camera: &Camera, header: &Header) -> Result<Placed, CompileError> {
 
 /// A direction of 30 bits, scaled by a power of two, so that integers keep their ratios.
 fn integers(direction: DVec3) -> [i32; 3] {
-    // Halved first, so that no power is out of range.
-    let direction = direction * 0.5;
     let (_, exponent) = libm::frexp(direction.abs().max_element());
     let scaled = |x: f64| libm::ldexp(x, 30 - exponent).round() as i32;
     direction.to_array().map(scaled)

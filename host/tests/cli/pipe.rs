@@ -138,7 +138,7 @@ fn errors_of_standard_input_name_stdin() {
     }
     // What a scene from there names lies in the current folder.
     done(&folder, &["inspect", "-"], import("near.obj").as_bytes());
-    let (run, _) = folder.piped(&["render", "-", "-o", "-", "--cutoff", "0"], &blob);
+    let (run, _) = folder.piped(&["render", "-", "-o", "-", "--lattice-bits", "16"], &blob);
     assert_eq!(run.code, Some(2));
     assert!(run.said().contains("<stdin> is a blob"), "{}", run.stderr);
 }
