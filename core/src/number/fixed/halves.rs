@@ -26,7 +26,7 @@ pub(super) const fn product_unsigned(a: u32, b: u32) -> u64 {
 
 /// Four products of halves, each of which fits 32 bits with what is carried into it.
 #[inline(always)]
-const fn product_of_halves(a: i32, b: i32) -> i64 {
+pub(super) const fn product_of_halves(a: i32, b: i32) -> i64 {
     let (a_high, a_low) = (a >> 16, a & 0xffff);
     let (b_high, b_low) = (b >> 16, b & 0xffff);
     let low = a_low.wrapping_mul(b_low) as u32;
@@ -41,7 +41,7 @@ const fn product_of_halves(a: i32, b: i32) -> i64 {
 
 /// Four unsigned products of halves; see [`product_of_halves`].
 #[inline(always)]
-const fn product_of_halves_unsigned(a: u32, b: u32) -> u64 {
+pub(super) const fn product_of_halves_unsigned(a: u32, b: u32) -> u64 {
     let (a_high, a_low) = (a >> 16, a & 0xffff);
     let (b_high, b_low) = (b >> 16, b & 0xffff);
     let low = a_low.wrapping_mul(b_low);
@@ -89,7 +89,7 @@ pub(super) const fn wide_leading_zeros(x: u64) -> u32 {
 
 /// Most numbers have few.
 #[inline(always)]
-const fn leading_zeros_by_shifts(x: u32) -> u32 {
+pub(super) const fn leading_zeros_by_shifts(x: u32) -> u32 {
     let (mut rest, mut zeros) = (x | 1, 0_u32);
     while rest >> 24 == 0 {
         (rest, zeros) = (rest << 8, zeros.wrapping_add(8));
@@ -102,7 +102,7 @@ const fn leading_zeros_by_shifts(x: u32) -> u32 {
 
 /// By Newton's iteration.
 #[inline(always)]
-fn quotient_by_products(d: u32) -> u32 {
+pub(super) fn quotient_by_products(d: u32) -> u32 {
     // 2^16 (48 / 17 - 32 / 17 x) is 1 / x, for x from 1/2 to 1, to a part in 17.
     let mut guess = 185_043_u32.wrapping_sub(d.wrapping_mul(30_840) >> 14);
     for _ in 0..2 {
@@ -150,54 +150,4 @@ pub(crate) fn surround(a: [Fixed; 2], b: [Fixed; 2], c: [Fixed; 2]) -> Option<bo
         return Some(false);
     }
     Some(u == cross(a, b)?)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geometry::Project;
-    use proptest::prelude::*;
-
-    #[test]
-    fn quotients_by_products_are_exact() {
-        for d in 1 << 15..=1 << 16 {
-            assert_eq!(quotient_by_products(d), u32::MAX / d, "{d}");
-        }
-    }
-
-    proptest! {
-        #[test]
-        fn leading_zeros_are_counted(x in 1_u32.., shift in 0_u32..32) {
-            let x = (x >> shift).max(1);
-            prop_assert_eq!(leading_zeros_by_shifts(x), x.leading_zeros());
-        }
-
-        #[test]
-        fn products_of_halves_are_products(a: i32, b: i32) {
-            prop_assert_eq!(product_of_halves(a, b), i64::from(a) * i64::from(b));
-            let (a, b) = (a as u32, b as u32);
-            prop_assert_eq!(product_of_halves_unsigned(a, b), u64::from(a) * u64::from(b));
-        }
-
-        /// Where 16 bits decide, they decide as all bits do.
-        #[test]
-        fn coarse_triangles_are_the_triangles(corners: [[i32; 2]; 3], shift in 1_u32..32) {
-            let [a, b, c] = corners.map(|corner| corner.map(|x| Fixed(x >> shift)));
-            if let Some(decided) = surround(a, b, c) {
-                prop_assert_eq!(decided, Fixed::surrounds_origin(a, b, c));
-            }
-        }
-    }
-
-    /// Where corners lie apart, 16 bits decide.
-    #[test]
-    fn coarse_triangles_are_mostly_decided() {
-        let mut decided = 0;
-        for step in 0..10_000_u32 {
-            let coordinate = |k: u32| Fixed((step * 6 + k).wrapping_mul(2_654_435_761) as i32 >> 5);
-            let corner = |k: u32| [coordinate(k), coordinate(k + 1)];
-            decided += u32::from(surround(corner(0), corner(2), corner(4)).is_some());
-        }
-        assert!(decided > 9_900, "{decided}");
-    }
 }

@@ -19,7 +19,7 @@ const GUESSES: [u8; 96] = {
 /// The greatest integer whose square is at most `square`, below 2^32.
 ///
 /// Cost: some ten products.
-fn root(square: u64) -> u64 {
+pub(super) fn root(square: u64) -> u64 {
     let up = square.leading_zeros() & 62;
     root_of_full(square << up) >> (up / 2)
 }
@@ -68,42 +68,4 @@ pub(super) fn nearest_root(square: u64) -> u64 {
 pub(super) fn scaled_root(square: u64) -> (u64, u32) {
     let shift = square.leading_zeros() & 62;
     (root_of_full(square << shift), shift / 2)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(50_000))]
-
-        #[test]
-        fn roots_are_those_of_the_standard_library(square: u64, shrink in 0..64_u32) {
-            let square = square >> shrink;
-            prop_assert_eq!(root(square), square.isqrt(), "{}", square);
-        }
-
-        #[test]
-        fn squares_and_what_lies_beside_them_have_the_right_roots(x: u32, shrink in 0..32_u32) {
-            let x = u64::from(x >> shrink);
-            let square = x * x;
-            for beside in [square.saturating_sub(1), square, square + 1] {
-                prop_assert_eq!(root(beside), beside.isqrt(), "{}", beside);
-            }
-        }
-    }
-
-    #[test]
-    fn roots_at_the_ends_of_guesses() {
-        for i in 0..=96_u64 {
-            for beside in -2..=2_i64 {
-                let square = (32 + i).wrapping_shl(57).wrapping_add_signed(beside);
-                assert_eq!(root(square), square.isqrt(), "{square}");
-            }
-        }
-        for square in (0..70_000).chain([u64::MAX, u64::MAX - 1, u64::MAX << 32]) {
-            assert_eq!(root(square), square.isqrt(), "{square}");
-        }
-    }
 }

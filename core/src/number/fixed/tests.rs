@@ -1,3 +1,7 @@
+mod halves;
+mod quotient;
+mod root;
+
 use crate::geometry::Project;
 use crate::number::Convert;
 use crate::number::Fixed;
