@@ -54,7 +54,7 @@ pub struct StripMembers {
     corners: [u8; 3],
 }
 
-/// A generalised strip on the 16-bit lattice: up to 6 triangles on 8 vertices, triangle `k` on the
+/// A generalized strip on the 16-bit lattice: up to 6 triangles on 8 vertices, triangle `k` on the
 /// vertices `k`, `k + 1` and `k + 2`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
@@ -65,7 +65,7 @@ pub struct Strip16 {
     pub members: StripMembers,
 }
 
-/// A generalised strip on the 24-bit lattice; see [`Strip16`].
+/// A generalized strip on the 24-bit lattice; see [`Strip16`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Strip24 {
@@ -79,7 +79,7 @@ pub struct Strip24 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Pack16 {
-    /// The centres.
+    /// The centers.
     pub rows: Rows16,
     /// The radii in units; 0 in the lanes behind the last sphere.
     pub radii: [u16; LANES],
@@ -89,7 +89,7 @@ pub struct Pack16 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Pack24 {
-    /// The centres.
+    /// The centers.
     pub rows: Rows24,
     /// For each lane the number of its radius in the pack's window: of lane 0 in the low half of the
     /// first byte, of lane 1 in its high half. The radius is 0 in the lanes behind the last sphere.
@@ -294,7 +294,7 @@ pub(crate) trait Strip: Pod {
 
 /// A pack in either storage.
 pub(crate) trait Pack {
-    /// Its centres' storage.
+    /// Its centers' storage.
     type Rows: Rows;
     fn rows(&self) -> &Self::Rows;
     /// All radii in units; exact.
@@ -302,7 +302,7 @@ pub(crate) trait Pack {
     /// The radius in a lane, in 1/256 unit.
     fn radius(&self, lane: usize) -> i32;
 
-    /// Centre and radius of a sphere, in 1/256 unit; `None` in an empty lane.
+    /// Center and radius of a sphere, in 1/256 unit; `None` in an empty lane.
     #[inline(always)]
     fn sphere(&self, lane: u32) -> Option<([i32; 3], i32)> {
         let radius = self.radius(lane as usize);

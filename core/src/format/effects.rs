@@ -98,7 +98,7 @@ macro_rules! sets {
 effects!(sets);
 
 impl Effects {
-    /// None: surfaces have their diffuse colour under unshadowed lights.
+    /// None: surfaces have their diffuse color under unshadowed lights.
     pub const NONE: Effects = Effects(0);
 
     /// Whether all of `other` are in this set.

@@ -43,7 +43,7 @@ pub enum BlobError {
         /// The effects.
         missing: Effects,
     },
-    /// The scene holds primitives of a kind, or stored in a way, or colours, that this build was
+    /// The scene holds primitives of a kind, or stored in a way, or colors, that this build was
     /// compiled without.
     MissingPart {
         /// The Cargo feature that is missing.

@@ -36,7 +36,7 @@ pub const FARTHEST_HIT: i64 = 1 << 62;
 /// So some point of it is a length in every format, with as much to spare.
 pub const FARTHEST_POINT: i64 = 1 << 25;
 
-/// Whether this build holds the code for scenes whose colours are display values.
+/// Whether this build holds the code for scenes whose colors are display values.
 pub(crate) const DISPLAY_VALUES: bool = cfg!(feature = "display-values");
 
 /// Whether this build holds the code for coordinates of more than 16 bits.

@@ -146,7 +146,7 @@ pub struct View {
     pub samples: u16,
     /// How often a ray may be reflected or refracted, 0 to [`MAX_RAY_DEPTH`](crate::format::limits::MAX_RAY_DEPTH).
     pub depth: u8,
-    /// 1 where all colours and lights are display values, which reach the display as they are; 0
+    /// 1 where all colors and lights are display values, which reach the display as they are; 0
     /// where they are linear.
     pub display_values: u8,
 }
@@ -164,7 +164,7 @@ pub struct Light {
     pub directional: u32,
 }
 
-/// A surface. Colours are ratios with 30 fraction bits, 0 to 1.
+/// A surface. Colors are ratios with 30 fraction bits, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Material {
@@ -206,7 +206,7 @@ pub struct Vertex24(pub [i32; 3]);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Sphere16 {
-    /// Centre in units.
+    /// Center in units.
     pub center: Vertex16,
     /// Radius in units, above 0.
     pub radius: u16,
@@ -216,7 +216,7 @@ pub struct Sphere16 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Sphere24 {
-    /// Centre in 1/256 unit: three little-endian integers of three bytes.
+    /// Center in 1/256 unit: three little-endian integers of three bytes.
     pub center: [[u8; 3]; 3],
     /// Radius in 1/256 unit, above 0: an unsigned integer of three bytes.
     pub radius: [u8; 3],
@@ -353,7 +353,7 @@ impl WideNode {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct BoundingSphere {
-    /// Centre in units.
+    /// Center in units.
     pub center: [i16; 3],
     /// Radius in units.
     pub radius: u16,

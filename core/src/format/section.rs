@@ -93,7 +93,7 @@ macro_rules! sections {
             TightStarts = 23, "tight-starts", "list" of "cylinder-cube-tight";
             /// The slots of all lists (1 to 3 bytes).
             TightEntries = 24, "tight-entries", "entry" of "cylinder-cube-tight";
-            /// For each entry, between which levels it and its neighbours lie (1 byte).
+            /// For each entry, between which levels it and its neighbors lie (1 byte).
             TightKeys = 25, "tight-keys", "key" of "cylinder-cube-tight";
             /// [`ApexPoint`](crate::format::record::ApexPoint)s.
             ApexPoints = 26, "apex-points", "point" of "apex";
@@ -115,7 +115,7 @@ macro_rules! sections {
             EntryStarts = 34, "entry-starts", "list" of "cylinder-cube-entry";
             /// The nodes of all lists: numbers of pairs, and behind the last one of leaves (1 to 4 bytes).
             EntryNodes = 35, "entry-nodes", "entry" of "cylinder-cube-entry";
-            /// For each entry, between which levels it and its neighbours lie (1 byte).
+            /// For each entry, between which levels it and its neighbors lie (1 byte).
             EntryKeys = 36, "entry-keys", "key" of "cylinder-cube-entry";
             /// [`ClassNode`](crate::format::ClassNode)s, `u32` each.
             ClassNodes = 37, "class-nodes", "node" of "ray-classes";

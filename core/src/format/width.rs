@@ -49,7 +49,7 @@ impl Vertex for Vertex24 {
 
 /// A sphere in either storage.
 pub trait Sphere: Pod {
-    /// Centre and radius in 1/256 unit.
+    /// Center and radius in 1/256 unit.
     fn lattice(&self) -> ([i32; 3], i32);
 }
 

@@ -93,7 +93,7 @@ impl Packs<'_> {
         }
     }
 
-    /// Centre and radius of a sphere in 1/256 unit.
+    /// Center and radius of a sphere in 1/256 unit.
     pub(crate) fn sphere(&self, pack: u32, lane: u32) -> Option<([i32; 3], i32)> {
         match self {
             Packs::P16(packs) => packs.get(pack as usize)?.sphere(lane),

@@ -34,9 +34,9 @@ use core::mem::offset_of;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Cone {
-    /// Centre of the base in 1/256 unit, like all of the record perhaps finer than the lattice.
+    /// Center of the base in 1/256 unit, like all of the record perhaps finer than the lattice.
     pub base: [i32; 3],
-    /// Centre of the other cap in 1/256 unit, not equal to `base`.
+    /// Center of the other cap in 1/256 unit, not equal to `base`.
     pub apex: [i32; 3],
     /// Radius of the base in 1/256 unit.
     pub base_radius: i32,

@@ -1,4 +1,4 @@
-//! Flat discs: the crossing of their plane, if it lies no farther than the radius from the centre.
+//! Flat discs: the crossing of their plane, if it lies no farther than the radius from the center.
 
 use crate::format::record::UnitBox;
 use crate::format::{BlobError, Field, Reason};
@@ -13,7 +13,7 @@ use core::mem::offset_of;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Disc {
-    /// Centre in 1/256 unit.
+    /// Center in 1/256 unit.
     pub center: [i32; 3],
     /// Normal; not zero, magnitudes below 2^24, of any length.
     pub normal: [i32; 3],
@@ -50,7 +50,7 @@ impl Primitive for Disc {
         let normal = self.normal();
         let t = cross_plane(normal, relative, N::dot(normal, ray.slope))?;
         // A ray passes through the scene within 2^16 units; more would leave the range of `fixed`
-        // below, where the point may be as far again from the centre.
+        // below, where the point may be as far again from the center.
         let within_scene = t.abs() <= N::FAR.half();
         if !within_scene {
             return None;

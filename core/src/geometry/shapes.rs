@@ -40,7 +40,7 @@ macro_rules! registry {
             Triangle([[i32; 3]; 3]),
             /// A sphere.
             Sphere {
-                /// Its centre.
+                /// Its center.
                 center: [i32; 3],
                 /// Its radius.
                 radius: i32,
@@ -206,7 +206,7 @@ macro_rules! registry {
                             let (center, radius) = self.spheres.get(index)?;
                             sphere::surface(center, radius, point)
                         }
-                        // The optimiser needs this guard to leave out the shapes that a build lacks.
+                        // The optimizer needs this guard to leave out the shapes that a build lacks.
                         $(Kind::$kind if !UNBOUNDED || Kind::$kind.is_available() => {
                             self.$field.get(index)?.surface(ray, part, point)
                         })*

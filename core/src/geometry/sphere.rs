@@ -1,15 +1,15 @@
-//! Spheres, judged at the point of the line that is closest to the centre.
+//! Spheres, judged at the point of the line that is closest to the center.
 //!
-//! The discriminant is formed from the vector between that point and the centre, which loses
+//! The discriminant is formed from the vector between that point and the center, which loses
 //! nothing to cancellation when the sphere is small or far away (Haines, Günther, Akenine-Möller,
 //! "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019).
 //!
 //! **Crossings are not clamped to the sphere's box, because they lie in its interval.** A grazing ray's
 //! t may be off by much, but the point there is not. Let the closest point be off by `D` along the ray,
-//! the vector from the centre to it by `e` across, half the chord by `h`, with a slope of length `s`.
+//! the vector from the center to it by `e` across, half the chord by `h`, with a slope of length `s`.
 //! Squares add up to the radius's but for products of these with at most twice the radius: so the point
-//! lies no farther from the centre than the radius and `e + s (D + h)`, and what the squares round, a few
-//! parts in 2^24 of the radius. In `f32`, with the centre less than 2^17 units away and a radius of at
+//! lies no farther from the center than the radius and `e + s (D + h)`, and what the squares round, a few
+//! parts in 2^24 of the radius. In `f32`, with the center less than 2^17 units away and a radius of at
 //! most 2^15, `s D` is below .1 unit (seven roundings of up to `2^17 sqrt(3)`), and all the rest below
 //! .05; in `fixed` all is below 2^-7. Culling widens boxes by 1/4 unit, 2^-5 of which `f32` takes for
 //! itself (see [`cull`](crate::accel)).
@@ -99,7 +99,7 @@ pub(crate) fn cross<N: Arithmetic>(
 }
 
 /// The crossing whose middle lies at `closest`, with `square` the radius squared less the square of
-/// the line's distance from the centre.
+/// the line's distance from the center.
 #[inline(always)]
 pub(crate) fn tangent_crossing<N: Arithmetic>(
     closest: N,
@@ -122,7 +122,7 @@ pub(crate) fn bounds(center: [i32; 3], radius: i32) -> UnitBox {
     )
 }
 
-/// Outward. The point lies a radius from the centre, whatever t was rounded by.
+/// Outward. The point lies a radius from the center, whatever t was rounded by.
 pub(crate) fn surface<N: Arithmetic>(center: [i32; 3], radius: i32, point: [N; 3]) -> Surface<N> {
     let center = center.map(N::from_lattice);
     let radius = N::from_lattice(radius);

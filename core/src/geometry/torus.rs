@@ -6,11 +6,11 @@
 //! `h ((rho + R)^2 + y^2 - r^2)`; it is neither expanded nor solved in radicals, because its
 //! coefficients lose the tube of a thin ring to rounding: see `torus/profile.rs`.
 //!
-//! The line's origin is its point closest to the centre, so lengths are those of the solid, wherever
+//! The line's origin is its point closest to the center, so lengths are those of the solid, wherever
 //! the ray comes from.
 //!
 //! **Ranges of `fixed`.** The reach `R + r` is at most 2^16 units, or 2^29 sub-steps, and scaled up below
-//! that. A line that passes farther from the centre is rejected, and it counts as far as it is within
+//! that. A line that passes farther from the center is rejected, and it counts as far as it is within
 //! reach, so no position exceeds 2^29 by more than what is rounded, and no sum of three squares 2^60.
 
 mod frame;
@@ -32,7 +32,7 @@ use profile::Profile;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Torus {
-    /// Centre in 1/256 unit.
+    /// Center in 1/256 unit.
     pub center: [i32; 3],
     /// The axis of rotation; not zero, magnitudes of at most 2^24, of any length.
     pub axis: [i32; 3],
@@ -49,7 +49,7 @@ const _: () = {
     assert!(offset_of!(Torus, major_radius) == 24 && offset_of!(Torus, bounds) == 32);
 };
 
-/// A point near the surface as seen from the centre.
+/// A point near the surface as seen from the center.
 struct TorusPoint<N> {
     /// The way from the axis to the point, in the frame: of length 1.
     outward: [N; 2],
@@ -166,7 +166,7 @@ impl Primitive for Torus {
 
     /// Outward.
     ///
-    /// Next to the axis, in the pit of a spindle torus and at the centre of a horn torus, the surface
+    /// Next to the axis, in the pit of a spindle torus and at the center of a horn torus, the surface
     /// has no normal, and a step away from one of its sides leads through the other: there the normal is
     /// the axis, and the error bound is as long as the way to where the pit is wide enough.
     fn surface<N: Arithmetic>(&self, ray: &Ray<N>, part: Part, point: [N; 3]) -> Surface<N> {

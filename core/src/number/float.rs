@@ -414,7 +414,7 @@ macro_rules! float_number {
             // by 7: the normal's component by 3, `r` by 1, the product by 1, the sums by 2. The sum that
             // moves it rounds each coordinate by 1: 7 sum|n r| + sum|n p| in all. **The start** of a ray
             // rounds each coordinate by 1 more. **The next test** takes the sign of t from the same sum
-            // with a normal that is not normalised: 6 sum|n r|. So 13 sum|n r| + 2 sum|n p| would do.
+            // with a normal that is not normalized: 6 sum|n r|. So 13 sum|n r| + 2 sum|n p| would do.
             #[inline(always)]
             fn plane_error(normal: [Self; 3], relative: [Self; 3], point: [Self; 3]) -> Self {
                 let part = |v: [Self; 3], k: usize| $float::abs(normal[k] * v[k]);
@@ -425,7 +425,7 @@ macro_rules! float_number {
             // In parts of u, for a sphere of radius r. **The point** is off by 4.5 r because that is how
             // far the normal's length is from 1, by r for its product with the radius, and by sum|n p| for
             // the sum. **The start** rounds each coordinate by 1 more. **The next test**, of a ray that
-            // leaves: the centre as seen from there is off by r, and the closest point by 7 r. Half the
+            // leaves: the center as seen from there is off by r, and the closest point by 7 r. Half the
             // chord is a root of `r^2 - |apart|^2`, off by 8 r^2, which counts 4 r where it has to be less
             // than the way to the closest point. So 17.5 r + 2 sum|n p| would do.
             #[inline(always)]

@@ -1,7 +1,7 @@
 //! Events of rays, reported to an [`Observer::event`].
 //!
 //! Events come from the very code that traces and renders, in the order in which it works. Points,
-//! lengths and t are in units (see [`Number`](crate::accel::Number)), t along the ray's major axis; colours
+//! lengths and t are in units (see [`Number`](crate::accel::Number)), t along the ray's major axis; colors
 //! are linear, 1 being display white. All are exactly what the number format holds.
 //!
 //! [`Observer::event`]: crate::Observer::event

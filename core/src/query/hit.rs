@@ -87,7 +87,7 @@ pub struct Hit<N: Number> {
     /// | surface | bound | in `fixed` |
     /// |---|---|---|
     /// | face of a box; triangle or disc at right angles to an axis | the step from the coordinate on that axis, which is the surface's own, to the next number | 1 sub-step |
-    /// | other triangle or disc, of normal `n`, with `r` from `p` to its first corner or centre | `16 u sum(abs(n r)) + 4 u sum(abs(n p))` | 4 sub-steps and `2^-28 sum(abs(r))` |
+    /// | other triangle or disc, of normal `n`, with `r` from `p` to its first corner or center | `16 u sum(abs(n r)) + 4 u sum(abs(n p))` | 4 sub-steps and `2^-28 sum(abs(r))` |
     /// | plane | as of a disc, with `r` from `p` to its point | as of a disc, or four times that where `r` is longer than 2^17 units |
     /// | sphere of radius `r` | `20 u r + 4 u sum(abs(n p))` | 8 sub-steps |
     /// | cylinder, cone, frustum | `16 u` of the largest coordinate of the solid, the point and the ray's start | 8 sub-steps |

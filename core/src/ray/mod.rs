@@ -22,10 +22,10 @@ use start::{
 
 /// A half-line with an interval, ready to be traced through one scene.
 ///
-/// A ray is parametrised along the *major axis* of its direction, the one with the largest
+/// A ray is parametrized along the *major axis* of its direction, the one with the largest
 /// component: `point = origin + t * slope`, where the slope of the major axis is 1 or -1 and the
 /// others lie between. `t` is therefore a length in units (see [`Number`](crate::Number)), never
-/// overflows, and needs no normalised direction. For a direction `d` of any length, the parameter
+/// overflows, and needs no normalized direction. For a direction `d` of any length, the parameter
 /// in multiples of `d` is `t / |d[major]|`.
 ///
 /// An origin before the scene's box is moved along the ray to the plane in which the box begins,

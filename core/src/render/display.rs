@@ -1,4 +1,4 @@
-//! Pictures on displays that `embedded-graphics` drives, whatever their colours.
+//! Pictures on displays that `embedded-graphics` drives, whatever their colors.
 //!
 //! [`Renderer::draw`] streams a rectangle to the display without a buffer. With a
 //! [`Cursor`](crate::render::Cursor), pixels go there as they become ready, a bounded number of rays at a
@@ -17,7 +17,7 @@ use embedded_graphics_core::pixelcolor::{
 use embedded_graphics_core::prelude::{DrawTarget, GrayColor, PixelColor};
 use embedded_graphics_core::primitives::Rectangle;
 
-/// Colours of three channels, in whatever order and width.
+/// Colors of three channels, in whatever order and width.
 macro_rules! pixels_of_rgb {
     ($($color:ident),*) => {$(
         impl Pixel for $color {
@@ -37,8 +37,8 @@ pixels_of_rgb!(
     Rgb555, Bgr555, Rgb565, Bgr565, Rgb666, Bgr666, Rgb888, Bgr888
 );
 
-/// Greys, by the luminance of the colour.
-macro_rules! pixels_of_grey {
+/// Grays, by the luminance of the color.
+macro_rules! pixels_of_gray {
     ($($color:ident),*) => {$(
         impl Pixel for $color {
             fn encode(linear: [u16; 3], dither: Option<[u16; 2]>) -> Self {
@@ -49,9 +49,9 @@ macro_rules! pixels_of_grey {
     )*};
 }
 
-pixels_of_grey!(Gray2, Gray4, Gray8);
+pixels_of_gray!(Gray2, Gray4, Gray8);
 
-/// On where a grey is nearer to white; use it with dithering.
+/// On where a gray is nearer to white; use it with dithering.
 impl Pixel for BinaryColor {
     fn encode(linear: [u16; 3], dither: Option<[u16; 2]>) -> Self {
         Self::from(quantize(luminance(linear), 1, dither) > 0)
@@ -154,9 +154,9 @@ mod tests {
         }
     }
 
-    /// Grey stays grey, and half of a dithered surface of middle grey is on.
+    /// Gray stays gray, and half of a dithered surface of middle gray is on.
     #[test]
-    fn greys_go_by_luminance() {
+    fn grays_go_by_luminance() {
         for linear in (0..=u16::MAX).step_by(7) {
             let crate::Rgb888([code, ..]) = crate::Rgb888::encode([linear; 3], None);
             assert_eq!(Gray8::encode([linear; 3], None).luma(), code);

@@ -48,7 +48,7 @@ impl Pixel for Rgb565 {
     }
 }
 
-/// How bright a colour looks (IEC 61966-2-1's weights, which add up to 1 here).
+/// How bright a color looks (IEC 61966-2-1's weights, which add up to 1 here).
 #[cfg(feature = "embedded-graphics-core")]
 pub(crate) fn luminance([red, green, blue]: Linear) -> u16 {
     let weighted = 13_933 * u32::from(red) + 46_871 * u32::from(green) + 4_732 * u32::from(blue);

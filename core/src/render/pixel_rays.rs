@@ -11,7 +11,7 @@ use crate::number::Format;
 use crate::ray::{Pencil, Ray, RayError};
 use crate::render::sample::SUBPIXELS;
 
-/// Whether a format distinguishes the directions of neighbouring pixels, each to an eighth of their distance
+/// Whether a format distinguishes the directions of neighboring pixels, each to an eighth of their distance
 /// or better. Other directions would be drawn than those that are asked for, through a lens as long as
 /// only a very distant eye needs it.
 pub(crate) fn resolves<N: Number>(view: &View, height: u16) -> bool {

@@ -38,7 +38,7 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
         }
     }
 
-    /// Returns the colour along a ray of the caller's own, linear; 65535 is white.
+    /// Returns the color along a ray of the caller's own, linear; 65535 is white.
     ///
     /// ```
     /// # static BLOB: &[u8] =

@@ -6,7 +6,7 @@ use crate::scene::Scene;
 
 impl Scene<'_> {
     /// The Cargo features of this crate that the scene requires, beside that of its structure:
-    /// the kinds of its primitives, how they are stored, whether its colours are display values, and its effects.
+    /// the kinds of its primitives, how they are stored, whether its colors are display values, and its effects.
     ///
     /// ```
     /// # static BLOB: &[u8] =

@@ -33,11 +33,11 @@ impl TinyBlob {
     /// | object | where |
     /// |---|---|
     /// | 0 triangle | (-60, -20, -10), (-20, -20, -10), (-40, 30, -10) |
-    /// | 1 sphere | centre (30, 30, 0), radius 25 |
+    /// | 1 sphere | center (30, 30, 0), radius 25 |
     /// | 2 box | (-90, -90, -50) to (90, -70, 50) |
-    /// | 3 disc | centre (-40, 60, 20), radius 20, facing up |
+    /// | 3 disc | center (-40, 60, 20), radius 20, facing up |
     /// | 4 cone | base (40, -60, 20) of radius 20, apex (40, -20, 20) |
-    /// | 5 torus | centre (0, -80, 0), axis upward, radii 30 and 5: within the box, where no picture shows it |
+    /// | 5 torus | center (0, -80, 0), axis upward, radii 30 and 5: within the box, where no picture shows it |
     pub(crate) fn new() -> Self {
         let fine = |units: i32| units << 8;
         let point = |p: [i32; 3]| p.map(fine);

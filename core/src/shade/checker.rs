@@ -24,7 +24,7 @@ impl Effect for Checker {
     }
 
     /// A checkerboard is a solid texture. It is looked up beneath the surface by the hit's error
-    /// bound, so that a face that lies exactly between two layers of cells has the colours of the
+    /// bound, so that a face that lies exactly between two layers of cells has the colors of the
     /// layer inside, and no noise.
     #[inline(always)]
     fn surface<'s, N: Number, X: Tracer<'s, N>>(

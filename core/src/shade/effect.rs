@@ -182,7 +182,7 @@ places! {
     /// A ray has come to a hit: the ratio of the light from there that arrives at the eye may change.
     fn arrive(ray: &Ray<N>, hit: &Hit<N>, material: &Material, weight: &mut Color<N>);
 
-    /// A ray hits a surface: the diffuse colour and the shading normal may change.
+    /// A ray hits a surface: the diffuse color and the shading normal may change.
     fn surface(ray: &Ray<N>, surface: &mut Surface<'_, N>);
 
     /// A surface reflects a light that it faces: the reflected ratio may change.

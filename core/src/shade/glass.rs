@@ -92,7 +92,7 @@ struct Split<N> {
     refracted: [N; 3],
 }
 
-/// The reflected part of unpolarised light, from the cosines on both sides of a surface.
+/// The reflected part of unpolarized light, from the cosines on both sides of a surface.
 ///
 /// The two polarisations swap when a ray goes the other way, so this serves both.
 fn fresnel<N: Number>(k: N, cos_in: N, cos_out: N) -> N {

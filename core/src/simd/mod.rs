@@ -102,7 +102,7 @@ pub trait F32x8: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = S
     fn max(self, other: Self) -> Self;
     /// Magnitudes.
     fn abs(self) -> Self;
-    /// Every lane's neighbour above; the last stays.
+    /// Every lane's neighbor above; the last stays.
     fn next(self) -> Self;
     /// A bit for each lane that is at most the other's.
     fn at_most(self, other: Self) -> u32;

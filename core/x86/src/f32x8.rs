@@ -95,7 +95,7 @@ impl F32x8 {
         Self(avx2!(_mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0)))
     }
 
-    /// Every lane's neighbour above; the last stays.
+    /// Every lane's neighbor above; the last stays.
     #[inline(always)]
     pub fn next(self) -> Self {
         let above = avx2!(_mm256_setr_epi32(1, 2, 3, 4, 5, 6, 7, 7));

@@ -7,8 +7,8 @@ use gridel_host::shape::exact::Real;
 impl Sample for Sphere {
     const NAMES: &[Named] = &[Named {
         name: "sphere",
-        crossing: (8.0, "judged at the point closest to the centre"),
-        normal: (8.0, "the hit's point less the centre, normalised"),
+        crossing: (8.0, "judged at the point closest to the center"),
+        normal: (8.0, "the hit's point less the center, normalized"),
     }];
 
     fn example() -> Self {

@@ -4,7 +4,7 @@
 //! Equal lists are stored once: a cell holds the number of its list, and the lists lie one behind
 //! the other. All three arrays are as narrow as their values allow. A list whose order means
 //! something has a *key* for every entry, which says where along the way of the ray it and its
-//! neighbours lie: see [`Levels`](crate::accel::candidates::gridels::Levels).
+//! neighbors lie: see [`Levels`](crate::accel::candidates::gridels::Levels).
 
 use crate::format::range::At;
 use crate::format::{BlobError, Field, Indices, Location, Reason, SectionKind, Sections};

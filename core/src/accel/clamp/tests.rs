@@ -103,7 +103,7 @@ proptest! {
         let room = center.map(|x| 8_388_352 - x.abs()).into_iter().min().unwrap_or(0);
         prop_assume!(room > 0);
         let radius = (room >> shrink).max(1);
-        // At right angles to the way to the centre.
+        // At right angles to the way to the center.
         let way = [0, 1, 2].map(|axis| f64::from(center[axis]) / 256.0 - origin[axis]);
         let along = way.iter().zip(turn).map(|(w, t)| w * t).sum::<f64>();
         let square = way.iter().map(|w| w * w).sum::<f64>();

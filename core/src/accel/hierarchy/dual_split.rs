@@ -43,7 +43,7 @@ use crate::ray::Ray;
 use crate::target::{NARROW_PRODUCTS, SMALL};
 use core::hint::black_box;
 
-/// Whether a ray's form stays in memory, hidden from the optimiser. Cores that load two words at once and have few
+/// Whether a ray's form stays in memory, hidden from the optimizer. Cores that load two words at once and have few
 /// registers read the form of an axis faster from there.
 const FORM_IN_MEMORY: bool = cfg!(target_arch = "arm") && !NARROW_PRODUCTS;
 

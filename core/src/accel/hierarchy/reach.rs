@@ -16,7 +16,7 @@ use crate::geometry::Shapes;
 /// The points at which a hit can be reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
-    /// About a sphere: centre and radius in 1/256 unit.
+    /// About a sphere: center and radius in 1/256 unit.
     Sphere([i32; 3], i32),
     /// About the box of anything else.
     Box(UnitBox),
@@ -79,7 +79,7 @@ impl Reach {
         ]
     }
 
-    /// Returns whether a sphere, given by centre and radius in units, contains all of it.
+    /// Returns whether a sphere, given by center and radius in units, contains all of it.
     pub fn in_sphere(&self, center: [i16; 3], radius: u16) -> bool {
         let radius = i64::from(radius) << 8;
         let squared = |apart: [i64; 3]| apart.iter().map(|x| x * x).sum::<i64>();

@@ -1,8 +1,8 @@
 //! Bounding spheres.
 //!
-//! The interval of a bounding sphere is taken from the point of the ray that is nearest to its centre, a radius
+//! The interval of a bounding sphere is taken from the point of the ray that is nearest to its center, a radius
 //! back and forth: a little longer than the chord, and without a square root. It is empty where the ray passes the
-//! centre farther away than the radius.
+//! center farther away than the radius.
 //!
 //! A child's sphere need not lie in its parent's: a tight sphere around primitives does not contain the tight
 //! spheres around parts of them. So a blob is proved to hold every primitive in the sphere of each node above it,

@@ -56,7 +56,7 @@ struct Point<N> {
 pub(super) type Cuts<N> = [N; 4];
 
 impl<N: Arithmetic> Profile<N> {
-    /// The line through a point as seen from the centre, along a slope.
+    /// The line through a point as seen from the center, along a slope.
     pub(super) fn new(
         frame: &Frame<N>,
         (point, slope): ([N; 3], [N; 3]),

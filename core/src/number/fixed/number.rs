@@ -327,7 +327,7 @@ impl ErrorBounds for Fixed {
     }
 
     // In sub-steps. A normal's components are cut off below 2^-30 of a vector whose length is at least 1/2,
-    // and once more when it is normalised: 3 parts in 2^30 of the way to `relative`'s point, which moves the
+    // and once more when it is normalized: 3 parts in 2^30 of the way to `relative`'s point, which moves the
     // point by .5 less than it should, and each coordinate is rounded by .5, so all three by .9. The start of
     // a ray rounds by .9 more. The next test is exact but for the normal, the same one, and for t: it rounds
     // to 0 what is within 1 of the plane. 3.3 in all, and 3 sum|r| / 2^30.
