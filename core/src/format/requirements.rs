@@ -103,9 +103,9 @@ impl Requirements {
     /// requires one is rejected when it is loaded.
     pub const fn missing(&self) -> Option<&'static str> {
         macro_rules! parts {
-            ($($called:expr => $feature:literal,)*) => {
+            ($($required:expr => $feature:literal,)*) => {
                 [$((
-                    $called && !cfg!(feature = $feature),
+                    $required && !cfg!(feature = $feature),
                     enable!($feature),
                 ),)*]
             };

@@ -180,7 +180,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             self.bring(Source::Background, brought.times(weight), radiance);
             return;
         };
-        let called = All::called_by_material(material);
+        let required = All::required_by_material(material);
         All::arrive::<EFFECTS, N, _>(self, &mut state, ray, &hit, material, &mut weight);
         let shading_normal = if hit.front {
             hit.normal
@@ -195,7 +195,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         let mut surface = Surface {
             hit: &hit,
             material,
-            called,
+            required,
             shading_normal,
             direction,
             diffuse: Color::ratios(material.diffuse),
@@ -218,7 +218,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         self.bring(Source::Surface, local.times(surface.weight), radiance);
 
         if self.depth >= self.most {
-            if C::ENABLED && called.0 & EFFECTS & All::CASTING != 0 {
+            if C::ENABLED && required.0 & EFFECTS & All::CASTING != 0 {
                 self.count.event(Event::TooDeep);
             }
             return;

@@ -56,7 +56,7 @@ pub(super) fn check_light(index: usize, light: &Light) -> Result<(), BlobError> 
 fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
     let section = SectionKind::Materials;
     let (header, materials) = (scene.space.header, scene.materials);
-    let mut called = Effects::NONE;
+    let mut required = Effects::NONE;
     if materials.is_empty() && header.primitives > 0 {
         return Err(BlobError::Count {
             section,
@@ -69,14 +69,14 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
         let uncalled = material.effects().without(Effects(header.effects));
         let at = At { section, index };
         at.ensure(uncalled == Effects::NONE, Reason::MissingEffect)?;
-        called = called.with(material.effects());
+        required = required.with(material.effects());
     }
     // Without objects lights require nothing.
     if header.objects > 0 {
         let lights = scene.lights.iter();
-        called = lights.fold(called, |called, light| called.with(light.effects()));
+        required = lights.fold(required, |required, light| required.with(light.effects()));
     }
-    let unneeded = Effects(header.effects).without(called);
+    let unneeded = Effects(header.effects).without(required);
     Location::Header.ensure(unneeded == Effects::NONE, Reason::UnneededEffects)
 }
 

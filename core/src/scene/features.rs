@@ -26,8 +26,8 @@ impl Scene<'_> {
             ),
             (self.view.display_values != 0, "display-values"),
         ];
-        let called = kinds.into_iter().chain(others);
-        let names = called.filter_map(|(called, name)| called.then_some(name));
+        let required = kinds.into_iter().chain(others);
+        let names = required.filter_map(|(required, name)| required.then_some(name));
         names.chain(self.effects().names())
     }
 }

@@ -21,8 +21,8 @@ impl Effect for Absorption {
     const FILTERS: bool = true;
 
     #[inline(always)]
-    fn is_called_by_material(material: &Material) -> bool {
-        Glass::is_called_by_material(material) && material.absorption != [0; 3]
+    fn is_required_by_material(material: &Material) -> bool {
+        Glass::is_required_by_material(material) && material.absorption != [0; 3]
     }
 
     #[inline(always)]
@@ -34,7 +34,7 @@ impl Effect for Absorption {
         material: &Material,
         weight: &mut Color<N>,
     ) {
-        if Glass::is_called_by_material(material) && !hit.front {
+        if Glass::is_required_by_material(material) && !hit.front {
             *weight = weight.times(left(ray, hit, material));
             if X::Observer::ENABLED {
                 tracer.count().event(Event::Absorbed {

@@ -19,7 +19,7 @@ impl Effect for Checker {
     const EFFECT: Effects = Effects::CHECKER;
 
     #[inline(always)]
-    fn is_called_by_material(material: &Material) -> bool {
+    fn is_required_by_material(material: &Material) -> bool {
         material.checker_size > 0
     }
 
@@ -34,7 +34,7 @@ impl Effect for Checker {
         surface: &mut Surface<'_, N>,
     ) {
         let Surface { hit, material, .. } = *surface;
-        if !surface.called.contains(Self::EFFECT) {
+        if !surface.required.contains(Self::EFFECT) {
             return;
         }
         let length = |q13: i32| N::narrow(N::far(q13.into()));

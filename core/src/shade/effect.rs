@@ -66,12 +66,12 @@ macro_rules! places {
             const FILTERS: bool = false;
 
             /// Whether a material requires it.
-            fn is_called_by_material(material: &Material) -> bool {
+            fn is_required_by_material(material: &Material) -> bool {
                 false
             }
 
             /// Whether a light requires it.
-            fn is_called_by_light(light: &Light) -> bool {
+            fn is_required_by_light(light: &Light) -> bool {
                 false
             }
 
@@ -99,10 +99,10 @@ macro_rules! places {
             const FILTERING: u32;
 
             /// The effects that a material requires.
-            fn called_by_material(material: &Material) -> Effects;
+            fn required_by_material(material: &Material) -> Effects;
 
             /// The effects that a light requires.
-            fn called_by_light(light: &Light) -> Effects;
+            fn required_by_light(light: &Light) -> Effects;
 
             $(
                 fn $place<'s, const USED: u32, N: Number, X: Tracer<'s, N>>(
@@ -121,11 +121,11 @@ macro_rules! places {
             const FILTERING: u32 = 0;
 
             #[inline(always)]
-            fn called_by_material(_: &Material) -> Effects {
+            fn required_by_material(_: &Material) -> Effects {
                 Effects::NONE
             }
 
-            fn called_by_light(_: &Light) -> Effects {
+            fn required_by_light(_: &Light) -> Effects {
                 Effects::NONE
             }
 
@@ -148,14 +148,14 @@ macro_rules! places {
             const FILTERING: u32 = First::EFFECT.only_if(First::FILTERS).0 | Rest::FILTERING;
 
             #[inline(always)]
-            fn called_by_material(material: &Material) -> Effects {
-                let first = First::EFFECT.only_if(First::is_called_by_material(material));
-                first.with(Rest::called_by_material(material))
+            fn required_by_material(material: &Material) -> Effects {
+                let first = First::EFFECT.only_if(First::is_required_by_material(material));
+                first.with(Rest::required_by_material(material))
             }
 
-            fn called_by_light(light: &Light) -> Effects {
-                let first = First::EFFECT.only_if(First::is_called_by_light(light));
-                first.with(Rest::called_by_light(light))
+            fn required_by_light(light: &Light) -> Effects {
+                let first = First::EFFECT.only_if(First::is_required_by_light(light));
+                first.with(Rest::required_by_light(light))
             }
 
             $(

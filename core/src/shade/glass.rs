@@ -23,7 +23,7 @@ impl Effect for Glass {
     const FILTERS: bool = true;
 
     #[inline(always)]
-    fn is_called_by_material(material: &Material) -> bool {
+    fn is_required_by_material(material: &Material) -> bool {
         material.transmit != [0; 3]
     }
 
@@ -35,7 +35,7 @@ impl Effect for Glass {
         filter: &mut Filter<'_, N>,
     ) {
         let material = filter.material;
-        if !Self::is_called_by_material(material) {
+        if !Self::is_required_by_material(material) {
             return;
         }
         filter.passes = true;
@@ -54,7 +54,7 @@ impl Effect for Glass {
         bounce: &mut Bounce<N>,
     ) {
         let Surface { hit, material, .. } = *surface;
-        if !surface.called.contains(Self::EFFECT) {
+        if !surface.required.contains(Self::EFFECT) {
             return;
         }
         let Split {

@@ -16,7 +16,7 @@ impl Effect for Highlight {
     const NEEDS_DIRECTION: bool = true;
 
     #[inline(always)]
-    fn is_called_by_material(material: &Material) -> bool {
+    fn is_required_by_material(material: &Material) -> bool {
         material.highlight != [0; 3]
     }
 
@@ -29,7 +29,7 @@ impl Effect for Highlight {
         reflected: &mut Color<N>,
     ) {
         let material = surface.material;
-        if !surface.called.contains(Self::EFFECT) {
+        if !surface.required.contains(Self::EFFECT) {
             return;
         }
         // Halfway between the light and where the ray came from.

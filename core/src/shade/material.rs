@@ -8,13 +8,13 @@ use crate::shade::effect::EffectList;
 impl Material {
     /// The effects that this material requires.
     pub fn effects(&self) -> Effects {
-        All::called_by_material(self)
+        All::required_by_material(self)
     }
 }
 
 impl Light {
     /// The effects that this light requires in a scene with objects, unless the scene turns them off.
     pub fn effects(&self) -> Effects {
-        All::called_by_light(self)
+        All::required_by_light(self)
     }
 }

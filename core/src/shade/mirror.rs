@@ -16,7 +16,7 @@ impl Effect for Mirror {
     const NEEDS_DIRECTION: bool = true;
 
     #[inline(always)]
-    fn is_called_by_material(material: &Material) -> bool {
+    fn is_required_by_material(material: &Material) -> bool {
         material.mirror != [0; 3]
     }
 

@@ -21,7 +21,7 @@ impl Effect for Shadow {
 
     const EFFECT: Effects = Effects::SHADOW;
 
-    fn is_called_by_light(_: &Light) -> bool {
+    fn is_required_by_light(_: &Light) -> bool {
         true
     }
 

@@ -15,7 +15,7 @@ pub(crate) struct Surface<'h, N: Number> {
     pub(crate) hit: &'h Hit<N>,
     pub(crate) material: &'h Material,
     /// The effects that the material requires, asked once per hit.
-    pub(crate) called: Effects,
+    pub(crate) required: Effects,
     /// The normal that lights and secondary rays are computed with, on the side that the ray came from: the geometric
     /// normal of `hit`, unless an effect changes it.
     pub(crate) shading_normal: [N; 3],
