@@ -149,6 +149,7 @@ fn a_camera_at_run_time_is_the_one_that_is_compiled() {
             }
         }
     }
+    assert!(compared > 20, "{compared}");
 }
 
 #[test]
