@@ -51,7 +51,7 @@ pub mod compare;
 pub mod compile;
 pub mod emit;
 pub mod explain;
-pub mod live;
+mod live;
 pub mod measure;
 pub mod merge;
 pub mod npy;

@@ -1,8 +1,8 @@
 //! Camera and lights of a blob in scene units: read from it, and placed in it as a program on a device places
 //! its own.
 
-use crate::compile::{self, CompileError, light_record, place};
-use crate::scene::{Camera, Color, Light};
+use crate::compile::{CompileError, light_record, place};
+use crate::scene::{Camera, Light};
 use crate::shape::{Lattice, exp2};
 use glam::DVec3;
 use gridel_core::Scene;
@@ -110,11 +110,6 @@ impl Lattice {
     fn place(&self, q13: [i64; 3]) -> DVec3 {
         self.origin + DVec3::from_array(q13.map(|x| x as f64)) * (self.unit() * exp2(-13))
     }
-}
-
-/// A colour of light as records of a blob hold it; saturates.
-pub fn radiance(color: Color) -> [i32; 3] {
-    compile::radiance(color)
 }
 
 fn vector(components: [i32; 3]) -> DVec3 {

@@ -352,7 +352,7 @@ fn any_number_of_the_same_primitive() {
     }
 }
 
-/// A number that is none, anywhere in a scene (A13): an error that says so, and no blob.
+/// NaN anywhere in a scene (A13) is an error that says so, and no blob is made.
 #[test]
 fn nan_is_rejected() {
     let shapes = |bad: f64| {

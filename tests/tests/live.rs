@@ -95,7 +95,7 @@ fn scene_file() -> SceneFile {
 
 #[test]
 fn a_camera_at_run_time_is_the_one_that_is_compiled() {
-    let mut compared = 0;
+    let (mut compared, mut drawn) = (0, 0);
     for (name, mut file) in scenes::fixtures() {
         let blob = built(&file);
         let scene = blob.scene().expect("a scene");
@@ -140,6 +140,7 @@ fn a_camera_at_run_time_is_the_one_that_is_compiled() {
             let frame = |view: &View| (view.eye, view.forward, view.right, view.up);
             assert_eq!(frame(live.view()), frame(compiled.view()), "{name}");
             if same_surroundings && scene.lights() == compiled.lights() {
+                drawn += 1;
                 let structure = Structure::DualSplit;
                 assert_eq!(
                     pictures(&live, structure),
@@ -149,7 +150,7 @@ fn a_camera_at_run_time_is_the_one_that_is_compiled() {
             }
         }
     }
-    assert!(compared > 20, "{compared}");
+    assert!(compared > 20 && drawn > 10, "{compared}, {drawn}");
 }
 
 #[test]
@@ -369,5 +370,44 @@ fn coordinates_are_the_scenes_own_or_the_lattices_far_from_there() {
         assert!(step < 1e-6, "{step} at {offset}");
         let eye = in_scene_units(&scene, Position([i32::MAX; 3]));
         assert!((eye - DVec3::splat(offset)).min_element() > 4.0 * 5.0);
+    }
+}
+
+#[test]
+fn eyes_as_far_away_as_records_reach_are_placed() {
+    let file = |offset: f64, eye: DVec3| {
+        let mut file = scenes::of([Shape::Sphere(Sphere {
+            center: DVec3::splat(offset),
+            radius: 1.0,
+        })]);
+        file.camera = Some(SceneCamera {
+            eye,
+            target: DVec3::splat(offset),
+            up: DVec3::Y,
+            fov_degrees: 1e-3,
+        });
+        file
+    };
+    for offset in [0.0, -3.0, 1e5, -1e9, 1e15] {
+        let near = built(&file(offset, DVec3::splat(offset) + 3.0 * DVec3::Z));
+        let header = *near.scene().expect("a scene").header();
+        let unit = f64::powi(2.0, header.unit_exponent.into());
+        // The largest coordinate of a record: 2^50, with 13 fraction bits.
+        let reach = FARTHEST as f64 / 8192.0 * unit;
+        let origin = DVec3::from_array(header.origin);
+        for part in [1.0, 0.75, 0.3, 0.01] {
+            for eye in [DVec3::X, DVec3::NEG_X, DVec3::new(-1.0, 0.5, 1.0)] {
+                let eye = origin + reach * part * eye;
+                let blob = built(&file(offset, eye));
+                let scene = blob.scene().expect("a scene");
+                let found = DVec3::from_array(scene.view().eye.map(|x| x as f64)) * unit / 8192.0;
+                let step = f64::powi(2.0, scene.coordinate_exponent());
+                let off = (found - (eye - origin)).abs().max_element();
+                assert!(off <= step, "{off} steps of {step} at {offset}, {part}");
+            }
+        }
+        let beyond = file(offset, origin + DVec3::Z * (reach * 1.001));
+        let error = compile(&beyond, &Options::default()).expect_err("too far");
+        assert!(error.to_string().starts_with("camera"), "{error}");
     }
 }

@@ -10,7 +10,8 @@ use core::fmt;
 
 /// A pinhole camera in scene coordinates, to be put in place of the blob's own.
 ///
-/// Costs some 900 instructions on a Cortex-M4F, once for each frame.
+/// Costs one set-up per frame: placing the camera, its checks and the renderer together take 2,300 to 2,700
+/// instructions on Cortex-M3, Cortex-M4F and RV32, and 8,100 on Cortex-M0.
 ///
 /// ```
 /// # static BLOB: &[u8] =
@@ -252,6 +253,14 @@ impl Camera {
 }
 
 impl Up {
+    /// The axis: 1 for y, 2 for z.
+    pub const fn axis(self) -> usize {
+        match self {
+            Self::Y => 1,
+            Self::Z => 2,
+        }
+    }
+
     /// A vector given with y upwards.
     fn turn(self, [x, y, z]: [Fixed; 3]) -> [Fixed; 3] {
         match self {

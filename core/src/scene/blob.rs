@@ -17,13 +17,14 @@ pub struct Scene<'a> {
     pub(crate) space: Space<'a>,
     /// The records of its structures.
     pub(crate) structures: StructureViews<'a>,
-    pub(in crate::scene) effects: Effects,
     pub(crate) view: &'a View,
     pub(crate) lights: &'a [Light],
     pub(crate) materials: &'a [Material],
     pub(in crate::scene) object_first: Indices<'a>,
     pub(in crate::scene) object_material: Indices<'a>,
     pub(in crate::scene) order: Indices<'a>,
+    /// What the scene requires: the bits of [`Effects`], as few as there are.
+    pub(in crate::scene) effects: u16,
     /// Whether any primitive's test needs the norm of the ray's direction.
     pub(crate) needs_norm: bool,
     /// Whether any primitive is in no structure because it has no box.
@@ -100,7 +101,7 @@ impl<'a> Scene<'a> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn effects(&self) -> Effects {
-        self.effects
+        Effects(self.effects.into())
     }
 
     /// Entries that the traversal stack needs.

@@ -40,8 +40,8 @@ impl<'a> Scene<'a> {
 
     /// The scene under other lights, of which there may be more or fewer than before.
     ///
-    /// They cast shadows where the scene's own do; in a scene without lights of its own they call for
-    /// [`Effects::SHADOW`].
+    /// They cast shadows where this scene's do; in a scene without lights they call for [`Effects::SHADOW`]. So
+    /// call this on the scene as it was loaded, also for the lights of each further frame.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -60,7 +60,7 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// If a number is out of its range, or this build lacks an effect that a light calls for.
     pub fn with_lights(&self, lights: &'a [Light]) -> Result<Self, BlobError> {
-        let mut effects = self.effects;
+        let mut effects = self.effects();
         for (index, light) in lights.iter().enumerate() {
             check_light(index, light)?;
             if self.lights.is_empty() {
@@ -69,7 +69,7 @@ impl<'a> Scene<'a> {
         }
         check_available(effects)?;
         Ok(Self {
-            effects,
+            effects: effects.0 as u16,
             lights,
             ..*self
         })
@@ -105,14 +105,14 @@ impl<'a> Scene<'a> {
                 expected: self.materials.len(),
             });
         }
-        let mut effects = self.effects;
+        let mut effects = self.effects();
         for (index, material) in materials.iter().enumerate() {
             check_material(index, material)?;
             effects = effects.with(material.effects());
         }
         check_available(effects)?;
         Ok(Self {
-            effects,
+            effects: effects.0 as u16,
             materials,
             ..*self
         })

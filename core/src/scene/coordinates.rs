@@ -11,7 +11,8 @@ use crate::scene::Scene;
 ///
 /// Coordinates are counted from the scene file's own origin, or from the
 /// [lattice's](crate::format::record::Header::origin) where a scene lies too far from its own for 32 bits;
-/// `gridel inspect` says so. They reach at least 4 times as far as the scene, its eye and its lights.
+/// `gridel inspect` says so. They reach at least 4 times as far as the scene, its eye and its lights, or to
+/// [`FARTHEST`](crate::format::limits::FARTHEST) where that is nearer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Position(pub [i32; 3]);
 

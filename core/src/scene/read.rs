@@ -74,7 +74,7 @@ pub(crate) fn scene<'a>(
             simd: WideOnly::new(SimdLevel::default),
         },
         structures: StructureViews::read(sections)?,
-        effects: Effects(header.effects),
+        effects: header.effects as u16,
         view,
         lights: sections.records(SectionKind::Lights)?,
         materials: sections.records(SectionKind::Materials)?,
@@ -171,3 +171,6 @@ pub(super) fn check_view(view: &View) -> Result<(), BlobError> {
     }
     Ok(())
 }
+
+// A scene keeps them in 16 bits.
+const _: () = assert!(Effects::ALL.0 <= u16::MAX as u32);

@@ -10,7 +10,6 @@ use gridel_core::format::record::{self, View};
 use gridel_core::{BlobError, Format, Scene, Structure};
 use gridel_host::blob::{self, Blob};
 use gridel_host::compile::{self, CompileError, Compiled, Names};
-use gridel_host::live;
 use gridel_host::measure::board::{Fit, MemoryReport};
 use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
 use gridel_host::scene::{self, Imported, Light};
@@ -270,7 +269,7 @@ impl Changes {
     fn of(scene: &Scene<'_>, options: &SceneOptions) -> Result<Self, Failure> {
         let mut view = options.view.in_blob(scene)?;
         if let Some(cutoff) = options.cutoff {
-            [view.cutoff, ..] = live::radiance([cutoff; 3]);
+            [view.cutoff, ..] = compile::radiance([cutoff; 3]);
         }
         let own = scene.lights();
         let mut lights: Vec<Light> = own.iter().map(|it| Light::of_blob(scene, it)).collect();

@@ -73,6 +73,33 @@ mod tests {
     }
 
     #[test]
+    fn cameras_that_do_not_look_along_up_are_placed() {
+        let (mut placed, mut along) = (0, 0);
+        for exponent in -28..=-20 {
+            for step in 0..200 {
+                let turn = DVec3::new(f64::from(step) * 0.7, f64::from(step) * 0.3, 1.0);
+                let direction = DVec3::new(turn.x.sin(), turn.y.cos(), turn.x.cos());
+                let across = direction.any_orthogonal_vector().normalize();
+                let camera = Camera {
+                    eye: DVec3::ZERO,
+                    target: direction,
+                    up: direction.normalize() + across * exp2(exponent),
+                    fov_degrees: 45.0,
+                };
+                if camera.is_along_up() {
+                    along += 1;
+                    assert!(exponent <= -23);
+                } else {
+                    placed += 1;
+                    assert!(exponent >= -23);
+                    place(&camera, &header()).unwrap();
+                }
+            }
+        }
+        assert!(placed > 500 && along > 500, "{placed}, {along}");
+    }
+
+    #[test]
     fn directions_of_every_length_and_angles_at_their_ends_are_placed() {
         let sane = Camera {
             eye: DVec3::ZERO,

@@ -31,25 +31,28 @@ impl Coordinates {
             Light::Directional { .. } => None,
         });
         let places: Vec<DVec3> = bounds.into_iter().chain([eye]).chain(lights).collect();
-        // The smallest shift of which all places, counted from `origin`, are few enough multiples.
+        // The smallest shift of which all places, counted from `origin`, are few enough multiples; the largest
+        // leaves less room.
         let shift = |origin: DVec3| {
             let far = places
                 .iter()
                 .map(|&place| (place - origin).abs().max_element());
-            let far = far.fold(0.0, f64::max) * ROOM / lattice.unit();
+            let far = far.fold(0.0, f64::max) / lattice.unit();
             let reach = |shift: u8| exp2(31 - 13 + i32::from(shift));
-            (0..MAX_COORDINATE_SHIFT)
-                .find(|&shift| far < reach(shift))
-                .unwrap_or(MAX_COORDINATE_SHIFT)
+            let roomy = (0..MAX_COORDINATE_SHIFT).find(|&shift| far * ROOM < reach(shift));
+            let last = (far <= reach(MAX_COORDINATE_SHIFT)).then_some(MAX_COORDINATE_SHIFT);
+            roomy.or(last)
         };
-        let [from_scene, from_lattice] = [DVec3::ZERO, lattice.origin].map(shift);
-        let own = from_scene <= from_lattice + COARSER;
+        let from_scene = shift(DVec3::ZERO);
+        // The compiler rejects what lies farther from the lattice.
+        let from_lattice = shift(lattice.origin).unwrap_or(MAX_COORDINATE_SHIFT);
+        let own = from_scene.filter(|&shift| shift <= from_lattice + COARSER);
         Self {
             header: Header {
                 unit_exponent: lattice.unit_exponent,
                 origin: lattice.origin.to_array(),
-                coordinate_shift: if own { from_scene } else { from_lattice },
-                coordinate_origin: own.into(),
+                coordinate_shift: own.unwrap_or(from_lattice),
+                coordinate_origin: own.is_some().into(),
                 ..Header::zeroed()
             },
         }
@@ -63,6 +66,7 @@ pub fn position(header: &Header, place: DVec3) -> Option<Position> {
         _ => DVec3::ZERO,
     };
     let steps = ((place - origin) / exp2(header.coordinate_exponent())).round();
-    let reach = f64::from(i32::MAX);
+    // The farthest place of all is one step beyond the last coordinate, which stands for it.
+    let reach = -f64::from(i32::MIN);
     (steps.abs().max_element() <= reach).then(|| Position(steps.to_array().map(|x| x as i32)))
 }

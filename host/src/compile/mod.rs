@@ -39,7 +39,8 @@ pub use lattice::BITS as LATTICE_BITS;
 pub use names::{KeptNames, Names};
 pub use options::{LARGEST_LEAF, OnProgress, Options};
 pub use primitives::LeftOut;
-pub(crate) use shading_data::{light_record, radiance};
+pub(crate) use shading_data::light_record;
+pub use shading_data::radiance;
 pub use structures::{takes_hierarchy, usual_budget};
 pub use wide::Quality;
 

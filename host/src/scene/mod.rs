@@ -26,8 +26,9 @@ mod words;
 
 pub use crate::shape::Shape;
 pub use error::SceneError;
+pub use gridel_core::Up;
 pub use importer::Importer;
-pub use model::{Camera, Color, Diffuse, Light, Material, Object, RenderSettings, Scene, Up};
+pub use model::{Camera, Color, Diffuse, Light, Material, Object, RenderSettings, Scene};
 pub use options::{ImportOptions, Imported, MoleculeOptions, MoleculeStyle};
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;

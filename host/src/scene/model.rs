@@ -1,8 +1,9 @@
 //! The scene as data.
 
 use super::source_span::SourceSpan;
-use crate::shape::{Shape, parallel};
+use crate::shape::{Shape, unit};
 use glam::DVec3;
+use gridel_core::Up;
 
 /// A linear RGB color; components at or above 0, 1.0 being display white.
 pub type Color = [f64; 3];
@@ -37,23 +38,6 @@ pub struct Scene {
     pub unnamed: bool,
 }
 
-/// Which axis points up, where a scene has no camera that says so.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Up {
-    Y,
-    Z,
-}
-
-impl Up {
-    /// The axis.
-    pub fn vector(self) -> DVec3 {
-        match self {
-            Self::Y => DVec3::Y,
-            Self::Z => DVec3::Z,
-        }
-    }
-}
-
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -67,9 +51,12 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Returns whether the camera looks along `up`, or one of both has no length.
+    /// Returns whether the camera looks along `up`, within an angle of 2^-23, or one of both has no length.
     pub fn is_along_up(&self) -> bool {
-        parallel(self.target - self.eye, self.up)
+        // Twice the limit of `gridel_core::Camera`, whose integers round both directions.
+        const LEAST_SINE: f64 = 1.0 / (1_u32 << 23) as f64;
+        let sine = unit(self.target - self.eye).cross(unit(self.up)).length();
+        sine.is_nan() || sine < LEAST_SINE
     }
 }
 

@@ -1,4 +1,4 @@
-//! Directions: of length 1, parallel ones, and as integers.
+//! Directions: of length 1, and as integers.
 
 use glam::DVec3;
 
@@ -12,12 +12,6 @@ const MOST: u64 = 1 << 24;
 /// The vector at length 1, also where its square is out of range.
 pub fn unit(vector: DVec3) -> DVec3 {
     (vector / vector.abs().max_element()).normalize()
-}
-
-/// Returns whether two vectors are parallel, or one of them has no length.
-pub fn parallel(a: DVec3, b: DVec3) -> bool {
-    let sine = unit(a).cross(unit(b)).length();
-    sine.is_nan() || sine <= TOLERANCE
 }
 
 /// The direction of a vector as integers of at most 2^24 in magnitude. `vector` is finite and not

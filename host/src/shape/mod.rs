@@ -19,7 +19,7 @@ pub(crate) mod transform;
 mod triangle;
 
 pub use analytic::{Analytic, Geometric, Map, Normal, Surface};
-pub(crate) use direction::{parallel, unit};
+pub(crate) use direction::unit;
 pub(crate) use keys::Keys;
 pub(crate) use lattice::{Lattice, exp2};
 pub(crate) use snapped::displacement;

@@ -304,7 +304,7 @@ fn a_misaligned_blob_is_rejected() {
     assert!(Scene::from_bytes(&padded.bytes()[16..16 + bytes.len()]).is_ok());
 }
 
-/// A ray that is none is rejected, whatever is wrong with it.
+/// Every kind of invalid ray is rejected.
 #[test]
 fn invalid_rays_are_rejected() {
     let blob = Blob::new(&small_blob(24));

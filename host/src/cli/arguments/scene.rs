@@ -28,7 +28,7 @@ pub fn scene_long_help() -> String {
 
 /// How a scene file is read and compiled, for commands that make pictures of it.
 #[derive(Args, Clone, Debug, Default)]
-#[command(next_help_heading = "Options for scene files")]
+#[command(next_help_heading = "Options for camera and lights")]
 pub struct SceneOptions {
     /// Do not trace secondary rays that change every channel by less than this; 1 is display white
     /// [default: that of the scene file]
@@ -186,7 +186,7 @@ impl MoleculeOptions {
 
 /// The option `--target` of commands that take no board.
 #[derive(Args, Clone, Debug, Default)]
-#[command(next_help_heading = "Options for scene files")]
+#[command(next_help_heading = "Options for camera and lights")]
 pub struct TargetPoint {
     /// Look at this point [default: the file's, or the middle of the scene]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,

@@ -6,13 +6,12 @@ use clap::Args;
 use glam::DVec3;
 use gridel_core::format::record::View;
 use gridel_host::compile;
-use gridel_host::live;
 use gridel_host::scene::{Camera, Color, Scene, Up};
 
 /// From where a scene is seen, in place of what its file or blob states. Help lists these options last, in their
 /// order, with `--target` behind `--eye`.
 #[derive(Args, Clone, Debug, Default)]
-#[command(next_help_heading = "Options for scene files")]
+#[command(next_help_heading = "Options for camera and lights")]
 pub struct ViewOptions {
     /// Place the camera here, in scene units [default: the file's, or where everything is seen]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
@@ -72,7 +71,10 @@ impl ViewOptions {
             scene.background = scene.background.or(Some(compile::BACKGROUND));
             // Which way is up decides from where the whole scene is seen.
             for up in [Up::Y, Up::Z] {
-                if self.up.is_some_and(|it| it.dot(up.vector()) == it.length()) {
+                if self
+                    .up
+                    .is_some_and(|it| it.dot(DVec3::AXES[up.axis()]) == it.length())
+                {
                     scene.up = up;
                 }
             }
@@ -96,7 +98,7 @@ impl ViewOptions {
             view = placed.map_err(|error| Failure::Usage(miette::Report::new(error)))?;
         }
         if let Some(background) = self.background {
-            view.background = live::radiance(background);
+            view.background = compile::radiance(background);
         }
         Ok(view)
     }

@@ -45,11 +45,13 @@ impl<'a> Importer<'a> {
                 .source
                 .error_at(start.text, cause, "move `from` away from `at`"));
         }
-        if up
-            .normalize_or_zero()
-            .cross((target - eye).normalize_or_zero())
-            == DVec3::ZERO
-        {
+        let camera = Camera {
+            eye,
+            target,
+            up,
+            fov_degrees,
+        };
+        if camera.is_along_up() {
             let cause = "the up vector of the view is zero or parallel to the direction of view";
             return Err(self.source.error_at(
                 start.text,
@@ -64,12 +66,7 @@ impl<'a> Importer<'a> {
                 "a second view replaces the first",
             );
         }
-        self.scene.camera = Some(Camera {
-            eye,
-            target,
-            up,
-            fov_degrees,
-        });
+        self.scene.camera = Some(camera);
         Ok(())
     }
 

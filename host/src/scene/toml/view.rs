@@ -1,7 +1,6 @@
 //! The tables that say how a scene is seen: `[camera]`, `[render]` and `[[light]]`.
 
 use super::value::Value;
-use crate::shape::parallel;
 use crate::scene::{Camera, Light, RenderSettings, SceneError};
 use glam::DVec3;
 
@@ -32,7 +31,7 @@ pub(super) fn camera(table: Value<'_>) -> Result<Camera, SceneError> {
             "move them nearer to each other",
         ));
     }
-    if parallel(camera.up, view) {
+    if camera.is_along_up() {
         let cause = "the camera looks along `up`, so the picture could be turned any way";
         let remedy =
             "set `up` to a direction across the view, such as [0, 0, 1] for a view from above";
