@@ -388,7 +388,7 @@ fn eyes_as_far_away_as_records_reach_are_placed() {
         });
         file
     };
-    for offset in [0.0, -3.0, 1e5, -1e9, 1e15] {
+    for offset in [0.0, -3.0, 1e5, -1e9] {
         let near = built(&file(offset, DVec3::splat(offset) + 3.0 * DVec3::Z));
         let header = *near.scene().expect("a scene").header();
         let unit = f64::powi(2.0, header.unit_exponent.into());
@@ -408,6 +408,6 @@ fn eyes_as_far_away_as_records_reach_are_placed() {
         }
         let beyond = file(offset, origin + DVec3::Z * (reach * 1.001));
         let error = compile(&beyond, &Options::default()).expect_err("too far");
-        assert!(error.to_string().starts_with("camera"), "{error}");
+        assert!(error.to_string().starts_with("the camera lies"), "{error}");
     }
 }

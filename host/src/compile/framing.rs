@@ -90,8 +90,9 @@ pub fn framing(scene: &Scene, fov_degrees: Option<f64>) -> Camera {
 mod tests {
     use super::*;
     use crate::compile::primitives::extent;
-    use crate::scene::{Material, Object, Shape, SourceSpan, Up};
+    use crate::scene::{Material, Object, Shape, SourceSpan};
     use crate::shape::Cuboid;
+    use gridel_core::Up;
 
     fn scene(min: [f64; 3], max: [f64; 3], up: Up) -> Scene {
         let [min, max] = [min, max].map(DVec3::from_array);

@@ -3,7 +3,8 @@
 use super::access::Access;
 use super::gzip;
 use super::text::{Source, check_encoding, read_file};
-use super::{Imported, MoleculeOptions, SceneError, Up};
+use super::{Imported, MoleculeOptions, SceneError};
+use gridel_core::Up;
 use std::fmt;
 use std::path::Path;
 

@@ -26,7 +26,6 @@ mod words;
 
 pub use crate::shape::Shape;
 pub use error::SceneError;
-pub use gridel_core::Up;
 pub use importer::Importer;
 pub use model::{Camera, Color, Diffuse, Light, Material, Object, RenderSettings, Scene};
 pub use options::{ImportOptions, Imported, MoleculeOptions, MoleculeStyle};

@@ -10,8 +10,9 @@ use super::polygon::{self, MAX_CONCAVE};
 use super::size::Size;
 use super::text::{Source, Warnings};
 use super::words::Words;
-use super::{Imported, Material, Object, Scene, SceneError, Shape, SourceSpan, Up};
+use super::{Imported, Material, Object, Scene, SceneError, Shape, SourceSpan};
 use glam::DVec3;
+use gridel_core::Up;
 
 pub(super) const IMPORTER: Importer = Importer {
     name: "OFF",

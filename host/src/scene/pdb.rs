@@ -8,8 +8,9 @@
 use super::importer::{Importer, Input};
 use super::molecule::{self, Atom, Element, End, Model, Parsed, Site};
 use super::text::{Source, Warnings};
-use super::{Imported, SceneError, Up};
+use super::{Imported, SceneError};
 use glam::DVec3;
+use gridel_core::Up;
 
 pub(super) const IMPORTER: Importer = Importer {
     name: "PDB",

@@ -7,8 +7,9 @@
 use super::importer::{Importer, Input, stem};
 use super::polygon::{self, MAX_CONCAVE};
 use super::text::{Warnings, check_encoding};
-use super::{Imported, Material, Object, Scene, SceneError, Shape, SourceSpan, Up};
+use super::{Imported, Material, Object, Scene, SceneError, Shape, SourceSpan};
 use glam::DVec3;
+use gridel_core::Up;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyAccessResult};
 use std::path::Path;

@@ -9,8 +9,9 @@
 
 use super::importer::{Importer, Input, stem};
 use super::text::{Source, Warnings, check_encoding};
-use super::{Imported, Material, Object, Scene, SceneError, Shape, SourceSpan, Up};
+use super::{Imported, Material, Object, Scene, SceneError, Shape, SourceSpan};
 use glam::DVec3;
+use gridel_core::Up;
 use std::collections::HashMap;
 use std::path::Path;
 

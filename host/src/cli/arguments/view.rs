@@ -4,9 +4,10 @@ use super::values::{numbers, vector};
 use crate::cli::failure::Failure;
 use clap::Args;
 use glam::DVec3;
+use gridel_core::Up;
 use gridel_core::format::record::View;
 use gridel_host::compile;
-use gridel_host::scene::{Camera, Color, Scene, Up};
+use gridel_host::scene::{Camera, Color, Scene};
 
 /// From where a scene is seen, in place of what its file or blob states. Help lists these options last, in their
 /// order, with `--target` behind `--eye`.

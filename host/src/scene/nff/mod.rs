@@ -21,7 +21,8 @@ mod view;
 
 use super::importer::{Importer as Entry, Input};
 use super::text::{Source, Warnings};
-use super::{Color, Diffuse, Imported, Light, Material, Scene, SceneError, Up};
+use super::{Color, Diffuse, Imported, Light, Material, Scene, SceneError};
+use gridel_core::Up;
 use glam::DVec3;
 use reader::{Line, Lines};
 use std::collections::{BTreeSet, HashMap};

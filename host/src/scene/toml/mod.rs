@@ -17,7 +17,8 @@ mod view;
 mod tests;
 
 use super::importer::{Importer, Input};
-use super::{Imported, SceneError, Up};
+use super::{Imported, SceneError};
+use gridel_core::Up;
 use import::Imports;
 
 pub(super) const IMPORTER: Importer = Importer {
