@@ -14,6 +14,8 @@ use std::str::FromStr;
 pub struct RenderMetadata {
     /// Checksum of the blob.
     pub blob: u32,
+    /// Checksum of camera, surroundings, lights and materials, which can be others than the blob's.
+    pub view: u32,
     pub format: Format,
     pub samples: u16,
     pub depth: u8,
@@ -25,6 +27,7 @@ impl RenderMetadata {
     pub fn of(scene: &Scene<'_>, job: &Job) -> Self {
         Self {
             blob: scene.header().checksum,
+            view: checksum_of_view(scene),
             format: job.format,
             samples: job.settings.samples,
             depth: job.settings.depth,
@@ -33,11 +36,26 @@ impl RenderMetadata {
     }
 }
 
+/// The checksum of the values of a scene that a program may put others in place of.
+fn checksum_of_view(scene: &Scene<'_>) -> u32 {
+    let parts: [&[u8]; 3] = [
+        bytemuck::bytes_of(scene.view()),
+        bytemuck::cast_slice(scene.lights()),
+        bytemuck::cast_slice(scene.materials()),
+    ];
+    // FNV-1a of 32 bits.
+    let bytes = parts.into_iter().flatten();
+    bytes.fold(0x811c_9dc5, |hash, &byte| {
+        (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
+    })
+}
+
 /// Names and values, and the version of this program, whose arithmetic it is.
 impl fmt::Display for RenderMetadata {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             blob,
+            view,
             format,
             samples,
             depth,
@@ -45,7 +63,7 @@ impl fmt::Display for RenderMetadata {
         } = self;
         write!(
             f,
-            "blob {blob:08x}, format {}, samples {samples}, depth {depth}, dither {}, gridel {}",
+            "blob {blob:08x}, view {view:08x}, format {}, samples {samples}, depth {depth}, dither {}, gridel {}",
             format.name(),
             if *dither { "on" } else { "off" },
             env!("CARGO_PKG_VERSION")
@@ -272,6 +290,7 @@ mod tests {
     fn written(format: PictureFormat, picture: &Picture, dither: bool) -> Vec<u8> {
         let mut bytes = Vec::new();
         let metadata = RenderMetadata {
+            view: 7,
             blob: 0xab,
             format: Format::F32,
             samples: 4,
@@ -286,7 +305,7 @@ mod tests {
     fn png_and_ppm_hold_the_same_pixels() {
         let picture = ramp(0..5);
         let ppm = written(PictureFormat::Ppm, &picture, false);
-        let made = "blob 000000ab, format f32, samples 4, depth 5, dither off";
+        let made = "blob 000000ab, view 00000007, format f32, samples 4, depth 5, dither off";
         let version = env!("CARGO_PKG_VERSION");
         let header = format!("P6\n# rows 0..5 of 9; {made}, gridel {version}\n16 5\n255\n");
         let pixels = ppm.strip_prefix(header.as_bytes()).unwrap();

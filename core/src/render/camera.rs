@@ -118,8 +118,8 @@ impl Camera {
         let forward = unit(direction).ok_or(CameraError::NoDirection)?;
         let up = unit(up.map(i64::from)).ok_or(CameraError::AlongUp)?;
         let across = cross(forward, up).map(|product| product.0);
-        // Where the sine is below 2^-24, rounding would turn the picture.
-        if across.iter().all(|x| x.unsigned_abs() < 1 << 36) {
+        // Where the sine is below 2^-16, rounding would turn the picture, by 2^-13 and more.
+        if across.iter().all(|x| x.unsigned_abs() < 1 << 44) {
             return Err(CameraError::AlongUp);
         }
         let right = unit(across).ok_or(CameraError::AlongUp)?;

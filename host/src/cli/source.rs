@@ -136,6 +136,12 @@ impl Source {
         let Compiled { blob, report } =
             compiled.map_err(|error| Failure::compiling(input.path(), error))?;
         let mut warnings = imported.warnings;
+        if imported.scene.objects.is_empty() {
+            let file = input.path().display();
+            let warning = format!("{file}: the scene has no object: pictures show the background");
+            warn(&warning);
+            warnings.push(warning);
+        }
         if let Some(warning) = far_moved(&report, compiling.lattice_bits) {
             warn(&warning);
             warnings.push(warning);
@@ -340,10 +346,10 @@ fn far_moved(report: &compile::Report, lattice_bits: u8) -> Option<String> {
     let remedy = if lattice_bits < *compile::LATTICE_BITS.end() {
         "use more `--lattice-bits`"
     } else {
-        "make them thicker, or discs"
+        "make them thicker or larger"
     };
     Some(format!(
-        "the lattice moves the surfaces of solids whose axis is short, {}; {remedy}",
+        "the lattice moves the surfaces of some solids by several steps, {}; {remedy}",
         report.far_moved.names(NAMED).join(", ")
     ))
 }

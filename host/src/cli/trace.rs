@@ -33,8 +33,8 @@ use std::time::Instant;
 /// pointing outward; 0 for a miss).
 ///
 /// A ray is rejected if its direction is zero, if it has a NaN, if its origin or direction is
-/// infinite, if tmin is greater than tmax, if its origin is more than 2^20 times the scene's width
-/// away, or if t exceeds double precision. Its t is nan in the file. Rejected rays are counted
+/// infinite, if tmin is greater than tmax, if its origin is more than 2^37 units away (2^21
+/// times the width of the largest scene), or if t exceeds double precision. Its t is nan in the file. Rejected rays are counted
 /// separately from misses. The first one is printed with its row and the reason.
 #[derive(Args)]
 #[command(after_help = super::failure::EXIT_CODES)]

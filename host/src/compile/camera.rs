@@ -16,11 +16,20 @@ use gridel_core::{Angle, Camera as Placed};
 pub fn place(camera: &Camera, header: &Header) -> Result<Placed, CompileError> {
     let eye = position(header, camera.eye).ok_or(CameraError::EyeOutOfRange);
     let placed = eye.and_then(|eye| {
-        let direction = integers(camera.target - camera.eye);
+        let direction = integers(camera.direction());
         let up = integers(camera.up);
         Placed::look_along(eye, direction, up, angle(camera.fov_degrees))
     });
-    placed.map_err(|source| CompileError::Camera { source })
+    placed.map_err(|source| match source {
+        CameraError::EyeOutOfRange => CompileError::EyeOutOfReach {
+            reach: exp2(31 + header.coordinate_exponent()),
+            from: match header.coordinate_origin {
+                0 => DVec3::from_array(header.origin),
+                _ => DVec3::ZERO,
+            },
+        },
+        source => CompileError::Camera { source },
+    })
 }
 
 /// A direction of 30 bits, scaled by a power of two, so that integers keep their ratios.
@@ -75,7 +84,7 @@ mod tests {
     #[test]
     fn cameras_that_do_not_look_along_up_are_placed() {
         let (mut placed, mut along) = (0, 0);
-        for exponent in -28..=-20 {
+        for exponent in -20..=-12 {
             for step in 0..200 {
                 let turn = DVec3::new(f64::from(step) * 0.7, f64::from(step) * 0.3, 1.0);
                 let direction = DVec3::new(turn.x.sin(), turn.y.cos(), turn.x.cos());
@@ -88,10 +97,10 @@ mod tests {
                 };
                 if camera.is_along_up() {
                     along += 1;
-                    assert!(exponent <= -23);
+                    assert!(exponent <= -15);
                 } else {
                     placed += 1;
-                    assert!(exponent >= -23);
+                    assert!(exponent >= -15);
                     place(&camera, &header()).unwrap();
                 }
             }
@@ -132,7 +141,8 @@ mod tests {
         let error = place(&Camera { eye, ..sane }, &header()).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "the eye is beyond the range of scene coordinates"
+            "the camera's eye is more than 3.200e1 scene units from (0, 0, 0) along an axis, where the \
+             blob's coordinates end"
         );
     }
 }

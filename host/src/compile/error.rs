@@ -40,9 +40,21 @@ pub enum CompileError {
     #[error("{object} passes the middle of the other objects at more than {most:.3e} scene units")]
     #[diagnostic(help("move it nearer, or add an object beside it"))]
     OutOfReach { object: String, most: f64 },
+    #[error(
+        "the camera's eye is more than {reach:.3e} scene units from ({}, {}, {}) along an axis, where the \
+         blob's coordinates end",
+        .from.x, .from.y, .from.z
+    )]
+    #[diagnostic(help("move the eye nearer, or give the scene file in place of the blob"))]
+    EyeOutOfReach { reach: f64, from: DVec3 },
     #[error("{source}")]
     #[diagnostic(help("change the camera's `eye`, `target`, `up` or `fov`"))]
     Camera { source: CameraError },
+    #[error(
+        "material {material}: a plane's checkerboard has cells larger than {most:.3e}, 4 times the scene"
+    )]
+    #[diagnostic(help("make the cells smaller, or give the plane one color"))]
+    CheckerSize { material: String, most: f64 },
     #[error("{bits} lattice bits are not possible")]
     #[diagnostic(help("use 10 to 24"))]
     LatticeBits { bits: u8 },
@@ -56,7 +68,7 @@ pub enum CompileError {
     #[error(
         "the {what} lies {distance:.3e} scene units from a scene of {size:.3e}: too far for the number formats"
     )]
-    #[diagnostic(help("move it nearer; a directional light is as good as one this far away"))]
+    #[diagnostic(help("move it nearer; in place of a light so far away use a directional one"))]
     FarAway {
         what: String,
         distance: f64,

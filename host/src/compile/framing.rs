@@ -55,7 +55,9 @@ pub fn framing(scene: &Scene, fov_degrees: Option<f64>) -> Camera {
     let (forward, up) = match (is_flat(up), is_flat(right)) {
         (true, _) => (-up, forward),
         (false, true) => (-right, up),
-        _ => (forward, up),
+        _ if !is_seen_from_edge(scene, forward) => (forward, up),
+        _ if is_seen_from_edge(scene, up) => (-right, up),
+        _ => (-up, forward),
     };
     let right = forward.cross(up);
     let [across, along, deep] = [right, up, forward].map(extent_along);
@@ -84,6 +86,25 @@ pub fn framing(scene: &Scene, fov_degrees: Option<f64>) -> Camera {
         up,
         fov_degrees,
     }
+}
+
+/// The least part of the area of flat faces that a view must show.
+const LEAST_SHOWN: f64 = 1e-3;
+
+/// Returns whether a scene has flat faces and nothing else, and a view shows next to nothing of them.
+fn is_seen_from_edge(scene: &Scene, forward: DVec3) -> bool {
+    let (mut area, mut shown) = (0.0, 0.0);
+    for shape in in_extent(scene).filter(|shape| shape.is_bounded()) {
+        let faces = shape.faces();
+        if faces.is_empty() {
+            return false;
+        }
+        for face in faces {
+            area += face.length();
+            shown += face.dot(forward).abs();
+        }
+    }
+    shown < LEAST_SHOWN * area
 }
 
 #[cfg(test)]
@@ -231,6 +252,19 @@ mod tests {
         let camera = framing(&floor, None);
         assert!(looks(&camera, DVec3::NEG_Z));
         assert_eq!(camera.up, DVec3::Y);
+        // Neither are those that no axis runs along.
+        for normal in [[1.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 1.0, 1e-9]] {
+            let normal = DVec3::from_array(normal);
+            let (across, along) = normal.normalize().any_orthonormal_pair();
+            let mut tilted = scene([0.0; 3], [1.0; 3], Up::Y);
+            tilted.objects[0].shape = Shape::Mesh {
+                vertices: vec![across, along, -across, -along],
+                triangles: vec![[0, 1, 2], [0, 2, 3]],
+            };
+            let camera = framing(&tilted, None);
+            let view = (camera.target - camera.eye).normalize();
+            assert!(view.dot(normal.normalize()).abs() > 0.4, "{view}");
+        }
         for (up, size) in [(Up::Y, [0.0, 1.0, 4.0]), (Up::Z, [0.0, 4.0, 1.0])] {
             let wall = scene([0.0; 3], size, up);
             let camera = framing(&wall, None);

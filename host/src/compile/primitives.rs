@@ -95,19 +95,25 @@ pub fn in_extent(scene: &Scene) -> impl Iterator<Item = &Shape> + Clone {
     shapes.filter(move |shape| none_bounded || shape.is_bounded())
 }
 
-/// The box of everything in a scene that has one, or else of points of what has none; a point for an empty one.
+/// The box of everything in a scene that has one, or else of points of what has none and of the camera; a point for an
+/// empty one.
 pub fn extent(scene: &Scene) -> (DVec3, DVec3) {
     let nowhere = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    let [lowest, highest] = in_extent(scene)
+    let [mut lowest, mut highest] = in_extent(scene)
         .map(Shape::bounds)
         .fold(nowhere, |[low, high], [lowest, highest]| {
             [low.min(lowest), high.max(highest)]
         });
     if lowest.x > highest.x {
-        (DVec3::ZERO, DVec3::ZERO)
-    } else {
-        (lowest, highest)
+        return (DVec3::ZERO, DVec3::ZERO);
     }
+    let is_bounded = scene.objects.iter().any(|object| object.shape.is_bounded());
+    if let Some(camera) = scene.camera.filter(|_| !is_bounded) {
+        for place in [camera.eye, camera.target] {
+            (lowest, highest) = (lowest.min(place), highest.max(place));
+        }
+    }
+    (lowest, highest)
 }
 
 impl Primitives {

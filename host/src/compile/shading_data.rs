@@ -72,6 +72,13 @@ impl ShadingData {
         let mut required_by: Vec<(Effects, String)> = Vec::new();
         let mut object_material = Vec::with_capacity(scene.objects.len());
         for object in &scene.objects {
+            let material = &scene.materials[object.material];
+            if !object.shape.is_bounded() && has_large_cells(material, lattice) {
+                return Err(CompileError::CheckerSize {
+                    material: printable(&material.name),
+                    most: LARGEST_CELL * lattice.unit(),
+                });
+            }
             let number = *numbers[object.material].get_or_insert_with(|| {
                 let material = &scene.materials[object.material];
                 let record = material_record(material, lattice);
@@ -234,16 +241,12 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
             size,
             origin,
         } => {
-            let unit = lattice.unit();
-            // At least one sub-step, at most what a length can hold.
-            let size = (size / unit).clamp(1.0 / 8192.0, 131_071.0);
-            // The pattern repeats after two cells.
-            let origin = lattice
-                .in_units(origin)
-                .to_array()
-                .map(|x| x.rem_euclid(2.0 * size));
+            // At least one sub-step.
+            let size = (size / lattice.unit()).max(1.0 / 8192.0);
+            let origin = lattice.in_units(origin).to_array();
+            let origin = origin.map(|x| checker_origin(x, size));
             let q13 = |units: f64| (units * 8192.0).round() as i32;
-            (even, odd, q13(size), origin.map(|x| q13(x).min(1 << 30)))
+            (even, odd, q13(size.min(LARGEST_CELL)), origin.map(q13))
         }
     };
     let glass = material.transmit != [0.0; 3];
@@ -269,6 +272,42 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
     }
 }
 
+/// The largest cell of a checkerboard in units, twice as wide as a scene's box.
+const LARGEST_CELL: f64 = 131_071.0;
+
+/// Returns whether a material has a checkerboard whose cells are larger than a record holds.
+fn has_large_cells(material: &Material, lattice: &Lattice) -> bool {
+    matches!(material.diffuse, Diffuse::Checker { size, .. } if size > LARGEST_CELL * lattice.unit())
+}
+
+/// A corner of a checkerboard's cells on one axis, in units, no farther than [`LARGEST_CELL`] from the lattice's middle.
+/// The pattern is that of the given corner: everywhere, or, where cells are larger than that, in the scene's box.
+fn checker_origin(corner: f64, size: f64) -> f64 {
+    if size <= LARGEST_CELL {
+        // It repeats after two cells.
+        let first = corner.rem_euclid(2.0 * size);
+        return if first > LARGEST_CELL {
+            first - 2.0 * size
+        } else {
+            first
+        };
+    }
+    // The cell around the middle, in which it takes turns with its neighbors.
+    let cell = (-corner / size).floor();
+    let low = corner + cell * size;
+    let high = low + size;
+    let is_even = cell.rem_euclid(2.0) == 0.0;
+    // The nearer of its sides is kept, or lies beyond the box; the other is beyond it, too.
+    let edge = LARGEST_CELL / 2.0;
+    if -low <= high {
+        let side = low.max(-edge);
+        if is_even { side } else { side + LARGEST_CELL }
+    } else {
+        let side = high.min(edge);
+        if is_even { side - LARGEST_CELL } else { side }
+    }
+}
+
 /// A color of light as a blob's records hold it: 20 fraction bits, 0 to 2,047.999999; saturates.
 ///
 /// ```
@@ -282,4 +321,34 @@ pub fn radiance(color: Color) -> [i32; 3] {
 /// Ratios with 30 fraction bits, 0 to 1.
 fn ratio(color: Color) -> [i32; 3] {
     color.map(|channel| (channel.clamp(0.0, 1.0) * f64::from(1 << 30)).round() as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The number of the cell that holds a place, counted from a corner.
+    fn parity(place: f64, corner: f64, size: f64) -> bool {
+        ((place - corner) / size).floor().rem_euclid(2.0) == 1.0
+    }
+
+    #[test]
+    fn checkerboards_of_every_size_keep_their_pattern_in_the_scenes_box() {
+        let sizes = [
+            1.0, 1e3, 40_000.0, 70_000.0, 131_000.0, 131_072.0, 2e5, 3e6, 1e12,
+        ];
+        for size in sizes {
+            for step in -40..=40 {
+                let corner = f64::from(step) * 0.0625 * size + 0.3;
+                let found = checker_origin(corner, size);
+                assert!(found.abs() <= LARGEST_CELL, "{found}");
+                for place in (-32_768..=32_768).step_by(512) {
+                    let place = f64::from(place) + 0.1;
+                    let expected = parity(place, corner, size);
+                    let found = parity(place, found, size.min(LARGEST_CELL));
+                    assert_eq!(found, expected, "{place} in cells of {size} from {corner}");
+                }
+            }
+        }
+    }
 }

@@ -210,7 +210,12 @@ impl Walk {
         let direction = exact / norm;
         let scale = norm * frame.length(1.0);
         let moved = moved * scale;
-        let place = frame.place(start);
+        // A ray that passes the scene's box has an empty interval, and a start that is not one of its points.
+        let place = if interval[1] < 0.0 {
+            given.origin + moved * direction
+        } else {
+            frame.place(start)
+        };
         Some(Self {
             origin: given.origin.to_array(),
             direction: direction.to_array(),

@@ -51,11 +51,22 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Returns whether the camera looks along `up`, within an angle of 2^-23, or one of both has no length.
+    /// The direction of view, of any length.
+    pub fn direction(&self) -> DVec3 {
+        let direction = self.target - self.eye;
+        if direction.is_finite() {
+            direction
+        } else {
+            // The difference of two numbers can be out of range.
+            self.target * 0.5 - self.eye * 0.5
+        }
+    }
+
+    /// Returns whether the camera looks along `up`, within an angle of 2^-15, or one of both has no length.
     pub fn is_along_up(&self) -> bool {
         // Twice the limit of `gridel_core::Camera`, whose integers round both directions.
-        const LEAST_SINE: f64 = 1.0 / (1_u32 << 23) as f64;
-        let sine = unit(self.target - self.eye).cross(unit(self.up)).length();
+        const LEAST_SINE: f64 = 1.0 / (1_u32 << 15) as f64;
+        let sine = unit(self.direction()).cross(unit(self.up)).length();
         sine.is_nan() || sine < LEAST_SINE
     }
 }

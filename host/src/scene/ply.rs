@@ -51,7 +51,8 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
             None => error_at,
         }
     };
-    let mut reader = Reader::new(&bytes[..]);
+    let mut rest = &bytes[..];
+    let mut reader = Reader::new(&mut rest);
     let header = Parser::<Skipped>::new()
         .read_header(&mut reader)
         .map_err(broken)?;
@@ -84,6 +85,10 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
                 warnings.add_times(SourceSpan::of(path), element.count.max(1), sentence);
             }
         }
+    }
+    if !rest.trim_ascii().is_empty() {
+        let sentence = "data behind what the header announces is ignored";
+        warnings.add_times(SourceSpan::of(path), 1, sentence.to_owned());
     }
     let shape = mesh(path, &vertices, &faces, &strips, &mut warnings)?;
     let scene = Scene {

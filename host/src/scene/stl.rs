@@ -47,6 +47,7 @@ fn length(triangles: u32) -> u64 {
 }
 
 fn is_text(bytes: &[u8]) -> bool {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let head = bytes.trim_ascii_start().get(..5);
     head.is_some_and(|it| it.eq_ignore_ascii_case(b"solid"))
 }

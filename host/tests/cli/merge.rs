@@ -60,6 +60,16 @@ fn parts_of_pictures_that_differ_are_rejected() {
             ),
             ("quick.gridel", &["--depth", "3"], ["depth 6", "depth 3"]),
             ("quick.gridel", &["--dither"], ["dither off", "dither on"]),
+            (
+                "quick.gridel",
+                &["--fov", "30"],
+                ["with view", "the other with view"],
+            ),
+            (
+                "quick.gridel",
+                &["--light", "0.color=1,0,0"],
+                ["with view", "the other with view"],
+            ),
             ("coarse.gridel", &[], ["with blob", "the other with blob"]),
         ] {
             part(blob, &lower, &[&["--rows", "20..36"], options].concat());

@@ -82,7 +82,7 @@ pub fn light(text: &str) -> Result<LightChange, String> {
             "direction" => Property::Direction(vector.ok().filter(|it| *it != DVec3::ZERO)?),
             "color" => {
                 let color: Color = numbers(value)?;
-                let is_light = color.iter().all(|&channel| channel >= 0.0);
+                let is_light = color.iter().all(|channel| (0.0..=2047.0).contains(channel));
                 is_light.then_some(Property::Color(color))?
             }
             _ => return None,
@@ -92,7 +92,7 @@ pub fn light(text: &str) -> Result<LightChange, String> {
     change().ok_or_else(|| {
         String::from(
             "write a light's number and its position, direction or color, such as \
-             0.position=1,2.5,-3 or 1.color=0.5,0.5,1",
+             0.position=1,2.5,-3 or 1.color=0.5,0.5,1; colors are numbers from 0 to 2047",
         )
     })
 }

@@ -72,10 +72,10 @@ impl ViewOptions {
             scene.background = scene.background.or(Some(compile::BACKGROUND));
             // Which way is up decides from where the whole scene is seen.
             for up in [Up::Y, Up::Z] {
-                if self
-                    .up
-                    .is_some_and(|it| it.dot(DVec3::AXES[up.axis()]) == it.length())
-                {
+                // Along the axis, however long.
+                let is_along =
+                    |it: DVec3| it[up.axis()] > 0.0 && it[up.axis()] == it.abs().element_sum();
+                if self.up.is_some_and(is_along) {
                     scene.up = up;
                 }
             }
@@ -140,9 +140,10 @@ fn degrees(text: &str) -> Result<f64, String> {
 }
 
 fn color(text: &str) -> Result<Color, String> {
-    let color = numbers(text).filter(|color| color.iter().all(|&channel| channel >= 0.0));
+    let is_radiance = |channel: &f64| (0.0..=2047.0).contains(channel);
+    let color = numbers(text).filter(|color| color.iter().all(is_radiance));
     color.ok_or_else(|| {
-        String::from("write three numbers at or above 0 with commas, such as 0.2,0.4,1")
+        String::from("write three numbers from 0 to 2047 with commas, such as 0.2,0.4,1")
     })
 }
 

@@ -175,3 +175,14 @@ fn triangle_strips_are_read() {
         );
     }
 }
+
+#[test]
+fn data_behind_what_is_announced_is_reported() {
+    let surplus = [SQUARE.as_bytes(), b"3 0 1 2\n"].concat();
+    let imported = read(&surplus).unwrap();
+    let found = imported.warnings.iter();
+    let found = found.filter(|it| it.contains("behind what the header announces"));
+    assert_eq!(found.count(), 1, "{:?}", imported.warnings);
+    let blank = read(&[SQUARE.as_bytes(), b"\n \n"].concat()).unwrap();
+    assert_eq!(blank.warnings.len(), 3, "{:?}", blank.warnings);
+}

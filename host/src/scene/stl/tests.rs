@@ -166,3 +166,10 @@ fn real_files() {
         assert_eq!((scene.objects.len(), count), (objects, triangles), "{name}");
     }
 }
+
+#[test]
+fn text_with_a_byte_order_mark_is_read() {
+    let marked = [b"\xef\xbb\xbf", TWO_SOLIDS.as_bytes()].concat();
+    let scene = test_scenes::read("thing.stl", marked).unwrap().scene;
+    assert_eq!(scene.objects.len(), 2);
+}

@@ -42,8 +42,8 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     let render = root.or("render", None, |table| view::render(table).map(Some))?;
     let lights = root.or("light", Vec::new(), view::lights)?;
     let (lights, light_names) = lights.into_iter().unzip();
-    let background = root.or("background", None, |value| value.color().map(Some))?;
-    let ambient = root.or("ambient", None, |value| value.color().map(Some))?;
+    let background = root.or("background", None, |value| value.radiance().map(Some))?;
+    let ambient = root.or("ambient", None, |value| value.radiance().map(Some))?;
     let mut palette = root.or("material", Palette::default(), Palette::read)?;
 
     let mut reader = Reader {

@@ -101,18 +101,18 @@ fn material(table: Value<'_>) -> Result<Material, SceneError> {
                 "remove one of the two",
             ));
         }
-        (Some(diffuse), None) => Diffuse::Plain(diffuse.color()?),
+        (Some(diffuse), None) => Diffuse::Plain(diffuse.reflectance()?),
         (None, Some(table)) => checker(table)?,
         (None, None) => default.diffuse,
     };
     Ok(Material {
         diffuse,
-        highlight: fields.or("highlight", default.highlight, Value::color)?,
+        highlight: fields.or("highlight", default.highlight, Value::reflectance)?,
         shininess: fields.or("shininess", default.shininess, |value| {
             Ok(value.integer_in(1..=1024)? as u16)
         })?,
-        mirror: fields.or("mirror", default.mirror, Value::color)?,
-        transmit: fields.or("transmit", default.transmit, Value::color)?,
+        mirror: fields.or("mirror", default.mirror, Value::reflectance)?,
+        transmit: fields.or("transmit", default.transmit, Value::reflectance)?,
         ior: fields.or("ior", default.ior, |value| value.number_in(1.0..=4.0))?,
         absorption: fields.or("absorption", default.absorption, Value::coefficients)?,
         ..default
@@ -122,8 +122,8 @@ fn material(table: Value<'_>) -> Result<Material, SceneError> {
 fn checker(table: Value<'_>) -> Result<Diffuse, SceneError> {
     let fields = table.fields("checker", &[&["even", "odd", "size", "origin"]])?;
     Ok(Diffuse::Checker {
-        even: fields.require("even")?.color()?,
-        odd: fields.require("odd")?.color()?,
+        even: fields.require("even")?.reflectance()?,
+        odd: fields.require("odd")?.reflectance()?,
         size: fields.or("size", 1.0, Value::positive)?,
         origin: fields.or("origin", DVec3::ZERO, Value::vector)?,
     })

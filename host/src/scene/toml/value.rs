@@ -157,6 +157,25 @@ impl<'a> Value<'a> {
         }
     }
 
+    /// A color of which no channel is above 1: a surface reflects no more than arrives.
+    pub(crate) fn reflectance(self) -> Result<Color, SceneError> {
+        self.color_up_to(1.0, "write numbers from 0 to 1; make the lights brighter instead")
+    }
+
+    /// A color of light.
+    pub(crate) fn radiance(self) -> Result<Color, SceneError> {
+        self.color_up_to(2047.0, "write numbers from 0 to 2047; 1 is display white")
+    }
+
+    fn color_up_to(self, most: f64, remedy: &str) -> Result<Color, SceneError> {
+        let color = self.color()?;
+        if let Some(channel) = color.iter().find(|&&channel| channel > most) {
+            let cause = format!("`{}` is {channel}; it must be at most {most}", self.key);
+            return Err(self.error(cause, remedy));
+        }
+        Ok(color)
+    }
+
     /// Three numbers at or above 0, or one for all three channels.
     pub(crate) fn coefficients(self) -> Result<Color, SceneError> {
         let color = match self.node.get_ref() {

@@ -95,7 +95,7 @@ fn light(table: Value<'_>) -> Result<(Light, String), SceneError> {
         value.filled().map(str::to_owned)
     })?;
     let kind = fields.require("kind")?;
-    let color = fields.or("color", [1.0; 3], Value::color)?;
+    let color = fields.or("color", [1.0; 3], Value::radiance)?;
     let (light, foreign) = match kind.word(&["point", "directional"])? {
         "point" => {
             let position = fields.require("position")?.vector()?;
