@@ -78,3 +78,35 @@ impl Location {
         Err(self.invalid(reason))
     }
 }
+
+/// A record whose fields are tested against the ranges that its declaration states.
+pub(crate) trait Ranges {
+    /// An error unless every field lies in its range.
+    fn check_ranges(&self, at: At) -> Result<(), BlobError>;
+}
+
+/// A field: a number or an array of numbers.
+pub(crate) trait Numbers {
+    /// An error unless all of it lies in `low..=high`.
+    fn within(&self, at: At, field: Field, low: i64, high: i64) -> Result<(), BlobError>;
+}
+
+macro_rules! numbers {
+    ($($number:ident)*) => {
+        $(impl Numbers for $number {
+            #[inline(always)]
+            fn within(&self, at: At, field: Field, low: i64, high: i64) -> Result<(), BlobError> {
+                at.within(field, i64::from(*self), low, high)
+            }
+        })*
+    };
+}
+
+numbers!(u8 u16 u32 i32);
+
+impl<T: Into<i64> + Copy, const N: usize> Numbers for [T; N] {
+    #[inline(always)]
+    fn within(&self, at: At, field: Field, low: i64, high: i64) -> Result<(), BlobError> {
+        at.all_within(field, self, low, high)
+    }
+}
