@@ -145,14 +145,16 @@ macro_rules! structure {
             #[inline(always)]
             fn check_ranges(
                 &self,
-                at: $crate::format::range::At,
+                place: impl $crate::format::range::Place,
             ) -> Result<(), $crate::format::BlobError> {
-                let _ = at;
+                let _ = place;
                 $($({
                     const RANGE: core::ops::RangeInclusive<i64> = $range;
                     let field = $crate::format::Field::$field;
                     let [low, high] = [*RANGE.start(), *RANGE.end()];
-                    $crate::format::range::Numbers::within(&self.$field_name, at, field, low, high)?;
+                    $crate::format::range::Numbers::within(
+                        &self.$field_name, place, field, low, high,
+                    )?;
                 })?)*
                 Ok(())
             }

@@ -3,8 +3,8 @@
 use crate::accel::StructureViews;
 use crate::accel::space::Space;
 use crate::accel::stack::Entry;
-use crate::format::limits::{DISPLAY_VALUES, MAX_COORDINATE_SHIFT, MAX_STACK_DEPTH};
-use crate::format::range::{At, Ranges, at_most, exactly};
+use crate::format::limits::DISPLAY_VALUES;
+use crate::format::range::{At, InHeader, Ranges, exactly};
 use crate::format::record::{ALIGNMENT, ENDIANNESS, Header, MAGIC, VERSION, View};
 use crate::format::{
     BlobError, Effects, Field, Indices, Location, Reason, SectionKind, Sections, Structure,
@@ -95,20 +95,11 @@ fn check_limits(header: &Header) -> Result<(), BlobError> {
     header_has(unknown == 0, Reason::UnknownStructures)?;
     let list = header.structures & Structure::List.bit();
     header_has(list != 0, Reason::MissingList)?;
-    at_most(
-        Field::StackDepth,
-        header.stack_depth.into(),
-        MAX_STACK_DEPTH as u32,
-    )?;
+    header.check_ranges(InHeader)?;
     let stack_bytes = u32::from(header.stack_depth) * size_of::<Entry>() as u32;
     exactly(Field::StackBytes, header.stack_bytes, stack_bytes)?;
-    at_most(Field::LatticeBits, header.lattice_bits.into(), 24)?;
     let storage_bits = if header.lattice_bits <= 16 { 16 } else { 24 };
     exactly(Field::StorageBits, header.storage_bits.into(), storage_bits)?;
-    if header.unit_exponent.unsigned_abs() > 1000 {
-        let found = header.unit_exponent.into();
-        return Err(Location::Header.out_of_range(Field::UnitExponent, found, [-1000, 1000]));
-    }
     let finite = header.origin.iter().all(|origin| origin.is_finite());
     header_has(finite, Reason::OriginNotFinite)?;
     let mut sides = header.bounds.0.iter();
@@ -118,12 +109,6 @@ fn check_limits(header: &Header) -> Result<(), BlobError> {
         sides.all(|[low, _]| *low != i16::MIN),
         Reason::ReservedBounds,
     )?;
-    at_most(
-        Field::CoordinateShift,
-        header.coordinate_shift.into(),
-        MAX_COORDINATE_SHIFT.into(),
-    )?;
-    at_most(Field::CoordinateOrigin, header.coordinate_origin.into(), 1)?;
     header_has(header.spare == [0; 3], Reason::SpareNotZero)?;
     Ok(())
 }

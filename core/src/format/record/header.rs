@@ -1,6 +1,7 @@
 //! The header and the section table.
 
 use crate::format::layout::records;
+use crate::format::limits::{MAX_COORDINATE_SHIFT, MAX_STACK_DEPTH};
 use crate::format::record::UnitBox;
 use bytemuck::{Pod, Zeroable};
 
@@ -28,9 +29,10 @@ records! {
         pub structures: u32,
         /// Effects that the scene requires: see [`Effects`](crate::format::Effects). Bits without an effect are 0.
         pub effects: u32,
-        /// Entries that the deepest walk pushes on the traversal stack: 0 to 160. For pairs these are the levels of the
+        /// Entries that the deepest walk pushes on the traversal stack. For pairs these are the levels of the
         /// hierarchy, at most 48. For an octree of *n* levels of inner nodes they are 7 *n* + 1, or 0 where the root
         /// is a leaf.
+        #[valid(StackDepth: 0..=MAX_STACK_DEPTH as i64)]
         pub stack_depth: u16,
         /// Most primitives in a leaf: 0 to 31, 0 without leaves.
         pub longest_leaf: u16,
@@ -39,11 +41,13 @@ records! {
         pub primitives: u32,
         /// Number of objects.
         pub objects: u32,
-        /// Bits of the lattice that the scene was snapped to: at most 24. The compiler writes 10 to 24.
+        /// Bits of the lattice that the scene was snapped to. The compiler writes 10 to 24.
+        #[valid(LatticeBits: 0..=24)]
         pub lattice_bits: u8,
         /// Bits of a stored coordinate: 16 if the lattice has at most 16 bits, else 24.
         pub storage_bits: u8,
-        /// One unit (a step of the 16-bit box lattice) is 2 to this power scene units: -1000 to 1000.
+        /// One unit (a step of the 16-bit box lattice) is 2 to this power scene units.
+        #[valid(UnitExponent: -1000..=1000)]
         pub unit_exponent: i16,
         /// Scene coordinates of the lattice's origin, a multiple of its step. They are finite.
         pub origin: [f64; 3],
@@ -53,9 +57,11 @@ records! {
         /// Bytes of the traversal stack: 12 times `stack_depth`.
         pub stack_bytes: u32,
         /// One step of scene coordinates (see [`Position`](crate::Position)) is a unit times 2 to the power of
-        /// this less 13; at most 19, [`MAX_COORDINATE_SHIFT`](crate::format::limits::MAX_COORDINATE_SHIFT).
+        /// this less 13.
+        #[valid(CoordinateShift: 0..=MAX_COORDINATE_SHIFT as i64)]
         pub coordinate_shift: u8,
         /// What scene coordinates are counted from: 0 for the lattice's origin, 1 for the scene's.
+        #[valid(CoordinateOrigin: 0..=1)]
         pub coordinate_origin: u8,
         /// Zero.
         pub spare: [u16; 3],
