@@ -13,12 +13,12 @@
 //! bits for each: its number in a window of [`RADII`] among those of the section of that name. Where
 //! the section is one window, all packs share it; else the one of pack `p` begins at `8 p`.
 
+use crate::format::layout::records;
 use crate::format::record::{Vertex16, Vertex24};
 use crate::format::width::Vertex;
 use crate::simd::Simd;
 use bytemuck::{Pod, Zeroable};
 use core::array;
-use core::mem::size_of;
 
 /// Lanes of a row: vertices of a strip, spheres of a pack, children of a node.
 pub const LANES: usize = 8;
@@ -27,73 +27,84 @@ pub const RADII: usize = 2 * LANES;
 /// Most triangles of a strip.
 pub const STRIP_TRIANGLES: usize = LANES - 2;
 
-/// Eight points on the 16-bit lattice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(transparent)]
-pub struct Rows16(
-    /// `[axis][lane]`, in units.
-    pub [[i16; LANES]; 3],
-);
+records! {
+    /// Eight points on the 16-bit lattice.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(transparent)]
+    #[bytes(48)]
+    pub struct Rows16(
+        /// `[axis][lane]`, in units.
+        pub [[i16; LANES]; 3]
+    );
 
-/// Eight points on the 24-bit lattice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Rows24 {
-    /// `[axis][lane]`: the low 16 bits of a coordinate in 1/256 unit.
-    pub low: [[u16; LANES]; 3],
-    /// `[axis][lane mod 4]`: its high 8 bits, with the sign; for lane 0 to 3 in the low half of a
-    /// word, for lane 4 to 7 in the high half, which four lanes take apart at once.
-    pub high: [[u16; LANES / 2]; 3],
-}
+    /// Eight points on the 24-bit lattice.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(72)]
+    pub struct Rows24 {
+        /// `[axis][lane]`: the low 16 bits of a coordinate in 1/256 unit.
+        pub low: [[u16; LANES]; 3],
+        /// `[axis][lane mod 4]`: its high 8 bits, with the sign; for lane 0 to 3 in the low half of a
+        /// word, for lane 4 to 7 in the high half, which four lanes take apart at once.
+        pub high: [[u16; LANES / 2]; 3],
+    }
 
-/// Which primitives a strip holds, and which vertex is which corner of them: 6 bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct StripMembers {
-    first: [u8; 3],
-    corners: [u8; 3],
-}
+    /// Which primitives a strip holds, and which vertex is which corner of them.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(6)]
+    pub struct StripMembers {
+        /// The number of the first triangle among the members: the number of triangles in all strips before.
+        first: [u8; 3],
+        /// The triangles and the order of their corners, in the bits of a word of three bytes.
+        corners: [u8; 3],
+    }
 
-/// A generalized strip on the 16-bit lattice: up to 6 triangles on 8 vertices, triangle `k` on the
-/// vertices `k`, `k + 1` and `k + 2`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Strip16 {
-    /// The vertices; lanes that no triangle needs repeat one.
-    pub rows: Rows16,
-    /// Which of the triangles there are, and their corners.
-    pub members: StripMembers,
-}
+    /// A generalized strip on the 16-bit lattice: up to 6 triangles on 8 vertices, triangle *k* on the
+    /// vertices *k*, *k* + 1 and *k* + 2.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(54)]
+    pub struct Strip16 {
+        /// The vertices; lanes that no triangle needs repeat one.
+        pub rows: Rows16,
+        /// Which of the triangles there are, and their corners.
+        pub members: StripMembers,
+    }
 
-/// A generalized strip on the 24-bit lattice; see [`Strip16`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Strip24 {
-    /// The vertices; lanes that no triangle needs repeat one.
-    pub rows: Rows24,
-    /// Which of the triangles there are, and their corners.
-    pub members: StripMembers,
-}
+    /// A generalized strip on the 24-bit lattice; see [`Strip16`].
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(78)]
+    pub struct Strip24 {
+        /// The vertices; lanes that no triangle needs repeat one.
+        pub rows: Rows24,
+        /// Which of the triangles there are, and their corners.
+        pub members: StripMembers,
+    }
 
-/// A pack of up to 8 spheres on the 16-bit lattice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Pack16 {
-    /// The centers.
-    pub rows: Rows16,
-    /// The radii in units; 0 in the lanes behind the last sphere.
-    pub radii: [u16; LANES],
-}
+    /// A pack of up to 8 spheres on the 16-bit lattice.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(64)]
+    pub struct Pack16 {
+        /// The centers.
+        pub rows: Rows16,
+        /// The radii in units, at most 65534; 0 in the lanes behind the last sphere.
+        pub radii: [u16; LANES],
+    }
 
-/// A pack of up to 8 spheres on the 24-bit lattice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Pack24 {
-    /// The centers.
-    pub rows: Rows24,
-    /// For each lane the number of its radius in the pack's window: of lane 0 in the low half of the
-    /// first byte, of lane 1 in its high half. The radius is 0 in the lanes behind the last sphere.
-    pub radii: [u8; LANES / 2],
+    /// A pack of up to 8 spheres on the 24-bit lattice.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(76)]
+    pub struct Pack24 {
+        /// The centers.
+        pub rows: Rows24,
+        /// For each lane the number of its radius in the pack's window: of lane 0 in the low half of the
+        /// first byte, of lane 1 in its high half. The radius is 0 in the lanes behind the last sphere.
+        pub radii: [u8; LANES / 2],
+    }
 }
 
 /// A pack on the 24-bit lattice with its window of radii.
@@ -378,8 +389,3 @@ impl Pack for Windowed24<'_> {
         self.radii[(numbers >> (4 * (lane & 7)) & 15) as usize]
     }
 }
-
-const _: () = {
-    assert!(size_of::<Strip16>() == 54 && size_of::<Strip24>() == 78);
-    assert!(size_of::<Pack16>() == 64 && size_of::<Pack24>() == 76);
-};

@@ -5,12 +5,14 @@
 
 /// Hands the table of shapes to a macro. Triangles and spheres have several forms of records, for few bits and
 /// many, alone and in clusters. Every other shape has one record: its line says kind, number in the blob,
-/// name in tables and Cargo feature, slice of records, module of `geometry` and record, section.
+/// name in tables and Cargo feature, slice of records, module of `geometry` and record, section. What follows the
+/// macro's name is handed on before the table.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! shapes {
-    ($macro:ident) => {
+    ($macro:ident $(, $rest:ident)*) => {
         $macro! {
+            $($rest)*
             forms {
                 /// A triangle of an indexed mesh.
                 Triangle = 0, "triangle";

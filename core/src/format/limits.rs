@@ -21,7 +21,7 @@ pub const fn work_depth(depth: u8) -> usize {
 }
 
 /// How far from the lattice's middle an origin may be along each axis: 2^37 units, with 13 fraction bits.
-/// Eyes and lights of a blob are no farther away.
+/// Eyes and lights of a blob are no farther away, so sums and products with ratios stay in 64 bits.
 pub const FARTHEST: i64 = 1 << 50;
 
 /// The coarsest step of scene coordinates is a unit times 2 to the power of this less 13, so that a coordinate

@@ -4,14 +4,14 @@ use crate::format::kind::shapes;
 
 macro_rules! kinds {
     ($(
-        $(#[$doc:meta])*
-        $kind:ident = $number:literal, $name:literal, $record:literal of $owner:literal;
+        $(#[doc = $doc:expr])*
+        $kind:ident = $number:literal, $name:literal, [$($form:ty),*], $record:literal of $owner:literal;
     )*) => {
         /// The content of a section. The order of the numbers is the order of the sections in a blob.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         #[repr(u16)]
         pub enum SectionKind {
-            $($(#[$doc])* $kind = $number,)*
+            $($(#[doc = $doc])* $kind = $number,)*
         }
 
         impl SectionKind {
@@ -40,144 +40,149 @@ macro_rules! kinds {
     };
 }
 
+/// Hands the table of sections to a macro, given that of shapes. A line says number, name, the forms that a record can
+/// have, and what [`record_name`](SectionKind::record_name) returns.
 macro_rules! sections {
     (
+        $macro:ident
         forms { $($form:tt)* }
         records { $(
             $(#[doc = $doc:literal])* $shape:ident = $shape_number:literal, $feature:literal,
             [$field:ident: $module:ident::$record:ident], [$kind:ident = $number:literal, $name:literal];
         )* }
     ) => {
-        kinds! {
+        $macro! {
             /// One [`View`](crate::format::record::View).
-            View = 1, "view", "" of "";
+            View = 1, "view", [record::View], "" of "";
             /// [`Light`](crate::format::record::Light)s.
-            Lights = 2, "lights", "light" of "";
+            Lights = 2, "lights", [record::Light], "light" of "";
             /// [`Material`](crate::format::record::Material)s.
-            Materials = 3, "materials", "material" of "";
-            /// For each object, the number of its first primitive (2 to 4 bytes). Absent where every
+            Materials = 3, "materials", [record::Material], "material" of "";
+            /// For each object, the number of its first primitive. Absent where every
             /// object is one primitive, or all primitives are one object.
-            ObjectFirst = 4, "object-first", "object" of "";
-            /// For each object, its material (1 to 4 bytes). Absent where there is one material.
-            ObjectMaterial = 5, "object-material", "object" of "";
-            /// For each slot, the primitive that lies in it, counted in scene-file order (2 to 4 bytes).
+            ObjectFirst = 4, "object-first", [u16, [u8; 3], u32], "object" of "";
+            /// For each object, its material. Absent where there is one material.
+            ObjectMaterial = 5, "object-material", [u8, u16, [u8; 3], u32], "object" of "";
+            /// For each slot, the primitive that lies in it, counted in scene-file order.
             /// Absent where slots and primitives agree.
-            Order = 6, "order", "slot" of "";
+            Order = 6, "order", [u16, [u8; 3], u32], "slot" of "";
             /// [`Vertex16`](crate::format::record::Vertex16) or [`Vertex24`](crate::format::record::Vertex24).
-            Vertices = 7, "vertices", "vertex" of "";
+            Vertices = 7, "vertices", [record::Vertex16, record::Vertex24], "vertex" of "";
             /// Three vertex indices each, `u16` or `u32`.
-            Triangles = 8, "triangles", "triangle" of "";
+            Triangles = 8, "triangles", [[u16; 3], [u32; 3]], "triangle" of "";
             /// [`Sphere16`](crate::format::record::Sphere16) or [`Sphere24`](crate::format::record::Sphere24).
-            Spheres = 9, "spheres", "sphere" of "";
+            Spheres = 9, "spheres", [record::Sphere16, record::Sphere24], "sphere" of "";
             /// [`Leaf`](crate::format::Leaf)s, `u32` each.
-            Leaves = 13, "leaves", "leaf" of "";
+            Leaves = 13, "leaves", [u32], "leaf" of "";
             /// [`Pair`](crate::format::record::Pair)s of the ordinary hierarchy.
-            Pairs = 14, "pairs", "pair" of "bvh";
+            Pairs = 14, "pairs", [record::Pair], "pair" of "bvh";
             /// [`FlaggedPair`](crate::format::record::FlaggedPair)s.
-            FlaggedPairs = 15, "flagged-pairs", "pair" of "flagged";
+            FlaggedPairs = 15, "flagged-pairs", [record::FlaggedPair], "pair" of "flagged";
             /// [`DualNode`](crate::format::record::DualNode)s.
-            DualNodes = 16, "dual-nodes", "node" of "dual-split";
+            DualNodes = 16, "dual-nodes", [record::DualNode], "node" of "dual-split";
             /// One [`Gridels`](crate::format::record::Gridels): the partition of the cylinder cube.
-            CylinderGridels = 17, "cylinder-gridels", "" of "cylinder-cube";
-            /// For each pair of gridels, its list (1 to 4 bytes).
-            CylinderCells = 18, "cylinder-cells", "cell" of "cylinder-cube";
-            /// For each list, its first entry; then the number of entries (1 to 4 bytes).
-            CylinderStarts = 19, "cylinder-starts", "list" of "cylinder-cube";
-            /// The slots of all lists (1 to 3 bytes).
-            CylinderEntries = 20, "cylinder-entries", "entry" of "cylinder-cube";
+            CylinderGridels = 17, "cylinder-gridels", [record::Gridels], "" of "cylinder-cube";
+            /// For each pair of gridels, its list.
+            CylinderCells = 18, "cylinder-cells", [u8, u16, [u8; 3], u32], "cell" of "cylinder-cube";
+            /// For each list, its first entry; then the number of entries.
+            CylinderStarts = 19, "cylinder-starts", [u8, u16, [u8; 3], u32], "list" of "cylinder-cube";
+            /// The slots of all lists.
+            CylinderEntries = 20, "cylinder-entries", [u8, u16, [u8; 3], u32], "entry" of "cylinder-cube";
             /// One [`Gridels`](crate::format::record::Gridels): the partition of the tight cylinder cube.
-            TightGridels = 21, "tight-gridels", "" of "cylinder-cube-tight";
-            /// For each pair of gridels, its list (1 to 4 bytes).
-            TightCells = 22, "tight-cells", "cell" of "cylinder-cube-tight";
-            /// For each list, its first entry; then the number of entries (1 to 4 bytes).
-            TightStarts = 23, "tight-starts", "list" of "cylinder-cube-tight";
-            /// The slots of all lists (1 to 3 bytes).
-            TightEntries = 24, "tight-entries", "entry" of "cylinder-cube-tight";
-            /// For each entry, between which levels it and its neighbors lie (1 byte).
-            TightKeys = 25, "tight-keys", "key" of "cylinder-cube-tight";
+            TightGridels = 21, "tight-gridels", [record::Gridels], "" of "cylinder-cube-tight";
+            /// For each pair of gridels, its list.
+            TightCells = 22, "tight-cells", [u8, u16, [u8; 3], u32], "cell" of "cylinder-cube-tight";
+            /// For each list, its first entry; then the number of entries.
+            TightStarts = 23, "tight-starts", [u8, u16, [u8; 3], u32], "list" of "cylinder-cube-tight";
+            /// The slots of all lists.
+            TightEntries = 24, "tight-entries", [u8, u16, [u8; 3], u32], "entry" of "cylinder-cube-tight";
+            /// For each entry, between which levels it and its neighbors lie.
+            TightKeys = 25, "tight-keys", [u8], "key" of "cylinder-cube-tight";
             /// [`ApexPoint`](crate::format::record::ApexPoint)s.
-            ApexPoints = 26, "apex-points", "point" of "apex";
+            ApexPoints = 26, "apex-points", [record::ApexPoint], "point" of "apex";
             /// [`ApexWindow`](crate::format::record::ApexWindow)s.
-            ApexWindows = 27, "apex-windows", "window" of "apex";
-            /// For each cell of all windows, its list (1 to 4 bytes).
-            ApexCells = 28, "apex-cells", "cell" of "apex";
-            /// For each list, its first entry; then the number of entries (1 to 4 bytes).
-            ApexStarts = 29, "apex-starts", "list" of "apex";
-            /// The slots of all lists (1 to 3 bytes).
-            ApexEntries = 30, "apex-entries", "entry" of "apex";
-            /// For each entry, the level at which it can begin (1 byte).
-            ApexKeys = 31, "apex-keys", "key" of "apex";
+            ApexWindows = 27, "apex-windows", [record::ApexWindow], "window" of "apex";
+            /// For each cell of all windows, its list.
+            ApexCells = 28, "apex-cells", [u8, u16, [u8; 3], u32], "cell" of "apex";
+            /// For each list, its first entry; then the number of entries.
+            ApexStarts = 29, "apex-starts", [u8, u16, [u8; 3], u32], "list" of "apex";
+            /// The slots of all lists.
+            ApexEntries = 30, "apex-entries", [u8, u16, [u8; 3], u32], "entry" of "apex";
+            /// For each entry, the level at which it can begin.
+            ApexKeys = 31, "apex-keys", [u8], "key" of "apex";
             /// One [`Gridels`](crate::format::record::Gridels): the partition of the cube of entry nodes.
-            EntryGridels = 32, "entry-gridels", "" of "cylinder-cube-entry";
-            /// For each pair of gridels, its list (1 to 4 bytes).
-            EntryCells = 33, "entry-cells", "cell" of "cylinder-cube-entry";
-            /// For each list, its first entry; then the number of entries (1 to 4 bytes).
-            EntryStarts = 34, "entry-starts", "list" of "cylinder-cube-entry";
-            /// The nodes of all lists: numbers of pairs, and behind the last one of leaves (1 to 4 bytes).
-            EntryNodes = 35, "entry-nodes", "entry" of "cylinder-cube-entry";
-            /// For each entry, between which levels it and its neighbors lie (1 byte).
-            EntryKeys = 36, "entry-keys", "key" of "cylinder-cube-entry";
+            EntryGridels = 32, "entry-gridels", [record::Gridels], "" of "cylinder-cube-entry";
+            /// For each pair of gridels, its list.
+            EntryCells = 33, "entry-cells", [u8, u16, [u8; 3], u32], "cell" of "cylinder-cube-entry";
+            /// For each list, its first entry; then the number of entries.
+            EntryStarts = 34, "entry-starts", [u8, u16, [u8; 3], u32], "list" of "cylinder-cube-entry";
+            /// The nodes of all lists: numbers of pairs, and behind the last one of leaves.
+            EntryNodes = 35, "entry-nodes", [u8, u16, [u8; 3], u32], "entry" of "cylinder-cube-entry";
+            /// For each entry, between which levels it and its neighbors lie.
+            EntryKeys = 36, "entry-keys", [u8], "key" of "cylinder-cube-entry";
             /// [`ClassNode`](crate::format::ClassNode)s, `u32` each.
-            ClassNodes = 37, "class-nodes", "node" of "ray-classes";
-            /// For each class with a list, its list (1 to 4 bytes).
-            ClassCells = 38, "class-cells", "cell" of "ray-classes";
-            /// For each list, its first entry; then the number of entries (1 to 4 bytes).
-            ClassStarts = 39, "class-starts", "list" of "ray-classes";
-            /// The slots of all lists (1 to 3 bytes).
-            ClassEntries = 40, "class-entries", "entry" of "ray-classes";
-            /// For each entry, the level at which it can begin (1 byte).
-            ClassKeys = 41, "class-keys", "key" of "ray-classes";
+            ClassNodes = 37, "class-nodes", [u32], "node" of "ray-classes";
+            /// For each class with a list, its list.
+            ClassCells = 38, "class-cells", [u8, u16, [u8; 3], u32], "cell" of "ray-classes";
+            /// For each list, its first entry; then the number of entries.
+            ClassStarts = 39, "class-starts", [u8, u16, [u8; 3], u32], "list" of "ray-classes";
+            /// The slots of all lists.
+            ClassEntries = 40, "class-entries", [u8, u16, [u8; 3], u32], "entry" of "ray-classes";
+            /// For each entry, the level at which it can begin.
+            ClassKeys = 41, "class-keys", [u8], "key" of "ray-classes";
             /// [`WideNode`](crate::format::record::WideNode)s.
-            WideNodes = 42, "wide-nodes", "node" of "wide";
+            WideNodes = 42, "wide-nodes", [record::WideNode], "node" of "wide";
             /// [`Strip16`](crate::format::cluster::Strip16)s or [`Strip24`](crate::format::cluster::Strip24)s.
-            Strips = 43, "strips", "strip" of "wide";
+            Strips = 43, "strips", [cluster::Strip16, cluster::Strip24], "strip" of "wide";
             /// [`Pack16`](crate::format::cluster::Pack16)s or [`Pack24`](crate::format::cluster::Pack24)s.
-            Packs = 44, "packs", "pack" of "wide";
-            /// For each [member](crate::format::cluster) of the strips and packs, its primitive (2 to 4 bytes).
-            Members = 45, "members", "member" of "wide";
+            Packs = 44, "packs", [cluster::Pack16, cluster::Pack24], "pack" of "wide";
+            /// For each [member](crate::format::cluster) of the strips and packs, its primitive.
+            Members = 45, "members", [u16, [u8; 3], u32], "member" of "wide";
             /// For each slot, where the primitive lies in the eight-wide hierarchy: `u32` each. Only where
             /// the blob has other structures.
-            SlotLocations = 46, "slot-locations", "slot location" of "wide";
+            SlotLocations = 46, "slot-locations", [u32], "slot location" of "wide";
             /// The planes of the root of slabs, a word per direction.
-            SlabRoot = 47, "slab-root", "direction" of "slabs";
-            /// Pairs of slabs: see [`slabs`](crate::accel::hierarchy::slabs).
-            SlabPairs = 48, "slab-pairs", "pair" of "slabs";
+            SlabRoot = 47, "slab-root", [[i16; 2]], "direction" of "slabs";
+            /// Pairs of [slabs](crate::accel::hierarchy::slabs).
+            SlabPairs = 48, "slab-pairs", [[u32; 8], [u32; 16], [u32; 28]], "pair" of "slabs";
             /// The planes of the root of flagged slabs, a word per direction.
-            FlaggedSlabRoot = 49, "flagged-slab-root", "direction" of "flagged-slabs";
+            FlaggedSlabRoot = 49, "flagged-slab-root", [[i16; 2]], "direction" of "flagged-slabs";
             /// Flagged pairs of slabs.
-            FlaggedSlabPairs = 50, "flagged-slab-pairs", "pair" of "flagged-slabs";
+            FlaggedSlabPairs = 50, "flagged-slab-pairs", [[u32; 5], [u32; 9], [u32; 15]], "pair" of "flagged-slabs";
             /// [`SpherePair`](crate::format::record::SpherePair)s.
-            SpherePairs = 51, "sphere-pairs", "pair" of "spheres";
+            SpherePairs = 51, "sphere-pairs", [record::SpherePair], "pair" of "spheres";
             /// One [`GridShape`](crate::format::record::GridShape).
-            GridShape = 52, "grid-shape", "" of "grid";
-            /// For each cell of the grid, where its list begins; then where the last one ends (1 to 4 bytes).
-            GridStarts = 53, "grid-starts", "list" of "grid";
-            /// The slots in the cells of the grid (1 to 4 bytes).
-            GridSlots = 54, "grid-slots", "entry" of "grid";
+            GridShape = 52, "grid-shape", [record::GridShape], "" of "grid";
+            /// For each cell of the grid, where its list begins; then where the last one ends.
+            GridStarts = 53, "grid-starts", [u8, u16, [u8; 3], u32], "list" of "grid";
+            /// The slots in the cells of the grid.
+            GridSlots = 54, "grid-slots", [u8, u16, [u8; 3], u32], "entry" of "grid";
             /// [`OctreeNode`](crate::format::OctreeNode)s.
-            OctreeNodes = 55, "octree-nodes", "node" of "octree";
-            /// For each list of the octree, where it begins; then where the last one ends (1 to 4 bytes).
-            OctreeStarts = 56, "octree-starts", "list" of "octree";
-            /// The slots in the leaves of the octree (1 to 4 bytes).
-            OctreeSlots = 57, "octree-slots", "entry" of "octree";
+            OctreeNodes = 55, "octree-nodes", [u32], "node" of "octree";
+            /// For each list of the octree, where it begins; then where the last one ends.
+            OctreeStarts = 56, "octree-starts", [u8, u16, [u8; 3], u32], "list" of "octree";
+            /// The slots in the leaves of the octree.
+            OctreeSlots = 57, "octree-slots", [u8, u16, [u8; 3], u32], "entry" of "octree";
             /// [`ApexDirection`](crate::format::record::ApexDirection)s.
-            ApexDirections = 58, "apex-directions", "direction" of "apex";
+            ApexDirections = 58, "apex-directions", [record::ApexDirection], "direction" of "apex";
             /// Windows of [radii](crate::format::cluster) in 1/256 unit, `i32` each. Only for packs of 24 bits.
-            Radii = 59, "radii", "radius" of "wide";
+            Radii = 59, "radii", [i32], "radius" of "wide";
             /// For each object, then each material, then each light, where its name begins in the text;
-            /// then the length of the text (1 to 4 bytes). Absent where nothing has a name.
-            NameStarts = 61, "name-starts", "name" of "name-starts";
+            /// then the length of the text. Absent where nothing has a name.
+            NameStarts = 61, "name-starts", [u8, u16, [u8; 3], u32], "name" of "name-starts";
             /// The names, UTF-8, one behind the other.
-            NameText = 62, "name-text", "byte" of "name-text";
+            NameText = 62, "name-text", [u8], "byte" of "name-text";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),
                     "::", stringify!($record), ")s.",
                 )]
-                $kind = $number, $name, $feature of "";
+                $kind = $number, $name, [super::$module::$record], $feature of "";
             )*
         }
     };
 }
 
-shapes!(sections);
+shapes!(sections, kinds);
+
+pub(crate) use sections;

@@ -1,6 +1,7 @@
 //! The section table: where each array of records lies.
 
 use crate::format::error::{BlobError, Location};
+use crate::format::layout::Stored;
 use crate::format::reason::{Field, Reason};
 use crate::format::record::{ALIGNMENT, Header, SectionEntry};
 use crate::format::section::SectionKind;
@@ -101,7 +102,7 @@ impl<'a> Sections<'a> {
     }
 
     /// The records of a section, which must have the stride of `T` unless it is empty.
-    pub(crate) fn records<T: bytemuck::Pod>(
+    pub(crate) fn records<T: bytemuck::Pod + Stored>(
         &self,
         kind: SectionKind,
     ) -> Result<&'a [T], BlobError> {

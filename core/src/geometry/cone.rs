@@ -20,6 +20,8 @@
 //! axis, so no point is farther than two reaches from the middle; and `cos |Q| + g` is at most that
 //! and a radius: three reaches, below 2^31. Squares are below 2^62.
 
+use crate::format::layout::records;
+use crate::format::range::Ranges;
 use crate::format::record::UnitBox;
 use crate::format::{BlobError, Field, Reason};
 use crate::geometry::primitive::{InScene, MAX_RADIUS, Primitive};
@@ -28,28 +30,28 @@ use crate::number::Arithmetic;
 use crate::number::extent;
 use crate::ray::Ray;
 use bytemuck::{Pod, Zeroable};
-use core::mem::offset_of;
 
-/// A solid of revolution between two flat caps: cylinder, cone or frustum.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Cone {
-    /// Center of the base in 1/256 unit, like all of the record perhaps finer than the lattice.
-    pub base: [i32; 3],
-    /// Center of the other cap in 1/256 unit, not equal to `base`.
-    pub apex: [i32; 3],
-    /// Radius of the base in 1/256 unit.
-    pub base_radius: i32,
-    /// Radius of the other cap in 1/256 unit; not both radii are 0.
-    pub apex_radius: i32,
-    /// Its box.
-    pub bounds: UnitBox,
+records! {
+    /// A solid of revolution between two flat caps: cylinder, cone or frustum.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(44)]
+    pub struct Cone {
+        /// Center of the base in 1/256 unit, like all of the record perhaps finer than the lattice.
+        pub base: [i32; 3],
+        /// Center of the other cap in 1/256 unit, not equal to `base`.
+        pub apex: [i32; 3],
+        /// Radius of the base in 1/256 unit.
+        #[valid(Radius: 0..=MAX_RADIUS)]
+        pub base_radius: i32,
+        /// Radius of the other cap in 1/256 unit; not both radii are 0.
+        #[valid(Radius: 0..=MAX_RADIUS)]
+        pub apex_radius: i32,
+        /// The box, rounded outward from the true shape. A ray that misses the box misses the shape, and hits are
+        /// clamped to the box.
+        pub bounds: UnitBox,
+    }
 }
-
-const _: () = {
-    assert!(size_of::<Cone>() == 44);
-    assert!(offset_of!(Cone, base_radius) == 24 && offset_of!(Cone, bounds) == 32);
-};
 
 /// Part numbers.
 const MANTLE: Part = 0;
@@ -383,8 +385,8 @@ impl Primitive for Cone {
         scene.point(Field::BaseCenter, self.base)?;
         scene.point(Field::ApexCenter, self.apex)?;
         scene.at.ensure(self.base != self.apex, Reason::ZeroAxis)?;
+        self.check_ranges(scene.at)?;
         let radii = [self.base_radius, self.apex_radius];
-        scene.at.all_within(Field::Radius, &radii, 0, MAX_RADIUS)?;
         scene.at.ensure(radii != [0; 2], Reason::ZeroRadii)?;
         scene.inner(&self.bounds)
     }

@@ -9,6 +9,7 @@
 //! by more (see [`cull`](crate::accel)).
 
 use crate::axis::pick;
+use crate::format::layout::records;
 use crate::format::record::UnitBox;
 use crate::format::{BlobError, Field, Reason};
 use crate::geometry::primitive::{InScene, Primitive};
@@ -17,17 +18,18 @@ use crate::number::Arithmetic;
 use crate::ray::Ray;
 use bytemuck::{Pod, Zeroable};
 
-/// An axis-aligned box.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Cuboid {
-    /// Smallest coordinates in 1/256 unit.
-    pub lowest: [i32; 3],
-    /// Largest coordinates in 1/256 unit, none below `lowest`.
-    pub highest: [i32; 3],
+records! {
+    /// An axis-aligned box.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(24)]
+    pub struct Cuboid {
+        /// Smallest coordinates in 1/256 unit.
+        pub lowest: [i32; 3],
+        /// Largest coordinates in 1/256 unit, none below `lowest`.
+        pub highest: [i32; 3],
+    }
 }
-
-const _: () = assert!(size_of::<Cuboid>() == 24);
 
 impl Primitive for Cuboid {
     const CLAMPS: bool = false;

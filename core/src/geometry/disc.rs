@@ -1,5 +1,7 @@
 //! Flat discs: the crossing of their plane, if it lies no farther than the radius from the center.
 
+use crate::format::layout::records;
+use crate::format::range::Ranges;
 use crate::format::record::UnitBox;
 use crate::format::{BlobError, Field, Reason};
 use crate::geometry::primitive::{InScene, MAX_RADIUS, Primitive};
@@ -7,26 +9,26 @@ use crate::geometry::{Crossing, Part, Surface, cross_plane, flat};
 use crate::number::Arithmetic;
 use crate::ray::Ray;
 use bytemuck::{Pod, Zeroable};
-use core::mem::offset_of;
 
-/// A flat disc.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Disc {
-    /// Center in 1/256 unit.
-    pub center: [i32; 3],
-    /// Normal; not zero, magnitudes below 2^24, of any length.
-    pub normal: [i32; 3],
-    /// Radius in 1/256 unit, above 0.
-    pub radius: i32,
-    /// Its box.
-    pub bounds: UnitBox,
+records! {
+    /// A flat disc.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(40)]
+    pub struct Disc {
+        /// Center in 1/256 unit.
+        pub center: [i32; 3],
+        /// Normal of any length, not zero.
+        #[valid(Normal: -(1 << 24)..=1 << 24)]
+        pub normal: [i32; 3],
+        /// Radius in 1/256 unit.
+        #[valid(Radius: 1..=MAX_RADIUS)]
+        pub radius: i32,
+        /// The box, rounded outward from the true shape. A ray that misses the box misses the shape, and hits are
+        /// clamped to the box.
+        pub bounds: UnitBox,
+    }
 }
-
-const _: () = {
-    assert!(size_of::<Disc>() == 40);
-    assert!(offset_of!(Disc, radius) == 24 && offset_of!(Disc, bounds) == 28);
-};
 
 impl Disc {
     fn normal<N: Arithmetic>(&self) -> [N; 3] {
@@ -72,9 +74,8 @@ impl Primitive for Disc {
     fn validate(&self, scene: InScene<'_>) -> Result<(), BlobError> {
         let at = scene.at;
         scene.point(Field::Center, self.center)?;
-        at.all_within(Field::Normal, &self.normal, -(1 << 24), 1 << 24)?;
+        self.check_ranges(at)?;
         at.ensure(self.normal != [0; 3], Reason::ZeroNormal)?;
-        at.within(Field::Radius, self.radius.into(), 1, MAX_RADIUS)?;
         scene.inner(&self.bounds)
     }
 }

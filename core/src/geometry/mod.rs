@@ -7,6 +7,7 @@
 pub(crate) mod cluster;
 mod crossing;
 mod flat;
+mod layouts;
 pub(crate) mod pack;
 pub(crate) mod primitive;
 mod primitive_id;

@@ -6,26 +6,33 @@
 //! plane's all the same.
 
 use crate::axis::pick;
+use crate::format::layout::records;
 use crate::format::limits::FARTHEST_POINT;
+use crate::format::range::Ranges;
 use crate::format::record::UnitBox;
-use crate::format::{BlobError, Field, Reason};
+use crate::format::{BlobError, Reason};
 use crate::geometry::primitive::{InScene, Primitive};
 use crate::geometry::{Crossing, Part, Surface, cross_plane, flat};
 use crate::number::{Arithmetic, extent};
 use crate::ray::Ray;
 use bytemuck::{Pod, Zeroable};
 
-/// An infinite plane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Plane {
-    /// A point of it in 1/256 unit, at most 2^17 units from the lattice's middle on every axis.
-    pub point: [i32; 3],
-    /// Normal; not zero, magnitudes below 2^24, of any length.
-    pub normal: [i32; 3],
+records! {
+    /// An infinite plane.
+    ///
+    /// It has no box, and the header's bounds do not hold it. No structure leads to planes: every query tests all of them.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(24)]
+    pub struct Plane {
+        /// A point of it in 1/256 unit, at most 2^17 units from the lattice's middle on every axis.
+        #[valid(Point: -FARTHEST_POINT..=FARTHEST_POINT)]
+        pub point: [i32; 3],
+        /// Normal of any length, not zero.
+        #[valid(Normal: -(1 << 24)..=1 << 24)]
+        pub normal: [i32; 3],
+    }
 }
-
-const _: () = assert!(size_of::<Plane>() == 24);
 
 impl Plane {
     /// The normal as it is stored, scaled by a power of two: without any rounding.
@@ -128,8 +135,7 @@ impl Primitive for Plane {
 
     fn validate(&self, scene: InScene<'_>) -> Result<(), BlobError> {
         let at = scene.at;
-        at.all_within(Field::Point, &self.point, -FARTHEST_POINT, FARTHEST_POINT)?;
-        at.all_within(Field::Normal, &self.normal, -(1 << 24), 1 << 24)?;
+        self.check_ranges(at)?;
         at.ensure(self.normal != [0; 3], Reason::ZeroNormal)
     }
 }

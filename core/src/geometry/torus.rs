@@ -16,6 +16,8 @@
 mod frame;
 mod profile;
 
+use crate::format::layout::records;
+use crate::format::range::Ranges;
 use crate::format::record::UnitBox;
 use crate::format::{BlobError, Field, Reason};
 use crate::geometry::primitive::{InScene, MAX_RADIUS, Primitive};
@@ -24,30 +26,33 @@ use crate::number::Arithmetic;
 use crate::number::extent;
 use crate::ray::Ray;
 use bytemuck::{Pod, Zeroable};
-use core::mem::offset_of;
 use frame::{Frame, unit};
 use profile::Profile;
 
-/// A torus.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Torus {
-    /// Center in 1/256 unit.
-    pub center: [i32; 3],
-    /// The axis of rotation; not zero, magnitudes of at most 2^24, of any length.
-    pub axis: [i32; 3],
-    /// Radius of the circle in 1/256 unit, not negative.
-    pub major_radius: i32,
-    /// Radius of the disc that is swept along the circle in 1/256 unit, above 0.
-    pub minor_radius: i32,
-    /// Its box.
-    pub bounds: UnitBox,
+records! {
+    /// A torus: the solid that a disc of the minor radius sweeps along the circle of the major radius.
+    ///
+    /// Where the minor radius is larger, the surface is the outer one alone.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(44)]
+    pub struct Torus {
+        /// Center in 1/256 unit.
+        pub center: [i32; 3],
+        /// The axis of rotation, of any length, not zero.
+        #[valid(Axis: -(1 << 24)..=1 << 24)]
+        pub axis: [i32; 3],
+        /// Radius of the circle in 1/256 unit. 0 makes a sphere; the sum of both radii is at most 16776704.
+        #[valid(Radius: 0..=MAX_RADIUS)]
+        pub major_radius: i32,
+        /// Radius of the disc that is swept along the circle in 1/256 unit.
+        #[valid(Radius: 1..=MAX_RADIUS)]
+        pub minor_radius: i32,
+        /// The box, rounded outward from the true shape. A ray that misses the box misses the shape, and hits are
+        /// clamped to the box.
+        pub bounds: UnitBox,
+    }
 }
-
-const _: () = {
-    assert!(size_of::<Torus>() == 44);
-    assert!(offset_of!(Torus, major_radius) == 24 && offset_of!(Torus, bounds) == 32);
-};
 
 /// A point near the surface as seen from the center.
 struct TorusPoint<N> {
@@ -208,10 +213,9 @@ impl Primitive for Torus {
     fn validate(&self, scene: InScene<'_>) -> Result<(), BlobError> {
         let at = scene.at;
         scene.point(Field::Center, self.center)?;
-        at.all_within(Field::Axis, &self.axis, -(1 << 24), 1 << 24)?;
+        self.check_ranges(at)?;
         at.ensure(self.axis != [0; 3], Reason::ZeroAxis)?;
         let [major, minor] = [self.major_radius, self.minor_radius].map(i64::from);
-        at.within(Field::Radius, minor, 1, MAX_RADIUS)?;
         // The sum of both is the reach.
         at.within(Field::Radius, major, 0, MAX_RADIUS.saturating_sub(minor))?;
         scene.inner(&self.bounds)

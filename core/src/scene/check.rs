@@ -1,7 +1,8 @@
 //! The proofs that [`Scene::from_bytes`] makes, in the order in which each relies on those before.
 
 use crate::accel::StructureViews;
-use crate::format::range::{At, exactly};
+use crate::format::limits::FARTHEST;
+use crate::format::range::{At, Ranges, exactly};
 use crate::format::record::{Header, Light, Material};
 use crate::format::{
     BlobError, Effects, Field, Kind, Leaf, Location, Reason, SectionKind, Sections, checksum,
@@ -9,7 +10,6 @@ use crate::format::{
 use crate::number::Fixed;
 use crate::number::Scalar;
 use crate::scene::Scene;
-use crate::scene::read::{FAR, RADIANCE};
 
 /// Proves that no byte of a blob was changed since it was written.
 pub(crate) fn check_sum(blob: &[u8], header: &Header) -> Result<(), BlobError> {
@@ -45,9 +45,12 @@ fn check_lights(scene: &Scene<'_>) -> Result<(), BlobError> {
 pub(super) fn check_light(index: usize, light: &Light) -> Result<(), BlobError> {
     let section = SectionKind::Lights;
     let at = At { section, index };
-    at.within(Field::Kind, light.directional.into(), 0, 1)?;
-    at.all_within(Field::Color, &light.color, 0, RADIANCE)?;
-    let most = if light.directional == 1 { ONE } else { FAR };
+    light.check_ranges(at)?;
+    let most = if light.directional == 1 {
+        ONE
+    } else {
+        FARTHEST
+    };
     at.all_within(Field::PositionOrDirection, &light.vector, -most, most)?;
     let zero = light.directional == 1 && light.vector == [0; 3];
     at.ensure(!zero, Reason::ZeroDirection)
@@ -85,21 +88,7 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
 pub(super) fn check_material(index: usize, material: &Material) -> Result<(), BlobError> {
     let section = SectionKind::Materials;
     let at = At { section, index };
-    let colors = [
-        (Field::Diffuse, material.diffuse),
-        (Field::Odd, material.odd),
-        (Field::Highlight, material.highlight),
-        (Field::Mirror, material.mirror),
-        (Field::Transmittance, material.transmit),
-    ];
-    for (field, color) in colors {
-        at.all_within(field, &color, 0, ONE)?;
-    }
-    at.within(Field::InverseIor, material.inverse_ior.into(), ONE / 4, ONE)?;
-    at.within(Field::Shininess, material.shininess.into(), 1, 1024)?;
-    // The pattern repeats after two cells, which are a length, too.
-    at.within(Field::CheckerSize, material.checker_size.into(), 0, ONE - 1)?;
-    at.all_within(Field::CheckerOrigin, &material.checker_origin, -ONE, ONE)?;
+    material.check_ranges(at)?;
     at.ensure(material.spare == 0, Reason::SpareNotZero)
 }
 

@@ -3,10 +3,8 @@
 use crate::accel::StructureViews;
 use crate::accel::space::Space;
 use crate::accel::stack::Entry;
-use crate::format::limits::{
-    DISPLAY_VALUES, FARTHEST, MAX_COORDINATE_SHIFT, MAX_RAY_DEPTH, MAX_SAMPLES, MAX_STACK_DEPTH,
-};
-use crate::format::range::{At, at_most, exactly};
+use crate::format::limits::DISPLAY_VALUES;
+use crate::format::range::{At, InHeader, Ranges, exactly};
 use crate::format::record::{ALIGNMENT, ENDIANNESS, Header, MAGIC, VERSION, View};
 use crate::format::{
     BlobError, Effects, Field, Indices, Location, Reason, SectionKind, Sections, Structure,
@@ -16,11 +14,6 @@ use crate::scene::Scene;
 use crate::simd::SimdLevel;
 use crate::target::{AllStructuresOnly, WideOnly};
 use core::mem::size_of;
-
-/// Largest magnitude of a far coordinate, so that sums and products with ratios stay in 64 bits.
-pub(crate) const FAR: i64 = FARTHEST;
-/// The largest radiance.
-pub(crate) const RADIANCE: i64 = i32::MAX as i64;
 
 /// The header of what is a blob of this version and byte order, and as long as it says.
 pub(crate) fn header(blob: &[u8]) -> Result<&Header, BlobError> {
@@ -102,20 +95,11 @@ fn check_limits(header: &Header) -> Result<(), BlobError> {
     header_has(unknown == 0, Reason::UnknownStructures)?;
     let list = header.structures & Structure::List.bit();
     header_has(list != 0, Reason::MissingList)?;
-    at_most(
-        Field::StackDepth,
-        header.stack_depth.into(),
-        MAX_STACK_DEPTH as u32,
-    )?;
+    header.check_ranges(InHeader)?;
     let stack_bytes = u32::from(header.stack_depth) * size_of::<Entry>() as u32;
     exactly(Field::StackBytes, header.stack_bytes, stack_bytes)?;
-    at_most(Field::LatticeBits, header.lattice_bits.into(), 24)?;
     let storage_bits = if header.lattice_bits <= 16 { 16 } else { 24 };
     exactly(Field::StorageBits, header.storage_bits.into(), storage_bits)?;
-    if header.unit_exponent.unsigned_abs() > 1000 {
-        let found = header.unit_exponent.into();
-        return Err(Location::Header.out_of_range(Field::UnitExponent, found, [-1000, 1000]));
-    }
     let finite = header.origin.iter().all(|origin| origin.is_finite());
     header_has(finite, Reason::OriginNotFinite)?;
     let mut sides = header.bounds.0.iter();
@@ -125,12 +109,6 @@ fn check_limits(header: &Header) -> Result<(), BlobError> {
         sides.all(|[low, _]| *low != i16::MIN),
         Reason::ReservedBounds,
     )?;
-    at_most(
-        Field::CoordinateShift,
-        header.coordinate_shift.into(),
-        MAX_COORDINATE_SHIFT.into(),
-    )?;
-    at_most(Field::CoordinateOrigin, header.coordinate_origin.into(), 1)?;
     header_has(header.spare == [0; 3], Reason::SpareNotZero)?;
     Ok(())
 }
@@ -153,18 +131,7 @@ fn the_view<'a>(sections: &Sections<'a>) -> Result<&'a View, BlobError> {
 pub(super) fn check_view(view: &View) -> Result<(), BlobError> {
     let section = SectionKind::View;
     let at = At { section, index: 0 };
-    at.all_within(Field::Eye, &view.eye, -FAR, FAR)?;
-    for vector in [view.forward, view.right, view.up] {
-        at.all_within(Field::CameraVector, &vector, -(1 << 28), 1 << 28)?;
-    }
-    at.all_within(Field::Background, &view.background, 0, RADIANCE)?;
-    at.all_within(Field::AmbientLight, &view.ambient, 0, RADIANCE)?;
-    at.within(Field::Cutoff, view.cutoff.into(), 0, RADIANCE)?;
-    at.within(Field::Width, view.width.into(), 1, u16::MAX.into())?;
-    at.within(Field::Height, view.height.into(), 1, u16::MAX.into())?;
-    at.within(Field::Samples, view.samples.into(), 1, MAX_SAMPLES.into())?;
-    at.within(Field::RayDepth, view.depth.into(), 0, MAX_RAY_DEPTH as i64)?;
-    at.within(Field::DisplayValues, view.display_values.into(), 0, 1)?;
+    view.check_ranges(at)?;
     if !DISPLAY_VALUES && view.display_values != 0 {
         let missing = "display-values";
         return Err(BlobError::MissingPart { missing });

@@ -1,6 +1,7 @@
 //! Sections of a blob before they have places.
 
 use gridel_core::format::SectionKind;
+use gridel_core::format::layout::Stored;
 use gridel_core::format::record::{ALIGNMENT, SectionEntry};
 
 /// A section before it has a place.
@@ -12,7 +13,7 @@ pub struct Section {
 }
 
 /// A section of records.
-pub fn section<T: bytemuck::NoUninit>(kind: SectionKind, records: &[T]) -> Section {
+pub fn section<T: bytemuck::NoUninit + Stored>(kind: SectionKind, records: &[T]) -> Section {
     Section {
         kind,
         stride: size_of::<T>(),

@@ -210,6 +210,12 @@ pub fn write(parts: Parts) -> Result<Blob, CompileError> {
     let mut entries = Vec::with_capacity(sections.len());
     for section in &sections {
         offset = offset.next_multiple_of(ALIGNMENT);
+        let mut forms = section.kind.layout().records.iter();
+        debug_assert!(
+            forms.any(|form| form.bytes == section.stride),
+            "{:?}",
+            section.kind
+        );
         entries.push(SectionEntry {
             kind: section.kind as u16,
             stride: section.stride as u16,

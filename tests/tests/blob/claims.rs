@@ -1,6 +1,6 @@
 //! Records that are valid one by one and lie together, and headers that claim what no section proves.
 
-use super::forged::section;
+use super::forged::{field, section};
 use super::{small_blob, works};
 use glam::DVec3;
 use gridel_core::Structure;
@@ -12,6 +12,7 @@ use gridel_host::scene::Shape;
 use gridel_host::shape::Sphere;
 use gridel_tests::fuzz::{Base, agree, sealed, some_rays, speaks};
 use gridel_tests::scenes;
+use std::mem::offset_of;
 
 /// A blob of one structure.
 fn alone(structure: Structure, scene: &gridel_host::scene::Scene, lattice_bits: u8) -> Vec<u8> {
@@ -90,7 +91,7 @@ fn pack_radii_that_wrap_are_rejected() {
     let bytes = alone(Structure::Wide, &scenes::of(spheres), 16);
     let (_, packs) = section(&bytes, SectionKind::Packs);
     for pack in 0..packs.count as usize {
-        let radii = packs.offset as usize + (pack + 1) * size_of::<Pack16>() - 16;
+        let radii = field(&packs, pack, offset_of!(Pack16, radii));
         for place in (radii..radii + 16).step_by(2) {
             let mut forged = bytes.clone();
             let radius = u16::from_le_bytes([bytes[place], bytes[place + 1]]);
@@ -110,12 +111,13 @@ fn strip_vertices_that_wrap_are_rejected_or_in_no_triangle() {
     let (_, strips) = section(&bytes, SectionKind::Strips);
     let mut rejected = 0;
     for strip in 0..strips.count as usize {
-        let start = strips.offset as usize + strip * size_of::<Strip24>();
+        let low_bits = field(&strips, strip, offset_of!(Strip24, rows.low));
+        let high_bits = field(&strips, strip, offset_of!(Strip24, rows.high));
         for (axis, lane) in (0..3).flat_map(|axis| (0..8).map(move |lane| (axis, lane))) {
             let mut forged = bytes.clone();
-            let low = start + 16 * axis + 2 * lane;
+            let low = low_bits + 16 * axis + 2 * lane;
             forged[low..low + 2].copy_from_slice(&0xff80_u16.to_le_bytes());
-            forged[start + 48 + 8 * axis + 2 * (lane & 3) + (lane >> 2)] = 0x7f;
+            forged[high_bits + 8 * axis + 2 * (lane & 3) + (lane >> 2)] = 0x7f;
             match sealed(&forged).scene() {
                 Ok(scene) => agree(&scene, &some_rays(&scene, lane as u64)),
                 Err(error) => {

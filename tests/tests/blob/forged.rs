@@ -91,14 +91,23 @@ fn odd_but_finite_origins_are_harmless() {
 /// Where a section lies, and its entry's place in the table.
 pub fn section(bytes: &[u8], kind: SectionKind) -> (usize, SectionEntry) {
     let header: Header = bytemuck::pod_read_unaligned(&bytes[..size_of::<Header>()]);
-    let places = (0..usize::from(header.section_count)).map(|index| 96 + 16 * index);
-    let mut entries = places.map(|place| {
-        let entry: SectionEntry = bytemuck::pod_read_unaligned(&bytes[place..place + 16]);
-        (place, entry)
-    });
+    let entries = bytes[size_of::<Header>()..].chunks_exact(size_of::<SectionEntry>());
+    let mut entries =
+        entries
+            .take(header.section_count.into())
+            .enumerate()
+            .map(|(index, entry)| {
+                let place = size_of::<Header>() + index * size_of::<SectionEntry>();
+                (place, bytemuck::pod_read_unaligned::<SectionEntry>(entry))
+            });
     entries
         .find(|(_, entry)| entry.kind == kind as u16)
         .expect("the section")
+}
+
+/// Where a field of a record lies, given its offset in the record.
+pub fn field(section: &SectionEntry, record: usize, offset: usize) -> usize {
+    section.offset as usize + record * usize::from(section.stride) + offset
 }
 
 #[test]
@@ -153,7 +162,8 @@ fn forged_sections_are_rejected() {
         ];
         for forged in forgeries {
             let mut changed = bytes.clone();
-            changed[place..place + 16].copy_from_slice(bytemuck::bytes_of(&forged));
+            changed[place..place + size_of_val(&forged)]
+                .copy_from_slice(bytemuck::bytes_of(&forged));
             let blob = sealed(&changed);
             // Names are read, and proved, apart from the scene.
             let names = || Names::from_bytes(blob.bytes()).err();
@@ -179,8 +189,8 @@ fn cycles_and_orphans_are_rejected() {
     let word_at = |place: usize| bytemuck::pod_read_unaligned::<u32>(&bytes[place..place + 4]);
     let pairs = section(&bytes, SectionKind::Pairs).1;
     for index in 0..pairs.count {
-        let end = pairs.offset as usize + (index as usize + 1) * size_of::<Pair>();
-        for place in [end - 8, end - 4] {
+        let left = field(&pairs, index as usize, offset_of!(Pair, children));
+        for place in [left, left + 4] {
             let word = word_at(place);
             for number in [
                 0,
@@ -198,8 +208,8 @@ fn cycles_and_orphans_are_rejected() {
     }
     let flagged = section(&bytes, SectionKind::FlaggedPairs).1;
     for index in 0..flagged.count {
-        let end = flagged.offset as usize + (index as usize + 1) * size_of::<FlaggedPair>();
-        let word = word_at(end - 4);
+        let place = field(&flagged, index as usize, offset_of!(FlaggedPair, link));
+        let word = word_at(place);
         let next = Link(word).first_pair() + 1;
         for first in [
             0,
@@ -211,14 +221,14 @@ fn cycles_and_orphans_are_rejected() {
         ] {
             for (left, right) in [(false, false), (true, false), (false, true), (true, true)] {
                 let link = Link::new(first, left, right).with_owners(word >> 26);
-                forge(end - 4, link.0);
+                forge(place, link.0);
             }
         }
     }
     let dual = section(&bytes, SectionKind::DualNodes).1;
     for index in 0..dual.count {
-        let end = dual.offset as usize + (index as usize + 1) * size_of::<DualNode>();
-        let way = NodeWord(word_at(end - 4));
+        let place = field(&dual, index as usize, offset_of!(DualNode, word));
+        let way = NodeWord(word_at(place));
         let carves = way.carves().map(|axis| axis as u32);
         for number in [
             0,
@@ -229,15 +239,15 @@ fn cycles_and_orphans_are_rejected() {
             0xff_ffff,
         ] {
             for split in 0..4 {
-                forge(end - 4, NodeWord::new(number, split, carves).0);
+                forge(place, NodeWord::new(number, split, carves).0);
             }
         }
-        forge(end - 4, way.0 | 1 << 31);
+        forge(place, way.0 | 1 << 31);
     }
     let nodes = section(&bytes, SectionKind::WideNodes).1;
     for index in 0..nodes.count {
-        let end = nodes.offset as usize + (index as usize + 1) * size_of::<WideNode>();
-        for place in (end - 32..end).step_by(4) {
+        let first = field(&nodes, index as usize, offset_of!(WideNode, children));
+        for place in (first..first + 32).step_by(4) {
             let word = word_at(place);
             for number in [
                 0,
@@ -286,7 +296,7 @@ fn forged_packs_are_rejected() {
     };
     let of_pack = |pack: usize| {
         let (_, packs) = section(&bytes, SectionKind::Packs);
-        packs.offset as usize + (pack + 1) * size_of::<Pack24>() - 4
+        field(&packs, pack, offset_of!(Pack24, radii))
     };
     let two = |first: u8, second: u8| [first | second << 4];
     rejects("a pack with a hole", of_pack(0) + 1, &two(none, radius));

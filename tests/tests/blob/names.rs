@@ -3,6 +3,7 @@
 use super::forged::section;
 use super::{small_scene, works};
 use glam::DVec3;
+use gridel_core::format::record::SectionEntry;
 use gridel_core::format::{BlobError, SectionKind};
 use gridel_core::{Names, Scene};
 use gridel_host::blob::Blob;
@@ -234,19 +235,16 @@ fn forged_names_are_errors_that_name_the_record() {
 fn damaged_names_never_panic() {
     let blob = built(&named_scene(), true);
     let mut random = Random(5);
-    let (starts, text) = (
-        section(blob.bytes(), SectionKind::NameStarts).1,
-        section(blob.bytes(), SectionKind::NameText).1,
-    );
+    let (table, starts) = section(blob.bytes(), SectionKind::NameStarts);
+    let (_, text) = section(blob.bytes(), SectionKind::NameText);
     let end = text.offset as usize + text.count as usize;
     let mut accepted = 0;
     for _ in 0..20_000 {
         let mut bytes = blob.bytes().to_vec();
         for _ in 0..=random.below(3) {
-            // Also the last two entries of the section table.
-            let table = 96 + 16 * (bytes[14] as usize - 2);
             let place = match random.below(3) {
-                0 => table + random.below(32),
+                // The entries of both sections in the table.
+                0 => table + random.below(2 * size_of::<SectionEntry>()),
                 _ => starts.offset as usize + random.below(end - starts.offset as usize),
             };
             bytes[place] = random.bits() as u8;

@@ -11,6 +11,7 @@ mod memory;
 mod paper;
 mod peers;
 mod pictures;
+mod records;
 mod tables;
 mod times;
 mod variables;
@@ -147,6 +148,7 @@ fn holds_table(document: &str, mark: &str, table: &str) {
     assert_eq!(shown, table, "{document}: GRIDEL_BLESS=1 writes the table");
 }
 
+const FORMAT: &str = "core/FORMAT.md";
 const README: &str = "README.md";
 const BENCHMARKS: &str = "host/docs/BENCHMARKS.md";
 const MEMORY: &str = "host/docs/MEMORY.md";

@@ -1,16 +1,9 @@
 //! Tables of `core/FORMAT.md` that the core's declarations generate.
 
-use super::{holds_table, repository};
+use super::{FORMAT, holds_table, repository};
 use glam::DVec3;
-use gridel_core::format::cluster::{Pack16, Pack24, Strip16, Strip24};
-use gridel_core::format::record::{
-    ApexDirection, ApexPoint, ApexWindow, DualNode, FlaggedPair, GridShape, Gridels, Header, Light,
-    Material, Pair, SectionEntry, Sphere16, Sphere24, SpherePair, Vertex16, Vertex24, View,
-    WideNode,
-};
+use gridel_core::format::record::{Header, SectionEntry};
 use gridel_core::format::{Kind, SectionKind};
-use gridel_core::geometry::{cone, cuboid, disc, plane, torus};
-use gridel_core::shared::DIRECTION_COUNTS;
 use gridel_core::{Effects, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::{self, Shape};
@@ -18,102 +11,6 @@ use gridel_host::shape::{Plane, Torus};
 use gridel_tests::scenes;
 use std::collections::BTreeSet;
 use std::fs;
-
-const FORMAT: &str = "core/FORMAT.md";
-
-/// The record of a section, its strides in bytes, and the property of a blob that decides between them.
-fn record(kind: SectionKind) -> (&'static str, Vec<usize>, &'static str) {
-    use SectionKind as S;
-    /// Bytes of `T`.
-    fn one<T>(record: &'static str) -> (&'static str, Vec<usize>, &'static str) {
-        (record, vec![size_of::<T>()], "")
-    }
-    fn by_bits<A, B>(record: &'static str) -> (&'static str, Vec<usize>, &'static str) {
-        let strides = vec![size_of::<A>(), size_of::<B>()];
-        (record, strides, ", by storage bits")
-    }
-    let by_directions = |record, bytes: fn(usize) -> usize| {
-        let strides = DIRECTION_COUNTS.map(bytes).to_vec();
-        (record, strides, ", by directions")
-    };
-    let index = |record, least: usize| (record, (least..=4).collect(), "");
-    match kind {
-        S::View => one::<View>("view, exactly one"),
-        S::Lights => one::<Light>("light"),
-        S::Materials => one::<Material>("material"),
-        S::ObjectFirst | S::Order => index("index", 2),
-        S::ObjectMaterial => index("index", 1),
-        S::Vertices => by_bits::<Vertex16, Vertex24>("vertex"),
-        S::Triangles => ("triangle", vec![6, 12], ""),
-        S::Spheres => by_bits::<Sphere16, Sphere24>("sphere"),
-        S::Boxes => one::<cuboid::Cuboid>("cuboid"),
-        S::Discs => one::<disc::Disc>("disc"),
-        S::Cones => one::<cone::Cone>("cone"),
-        S::Tori => one::<torus::Torus>("torus"),
-        S::Planes => one::<plane::Plane>("plane"),
-        S::Leaves => one::<u32>("leaf"),
-        S::Pairs => one::<Pair>("pair"),
-        S::FlaggedPairs => one::<FlaggedPair>("flagged pair"),
-        S::DualNodes => one::<DualNode>("dual-split node"),
-        S::CylinderGridels | S::TightGridels | S::EntryGridels => {
-            one::<Gridels>("gridels, exactly one")
-        }
-        S::CylinderCells | S::TightCells | S::ApexCells | S::EntryCells | S::ClassCells => {
-            index("number of a list", 1)
-        }
-        S::CylinderStarts | S::TightStarts | S::ApexStarts | S::EntryStarts | S::ClassStarts => {
-            index("first entry of a list", 1)
-        }
-        S::CylinderEntries | S::TightEntries | S::ApexEntries | S::ClassEntries => index("slot", 1),
-        S::EntryNodes => index("node of `bvh`", 1),
-        S::TightKeys | S::EntryKeys => one::<u8>("two levels"),
-        S::ApexKeys | S::ClassKeys => one::<u8>("level"),
-        S::ApexPoints => one::<ApexPoint>("apex"),
-        S::ApexWindows => one::<ApexWindow>("window"),
-        S::ApexDirections => one::<ApexDirection>("direction"),
-        S::ClassNodes => one::<u32>("class"),
-        S::WideNodes => one::<WideNode>("wide node"),
-        S::Strips => by_bits::<Strip16, Strip24>("strip"),
-        S::Packs => by_bits::<Pack16, Pack24>("pack"),
-        S::Members => index("index of a primitive or a slot", 2),
-        S::SlotLocations => one::<u32>("location of a slot"),
-        S::Radii => one::<i32>("radius in 1/256 unit"),
-        S::SlabRoot | S::FlaggedSlabRoot => one::<[i16; 2]>("[2]i16 per direction"),
-        S::SlabPairs => by_directions("slab pair", |directions| 8 * directions + 8),
-        S::FlaggedSlabPairs => by_directions("flagged slab pair", |directions| 4 * directions + 8),
-        S::SpherePairs => one::<SpherePair>("sphere pair"),
-        S::GridShape => one::<GridShape>("grid shape, exactly one"),
-        S::GridStarts | S::OctreeStarts => index("first entry of a list", 1),
-        S::GridSlots | S::OctreeSlots => index("slot", 1),
-        S::OctreeNodes => one::<u32>("octree node"),
-        S::NameStarts => index("first byte of a name", 1),
-        S::NameText => one::<u8>("u8"),
-    }
-}
-
-/// Words joined by commas, the last by "or".
-fn either(strides: &[usize]) -> String {
-    let words: Vec<_> = strides.iter().map(usize::to_string).collect();
-    match words.split_last() {
-        Some((last, [])) => last.clone(),
-        Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
-        None => String::new(),
-    }
-}
-
-#[test]
-fn format_lists_every_section() {
-    let mut table = String::from("| kind | name | record | stride |\n|---|---|---|---|\n");
-    for kind in SectionKind::ALL {
-        let (record, strides, by) = record(kind);
-        let (number, name) = (kind as u16, kind.name());
-        table += &format!(
-            "| {number} | {name} | {record} | {}{by} |\n",
-            either(&strides)
-        );
-    }
-    holds_table(FORMAT, "sections", &table);
-}
 
 /// The committed blobs, and one with the sections that they lack.
 fn blobs() -> Vec<Vec<u8>> {
@@ -159,9 +56,9 @@ fn sections_of_blobs_have_the_strides_of_the_format() {
         for entry in entries.take(header.section_count.into()) {
             let entry: SectionEntry = bytemuck::pod_read_unaligned(entry);
             let kind = SectionKind::ALL[usize::from(entry.kind) - 1];
-            let (_, strides, _) = record(kind);
             let stride = usize::from(entry.stride);
-            assert!(strides.contains(&stride), "{kind:?} {stride}");
+            let mut forms = kind.layout().records.iter();
+            assert!(forms.any(|form| form.bytes == stride), "{kind:?} {stride}");
             seen.insert(kind);
         }
     }

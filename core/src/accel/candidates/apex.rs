@@ -50,7 +50,7 @@ use crate::accel::space::Space;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::axis::pick;
-use crate::format::range::At;
+use crate::format::range::{At, Ranges};
 use crate::format::record::{ApexDirection, ApexPoint, ApexWindow, Gridels, Pair};
 use crate::format::{BlobError, Field, Leaf, SectionKind, Sections, Structure};
 use crate::observe::count::Observer;
@@ -68,7 +68,7 @@ impl Apex {
     /// Stands for the window of a face that has none.
     pub const NO_WINDOW: u16 = u16::MAX;
     /// Most cells along a side of a window.
-    pub const MOST_CELLS: u16 = 1024;
+    pub const MOST_CELLS: u16 = ApexWindow::MOST_CELLS;
     /// The last of the levels that keys count.
     pub const LAST_LEVEL: u8 = u8::MAX;
     /// Units that a line in integers may pass an apex by, with 8 fraction bits.
@@ -319,10 +319,9 @@ impl<'a> Records<'a> for Views<'a> {
         space.require(Structure::Bvh, Structure::Apex)?;
         let last = self.windows.len() as i64 - 1;
         for (index, point) in self.points.iter().enumerate() {
-            const MOST: i64 = 1 << 29;
             let section = SectionKind::ApexPoints;
             let at = At { section, index };
-            at.all_within(Field::Coordinate, &point.at, -MOST, MOST)?;
+            point.check_ranges(at)?;
             for window in point.windows {
                 if window != Apex::NO_WINDOW {
                     at.within(Field::Window, window.into(), 0, last)?;
@@ -330,11 +329,9 @@ impl<'a> Records<'a> for Views<'a> {
             }
         }
         for (index, direction) in self.directions.iter().enumerate() {
-            const MOST: i64 = 1 << 24;
             let section = SectionKind::ApexDirections;
             let at = At { section, index };
-            at.within(Field::Plane, direction.plane.into(), -MOST, MOST)?;
-            at.within(Field::MajorAxis, direction.major.into(), 0, 2)?;
+            direction.check_ranges(at)?;
             at.within(Field::Window, direction.window.into(), 0, last)?;
         }
         let mut next: u32 = 0;
@@ -343,8 +340,7 @@ impl<'a> Records<'a> for Views<'a> {
             let at = At { section, index };
             let first = next.into();
             at.within(Field::FirstCell, window.first_cell.into(), first, first)?;
-            let most = Apex::MOST_CELLS.into();
-            at.all_within(Field::SideCells, &window.cells, 1, most)?;
+            window.check_ranges(at)?;
             let cells = u32::from(window.cells[0]) * u32::from(window.cells[1]);
             // A table has fewer cells than a blob bytes.
             next = next.saturating_add(cells);

@@ -6,6 +6,14 @@ use crate::format::link::Link;
 use crate::format::link::Node;
 use crate::format::record::{DualNode, FlaggedPair, Pair};
 use crate::format::{BlobError, Field, Location, Reason, SectionKind};
+use core::mem::offset_of;
+
+// What leads to children is at the end of a record: see `Order::record`.
+const _: () = {
+    assert!(offset_of!(Pair, children) + 8 == size_of::<Pair>());
+    assert!(offset_of!(FlaggedPair, link) + 4 == size_of::<FlaggedPair>());
+    assert!(offset_of!(DualNode, word) + 4 == size_of::<DualNode>());
+};
 
 /// The proof that the nodes of a hierarchy lie breadth first, made node by node, with the children
 /// of each. Children then come after their parents, every node and every leaf is reached once, and

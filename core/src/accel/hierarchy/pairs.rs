@@ -8,6 +8,7 @@ use crate::accel::number::Number;
 use crate::accel::records::Records;
 use crate::accel::space::Space;
 use crate::accel::stack::{Entry, StackView, pop};
+use crate::format::layout::Stored;
 use crate::format::link::Node;
 use crate::format::record::UnitBox;
 use crate::format::{BlobError, Leaf, Reason, SectionKind, Sections};
@@ -51,7 +52,7 @@ pub(in crate::accel) trait PairRecord: Copy {
 }
 
 /// A record of two children that are boxes.
-pub(in crate::accel) trait BoxPair: bytemuck::Pod {
+pub(in crate::accel) trait BoxPair: bytemuck::Pod + Stored {
     /// The section that holds these records.
     const SECTION: SectionKind;
     /// Planes that are tested for a record.

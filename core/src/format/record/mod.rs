@@ -1,0 +1,28 @@
+//! The records of a blob, as the host writes them and the core reads them in place; but for those of
+//! [shapes](crate::geometry) and [clusters](crate::format::cluster).
+//!
+//! Little-endian, naturally aligned, without padding. `FORMAT.md` shows every field: its tables come from the
+//! declarations here, see [`layout`](crate::format::layout).
+
+mod candidates;
+mod header;
+mod nodes;
+mod points;
+mod shading;
+
+pub use candidates::{ApexDirection, ApexPoint, ApexWindow, Gridels};
+pub use header::{Header, SectionEntry};
+pub use nodes::{
+    BoundingSphere, DualNode, FlaggedPair, GridShape, Pair, SpherePair, WideNode, plane_word,
+};
+pub use points::{Sphere16, Sphere24, UnitBox, Vertex16, Vertex24};
+pub use shading::{Light, Material, View};
+
+/// The first bytes of every blob. The last two betray a file that was mangled as text.
+pub const MAGIC: [u8; 8] = *b"GRIDEL\x1a\n";
+/// Reads as this number only where the byte order of blob and machine agree.
+pub const ENDIANNESS: u32 = 0x0102_0304;
+/// The version of the format.
+pub const VERSION: u16 = 1;
+/// Alignment of the blob and of every section, in bytes.
+pub const ALIGNMENT: usize = 16;
