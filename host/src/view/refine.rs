@@ -227,15 +227,7 @@ impl<'s> Refiner<'s> {
         if state.number != number {
             return;
         }
-        // Another thread may have filled a part of these blocks from a finer pass already.
-        let side = state.order.side().max(1);
-        for (block, &value) in blocks.iter().zip(values) {
-            let [width, height] = [block.width, block.height].map(|it| it.min(side));
-            let block = Block {
-                width,
-                height,
-                ..*block
-            };
+        for (&block, &value) in blocks.iter().zip(values) {
             state.frame.fill(block, value);
         }
         state.taken -= blocks.len();

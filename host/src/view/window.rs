@@ -324,13 +324,7 @@ impl<'env> App<'_, '_, 'env> {
         let mut pixels = canvas.surface.buffer_mut()?;
         let settings = self.state.description();
         let below = self.refiner.look(|frame, status| {
-            let colors: Vec<u32> = frame.colors().collect();
-            stretch(
-                &colors,
-                [frame.width.into(), frame.height.into()],
-                &mut pixels,
-                [width.get() as usize, height.get() as usize],
-            );
+            frame.stretch(&mut pixels, [width, height].map(|it| it.get() as usize));
             match (&status.error, &self.message) {
                 (Some(error), _) => error.to_string(),
                 (None, Some(message)) => message.clone(),
@@ -347,22 +341,6 @@ impl<'env> App<'_, '_, 'env> {
             canvas.title = title;
         }
         Ok(())
-    }
-}
-
-/// Copies a picture, stretched to another size.
-fn stretch(from: &[u32], from_size: [usize; 2], to: &mut [u32], to_size: [usize; 2]) {
-    if from.is_empty() {
-        to.fill(0);
-    } else if from_size == to_size {
-        to.copy_from_slice(from);
-    } else {
-        for (y, row) in to.chunks_mut(to_size[0]).enumerate() {
-            let from = &from[y * from_size[1] / to_size[1] * from_size[0]..][..from_size[0]];
-            for (x, pixel) in row.iter_mut().enumerate() {
-                *pixel = from[x * from_size[0] / to_size[0]];
-            }
-        }
     }
 }
 
@@ -386,22 +364,4 @@ fn key(event: &KeyEvent) -> Option<Key> {
 fn print(text: impl Display) {
     let _ = write!(io::stdout().lock(), "{text}");
     let _ = io::stdout().flush();
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn picture_of_another_size_fills_the_window() {
-        let stretched = |from: &[u32], from_size, to_size: [usize; 2]| {
-            let mut to = vec![9; to_size[0] * to_size[1]];
-            stretch(from, from_size, &mut to, to_size);
-            to
-        };
-        assert_eq!(stretched(&[1, 2, 3, 4], [2, 2], [2, 2]), [1, 2, 3, 4]);
-        assert_eq!(stretched(&[1, 2], [2, 1], [4, 2]), [1, 1, 2, 2, 1, 1, 2, 2]);
-        assert_eq!(stretched(&[1, 2, 3, 4], [2, 2], [1, 1]), [1]);
-        assert_eq!(stretched(&[], [0, 0], [2, 1]), [0, 0]);
-    }
 }
