@@ -16,6 +16,9 @@ use std::path::PathBuf;
 /// The picture appears from coarse to fine, and begins anew when something changes; it becomes the picture of
 /// `gridel render`. Dragging with the left mouse button orbits, with another button it pans, and the wheel
 /// zooms. A click explains a pixel.
+///
+/// A scene file is compiled for `wide`, `dual-split`, `flagged` and `bvh`, among which a key changes, or for the
+/// structure of `--accel` alone.
 #[derive(Args)]
 #[command(after_help = format!("Keys:\n{}\n{}", key_help(), super::failure::EXIT_CODES))]
 pub struct Arguments {

@@ -103,6 +103,7 @@ pub fn live(refiner: &Refiner<'_>, state: State<'_>, is_fixed: bool) -> io::Resu
                 state,
                 is_fixed,
                 message: None,
+                shows_keys: false,
             }
             .run(&receiver)
         })
@@ -174,6 +175,8 @@ struct Live<'r, 's> {
     is_fixed: bool,
     /// Shown in place of the settings until the next key.
     message: Option<String>,
+    /// Whether the keys are shown in place of the picture.
+    shows_keys: bool,
 }
 
 impl Live<'_, '_> {
@@ -184,7 +187,7 @@ impl Live<'_, '_> {
         loop {
             self.fit()?;
             // Nothing tells of another size of the terminal, so it is looked at now and then.
-            let timeout = match is_drawn {
+            let timeout = match is_drawn && !self.shows_keys {
                 true => FRAME_TIME.saturating_sub(last.elapsed()),
                 false => LOOK_TIME,
             };
@@ -193,13 +196,16 @@ impl Live<'_, '_> {
                 Ok(Event::Key(key)) => {
                     let Some(action) = action(key) else { continue };
                     self.message = None;
+                    if std::mem::take(&mut self.shows_keys) {
+                        write("\x1b[2J")?;
+                    }
                     match self.state.apply(action) {
                         Effect::Nothing => {}
                         Effect::Redraw => self.refiner.show(self.state.shot()),
                         Effect::Save => self.message = Some(self.save()),
                         Effect::Help => {
                             write(&format!("\x1b[H\x1b[2J{}", key_help()))?;
-                            continue;
+                            self.shows_keys = true;
                         }
                         Effect::Quit => return Ok(()),
                     }
@@ -208,7 +214,7 @@ impl Live<'_, '_> {
                 Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => return Ok(()),
                 Err(RecvTimeoutError::Timeout) => {}
             }
-            if is_drawn && last.elapsed() >= FRAME_TIME {
+            if is_drawn && !self.shows_keys && last.elapsed() >= FRAME_TIME {
                 self.draw()?;
                 (is_drawn, last) = (false, Instant::now());
             }

@@ -236,8 +236,9 @@ mod live {
         // Back to the first camera and format.
         terminal.press("rff");
         assert!(terminal.frame("f32, flagged, 1 sample; h") == first);
-        terminal.press("h");
-        terminal.press("q");
+        terminal.press("hm");
+        terminal.frame("f32, flagged, 2 samples; h");
+        terminal.press("hq");
         let end = terminal.end();
         assert!(end.contains("orbit to the left"), "{end:?}");
         assert!(end.ends_with("\x1b[?25h\x1b[?1049l"), "{end:?}");
