@@ -50,7 +50,12 @@ fn main() {
             .with_kind(kind)
             .with_ignored_flag(is_missing && !required)
     });
-    libtest_mimic::run(&Arguments::from_args(), trials.into()).exit();
+    let mut trials = Vec::from(trials);
+    trials.push(Trial::test("missing_display_is_said", || {
+        missing_display();
+        Ok(())
+    }));
+    libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
 type Pixels = Vec<[u8; 3]>;
@@ -266,6 +271,19 @@ impl Drop for Viewer {
         drop(self.program.kill());
         drop(self.program.wait());
     }
+}
+
+fn missing_display() {
+    let folder = Folder::with_quick();
+    let mut command = folder.command(&["view", "quick.gridel"]);
+    for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(name);
+    }
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("no window can be opened: neither"), "{said}");
+    assert!(said.contains("--terminal"), "{said}");
 }
 
 fn shows_the_picture() {

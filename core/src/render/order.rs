@@ -219,7 +219,13 @@ mod tests {
                 check([0, 0], [width, height]);
             }
         }
-        for size in [[64, 48], [1, 300], [300, 1], [u16::MAX, 1], [1, u16::MAX]] {
+        for size in [
+            [64, 48],
+            [1, 300],
+            [u16::MAX, 1],
+            [1, u16::MAX],
+            [u16::MAX, 9],
+        ] {
             check([0, 0], size);
         }
         check([3, 5], [17, 9]);

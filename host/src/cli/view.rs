@@ -17,8 +17,8 @@ use std::path::PathBuf;
 /// `gridel render`. Dragging with the left mouse button orbits, with another button it pans, and the wheel
 /// zooms. A click explains a pixel.
 ///
-/// A scene file is compiled for `wide`, `dual-split`, `flagged` and `bvh`, among which a key changes, or for the
-/// structure of `--accel` alone.
+/// A key changes among the structures that a blob was built with. A scene file is compiled for `wide`, `flagged` and
+/// `bvh`, or for the structure of `--accel` alone.
 #[derive(Args)]
 #[command(after_help = format!("Keys:\n{}\n{}", key_help(), super::failure::EXIT_CODES))]
 pub struct Arguments {
@@ -44,13 +44,9 @@ pub struct Arguments {
     target_point: TargetPoint,
 }
 
-/// Hierarchies that a scene file is compiled for, among which a key changes.
-const STRUCTURES: [Structure; 4] = [
-    Structure::Wide,
-    Structure::DualSplit,
-    Structure::Flagged,
-    Structure::Bvh,
-];
+/// Hierarchies that a scene file is compiled for, among which a key changes: those that take little more time to
+/// build together than one alone.
+const STRUCTURES: [Structure; 3] = [Structure::Wide, Structure::Flagged, Structure::Bvh];
 
 /// Pixels that are held at once.
 const MOST_PIXELS: usize = 1 << 26;

@@ -49,12 +49,22 @@ pub struct Viewed<'v> {
 /// Why there is no window.
 #[derive(Debug, thiserror::Error)]
 pub enum WindowError {
-    #[error("{0}")]
+    #[error("{}", without_place(.0))]
     Events(#[from] EventLoopError),
-    #[error("{0}")]
+    #[error("{}", without_place(.0))]
     Window(#[from] winit::error::OsError),
     #[error("{0}")]
     Pixels(#[from] softbuffer::SoftBufferError),
+}
+
+/// The cause of an error, without the line of winit's source that its text begins with.
+fn without_place(error: &impl Display) -> String {
+    let text = error.to_string();
+    let cause = text.strip_prefix("os error at ");
+    match cause.and_then(|cause| cause.split_once(": ")) {
+        Some((_, cause)) => cause.to_owned(),
+        None => text,
+    }
 }
 
 /// Shows a scene in a window until it is closed.
