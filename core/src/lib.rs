@@ -8,7 +8,8 @@
 //! - **rays**: [`Scene::closest_hit`] and [`Scene::any_hit`] with a [`Ray`] of your own, or [`closest_hit`],
 //!   [`closest_primitive`] and [`any_hit`] for one structure and for counting;
 //! - **pictures**: a [`Renderer`] gives pixels row by row or for any rectangle, and a
-//!   [`Cursor`](render::Cursor) gives them a bounded number of rays at a time.
+//!   [`Cursor`](render::Cursor) gives them a bounded number of rays at a time, row by row or from coarse to
+//!   fine.
 //!
 //! ```
 //! # static BLOB: &[u8] =

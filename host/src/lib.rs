@@ -16,6 +16,7 @@
 //! | put parts of a picture together | [`merge`] |
 //! | trace rays of one's own | [`trace`], and [`npy`] for NumPy's files |
 //! | explain a ray or a pixel | [`explain`] |
+//! | view a scene live, from coarse to fine | [`view`] |
 //! | measure what accuracy costs in time | [`accuracy`] |
 //! | hold a scene to what is promised | [`verify`] |
 //! | draw charts and heat maps | [`report`] |
@@ -71,3 +72,4 @@ pub mod simd;
 pub mod table;
 pub mod trace;
 pub mod verify;
+pub mod view;

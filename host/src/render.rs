@@ -81,12 +81,28 @@ pub fn render(
     job: &Job,
     progress: &(dyn Fn() + Sync),
 ) -> Result<Picture, RenderError> {
+    let scene = &chosen(scene, job.structure)?;
+    Ok(spread(job, progress, &*tracer(scene, job)?))
+}
+
+/// Returns the code that traces pixels, compiled for the job's number format and structure and for the scene's
+/// effects. The structure is chosen in the scene: see [`chosen`].
+pub(crate) fn tracer<'s>(scene: &'s Scene<'_>, job: &Job) -> NewTracer<'s> {
     match job.format {
-        Format::Fixed => with_format::<Fixed>(scene, job, progress),
-        Format::F32 => with_format::<f32>(scene, job, progress),
-        Format::F64 => with_format::<f64>(scene, job, progress),
+        Format::Fixed => with_format::<Fixed>(scene, job),
+        Format::F32 => with_format::<f32>(scene, job),
+        Format::F64 => with_format::<f64>(scene, job),
     }
 }
+
+/// Fills a part of a row, given its first pixel, and may return its cost.
+pub(crate) type Tracer<'s> = dyn Fn([u16; 2], &mut [[u16; 3]]) -> Option<Cost> + Sync + 's;
+
+/// The cost of a part of a row in total, and of each of its pixels.
+pub(crate) type Cost = (Counters, Vec<u32>);
+
+/// A new tracer, or why there is none.
+type NewTracer<'s> = Result<Box<Tracer<'s>>, RenderError>;
 
 /// Sets of effects that the ray loop is compiled for; a scene gets the first that has all of its.
 const SHADOWED: u32 = Effects::SHADOW.0;
@@ -94,27 +110,22 @@ const SHADOWED: u32 = Effects::SHADOW.0;
 pub(crate) const OPAQUE: u32 = Effects::ALL.without(Effects::FILTERING).0;
 pub(crate) const ALL: u32 = Effects::ALL.0;
 
-fn with_format<N: Number>(
-    scene: &Scene<'_>,
-    job: &Job,
-    progress: &(dyn Fn() + Sync),
-) -> Result<Picture, RenderError> {
+fn with_format<'s, N: Number>(scene: &'s Scene<'_>, job: &Job) -> NewTracer<'s> {
     // Pictures are made through these; the others are there to be compared. The library's own tests,
     // for which all of it is compiled again, do without.
-    if !cfg!(test) && !job.count && scene.holds(job.structure) {
+    if !cfg!(test) && !job.count {
         match job.structure {
-            Structure::DualSplit => return fast::<N, DualSplit>(scene, job, progress),
-            Structure::Wide => return fast::<N, Wide>(scene, job, progress),
+            Structure::DualSplit => return fast::<N, DualSplit>(scene, job),
+            Structure::Wide => return fast::<N, Wide>(scene, job),
             _ => {}
         }
     }
-    let scene = &chosen(scene, job.structure)?;
     let opaque = Effects(OPAQUE).contains(scene.effects());
     match (job.count, opaque) {
-        (true, true) => counted_rows::<N, OPAQUE>(scene, job, progress),
-        (true, false) => counted_rows::<N, ALL>(scene, job, progress),
-        (false, true) => rows::<N, DynAccel, OPAQUE>(scene, job, progress),
-        (false, false) => rows::<N, DynAccel, ALL>(scene, job, progress),
+        (true, true) => counted_rows::<N, OPAQUE>(scene, job),
+        (true, false) => counted_rows::<N, ALL>(scene, job),
+        (false, true) => rows::<N, DynAccel, OPAQUE>(scene, job),
+        (false, false) => rows::<N, DynAccel, ALL>(scene, job),
     }
 }
 
@@ -128,52 +139,40 @@ pub(crate) fn chosen<'a>(
 }
 
 /// Through a structure of its own, with no code for effects that the plainer scenes do without.
-fn fast<N: Number, A: Accel>(
-    scene: &Scene<'_>,
-    job: &Job,
-    progress: &(dyn Fn() + Sync),
-) -> Result<Picture, RenderError> {
+fn fast<'s, N: Number, A: Accel + 's>(scene: &'s Scene<'_>, job: &Job) -> NewTracer<'s> {
     let fits = |set| Effects(set).contains(scene.effects());
     if fits(SHADOWED) {
-        rows::<N, A, SHADOWED>(scene, job, progress)
+        rows::<N, A, SHADOWED>(scene, job)
     } else if fits(OPAQUE) {
-        rows::<N, A, OPAQUE>(scene, job, progress)
+        rows::<N, A, OPAQUE>(scene, job)
     } else {
-        rows::<N, A, ALL>(scene, job, progress)
+        rows::<N, A, ALL>(scene, job)
     }
 }
 
-fn counted_rows<N: Number, const EFFECTS: u32>(
-    scene: &Scene<'_>,
+fn counted_rows<'s, N: Number, const EFFECTS: u32>(
+    scene: &'s Scene<'_>,
     job: &Job,
-    progress: &(dyn Fn() + Sync),
-) -> Result<Picture, RenderError> {
+) -> NewTracer<'s> {
     let renderer = Renderer::<N, DynAccel, EFFECTS>::with_settings(scene, job.settings)?;
-    let row = |y, pixels: &mut _| Some(counted_row(&renderer, y, pixels));
-    Ok(spread(job, progress, &row))
+    Ok(Box::new(move |first, pixels| {
+        Some(counted_row(&renderer, first, pixels))
+    }))
 }
 
-fn rows<N: Number, A: Accel, const EFFECTS: u32>(
-    scene: &Scene<'_>,
+fn rows<'s, N: Number, A: Accel + 's, const EFFECTS: u32>(
+    scene: &'s Scene<'_>,
     job: &Job,
-    progress: &(dyn Fn() + Sync),
-) -> Result<Picture, RenderError> {
+) -> NewTracer<'s> {
     let renderer = Renderer::<N, A, EFFECTS>::with_settings(scene, job.settings)?;
-    let row = |y, pixels: &mut _| {
-        render_row(&renderer, y, pixels, || NoCount, |_| ());
+    Ok(Box::new(move |first, pixels| {
+        render_row(&renderer, first, pixels, || NoCount, |_| ());
         None
-    };
-    Ok(spread(job, progress, &row))
+    }))
 }
-
-/// The cost of a row in total, and of each of its pixels.
-type Cost = (Counters, Vec<u32>);
-
-/// Fills a row, given its number, and may return its cost.
-type Row<'r> = dyn Fn(u16, &mut [[u16; 3]]) -> Option<Cost> + Sync + 'r;
 
 /// Spreads rows over all threads.
-fn spread(job: &Job, progress: &(dyn Fn() + Sync), row: &Row<'_>) -> Picture {
+fn spread(job: &Job, progress: &(dyn Fn() + Sync), tracer: &Tracer<'_>) -> Picture {
     let width = job.settings.width;
     let mut pixels = vec![[0; 3]; usize::from(width) * job.rows.len()];
     let costs: Vec<Option<Cost>> = job
@@ -182,7 +181,7 @@ fn spread(job: &Job, progress: &(dyn Fn() + Sync), row: &Row<'_>) -> Picture {
         .into_par_iter()
         .zip(pixels.par_chunks_mut(width.into()))
         .map(|(y, pixels)| {
-            let cost = row(y, pixels);
+            let cost = tracer([0, y], pixels);
             progress();
             cost
         })
@@ -201,10 +200,10 @@ fn spread(job: &Job, progress: &(dyn Fn() + Sync), row: &Row<'_>) -> Picture {
     }
 }
 
-/// One row, and what it cost.
+/// A part of a row, and what it cost.
 fn counted_row<N: Number, A: Accel, const EFFECTS: u32>(
     renderer: &Renderer<'_, '_, N, A, EFFECTS>,
-    y: u16,
+    first: [u16; 2],
     pixels: &mut [[u16; 3]],
 ) -> Cost {
     let mut work = Vec::with_capacity(pixels.len());
@@ -213,21 +212,21 @@ fn counted_row<N: Number, A: Accel, const EFFECTS: u32>(
         work.push((counters.boxes + counters.objects).min(u32::MAX.into()) as u32);
         total = total.plus(&counters);
     };
-    render_row(renderer, y, pixels, Counters::default, counted);
+    render_row(renderer, first, pixels, Counters::default, counted);
     (total, work)
 }
 
-/// One row; every pixel is counted on its own.
+/// A part of a row; every pixel is counted on its own.
 fn render_row<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
     renderer: &Renderer<'_, '_, N, A, EFFECTS>,
-    y: u16,
+    [x, y]: [u16; 2],
     pixels: &mut [[u16; 3]],
     counter: impl Fn() -> C,
     mut counted: impl FnMut(C),
 ) {
     let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
     let mut space = space.as_view();
-    for (x, pixel) in (0..=u16::MAX).zip(pixels) {
+    for (x, pixel) in (x..=u16::MAX).zip(pixels) {
         let mut count = counter();
         *pixel = renderer.linear(x, y, &mut space, &mut count);
         counted(count);

@@ -214,7 +214,34 @@ fn steps_do_not_matter<N: Number>(name: &str, scene: &Scene<'_>) {
             panic!("{name}: a pixel too many")
         });
         assert_eq!(sum, counted, "{name}, behind the end");
+        assert!(coarse_to_fine(&renderer, corner, size, budget) == whole);
     }
+}
+
+/// A rectangle drawn from coarse to fine, a few rays at a time.
+fn coarse_to_fine<N: Number, const EFFECTS: u32>(
+    renderer: &Renderer<'_, '_, N, Flagged, EFFECTS>,
+    corner: [u16; 2],
+    size: [u16; 2],
+    budget: u32,
+) -> Vec<(u16, u16, [u8; 3])> {
+    let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let places = (corner[1]..corner[1] + size[1])
+        .flat_map(|y| (corner[0]..corner[0] + size[0]).map(move |x| (x, y)));
+    let mut drawn: Vec<_> = places.map(|(x, y)| (x, y, [0; 3])).collect();
+    let mut cursor = renderer.coarse_to_fine(corner, size, space.as_view());
+    while !cursor.is_done() {
+        cursor.step(budget, &mut NoCount, |block, Rgb888(pixel)| {
+            let [x, y] = [block.x - corner[0], block.y - corner[1]].map(usize::from);
+            for row in y..y + usize::from(block.height) {
+                let first = row * usize::from(size[0]) + x;
+                for drawn in &mut drawn[first..first + usize::from(block.width)] {
+                    drawn.2 = pixel;
+                }
+            }
+        });
+    }
+    drawn
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 use crate::accel::{Accel, Number};
 use crate::observe::count::Observer;
+use crate::render::order::{Block, CoarseToFine, Rows};
 use crate::render::pixel::Pixel;
 use crate::render::renderer::Renderer;
 use crate::render::samples::Samples;
@@ -10,13 +11,16 @@ use crate::render::trace::WorkspaceView;
 
 /// A rectangle of a picture that is rendered a few rays at a time, for firmware with deadlines.
 ///
-/// [`step`](Self::step) traces so many rays and returns; the next call goes on exactly where it
+/// `step` traces so many rays and returns; the next call goes on exactly where it
 /// stopped, and every pixel is handed out as soon as its last ray was traced. Pixels have the bits
-/// that [`Renderer::row`] gives them, whatever the steps.
+/// that [`Renderer::row`] gives them, whatever the steps and the order.
+///
+/// The order of the pixels is `O`: [`Renderer::cursor`] goes row by row, [`Renderer::coarse_to_fine`] shows
+/// the whole rectangle in blocks first, and refines them.
 ///
 /// Between two steps the rays that wait stay in the workspace, which is therefore borrowed as long
 /// as the cursor lives; a cursor that is dropped may leave its picture unfinished. It takes 60
-/// bytes in `f32` and `fixed` and at most 88 in `f64` on a 32-bit board.
+/// bytes in `f32` and `fixed` and at most 88 in `f64` on a 32-bit board; from coarse to fine, up to 8 more.
 ///
 /// # What a ray costs
 /// A step counts the rays from the camera, off mirrors and through glass. Each of them costs one
@@ -24,46 +28,44 @@ use crate::render::trace::WorkspaceView;
 /// any hit in a scene without glass, else up to 64 closest hits, one for every surface of glass on
 /// the way. Nothing else takes time that depends on the scene.
 #[derive(Debug)]
-pub struct Cursor<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> {
+pub struct Cursor<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32, O = Rows> {
     renderer: &'r Renderer<'s, 'a, N, A, EFFECTS>,
     space: WorkspaceView<'r, N>,
     samples: Samples<N>,
-    /// The pixel that is being rendered.
-    pixel: [u16; 2],
-    /// The first column and the last.
-    columns: [u16; 2],
-    /// Rows that are not done.
-    rows: u16,
+    order: O,
 }
 
-impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> Cursor<'r, 's, 'a, N, A, EFFECTS> {
-    pub(super) fn new(
+impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32, O> Cursor<'r, 's, 'a, N, A, EFFECTS, O> {
+    fn new(
         renderer: &'r Renderer<'s, 'a, N, A, EFFECTS>,
-        corner: [u16; 2],
-        [width, height]: [u16; 2],
+        order: O,
         space: WorkspaceView<'r, N>,
     ) -> Self {
         space.work.clear();
-        // There are no pixels beyond number 65535.
-        let [x, y] = corner;
-        let rows = if y == 0 {
-            height
-        } else {
-            height.min((u16::MAX - y).saturating_add(1))
-        };
         Self {
             renderer,
             space,
             samples: Samples::new(),
-            pixel: corner,
-            columns: [x, x.saturating_add(width.saturating_sub(1))],
-            rows: if width == 0 { 0 } else { rows },
+            order,
         }
     }
 
+    /// Traces one ray of a pixel; the pixel, if that was its last.
+    #[inline(always)]
+    fn trace<P: Pixel, C: Observer>(&mut self, pixel: [u16; 2], count: &mut C) -> Option<P> {
+        let linear = self
+            .samples
+            .step(self.renderer, pixel, &mut self.space, count)?;
+        self.samples = Samples::new();
+        let dither = self.renderer.settings().dither;
+        Some(P::encode(linear, dither.then_some(pixel)))
+    }
+}
+
+impl<N: Number, A: Accel, const EFFECTS: u32> Cursor<'_, '_, '_, N, A, EFFECTS> {
     /// Whether all pixels were handed out.
     pub fn is_done(&self) -> bool {
-        self.rows == 0
+        self.order.is_done()
     }
 
     /// Traces at most so many rays, and hands out the pixels that they complete, row by row from
@@ -74,26 +76,43 @@ impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> Cursor<'r, 's, 'a, N, 
         count: &mut C,
         mut sink: impl FnMut(u16, u16, P),
     ) {
-        let dither = self.renderer.settings().dither;
         for _ in 0..rays {
             if self.is_done() {
                 return;
             }
-            let pixel = self.pixel;
-            let traced = self
-                .samples
-                .step(self.renderer, pixel, &mut self.space, count);
-            let Some(linear) = traced else { continue };
-            let [x, y] = pixel;
-            sink(x, y, P::encode(linear, dither.then_some(pixel)));
-            self.samples = Samples::new();
-            let [first, last] = self.columns;
-            self.pixel = if x < last {
-                [x.saturating_add(1), y]
-            } else {
-                self.rows = self.rows.saturating_sub(1);
-                [first, y.saturating_add(1)]
+            let [x, y] = self.order.pixel;
+            let Some(pixel) = self.trace([x, y], count) else {
+                continue;
             };
+            sink(x, y, pixel);
+            self.order.advance();
+        }
+    }
+}
+
+impl<N: Number, A: Accel, const EFFECTS: u32> Cursor<'_, '_, '_, N, A, EFFECTS, CoarseToFine> {
+    /// Whether all pixels were handed out.
+    pub fn is_done(&self) -> bool {
+        self.order.side() == 0
+    }
+
+    /// Traces at most so many rays, and hands out the pixels that they complete, each with the block that it
+    /// stands for until finer ones are there: fill the whole block with it.
+    pub fn step<P: Pixel, C: Observer>(
+        &mut self,
+        rays: u32,
+        count: &mut C,
+        mut sink: impl FnMut(Block, P),
+    ) {
+        for _ in 0..rays {
+            let Some(block) = self.order.block() else {
+                return;
+            };
+            let Some(pixel) = self.trace([block.x, block.y], count) else {
+                continue;
+            };
+            sink(block, pixel);
+            self.order.advance();
         }
     }
 }
@@ -124,7 +143,41 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         size: [u16; 2],
         space: WorkspaceView<'r, N>,
     ) -> Cursor<'r, 's, 'a, N, A, EFFECTS> {
-        Cursor::new(self, corner, size, space)
+        Cursor::new(self, Rows::new(corner, size), space)
+    }
+
+    /// Starts to render a rectangle a few rays at a time, from coarse to fine: see [`CoarseToFine`].
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{NoCount, Renderer, Rgb565, Scene, Workspace};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let renderer = Renderer::new(&scene)?;
+    /// let mut space = Workspace::for_any_scene();
+    /// let mut display = [[Rgb565(0); 20]; 10];
+    /// let mut cursor = renderer.coarse_to_fine([0, 0], [20, 10], space.as_view());
+    /// while !cursor.is_done() {
+    ///     // Time for something else between every ten rays: the knob may have been turned.
+    ///     cursor.step(10, &mut NoCount, |block, pixel| {
+    ///         for row in &mut display[block.y.into()..][..block.height.into()] {
+    ///             row[block.x.into()..][..block.width.into()].fill(pixel);
+    ///         }
+    ///     });
+    /// }
+    /// let mut row = [Rgb565(0); 20];
+    /// renderer.row(0, 7, &mut row, &mut space.as_view(), &mut NoCount);
+    /// assert_eq!(display[7], row);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn coarse_to_fine<'r>(
+        &'r self,
+        corner: [u16; 2],
+        size: [u16; 2],
+        space: WorkspaceView<'r, N>,
+    ) -> Cursor<'r, 's, 'a, N, A, EFFECTS, CoarseToFine> {
+        Cursor::new(self, CoarseToFine::new(corner, size), space)
     }
 }
 
@@ -136,4 +189,7 @@ const _: () = {
     assert!(size_of::<Cursor<'_, '_, '_, f32, List, 0>>() <= 60);
     assert!(size_of::<Cursor<'_, '_, '_, Fixed, List, 0>>() <= 60);
     assert!(size_of::<Cursor<'_, '_, '_, f64, List, 0>>() <= 88);
+    assert!(size_of::<Cursor<'_, '_, '_, f32, List, 0, CoarseToFine>>() <= 64);
+    assert!(size_of::<Cursor<'_, '_, '_, Fixed, List, 0, CoarseToFine>>() <= 64);
+    assert!(size_of::<Cursor<'_, '_, '_, f64, List, 0, CoarseToFine>>() <= 96);
 };

@@ -8,6 +8,7 @@
 //! | renderers without a choice of format, structure and effects | `defaults.rs` |
 //! | the samples of a pixel, the pixels of a rectangle | `samples.rs`, `rows.rs` |
 //! | the state of rendering between two calls | `cursor.rs` |
+//! | pixels row by row, or from coarse to fine | `order.rs` |
 //! | displays of `embedded-graphics`, with that feature | `display.rs` |
 //! | from radiance to the bytes of a display | `pixel.rs` |
 
@@ -17,6 +18,7 @@ mod cursor;
 mod defaults;
 #[cfg(feature = "embedded-graphics-core")]
 mod display;
+mod order;
 mod pixel;
 mod pixel_rays;
 mod renderer;
@@ -27,6 +29,7 @@ mod trace;
 
 pub use camera::{Camera, CameraError, Up};
 pub use cursor::Cursor;
+pub use order::{Block, CoarseToFine, Rows};
 pub use pixel::{Pixel, Rgb565, Rgb888};
 pub use renderer::{RenderError, Renderer, Settings};
 pub use trace::{Workspace, WorkspaceView};

@@ -34,6 +34,7 @@ mod sample;
 mod shell;
 mod trace;
 mod verify;
+mod view;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use peak_alloc::PeakAlloc;
@@ -59,6 +60,7 @@ enum Command {
     Compare(compare::Arguments),
     Inspect(inspect::Arguments),
     Render(render::Arguments),
+    View(view::Arguments),
     Merge(merge::Arguments),
     Trace(trace::Arguments),
     Accuracy(accuracy::Arguments),
@@ -89,6 +91,7 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
         Command::Compare(arguments) => compare::run(&arguments, memory),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
+        Command::View(arguments) => view::run(&arguments),
         Command::Merge(arguments) => merge::run(&arguments),
         Command::Trace(arguments) => trace::run(&arguments),
         Command::Accuracy(arguments) => accuracy::run(&arguments),

@@ -41,8 +41,19 @@ impl Source {
         with: &TraceOptions,
         usual: Structure,
     ) -> Result<Self, Failure> {
+        Self::to_view(path, options, with, &[usual])
+    }
+
+    /// Reads a blob, or compiles a scene file for the structure that is asked for, or else for all of
+    /// `usual`.
+    pub fn to_view(
+        path: &Path,
+        options: &SceneOptions,
+        with: &TraceOptions,
+        usual: &[Structure],
+    ) -> Result<Self, Failure> {
         let compiling = compile::Options {
-            structures: vec![with.accel.unwrap_or(usual)],
+            structures: with.accel.map_or(usual.to_vec(), |accel| vec![accel]),
             quality: with.quality.unwrap_or_default(),
             ..compile::Options::default()
         };

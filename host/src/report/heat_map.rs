@@ -27,12 +27,9 @@ impl<'p> HeatMap<'p> {
     /// # Errors
     /// If `out` has one.
     pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
-        let most = f64::from(self.maximum.max(1));
-        let pixels: Vec<u8> = self
-            .picture
-            .work
-            .iter()
-            .flat_map(|&work| Rgb888::encode(color((f64::from(work) / most).sqrt()), None).0)
+        let work = self.picture.work.iter();
+        let pixels: Vec<u8> = work
+            .flat_map(|&work| work_color(work, self.maximum).0)
             .collect();
         let description = format!(
             "Boxes and primitives tested for each pixel, by their square root: black 0, white {}",
@@ -41,6 +38,12 @@ impl<'p> HeatMap<'p> {
         let size = [self.picture.width.into(), self.picture.rows.len() as u32];
         write_png(out, size, &pixels, Some(("Description", description)))
     }
+}
+
+/// The color of a pixel in a map.
+pub(crate) fn work_color(work: u32, maximum: u32) -> Rgb888 {
+    let share = f64::from(work) / f64::from(maximum.max(1));
+    Rgb888::encode(color(share.sqrt()), None)
 }
 
 /// The linear color for a place on the ramp, 0 to 1.

@@ -21,5 +21,6 @@ mod render;
 mod sample;
 #[cfg(feature = "shell")]
 mod shell;
+mod terminal;
 mod trace;
 mod view;

@@ -31,7 +31,7 @@ const HOST: Layers = Layers {
         "scene sample compile",
         "live render trace npy picture merge resolution report",
         "measure emit",
-        "accuracy compare verify explain check",
+        "accuracy compare verify explain view check",
         "cli main",
     ],
 };

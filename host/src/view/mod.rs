@@ -1,0 +1,51 @@
+//! Views a scene live: a camera that mouse and keys move, and pictures that appear from coarse to fine.
+//!
+//! | file | what is in it |
+//! |---|---|
+//! | `motion.rs` | orbits, pans and zooms of a camera |
+//! | `keys.rs` | keys and what they do |
+//! | `state.rs` | the camera and the settings that are shown |
+//! | `refine.rs` | pictures from coarse to fine, drawn by threads of their own |
+//! | `frame.rs` | the pixels that are shown so far |
+//! | `summary.rs` | the explanation of a pixel in one line |
+//! | `save.rs` | a camera as TOML |
+//! | `terminal.rs` | half blocks in a terminal |
+//! | `window.rs` | a window, with the Cargo feature `view` |
+
+mod frame;
+mod keys;
+mod motion;
+mod refine;
+mod save;
+mod state;
+mod summary;
+pub mod terminal;
+#[cfg(feature = "view")]
+pub mod window;
+
+pub use frame::Frame;
+pub use keys::{Action, KEYS, Key, action, key_help};
+pub use refine::{Refiner, Shot, ViewError};
+pub use save::{save, saved};
+pub use state::{Effect, State};
+pub use summary::summary;
+
+#[cfg(test)]
+mod test_scene {
+    use crate::blob::Blob;
+    use crate::compile::{Options, compile};
+    use gridel_core::Structure;
+
+    /// `fixtures/quick.toml`, with two hierarchies.
+    pub fn quick() -> Blob {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/quick.toml");
+        let scene = crate::scene::load(folder.as_ref(), &Default::default())
+            .unwrap()
+            .scene;
+        let options = Options {
+            structures: vec![Structure::Bvh, Structure::DualSplit],
+            ..Options::default()
+        };
+        compile(&scene, &options).unwrap().blob
+    }
+}

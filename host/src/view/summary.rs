@@ -1,0 +1,59 @@
+//! The explanation of a pixel in one line, for the title of a window.
+
+use crate::compile::Names;
+use crate::explain::Explanation;
+use crate::table::{counted, printable, significant};
+
+/// The pixel's color, what it shows, and how many rays it took.
+pub fn summary(explanation: &Explanation, names: &Names) -> String {
+    let [red, green, blue] = explanation.srgb;
+    let [x, y] = explanation.pixel.unwrap_or_default();
+    let first = explanation.samples.first();
+    let hit = first.and_then(|sample| sample.rays.first()?.hit.as_ref());
+    let seen = hit.map_or(String::from("background"), |hit| {
+        let object = match names.object(hit.object) {
+            Some(name) => format!("{} (object {})", printable(name), hit.object),
+            None => format!("object {}", hit.object),
+        };
+        format!("{object} at distance {}", significant(hit.distance))
+    });
+    let rays = explanation.samples.iter().map(|sample| sample.rays.len());
+    let rays = counted(rays.sum::<usize>(), "ray");
+    format!("pixel {x},{y}: #{red:02x}{green:02x}{blue:02x}, {seen}, {rays}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::explain::{Subject, explain};
+    use crate::view::test_scene::quick;
+    use gridel_core::{Format, Settings, Structure};
+
+    #[test]
+    fn summary_names_what_the_pixel_shows() {
+        let blob = quick();
+        let scene = blob.scene().unwrap();
+        let names = Names::of_blob(&scene, blob.bytes()).unwrap();
+        let settings = Settings {
+            samples: 1,
+            ..Settings::of(&scene)
+        };
+        let of = |pixel| {
+            let subject = Subject::Pixel(pixel);
+            let explanation =
+                explain(&scene, Format::F64, Structure::Bvh, settings, subject).unwrap();
+            (summary(&explanation, &names), explanation)
+        };
+        let middle = [settings.width / 2, settings.height / 2];
+        let (text, explanation) = of(middle);
+        let hit = explanation.samples[0].rays[0].hit.as_ref().unwrap();
+        let object = format!("object {}", hit.object);
+        assert!(
+            text.contains(&object) && text.contains(" at distance "),
+            "{text}"
+        );
+        let color = explanation.srgb.map(|channel| format!("{channel:02x}"));
+        let place = format!("pixel {},{}: #{}", middle[0], middle[1], color.concat());
+        assert!(text.starts_with(&place), "{text}");
+    }
+}

@@ -1,0 +1,377 @@
+//! A window, with the Cargo feature `view`.
+
+use super::keys::{Key, action, key_help};
+use super::refine::Refiner;
+use super::save::save;
+use super::state::{Effect, State};
+use super::summary::summary;
+use crate::compile::Names;
+use crate::explain::{Shown, Subject, explain};
+use gridel_core::Scene;
+use softbuffer::{Context, Surface};
+use std::fmt::Display;
+use std::io::{self, Write};
+use std::num::NonZeroU32;
+use std::path::Path;
+use std::rc::Rc;
+use std::thread::{self, Scope};
+use std::time::{Duration, Instant};
+use winit::application::ApplicationHandler;
+use winit::dpi::{PhysicalPosition, PhysicalSize};
+use winit::error::EventLoopError;
+use winit::event::{
+    ElementState, KeyEvent, MouseButton, MouseScrollDelta, StartCause, WindowEvent,
+};
+use winit::event_loop::{
+    ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy, OwnedDisplayHandle,
+};
+use winit::keyboard::{Key as LogicalKey, NamedKey};
+use winit::window::{Window, WindowId};
+
+/// The least time between two frames.
+const FRAME_TIME: Duration = Duration::from_millis(16);
+
+/// A mouse that moves no further than this, in pixels, while a button is down has clicked.
+const CLICK_DISTANCE: f64 = 3.0;
+
+/// Pixels of a touchpad's motion that zoom as one step of a wheel.
+const PIXELS_PER_STEP: f64 = 40.0;
+
+/// What is shown in a window.
+#[derive(Clone, Copy)]
+pub struct Viewed<'v> {
+    pub scene: &'v Scene<'v>,
+    pub names: &'v Names,
+    /// The beginning of the title.
+    pub title: &'v str,
+}
+
+/// Why there is no window.
+#[derive(Debug, thiserror::Error)]
+pub enum WindowError {
+    #[error("{}", without_place(.0))]
+    Events(#[from] EventLoopError),
+    #[error("{}", without_place(.0))]
+    Window(#[from] winit::error::OsError),
+    #[error("{0}")]
+    Pixels(#[from] softbuffer::SoftBufferError),
+}
+
+/// The cause of an error, without the line of winit's source that its text begins with.
+fn without_place(error: &impl Display) -> String {
+    let text = error.to_string();
+    let cause = text.strip_prefix("os error at ");
+    match cause.and_then(|cause| cause.split_once(": ")) {
+        Some((_, cause)) => cause.to_owned(),
+        None => text,
+    }
+}
+
+/// Shows a scene in a window until it is closed.
+///
+/// # Errors
+/// If there is no display, or no window can be opened.
+pub fn run(refiner: &Refiner<'_>, state: State<'_>, viewed: Viewed<'_>) -> Result<(), WindowError> {
+    let events = EventLoop::<Wake>::with_user_event().build()?;
+    let proxy = events.create_proxy();
+    // Nobody listens any more at the end.
+    let wake = || drop(proxy.send_event(Wake::Drawn));
+    thread::scope(|scope| {
+        refiner.run(&wake, || {
+            let mut app = App {
+                refiner,
+                state,
+                viewed,
+                scope,
+                proxy: proxy.clone(),
+                shown: None,
+                last: Instant::now(),
+                mouse: Mouse::default(),
+                message: None,
+                error: None,
+            };
+            events.run_app(&mut app)?;
+            app.error.map_or(Ok(()), Err)
+        })
+    })
+}
+
+/// What threads tell the window.
+enum Wake {
+    /// There is more of the picture.
+    Drawn,
+    /// An explanation, in short.
+    Explained(String),
+}
+
+/// A window and its pixels.
+struct Canvas {
+    window: Rc<Window>,
+    surface: Surface<OwnedDisplayHandle, Rc<Window>>,
+    title: String,
+}
+
+/// The mouse, in pixels.
+#[derive(Default)]
+struct Mouse {
+    place: PhysicalPosition<f64>,
+    /// The button that is down, and where it went down.
+    down: Option<(MouseButton, PhysicalPosition<f64>)>,
+    /// Whether it has moved since, further than in a click.
+    is_drag: bool,
+}
+
+struct App<'a, 'scope, 'env> {
+    refiner: &'a Refiner<'a>,
+    state: State<'a>,
+    viewed: Viewed<'env>,
+    scope: &'scope Scope<'scope, 'env>,
+    proxy: EventLoopProxy<Wake>,
+    shown: Option<Canvas>,
+    /// When the window was last drawn.
+    last: Instant,
+    mouse: Mouse,
+    /// Shown in the title in place of the settings, until something changes.
+    message: Option<String>,
+    error: Option<WindowError>,
+}
+
+impl<'env> ApplicationHandler<Wake> for App<'_, '_, 'env> {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        match self.open(events) {
+            Ok(canvas) => {
+                self.shown = Some(canvas);
+                self.refiner.show(self.state.shot());
+            }
+            Err(error) => {
+                self.error = Some(error);
+                events.exit();
+            }
+        }
+    }
+
+    fn new_events(&mut self, events: &ActiveEventLoop, cause: StartCause) {
+        if matches!(cause, StartCause::ResumeTimeReached { .. }) {
+            events.set_control_flow(ControlFlow::Wait);
+            self.request_redraw();
+        }
+    }
+
+    fn user_event(&mut self, events: &ActiveEventLoop, wake: Wake) {
+        if let Wake::Explained(text) = wake {
+            self.message = Some(text);
+        }
+        let due = self.last + FRAME_TIME;
+        if due <= Instant::now() {
+            self.request_redraw();
+        } else {
+            events.set_control_flow(ControlFlow::WaitUntil(due));
+        }
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let effect = match event {
+            WindowEvent::CloseRequested => Effect::Quit,
+            WindowEvent::Resized(size) => {
+                self.request_redraw();
+                let side = |side: u32| u16::try_from(side).unwrap_or(u16::MAX).max(1);
+                self.state.resize([side(size.width), side(size.height)])
+            }
+            WindowEvent::KeyboardInput { event, .. } => match key(&event).and_then(action) {
+                Some(action) => {
+                    self.message = None;
+                    self.state.apply(action)
+                }
+                None => Effect::Nothing,
+            },
+            WindowEvent::CursorMoved { position, .. } => self.mouse_moved(position),
+            WindowEvent::MouseInput { state, button, .. } => {
+                self.mouse_button(state, button);
+                Effect::Nothing
+            }
+            WindowEvent::MouseWheel { delta, .. } => self.state.zoom(match delta {
+                MouseScrollDelta::LineDelta(_, lines) => lines.into(),
+                MouseScrollDelta::PixelDelta(by) => by.y / PIXELS_PER_STEP,
+            }),
+            WindowEvent::RedrawRequested => {
+                if let Err(error) = self.draw() {
+                    self.error = Some(error.into());
+                    events.exit();
+                }
+                Effect::Nothing
+            }
+            _ => Effect::Nothing,
+        };
+        match effect {
+            Effect::Nothing => {}
+            Effect::Redraw => {
+                self.refiner.show(self.state.shot());
+                self.request_redraw();
+            }
+            Effect::Save => self.save(),
+            Effect::Help => print(key_help()),
+            Effect::Quit => events.exit(),
+        }
+    }
+}
+
+impl<'env> App<'_, '_, 'env> {
+    fn open(&self, events: &ActiveEventLoop) -> Result<Canvas, WindowError> {
+        let settings = self.state.settings();
+        let attributes = Window::default_attributes()
+            .with_title(self.viewed.title)
+            .with_inner_size(PhysicalSize::new(settings.width, settings.height));
+        let window = Rc::new(events.create_window(attributes)?);
+        let context = Context::new(events.owned_display_handle())?;
+        Ok(Canvas {
+            surface: Surface::new(&context, window.clone())?,
+            window,
+            title: String::new(),
+        })
+    }
+
+    fn request_redraw(&self) {
+        if let Some(canvas) = &self.shown {
+            canvas.window.request_redraw();
+        }
+    }
+
+    fn mouse_moved(&mut self, place: PhysicalPosition<f64>) -> Effect {
+        let before = std::mem::replace(&mut self.mouse.place, place);
+        let Some((button, start)) = self.mouse.down else {
+            return Effect::Nothing;
+        };
+        let way = |from: PhysicalPosition<f64>| [place.x - from.x, place.y - from.y];
+        let [right, down] = way(start);
+        let from = match self.mouse.is_drag {
+            true => before,
+            // The way of what has only now become a drag counts whole.
+            false => start,
+        };
+        self.mouse.is_drag |= right.hypot(down) > CLICK_DISTANCE;
+        if !self.mouse.is_drag {
+            return Effect::Nothing;
+        }
+        self.message = None;
+        match button {
+            MouseButton::Left => self.state.drag(way(from)),
+            _ => self.state.pan(way(from)),
+        }
+    }
+
+    fn mouse_button(&mut self, state: ElementState, button: MouseButton) {
+        match (state, self.mouse.down) {
+            (ElementState::Pressed, None) => {
+                self.mouse.down = Some((button, self.mouse.place));
+                self.mouse.is_drag = false;
+            }
+            (ElementState::Released, Some((pressed, _))) if pressed == button => {
+                self.mouse.down = None;
+                if button == MouseButton::Left && !self.mouse.is_drag {
+                    self.explain();
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Explains the pixel under the mouse, in a thread of its own.
+    fn explain(&mut self) {
+        let shot = self.state.shot();
+        let PhysicalPosition { x, y } = self.mouse.place;
+        // The cast saturates.
+        let pixel = [x as u16, y as u16];
+        if pixel[0] >= shot.settings.width || pixel[1] >= shot.settings.height {
+            return;
+        }
+        let Viewed { scene, names, .. } = self.viewed;
+        let proxy = self.proxy.clone();
+        self.scope.spawn(move || {
+            let Ok(scene) = scene.with_view(&shot.view) else {
+                return;
+            };
+            let subject = Subject::Pixel(pixel);
+            let explained = explain(&scene, shot.format, shot.structure, shot.settings, subject);
+            let short = match explained {
+                Ok(explanation) => {
+                    let shown = Shown {
+                        explanation: &explanation,
+                        names,
+                        all_walks: false,
+                    };
+                    print(format!("{shown}\n"));
+                    summary(&explanation, names)
+                }
+                Err(error) => error.to_string(),
+            };
+            // The window may be closed by now.
+            drop(proxy.send_event(Wake::Explained(short)));
+        });
+    }
+
+    fn save(&mut self) {
+        let message = match save(self.state.camera(), Path::new("")) {
+            Ok(path) => format!("the camera is in {}", path.display()),
+            Err(error) => format!("the camera cannot be saved: {error}"),
+        };
+        print(format!("{message}\n"));
+        self.message = Some(message);
+        self.request_redraw();
+    }
+
+    /// Draws the frame, stretched while it has not yet the window's size.
+    fn draw(&mut self) -> Result<(), softbuffer::SoftBufferError> {
+        self.last = Instant::now();
+        let Some(canvas) = &mut self.shown else {
+            return Ok(());
+        };
+        let size = canvas.window.inner_size();
+        let sides = [size.width, size.height].map(NonZeroU32::new);
+        let [Some(width), Some(height)] = sides else {
+            return Ok(());
+        };
+        canvas.surface.resize(width, height)?;
+        let mut pixels = canvas.surface.buffer_mut()?;
+        let settings = self.state.description();
+        let below = self.refiner.look(|frame, status| {
+            frame.stretch(&mut pixels, [width, height].map(|it| it.get() as usize));
+            match (&status.error, &self.message) {
+                (Some(error), _) => error.to_string(),
+                (None, Some(message)) => message.clone(),
+                (None, None) if status.share < 1.0 => {
+                    format!("{settings}, {:.0} %", 100.0 * status.share)
+                }
+                (None, None) => settings,
+            }
+        });
+        pixels.present()?;
+        let title = format!("{}: {below}", self.viewed.title);
+        if canvas.title != title {
+            canvas.window.set_title(&title);
+            canvas.title = title;
+        }
+        Ok(())
+    }
+}
+
+/// A key that was pressed, or is repeated.
+fn key(event: &KeyEvent) -> Option<Key> {
+    if event.state != ElementState::Pressed {
+        return None;
+    }
+    match &event.logical_key {
+        LogicalKey::Character(text) => text.chars().next().map(Key::Character),
+        LogicalKey::Named(NamedKey::ArrowLeft) => Some(Key::Left),
+        LogicalKey::Named(NamedKey::ArrowRight) => Some(Key::Right),
+        LogicalKey::Named(NamedKey::ArrowUp) => Some(Key::Up),
+        LogicalKey::Named(NamedKey::ArrowDown) => Some(Key::Down),
+        LogicalKey::Named(NamedKey::Escape) => Some(Key::Escape),
+        _ => None,
+    }
+}
+
+/// Prints in the terminal, which may be closed without harm to the window.
+fn print(text: impl Display) {
+    let _ = write!(io::stdout().lock(), "{text}");
+    let _ = io::stdout().flush();
+}
