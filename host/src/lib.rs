@@ -12,6 +12,7 @@
 //! | write a blob as a Rust module | [`emit`] |
 //! | render a blob on all cores | [`render`], then [`picture`] to encode what comes out |
 //! | change the camera and the lights of a blob | [`live`] |
+//! | know a scene at a time of its tracks | [`state`] |
 //! | compare structures on a scene | [`compare`] |
 //! | put parts of a picture together | [`merge`] |
 //! | trace rays of one's own | [`trace`], and [`npy`] for NumPy's files |
@@ -67,6 +68,7 @@ pub mod scene;
 pub mod shape;
 #[doc(hidden)]
 pub mod simd;
+pub mod state;
 #[doc(hidden)]
 pub mod table;
 pub mod trace;

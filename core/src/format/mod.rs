@@ -20,6 +20,7 @@ mod requirements;
 mod section;
 pub(crate) mod sections;
 pub(crate) mod structure;
+pub mod track;
 pub mod width;
 pub(crate) mod word;
 

@@ -169,6 +169,14 @@ macro_rules! sections {
             NameStarts = 61, "name-starts", "name" of "name-starts";
             /// The names, UTF-8, one behind the other.
             NameText = 62, "name-text", "byte" of "name-text";
+            /// One [`Timeline`](crate::format::track::Timeline): the times of tracks.
+            Timeline = 64, "timeline", "" of "";
+            /// [`Track`](crate::format::track::Track)s.
+            Tracks = 65, "tracks", "track" of "";
+            /// The times of the keys of all tracks in ticks, `i32` each.
+            TrackTimes = 66, "track-times", "key" of "tracks";
+            /// The [values](crate::format::track) of the keys of all tracks, `i32` each.
+            TrackWords = 67, "track-words", "word" of "tracks";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

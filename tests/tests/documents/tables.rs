@@ -8,6 +8,7 @@ use gridel_core::format::record::{
     Material, Pair, SectionEntry, Sphere16, Sphere24, SpherePair, Vertex16, Vertex24, View,
     WideNode,
 };
+use gridel_core::format::track::{Interpolation, Timeline, Track, TrackTarget};
 use gridel_core::format::{Kind, SectionKind};
 use gridel_core::geometry::{cone, cuboid, disc, plane, torus};
 use gridel_core::shared::DIRECTION_COUNTS;
@@ -88,6 +89,10 @@ fn record(kind: SectionKind) -> (&'static str, Vec<usize>, &'static str) {
         S::OctreeNodes => one::<u32>("octree node"),
         S::NameStarts => index("first byte of a name", 1),
         S::NameText => one::<u8>("u8"),
+        S::Timeline => one::<Timeline>("timeline, exactly one"),
+        S::Tracks => one::<Track>("track"),
+        S::TrackTimes => one::<i32>("ticks"),
+        S::TrackWords => one::<i32>("component of a value"),
     }
 }
 
@@ -138,6 +143,13 @@ fn blobs() -> Vec<Vec<u8>> {
     scene.lights = vec![scene::Light::Directional {
         direction: DVec3::new(-1.0, -2.0, -0.5),
         color: [0.8; 3],
+    }];
+    scene.tracks = vec![scene::Track {
+        target: TrackTarget::CameraOrbit,
+        index: 0,
+        interpolation: Interpolation::Linear,
+        keys: vec![scene::Key::default()],
+        place: scene::SourceSpan::default(),
     }];
     let options = Options {
         names: true,
