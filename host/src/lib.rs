@@ -14,7 +14,7 @@
 //! | change the camera and the lights of a blob | [`live`] |
 //! | know a scene at a time of its tracks | [`state`] |
 //! | compare structures on a scene | [`compare`] |
-//! | put parts of a picture together | [`merge`] |
+//! | put parts of a picture together, and pictures into an animation | [`merge`], [`animation`] |
 //! | trace rays of one's own | [`trace`], and [`npy`] for NumPy's files |
 //! | explain a ray or a pixel | [`explain`] |
 //! | measure what accuracy costs in time | [`accuracy`] |
@@ -46,6 +46,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 pub mod accuracy;
+pub mod animation;
 pub mod blob;
 pub mod check;
 pub mod compare;

@@ -29,7 +29,7 @@ const HOST: Layers = Layers {
     order: &[
         "output simd table blob picture_rays shape",
         "scene sample compile",
-        "live state render trace npy picture merge resolution report",
+        "live state render trace npy picture animation merge resolution report",
         "measure emit",
         "accuracy compare verify explain check",
         "cli main",
