@@ -1,5 +1,6 @@
 //! Why a scene cannot be compiled.
 
+use crate::scene::SourceSpan;
 use glam::DVec3;
 use gridel_core::render::CameraError;
 
@@ -43,6 +44,14 @@ pub enum CompileError {
     #[error("{source}")]
     #[diagnostic(help("change the camera's `eye`, `target`, `up` or `fov`"))]
     Camera { source: CameraError },
+    #[error("{place}: track of {target}: {cause}")]
+    #[diagnostic(help("{remedy}"))]
+    Track {
+        place: SourceSpan,
+        target: &'static str,
+        cause: String,
+        remedy: &'static str,
+    },
     #[error("{bits} lattice bits are not possible")]
     #[diagnostic(help("use 10 to 24"))]
     LatticeBits { bits: u8 },
