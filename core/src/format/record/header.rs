@@ -11,14 +11,14 @@ records! {
     #[repr(C)]
     #[bytes(96)]
     pub struct Header {
-        /// [`MAGIC`](crate::format::record::MAGIC): the bytes `47 52 49 44 45 4c 1a 0a`, which are "GRIDEL", end of file
-        /// and line feed.
+        /// [`MAGIC`](crate::format::record::MAGIC): the bytes `47 52 49 44 45 4c 1a 0a`, which are "GRIDEL", end of
+        /// file and line feed.
         pub magic: [u8; 8],
         /// [`ENDIANNESS`](crate::format::record::ENDIANNESS): 0x01020304, the bytes `04 03 02 01`.
         pub endianness: u32,
         /// [`VERSION`](crate::format::record::VERSION): 1.
         pub version: u16,
-        /// Number of entries in the section table: at most 63, because kinds ascend.
+        /// Number of entries in the section table: at most one for each kind, because kinds ascend.
         pub section_count: u16,
         /// Length of the blob in bytes, the header included.
         pub blob_bytes: u32,
@@ -72,7 +72,7 @@ records! {
     #[repr(C)]
     #[bytes(16)]
     pub struct SectionEntry {
-        /// A [`SectionKind`](crate::format::SectionKind): 1 to 63, above the kind of the entry before.
+        /// A [`SectionKind`](crate::format::SectionKind), above the kind of the entry before.
         pub kind: u16,
         /// Bytes of a record, as the kind says. Loading does not test it where `count` is 0.
         pub stride: u16,
