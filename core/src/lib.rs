@@ -72,6 +72,7 @@ pub mod shade;
 pub mod shared;
 mod simd;
 mod target;
+pub mod tracks;
 
 pub use accel::types::*;
 pub use accel::{Accel, Number, Stack, StackView, StructureVisitor};
@@ -84,3 +85,4 @@ pub use ray::{Pencil, Ray, RayError};
 pub use render::{Camera, Renderer, Rgb565, Rgb888, Settings, Up, Workspace};
 pub use scene::{Names, Position, Prevalidated, Scene};
 pub use simd::SimdLevel;
+pub use tracks::Tracks;

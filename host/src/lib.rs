@@ -12,8 +12,9 @@
 //! | write a blob as a Rust module | [`emit`] |
 //! | render a blob on all cores | [`render`], then [`picture`] to encode what comes out |
 //! | change the camera and the lights of a blob | [`live`] |
+//! | know a scene at a time of its tracks | [`state`] |
 //! | compare structures on a scene | [`compare`] |
-//! | put parts of a picture together | [`merge`] |
+//! | put parts of a picture together, and pictures into an animation | [`merge`], [`animation`] |
 //! | trace rays of one's own | [`trace`], and [`npy`] for NumPy's files |
 //! | explain a ray or a pixel | [`explain`] |
 //! | view a scene live, from coarse to fine | [`view`] |
@@ -46,6 +47,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 pub mod accuracy;
+pub mod animation;
 pub mod blob;
 pub mod check;
 pub mod compare;
@@ -68,6 +70,7 @@ pub mod scene;
 pub mod shape;
 #[doc(hidden)]
 pub mod simd;
+pub mod state;
 #[doc(hidden)]
 pub mod table;
 pub mod trace;

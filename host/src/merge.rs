@@ -4,6 +4,10 @@
 //! parts may come in any order, parts of different pictures are rejected, and parts may overlap
 //! where they agree: what two machines rendered twice is the same.
 
+mod frames;
+
+pub use frames::{FramesError, NumberedPicture, in_order};
+
 use crate::picture::{PictureFormat, Rows, write_png};
 use std::fmt;
 use std::io::{self, BufRead, Read, Write};
@@ -30,6 +34,8 @@ pub enum PartError {
         "it does not state which rows it has and how they were rendered, so it is not a part of a picture"
     )]
     Whole,
+    #[error("it does not state which picture of an animation it is")]
+    NoFrame,
     #[error("it says that it has the rows {}..{}, but it has {found}", .rows.start, .rows.end)]
     Rows { rows: Range<u16>, found: u32 },
 }
@@ -79,11 +85,22 @@ impl Part {
 type Read4 = (u32, u32, Option<String>, Vec<u8>);
 
 fn read_png(input: impl BufRead + io::Seek) -> Result<Read4, PartError> {
-    let wrong = |error: png::DecodingError| match error {
+    let mut reader = open_png(input)?;
+    let pixels = pixels(&mut reader)?;
+    let info = reader.info();
+    Ok((info.width, info.height, text(info, Rows::KEYWORD), pixels))
+}
+
+fn wrong_png(error: png::DecodingError) -> PartError {
+    match error {
         png::DecodingError::IoError(error) => PartError::Read(error),
         error => PartError::Png(error.to_string()),
-    };
-    let mut reader = png::Decoder::new(input).read_info().map_err(wrong)?;
+    }
+}
+
+/// Reads a PNG up to its pixels.
+fn open_png<R: BufRead + io::Seek>(input: R) -> Result<png::Reader<R>, PartError> {
+    let reader = png::Decoder::new(input).read_info().map_err(wrong_png)?;
     if reader.output_color_type() != (png::ColorType::Rgb, png::BitDepth::Eight) {
         let found = reader.output_color_type();
         return Err(PartError::Png(format!("its pixels are {found:?}")));
@@ -91,18 +108,24 @@ fn read_png(input: impl BufRead + io::Seek) -> Result<Read4, PartError> {
     if reader.info().interlaced {
         return Err(PartError::Png(String::from("it is interlaced")));
     }
+    Ok(reader)
+}
+
+/// The pixels of a PNG.
+fn pixels<R: BufRead + io::Seek>(reader: &mut png::Reader<R>) -> Result<Vec<u8>, PartError> {
     // Row by row, because the header may claim more than there is.
     let mut pixels = Vec::new();
-    while let Some(row) = reader.next_row().map_err(wrong)? {
+    while let Some(row) = reader.next_row().map_err(wrong_png)? {
         pixels.extend(row.data());
     }
-    let info = reader.info();
-    let texts = info.uncompressed_latin1_text.iter();
-    let note = texts
-        .filter(|chunk| chunk.keyword == Rows::KEYWORD)
-        .map(|chunk| chunk.text.clone())
-        .next();
-    Ok((info.width, info.height, note, pixels))
+    Ok(pixels)
+}
+
+/// The text of a PNG that stands under a keyword.
+fn text(info: &png::Info<'_>, keyword: &str) -> Option<String> {
+    let mut texts = info.uncompressed_latin1_text.iter();
+    let chunk = texts.find(|chunk| chunk.keyword == keyword)?;
+    Some(chunk.text.clone())
 }
 
 fn read_ppm(mut input: impl BufRead) -> Result<Read4, PartError> {

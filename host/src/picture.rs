@@ -20,6 +20,82 @@ pub struct RenderMetadata {
     pub samples: u16,
     pub depth: u8,
     pub dither: bool,
+    /// For a scene that moves.
+    pub moment: Option<Moment>,
+}
+
+/// When a picture of a scene that moves is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Moment {
+    /// A time in ticks of the blob's tracks.
+    Time(i32),
+    /// One of the pictures of an animation.
+    Frame(Frame),
+}
+
+/// A picture of an animation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frame {
+    /// Counted from 0, which is at time 0.
+    pub number: u32,
+    /// Pictures per second.
+    pub per_second: u16,
+}
+
+/// What a file says of a picture of an animation: which one it is, and how it was made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FrameNote {
+    pub frame: Frame,
+    /// Names and values, as [`RenderMetadata`] shows them.
+    pub made: Vec<(String, String)>,
+}
+
+impl FrameNote {
+    /// Keyword of the text in PNG files.
+    pub const KEYWORD: &str = "Frame";
+
+    fn of(metadata: &RenderMetadata) -> Option<Self> {
+        let Some(Moment::Frame(frame)) = metadata.moment else {
+            return None;
+        };
+        Some(Self {
+            frame,
+            made: pairs(&metadata.to_string()).unwrap_or_default(),
+        })
+    }
+}
+
+impl fmt::Display for FrameNote {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Frame { number, per_second } = self.frame;
+        write!(f, "{number} at {per_second} per second")?;
+        write_pairs(f, &self.made)
+    }
+}
+
+impl FromStr for FrameNote {
+    type Err = ();
+
+    fn from_str(text: &str) -> Result<Self, ()> {
+        let (frame, made) = text.split_once("; ").ok_or(())?;
+        let (number, rate) = frame.split_once(" at ").ok_or(())?;
+        let rate = rate.strip_suffix(" per second").ok_or(())?;
+        let frame = Frame {
+            number: number.parse().map_err(|_| ())?,
+            per_second: rate.parse().map_err(|_| ())?,
+        };
+        let made = pairs(made).filter(|_| frame.per_second > 0).ok_or(())?;
+        Ok(Self { frame, made })
+    }
+}
+
+/// Names and values behind what is said first.
+fn write_pairs(f: &mut fmt::Formatter<'_>, pairs: &[(String, String)]) -> fmt::Result {
+    for (number, (name, value)) in pairs.iter().enumerate() {
+        let before = if number == 0 { "; " } else { ", " };
+        write!(f, "{before}{name} {value}")?;
+    }
+    Ok(())
 }
 
 impl RenderMetadata {
@@ -32,7 +108,13 @@ impl RenderMetadata {
             samples: job.settings.samples,
             depth: job.settings.depth,
             dither: job.settings.dither,
+            moment: None,
         }
+    }
+
+    /// The same at a moment.
+    pub fn at(self, moment: Option<Moment>) -> Self {
+        Self { moment, ..self }
     }
 }
 
@@ -60,7 +142,11 @@ impl fmt::Display for RenderMetadata {
             samples,
             depth,
             dither,
+            moment,
         } = self;
+        if let Some(Moment::Time(ticks)) = moment {
+            write!(f, "time {ticks}, ")?;
+        }
         write!(
             f,
             "blob {blob:08x}, view {view:08x}, format {}, samples {samples}, depth {depth}, dither {}, gridel {}",
@@ -110,11 +196,7 @@ impl fmt::Display for Rows {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { part, height, made } = self;
         write!(f, "{}..{} of {height}", part.start, part.end)?;
-        for (number, (name, value)) in made.iter().enumerate() {
-            let before = if number == 0 { "; " } else { ", " };
-            write!(f, "{before}{name} {value}")?;
-        }
-        Ok(())
+        write_pairs(f, made)
     }
 }
 
@@ -200,7 +282,9 @@ impl PictureFormat {
                 let pixels: Vec<Rgb888> = encoded(picture, dither);
                 let rows =
                     Rows::of(picture, metadata).map(|rows| (Rows::KEYWORD, rows.to_string()));
-                write_png(out, size, bytemuck::cast_slice(&pixels), rows)
+                let frame =
+                    FrameNote::of(metadata).map(|note| (FrameNote::KEYWORD, note.to_string()));
+                write_png(out, size, bytemuck::cast_slice(&pixels), rows.or(frame))
             }
             Self::Ppm => {
                 let pixels: Vec<Rgb888> = encoded(picture, dither);
@@ -218,6 +302,12 @@ impl PictureFormat {
             }
         }
     }
+}
+
+/// A picture as sRGB, three bytes per pixel.
+pub fn srgb(picture: &Picture, dither: bool) -> Vec<u8> {
+    let pixels: Vec<Rgb888> = encoded(picture, dither);
+    bytemuck::cast_slice(&pixels).to_vec()
 }
 
 fn encoded<P: Pixel>(picture: &Picture, dither: bool) -> Vec<P> {
@@ -296,6 +386,7 @@ mod tests {
             samples: 4,
             depth: 5,
             dither,
+            moment: None,
         };
         format.write(&mut bytes, picture, &metadata).unwrap();
         bytes

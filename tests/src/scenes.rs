@@ -6,7 +6,8 @@ use gridel_core::Structure;
 use gridel_host::blob::Blob;
 use gridel_host::compile::{CompileError, Options, compile};
 use gridel_host::scene::{
-    Camera, Material, MoleculeOptions, Object, Scene, Shape, SourceSpan, load,
+    Camera, Interpolation, Key, Light, Material, MoleculeOptions, Object, Scene, Shape, SourceSpan,
+    Track, TrackTarget, load,
 };
 use gridel_host::shape::{Cone, Cuboid, Disc, Sphere};
 use std::path::{Path, PathBuf};
@@ -24,6 +25,109 @@ pub fn of(shapes: impl IntoIterator<Item = Shape>) -> Scene {
         objects: objects.collect(),
         ..Scene::default()
     }
+}
+
+/// A track of a scene; keys are times and values.
+pub fn track<const N: usize>(
+    target: TrackTarget,
+    index: usize,
+    interpolation: Interpolation,
+    keys: &[(f64, [f64; N])],
+) -> Track {
+    let four = |value: [f64; N]| std::array::from_fn(|k| value.get(k).copied().unwrap_or(0.0));
+    let keys = keys.iter().map(|&(seconds, value)| Key {
+        seconds,
+        value: four(value),
+        entering: four(value),
+        leaving: four(value.map(|it| 0.5 - it)),
+    });
+    Track {
+        target,
+        index,
+        interpolation,
+        keys: keys.collect(),
+        place: SourceSpan::default(),
+    }
+}
+
+/// Tracks of everything that moves in a scene whose last material is a checkerboard; the camera turns by a rotation,
+/// or looks at a target and orbits it.
+pub fn moving(scene: &Scene, by_rotation: bool) -> Vec<Track> {
+    use Interpolation::{Cubic, Linear, Step};
+    let mut tracks = vec![
+        track(
+            TrackTarget::CameraEye,
+            0,
+            Cubic,
+            &[
+                (-0.5, [0.5, 0.7, 4.0]),
+                (1.0, [1.0, 1.0, 3.0]),
+                (2.0, [-1.0, 1.0, 3.0]),
+            ],
+        ),
+        track(
+            TrackTarget::CameraFieldOfView,
+            0,
+            Linear,
+            &[(0.0, [40.0]), (1.5, [55.0])],
+        ),
+    ];
+    if by_rotation {
+        let turned = [
+            (0.0, [0.0, 0.0, 0.0, 1.0]),
+            (1.0, [0.0, 0.6, 0.0, 0.8]),
+            (2.0, [0.2, 0.3, 0.4, -0.9]),
+        ];
+        tracks.push(track(TrackTarget::CameraRotation, 0, Linear, &turned));
+    } else {
+        tracks.extend([
+            track(
+                TrackTarget::CameraTarget,
+                0,
+                Linear,
+                &[(0.0, [0.0; 3]), (1.0, [0.1, 0.2, 0.3])],
+            ),
+            track(
+                TrackTarget::CameraUp,
+                0,
+                Linear,
+                &[(0.0, [0.0, 1.0, 0.0]), (2.0, [0.3, 2.0, 0.1])],
+            ),
+            track(
+                TrackTarget::CameraOrbit,
+                0,
+                Linear,
+                &[(0.0, [0.0]), (2.0, [360.0])],
+            ),
+        ]);
+    }
+    for (index, light) in scene.lights.iter().enumerate() {
+        let keys = [(0.25, [3.0, 4.0, 5.0]), (1.25, [-2.0, 5.0, 1.0])];
+        let (target, interpolation) = match light {
+            Light::Point { .. } => (TrackTarget::LightPosition, Linear),
+            Light::Directional { .. } => (TrackTarget::LightDirection, Cubic),
+        };
+        tracks.push(track(target, index, interpolation, &keys));
+        let colors = [(0.0, [0.2, 0.4, 0.8]), (0.5, [0.9, 0.1, 0.3])];
+        tracks.push(track(
+            TrackTarget::LightColor,
+            index,
+            [Step, Cubic][index % 2],
+            &colors,
+        ));
+    }
+    let material = scene.materials.len() - 1;
+    for target in [
+        TrackTarget::MaterialDiffuse,
+        TrackTarget::MaterialOdd,
+        TrackTarget::MaterialHighlight,
+        TrackTarget::MaterialMirror,
+        TrackTarget::MaterialTransmit,
+    ] {
+        let keys = [(0.0, [0.1, 0.5, 0.9]), (1.0, [1.0, 0.25, 0.0])];
+        tracks.push(track(target, material, Linear, &keys));
+    }
+    tracks
 }
 
 /// A blob with every structure that is proved when it is loaded: tables of candidates take long to

@@ -36,6 +36,9 @@ pub const FARTHEST_HIT: i64 = 1 << 62;
 /// So some point of it is a length in every format, with as much to spare.
 pub const FARTHEST_POINT: i64 = 1 << 25;
 
+/// The narrowest and the widest [angle](crate::Angle) that a camera of a track sees.
+pub const FIELD_OF_VIEW: [i32; 2] = [2, i32::MAX];
+
 /// Whether this build holds the code for scenes whose colors are display values.
 pub(crate) const DISPLAY_VALUES: bool = cfg!(feature = "display-values");
 

@@ -21,6 +21,7 @@ mod requirements;
 pub(crate) mod section;
 pub(crate) mod sections;
 pub(crate) mod structure;
+pub mod track;
 pub mod width;
 pub(crate) mod word;
 

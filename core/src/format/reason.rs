@@ -115,6 +115,20 @@ texts! {
         SideCells => "number of cells along a side",
         Dimension => "dimension",
         Cell => "cell",
+        // Tracks.
+        TicksPerSecond => "number of ticks per second",
+        FirstTime => "first time",
+        LastTime => "last time",
+        TrackTarget => "target",
+        TrackIndex => "number of a light or material",
+        Interpolation => "interpolation",
+        Keys => "number of keys",
+        KeyTime => "time of a key",
+        FirstWord => "first word",
+        Direction => "direction",
+        FieldOfView => "field of view",
+        Rotation => "rotation",
+        RotationAngle => "angle to the next rotation",
     }
 }
 
@@ -167,5 +181,10 @@ texts! {
         SlotOrder => "its slot does not follow the slot before it in its list",
         MissingPrimitive => "it lacks a primitive that reaches into its cell",
         OutsideCell => "its primitive does not reach into its cell",
+        // Tracks.
+        TrackOrder => "it does not follow the track before it in the order of targets and numbers",
+        WrongLight => "its light is of the other kind, which has no such property",
+        ZeroRotation => "its rotation has length 0",
+        CameraInPart => "its camera lacks tracks: those of a camera are eye and field of view with either target and up or rotation, and orbit only with a target",
     }
 }

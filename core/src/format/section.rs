@@ -172,6 +172,14 @@ macro_rules! sections {
             NameStarts = 61, "name-starts", [u8, u16, [u8; 3], u32], "name" of "name-starts";
             /// The names, UTF-8, one behind the other.
             NameText = 62, "name-text", [u8], "byte" of "name-text";
+            /// One [`Timeline`](crate::format::track::Timeline): the times of tracks.
+            Timeline = 64, "timeline", [track::Timeline], "" of "";
+            /// [`Track`](crate::format::track::Track)s.
+            Tracks = 65, "tracks", [track::Track], "track" of "";
+            /// The times of the keys of all tracks in ticks, `i32` each.
+            TrackTimes = 66, "track-times", [i32], "key" of "tracks";
+            /// The [values](crate::format::track) of the keys of all tracks, `i32` each.
+            TrackWords = 67, "track-words", [i32], "word" of "tracks";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

@@ -17,3 +17,4 @@ pub use blob::Scene;
 pub use coordinates::Position;
 pub use names::Names;
 pub use prevalidated::Prevalidated;
+pub(crate) use read::header;

@@ -1,7 +1,7 @@
 //! `gridel explain`: explains a pixel or a ray.
 
 use super::arguments::TargetPoint;
-use super::arguments::{PictureOptions, SceneOptions, TraceOptions};
+use super::arguments::{PictureOptions, SceneOptions, TraceOptions, seconds};
 use super::failure::Failure;
 use super::output::{print, print_json_warned};
 use super::source::Source;
@@ -57,6 +57,10 @@ pub struct Arguments {
     #[arg(long)]
     all_walks: bool,
 
+    /// Show a scene that moves at this time, in seconds [default: as its file states it, without tracks]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
+    time: Option<f64>,
+
     /// Print the results as JSON
     #[arg(long)]
     json: bool,
@@ -83,7 +87,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         &arguments
             .target_point
             .with_target(&arguments.scene_options)
-            .sized(arguments.picture.size),
+            .sized(arguments.picture.size)
+            .at(arguments.time),
         &arguments.with,
         Structure::DualSplit,
     )?;

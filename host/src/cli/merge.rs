@@ -1,9 +1,12 @@
-//! `gridel merge`: parts of a picture become one.
+//! `gridel merge`: parts of a picture become one, and pictures an animation.
+
+mod frames;
 
 use super::failure::Failure;
 use super::output::{print, print_json, reject_same, unsupported, write_file};
 use super::progress::Progress;
 use clap::Args;
+use gridel_host::animation::AnimationFormat;
 use gridel_host::merge::{Merge, MergeError, Part};
 use gridel_host::picture::PictureFormat;
 use serde::Serialize;
@@ -11,19 +14,20 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Join parts of a picture that `render --rows` wrote
+/// Join parts of a picture that `render --rows` wrote, or frames that `render --frames` wrote
 ///
 /// Each part stores its rows, its blob and its settings. Parts can come from several machines, in
 /// any order, and can overlap if they agree. Parts of different pictures are rejected. The result
-/// has the bytes that one machine writes.
+/// has the bytes that one machine writes. So has an animation of frames, numbered .png files each of
+/// which stores its number, rate, blob and settings.
 #[derive(Args)]
 #[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {
-    /// Parts, .png or .ppm
+    /// Parts, .png or .ppm, or frames, .png
     #[arg(required = true, value_name = "PART")]
     parts: Vec<PathBuf>,
 
-    /// Picture to write, with the extension of the parts
+    /// Picture to write, with the extension of the parts; or animation of frames, .apng or .gif
     #[arg(short, long, value_name = "PICTURE")]
     output: PathBuf,
 
@@ -44,6 +48,9 @@ struct Merged {
 /// Merges parts and writes the picture.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let output = &arguments.output;
+    if let Some(format) = AnimationFormat::of(output) {
+        return frames::run(arguments, format);
+    }
     let format = format_of(output)?;
     for part in &arguments.parts {
         if format_of(part)? != format {
@@ -100,7 +107,11 @@ fn format_of(path: &Path) -> Result<PictureFormat, Failure> {
             "render parts as .png or .ppm; .rgb565 files have nothing but pixels, and joined in the \
              order of their rows, as with `cat`, they are the whole",
         )),
-        None => Err(unsupported(path, "image", ".png or .ppm")),
+        None => Err(unsupported(
+            path,
+            "image",
+            ".png or .ppm, and for an animation .apng or .gif",
+        )),
     }
 }
 

@@ -1,4 +1,6 @@
-//! `gridel render`: a picture of a scene.
+//! `gridel render`: a picture of a scene, or those of one that moves.
+
+mod frames;
 
 use super::arguments::TargetPoint;
 use super::arguments::{self, PictureOptions, SceneOptions, TraceOptions};
@@ -10,9 +12,11 @@ use super::output::{
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
+use frames::{Output, Shot, TimeOptions};
+use gridel_core::render::RenderError;
 use gridel_core::{Counters, Scene, Settings, Structure};
 use gridel_host::output::place;
-use gridel_host::picture::{PictureFormat, RenderMetadata};
+use gridel_host::picture::{Moment, PictureFormat, RenderMetadata};
 use gridel_host::render::{Job, Picture, render};
 use gridel_host::report::HeatMap;
 use gridel_host::resolution::Unresolved;
@@ -22,7 +26,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// Render a picture from a blob or a scene file
+/// Render a picture from a blob or a scene file, or an animation
 ///
 /// Options that are not given come from the scene file. The picture is the same, bit for bit, with
 /// any number of threads, on every machine, and in every acceleration structure.
@@ -37,6 +41,9 @@ pub struct Arguments {
     /// header). With `-` a PNG goes to standard output, and the report to standard error
     #[arg(short, long, value_name = "PICTURE")]
     output: PathBuf,
+
+    #[command(flatten)]
+    time: TimeOptions,
 
     #[command(flatten)]
     with: TraceOptions,
@@ -123,15 +130,22 @@ struct HeatMapFile {
     maximum: u32,
 }
 
-/// Renders a picture and writes it.
+/// Renders a picture, or frames, and writes them.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let format = check_outputs(arguments)?;
+    let frames = arguments.time.frames.clone();
+    let frames = frames.map(|frames| Ok((Output::of(arguments, &frames)?, frames)));
+    let frames = frames.transpose()?;
+    let format = match frames {
+        Some(_) => PictureFormat::Png,
+        None => check_outputs(arguments)?,
+    };
     let source = Source::to_trace(
         &arguments.input,
         &arguments
             .target_point
             .with_target(&arguments.scene_options)
-            .sized(arguments.picture.size),
+            .sized(arguments.picture.size)
+            .at(arguments.time.time),
         &arguments.with,
         Structure::Wide,
     )?;
@@ -149,19 +163,25 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             )
         })?;
 
+    if let Some((output, frames)) = frames {
+        let shot = Shot {
+            arguments,
+            source: &source,
+            scene: &scene,
+            job: &job,
+            pool: &pool,
+            unresolved,
+        };
+        return frames::run(shot, frames, &output);
+    }
     let progress = Progress::steps("rendering", job.rows.len() as u64);
     let begun = Instant::now();
     let rendered = pool.install(|| render(&scene, &job, &|| progress.step()));
     let time = begun.elapsed();
     drop(progress);
-    let picture = rendered.map_err(|error| {
-        Failure::usage(
-            error.to_string(),
-            "change the option, or the scene file's `[render]`",
-        )
-    })?;
+    let picture = rendered.map_err(|error| rejected(&error))?;
 
-    let metadata = RenderMetadata::of(&scene, &job);
+    let metadata = RenderMetadata::of(&scene, &job).at(source.time().map(Moment::Time));
     let write_picture: Content<'_> = &|out| format.write(out, &picture, &metadata);
     let heat_map = match &arguments.heat_map {
         Some(path) => {
@@ -201,6 +221,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         false => rendered.text(),
     };
     print_about(&arguments.output, report)
+}
+
+/// The error of settings that nothing is rendered with.
+fn rejected(error: &RenderError) -> Failure {
+    Failure::usage(
+        error.to_string(),
+        "change the option, or the scene file's `[render]`",
+    )
 }
 
 /// The picture's format; an error for names that cannot be written to.

@@ -1,18 +1,19 @@
 //! The input of a command: a scene blob, or a scene file that is compiled on the spot.
 //! The first bytes distinguish them.
 
-use super::arguments::{SceneOptions, TraceOptions, check_quality};
+use super::arguments::{LightChange, SceneOptions, TraceOptions, check_quality};
 use super::failure::Failure;
 use super::input::Input;
 use super::output::warn;
 use super::progress::Progress;
 use gridel_core::format::record::{self, View};
-use gridel_core::{BlobError, Format, Scene, Structure};
+use gridel_core::{BlobError, Format, Scene, Structure, Tracks};
 use gridel_host::blob::{self, Blob};
 use gridel_host::compile::{self, CompileError, Compiled, Names};
 use gridel_host::measure::board::{Fit, MemoryReport};
 use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
-use gridel_host::scene::{self, Imported, Light};
+use gridel_host::scene::{self, Imported, Light, Track};
+use gridel_host::state::{self, State, StateError};
 use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::Path;
 
@@ -26,6 +27,8 @@ pub struct Source {
     pub warnings: Vec<String>,
     /// What is to be otherwise than in a blob.
     changes: Option<Changes>,
+    /// The options for a blob's pictures, if some were given.
+    for_pictures: Option<SceneOptions>,
     /// The names of a scene file.
     names: Option<Names>,
     /// How a scene file was read and compiled.
@@ -66,6 +69,15 @@ impl Source {
         let mut source = Self::read(input, options, other, compiling)?;
         if source.report.is_none() && options.given_for_pictures().is_some() {
             let changes = Changes::of(&source.scene()?, options)?;
+            source.changes = Some(changes);
+            source.for_pictures = Some(options.clone());
+        }
+        if let Some(seconds) = options.time {
+            let changes = {
+                let tracks = source.tracks()?;
+                let time = state::ticks(&tracks, seconds);
+                source.changes_at(&source.scene()?, &tracks, time)?
+            };
             source.changes = Some(changes);
         }
         Ok(source)
@@ -112,6 +124,7 @@ impl Source {
             report: None,
             warnings: Vec::new(),
             changes: None,
+            for_pictures: None,
             names: None,
             made_by: None,
         })
@@ -167,6 +180,7 @@ impl Source {
             report: Some(report),
             warnings,
             changes: None,
+            for_pictures: None,
             names: Some(Names::of_scene(&imported.scene)),
             made_by: Some((options.geometry.import.for_import(), compiling)),
         })
@@ -201,12 +215,62 @@ impl Source {
         }
     }
 
-    /// The checked view of the blob, whose names are valid as well, with what is to be otherwise.
+    /// The tracks of a scene that moves.
+    pub fn tracks(&self) -> Result<Tracks<'_>, Failure> {
+        // They were checked with the scene.
+        let tracks = Tracks::from_bytes(self.blob.bytes()).ok();
+        tracks.filter(|tracks| !tracks.is_empty()).ok_or_else(|| {
+            Failure::usage(
+                format!("nothing in {} moves: it has no tracks", self.input.path().display()),
+                "leave the time out, or add a `[[track]]` to the scene file: see `gridel help scene`",
+            )
+        })
+    }
+
+    /// What of a scene is otherwise at a time of its tracks; options that were given come before the tracks.
+    pub fn changes_at(
+        &self,
+        scene: &Scene<'_>,
+        tracks: &Tracks<'_>,
+        time: i32,
+    ) -> Result<Changes, Failure> {
+        let at = || {
+            let state = State::at(scene, tracks, time)?;
+            state.apply(scene)?;
+            Ok(state)
+        };
+        let state = at().map_err(|error: StateError| {
+            let cause = format!("{}: {error}", self.input.path().display());
+            Failure::failed(cause, "change the tracks, or ask for other times")
+        })?;
+        let changes = match &self.for_pictures {
+            Some(options) => Changes::of(&state.apply(scene).map_err(fault)?, options)?,
+            None => Changes {
+                view: state.view,
+                lights: state.lights.clone(),
+                materials: None,
+                time: None,
+            },
+        };
+        Ok(Changes {
+            materials: Some(state.materials),
+            time: Some(time),
+            ..changes
+        })
+    }
+
+    /// The time that the scene is shown at, in ticks; `None` for one without a time.
+    pub fn time(&self) -> Option<i32> {
+        self.changes.as_ref()?.time
+    }
+
+    /// The checked view of the blob, whose names and tracks are valid as well, with what is to be otherwise.
     pub fn scene(&self) -> Result<Scene<'_>, Failure> {
         let checked = self.blob.scene().and_then(|scene| {
             gridel_core::Names::from_bytes(self.blob.bytes())?;
+            Tracks::from_bytes(self.blob.bytes())?;
             match &self.changes {
-                Some(changes) => scene.with_view(&changes.view)?.with_lights(&changes.lights),
+                Some(changes) => changes.of_scene(&scene),
                 None => Ok(scene),
             }
         });
@@ -277,12 +341,33 @@ impl Source {
 }
 
 /// What is to be otherwise than in a blob.
-struct Changes {
+pub struct Changes {
     view: View,
     lights: Vec<record::Light>,
+    materials: Option<Vec<record::Material>>,
+    /// In ticks.
+    time: Option<i32>,
+}
+
+/// The error of values that are proved to be in their range.
+fn fault(error: BlobError) -> Failure {
+    Failure::failed(error.to_string(), "report this as a fault of gridel")
 }
 
 impl Changes {
+    /// The scene with these changes.
+    pub fn apply<'a>(&'a self, scene: &Scene<'a>) -> Result<Scene<'a>, Failure> {
+        self.of_scene(scene).map_err(fault)
+    }
+
+    fn of_scene<'a>(&'a self, scene: &Scene<'a>) -> Result<Scene<'a>, BlobError> {
+        let changed = scene.with_view(&self.view)?.with_lights(&self.lights)?;
+        match &self.materials {
+            Some(materials) => changed.with_materials(materials),
+            None => Ok(changed),
+        }
+    }
+
     fn of(scene: &Scene<'_>, options: &SceneOptions) -> Result<Self, Failure> {
         let mut view = options.view.in_blob(scene)?;
         if let Some(cutoff) = options.cutoff {
@@ -304,6 +389,8 @@ impl Changes {
         });
         let lights = records.collect::<Result<_, _>>();
         Ok(Self {
+            materials: None,
+            time: None,
             view,
             lights: lights.map_err(|error| Failure::Usage(miette::Report::new(error)))?,
         })
@@ -419,5 +506,10 @@ fn import_from(input: &Input, options: &SceneOptions) -> Result<Imported, Failur
     for change in &options.lights {
         change.apply(&mut imported.scene.lights)?;
     }
+    let replaced = |track: &Track| {
+        let by_light = |change: &LightChange| change.replaces(track.target, track.index);
+        options.view.replaces(track.target) || options.lights.iter().any(by_light)
+    };
+    imported.scene.tracks.retain(|track| !replaced(track));
     Ok(imported)
 }

@@ -121,6 +121,7 @@ fn part(scene: &Scene, primitives: &[Part]) -> Scene {
         lights: scene.lights.clone(),
         materials: scene.materials.clone(),
         light_names: Vec::new(),
+        tracks: Vec::new(),
         ..*scene
     }
 }

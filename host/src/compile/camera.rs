@@ -33,14 +33,14 @@ pub fn place(camera: &Camera, header: &Header) -> Result<Placed, CompileError> {
 }
 
 /// A direction of 30 bits, scaled by a power of two, so that integers keep their ratios.
-fn integers(direction: DVec3) -> [i32; 3] {
+pub fn integers(direction: DVec3) -> [i32; 3] {
     let (_, exponent) = libm::frexp(direction.abs().max_element());
     let scaled = |x: f64| libm::ldexp(x, 30 - exponent).round() as i32;
     direction.to_array().map(scaled)
 }
 
 /// The nearest angle at which something can be seen.
-fn angle(degrees: f64) -> Angle {
+pub fn angle(degrees: f64) -> Angle {
     let steps = (degrees / 360.0 * exp2(32)).round() as u32;
     Angle(steps.clamp(2, Angle::HALF.0 - 1))
 }

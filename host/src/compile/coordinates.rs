@@ -23,14 +23,23 @@ pub struct Coordinates {
 }
 
 impl Coordinates {
-    /// The finest step of which the scene's box, the eye and the lights are few enough multiples, counted
+    /// The finest step of which the scene's box, the eye, the lights and the places on their ways are few enough
+    /// multiples, counted
     /// from the scene's own origin where that costs little precision, else from the lattice's.
-    pub fn choose(lattice: &Lattice, bounds: [DVec3; 2], eye: DVec3, lights: &[Light]) -> Self {
+    pub fn choose(
+        lattice: &Lattice,
+        bounds: [DVec3; 2],
+        eye: DVec3,
+        lights: &[Light],
+        ways: &[DVec3],
+    ) -> Self {
         let lights = lights.iter().filter_map(|light| match *light {
             Light::Point { position, .. } => Some(position),
             Light::Directional { .. } => None,
         });
-        let places: Vec<DVec3> = bounds.into_iter().chain([eye]).chain(lights).collect();
+        let ways = ways.iter().copied();
+        let still = bounds.into_iter().chain([eye]).chain(lights);
+        let places: Vec<DVec3> = still.chain(ways).collect();
         // The smallest shift of which all places, counted from `origin`, are few enough multiples; the largest
         // leaves less room.
         let shift = |origin: DVec3| {

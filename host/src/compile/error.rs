@@ -1,5 +1,6 @@
 //! Why a scene cannot be compiled.
 
+use crate::scene::SourceSpan;
 use glam::DVec3;
 use gridel_core::render::CameraError;
 
@@ -55,6 +56,14 @@ pub enum CompileError {
     )]
     #[diagnostic(help("make the cells smaller, or give the plane one color"))]
     CheckerSize { material: String, most: f64 },
+    #[error("{place}: track of {target}: {cause}")]
+    #[diagnostic(help("{remedy}"))]
+    Track {
+        place: SourceSpan,
+        target: &'static str,
+        cause: String,
+        remedy: &'static str,
+    },
     #[error("{bits} lattice bits are not possible")]
     #[diagnostic(help("use 10 to 24"))]
     LatticeBits { bits: u8 },

@@ -25,6 +25,7 @@ mod records;
 mod section;
 mod shading_data;
 mod structures;
+mod tracks;
 mod volumes;
 mod wide;
 mod writer;
@@ -42,6 +43,7 @@ pub use primitives::LeftOut;
 pub(crate) use shading_data::light_record;
 pub use shading_data::radiance;
 pub use structures::{takes_hierarchy, usual_budget};
+pub use tracks::TICKS_PER_SECOND;
 pub use wide::Quality;
 
 use crate::scene::{Object, Scene};

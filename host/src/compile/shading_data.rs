@@ -4,6 +4,8 @@ use super::CompileError;
 use super::camera::place;
 use super::coordinates::Coordinates;
 use super::framing::{BACKGROUND, framing};
+use super::section::Section;
+use super::tracks;
 use crate::scene::{Camera, Color, Diffuse, Light, Material, RenderSettings, Scene};
 use crate::shape::{Lattice, unit};
 use crate::table::printable;
@@ -31,6 +33,8 @@ pub struct ShadingData {
     pub required_by: Vec<(String, Vec<String>)>,
     /// Parts that the scene lacks and the compiler supplied.
     pub supplied: Vec<String>,
+    /// What moves.
+    pub tracks: Vec<Section>,
 }
 
 impl ShadingData {
@@ -126,14 +130,16 @@ impl ShadingData {
             .collect();
 
         far(String::from("camera"), camera.eye)?;
+        let ways = tracks::places(&scene.tracks, &camera);
         let coordinates =
-            Coordinates::choose(lattice, [lowest, highest], camera.eye, &scene.lights);
+            Coordinates::choose(lattice, [lowest, highest], camera.eye, &scene.lights, &ways);
         let view = View {
             background: radiance(background),
             ambient: radiance(ambient),
             ..view_record(&scene.render, scene.display_values)
         };
         let placed = place(&camera, &coordinates.header)?;
+        let tracks = tracks::sections(&scene.tracks, &camera, &numbers, &coordinates.header)?;
         Ok(Self {
             view: placed.replace_in(&view, &coordinates.header),
             coordinates,
@@ -143,6 +149,7 @@ impl ShadingData {
             effects,
             required_by,
             supplied,
+            tracks,
         })
     }
 }

@@ -115,6 +115,7 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
     if !counts_up(&order) || order.len() as u32 != total {
         sections.push(indices(SectionKind::Order, &order, 2));
     }
+    sections.extend(shading_data.tracks.iter().cloned());
     sections.extend(geometry(lattice, primitives, flat));
     if uses_leaves {
         sections.push(section(SectionKind::Leaves, &flat.leaves));

@@ -22,6 +22,7 @@ mod source_span;
 #[cfg(test)]
 mod test_scenes;
 mod text;
+mod track;
 mod words;
 
 pub use crate::shape::Shape;
@@ -31,6 +32,7 @@ pub use model::{Camera, Color, Diffuse, Light, Material, Object, RenderSettings,
 pub use options::{ImportOptions, Imported, MoleculeOptions, MoleculeStyle};
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
+pub use track::{Interpolation, Key, Track, TrackTarget};
 
 use access::Access;
 use importer::Importers;

@@ -1,6 +1,7 @@
 //! The scene as data.
 
 use super::source_span::SourceSpan;
+use super::track::Track;
 use crate::shape::{Shape, unit};
 use glam::DVec3;
 use gridel_core::Up;
@@ -32,6 +33,8 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Objects in scene-file order; that order is the one in which `trace` counts them.
     pub objects: Vec<Object>,
+    /// How camera, lights and materials change with time, at most one track for each property.
+    pub tracks: Vec<Track>,
     /// Defaults for rendering that the scene file states.
     pub render: RenderSettings,
     /// Whether the format has no names, so that all are made of kinds and numbers; blobs leave them out.
@@ -182,6 +185,7 @@ impl Default for Scene {
             light_names: Vec::new(),
             materials: Vec::new(),
             objects: Vec::new(),
+            tracks: Vec::new(),
             render: RenderSettings::default(),
             unnamed: false,
         }

@@ -7,6 +7,7 @@ mod build;
 mod check;
 mod compare;
 mod ending;
+mod frames;
 mod help;
 mod import;
 mod inspect;

@@ -17,8 +17,9 @@ use crate::query::{HitBits, UnitRay, held, through};
 use crate::{every_format, rays};
 use gridel_core::format::record::Header;
 use gridel_core::format::{BlobError, checksum};
-use gridel_core::{Number, Scene, Structure};
+use gridel_core::{Number, Scene, Structure, Tracks};
 use gridel_host::blob::Blob;
+use gridel_host::state::{State, StateError};
 use std::mem::offset_of;
 
 /// Rays that a loaded blob is asked about, in each number format.
@@ -26,8 +27,10 @@ const RAYS: usize = 15;
 
 /// Seals bytes as a blob, loads it, and holds every structure to brute force.
 pub fn blob(data: &[u8]) {
-    if let Ok(scene) = sealed(data).scene() {
+    let blob = sealed(data);
+    if let Ok(scene) = blob.scene() {
         agree(&scene, &some_rays(&scene, 3));
+        moves(&scene, blob.bytes());
     }
 }
 
@@ -99,6 +102,40 @@ fn agree_in<N: Number>(scene: &Scene<'_>, rays: &[UnitRay]) {
             }
         }
     }
+}
+
+/// Holds the tracks of a loaded scene's blob to what they promise: where they are accepted, the scene has a state at
+/// any time, or the camera is none.
+///
+/// Returns whether they were accepted.
+///
+/// # Panics
+/// If a state is rejected.
+pub fn moves(scene: &Scene<'_>, blob: &[u8]) -> bool {
+    let tracks = match Tracks::from_bytes(blob) {
+        Ok(tracks) => tracks,
+        Err(error) => {
+            speaks(&error);
+            return false;
+        }
+    };
+    let [first, last] = tracks.span();
+    let quarter = first.midpoint(first.midpoint(last));
+    for time in [
+        i32::MIN,
+        first,
+        quarter,
+        first.midpoint(last),
+        last,
+        i32::MAX,
+    ] {
+        match State::at(scene, &tracks, time) {
+            Ok(state) => drop(state.apply(scene).expect("a state in range")),
+            Err(StateError::Camera { .. }) => {}
+            Err(StateError::Blob(error)) => panic!("{error}"),
+        }
+    }
+    true
 }
 
 /// Holds an error to what errors promise: words that name the field or the record.

@@ -5,7 +5,7 @@ use glam::DVec3;
 use gridel_core::format::cluster::Pack24;
 use gridel_core::format::record::{DualNode, FlaggedPair, Header, Pair, SectionEntry, WideNode};
 use gridel_core::format::{Link, NodeWord, SectionKind};
-use gridel_core::{Names, Number, Scene, Structure};
+use gridel_core::{Names, Number, Scene, Structure, Tracks};
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;
 use gridel_host::shape::Sphere;
@@ -165,9 +165,10 @@ fn forged_sections_are_rejected() {
             changed[place..place + size_of_val(&forged)]
                 .copy_from_slice(bytemuck::bytes_of(&forged));
             let blob = sealed(&changed);
-            // Names are read, and proved, apart from the scene.
+            // Names and tracks are read, and proved, apart from the scene.
             let names = || Names::from_bytes(blob.bytes()).err();
-            let error = blob.scene().err().or_else(names);
+            let tracks = || Tracks::from_bytes(blob.bytes()).err();
+            let error = blob.scene().err().or_else(names).or_else(tracks);
             assert!(error.is_some(), "{kind:?}: {forged:?}");
             error.iter().for_each(speaks);
         }

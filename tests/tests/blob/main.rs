@@ -18,7 +18,7 @@ use gridel_host::render::{Job, render};
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Shape};
 use gridel_host::shape::{Plane, Torus};
 use gridel_tests::effort::step;
-use gridel_tests::fuzz::{sealed, speaks};
+use gridel_tests::fuzz::{moves, sealed, speaks};
 use gridel_tests::query::{UnitRay, any, closest, held, through};
 use gridel_tests::random::Random;
 use gridel_tests::{every_format, rays, scenes};
@@ -82,6 +82,7 @@ fn small_scene() -> gridel_host::scene::Scene {
         up: DVec3::Y,
         fov_degrees: 50.0,
     });
+    scene.tracks = scenes::moving(&scene, false);
     scene
 }
 
@@ -164,6 +165,7 @@ impl Fate {
             Ok(scene) => {
                 self.accepted += 1;
                 works(&scene, rays_each);
+                moves(&scene, blob.bytes());
             }
             Err(error) => {
                 self.rejected += 1;

@@ -10,11 +10,12 @@
 
 use glam::DVec3;
 use gridel_core::Structure;
+use gridel_core::format::SectionKind;
 use gridel_host::compile::{Options, compile};
-use gridel_host::scene::{Scene, Shape};
+use gridel_host::scene::{Diffuse, Light, Scene, Shape};
 use gridel_host::shape::Sphere;
 use gridel_tests::effort::part_of;
-use gridel_tests::fuzz::{Base, Forger, agree, some_rays};
+use gridel_tests::fuzz::{Base, Forger, agree, moves, some_rays};
 use gridel_tests::random::Random;
 use gridel_tests::scenes;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -78,7 +79,10 @@ fn holds(structures: &[Structure]) {
         let number = forger.made;
         forger.forge(|scene, blob| {
             let rays = some_rays(scene, number);
-            let agrees = AssertUnwindSafe(|| agree(scene, &rays));
+            let agrees = AssertUnwindSafe(|| {
+                agree(scene, &rays);
+                moves(scene, blob);
+            });
             if let Err(panic) = catch_unwind(agrees) {
                 let folder = std::env::temp_dir();
                 let path = folder.join(format!("forged-{number}.gridel"));
@@ -126,4 +130,51 @@ alone! {
 #[test]
 fn forged_blobs_of_all_structures_answer_as_brute_force() {
     holds(&Structure::ALL);
+}
+
+/// Tracks of everything that moves: what loads has a state at any time.
+#[test]
+fn forged_tracks_are_rejected_or_harmless() {
+    let mut scene = mixed();
+    let color = [0.8; 3];
+    scene.lights = vec![
+        Light::Point {
+            position: DVec3::new(3.0, 4.0, 5.0),
+            color,
+        },
+        Light::Directional {
+            direction: DVec3::NEG_Y,
+            color,
+        },
+    ];
+    scene.materials[0].diffuse = Diffuse::Checker {
+        even: [0.9; 3],
+        odd: [0.1; 3],
+        size: 0.2,
+        origin: DVec3::ZERO,
+    };
+    scene.materials[0].mirror = [0.5; 3];
+    let bases = [false, true].map(|by_rotation| {
+        let mut scene = scene.clone();
+        scene.tracks = scenes::moving(&scene, by_rotation);
+        let options = Options {
+            structures: vec![Structure::List],
+            ..Options::default()
+        };
+        let blob = compile(&scene, &options).expect("compiles").blob;
+        assert!(moves(&blob.scene().expect("a scene"), blob.bytes()));
+        let mut base = Base::of(blob.bytes());
+        // So that most of what is forged are tracks.
+        base.remove(&[SectionKind::NameStarts, SectionKind::NameText]);
+        base
+    });
+    let mut forger = Forger::new(bases.to_vec(), 12);
+    let (mut accepted, forgeries) = (0, 4 * forgeries());
+    while forger.made < forgeries {
+        forger.forge(|scene, blob| accepted += u64::from(moves(scene, blob)));
+    }
+    let (made, loaded) = (forger.made, forger.loaded);
+    eprintln!("tracks: {made} forgeries, {loaded} loaded, {accepted} with tracks");
+    assert!(LOADED * accepted >= made, "too few loaded");
+    assert!(20 * (loaded - accepted) >= made, "too few rejected");
 }

@@ -3,6 +3,7 @@
 use super::{FORMAT, holds_table, repository};
 use glam::DVec3;
 use gridel_core::format::record::{Header, SectionEntry};
+use gridel_core::format::track::{Interpolation, TrackTarget};
 use gridel_core::format::{Kind, SectionKind};
 use gridel_core::{Effects, Structure};
 use gridel_host::compile::{Options, compile};
@@ -35,6 +36,13 @@ fn blobs() -> Vec<Vec<u8>> {
     scene.lights = vec![scene::Light::Directional {
         direction: DVec3::new(-1.0, -2.0, -0.5),
         color: [0.8; 3],
+    }];
+    scene.tracks = vec![scene::Track {
+        target: TrackTarget::CameraOrbit,
+        index: 0,
+        interpolation: Interpolation::Linear,
+        keys: vec![scene::Key::default()],
+        place: scene::SourceSpan::default(),
     }];
     let options = Options {
         names: true,

@@ -19,7 +19,7 @@ const CORE: Layers = Layers {
     sources: "../core/src",
     order: &[
         "axis target simd format observe",
-        "number ray geometry accel scene query shade render selftest",
+        "number ray geometry accel scene query shade render tracks selftest",
         "shared",
     ],
 };
@@ -29,7 +29,7 @@ const HOST: Layers = Layers {
     order: &[
         "output simd table blob picture_rays shape",
         "scene sample compile",
-        "live render trace npy picture merge resolution report",
+        "live state render trace npy picture animation merge resolution report",
         "measure emit",
         "accuracy compare verify explain view check",
         "cli main",

@@ -3,7 +3,7 @@
 use super::values::{numbers, vector};
 use crate::cli::failure::Failure;
 use glam::DVec3;
-use gridel_host::scene::{Color, Light};
+use gridel_host::scene::{Color, Light, TrackTarget};
 use gridel_host::table::counted;
 
 /// One number or vector of a light, and what it is to be.
@@ -59,6 +59,16 @@ impl LightChange {
             }
         }
         Ok(())
+    }
+
+    /// Whether this is set in place of what a track moves.
+    pub fn replaces(&self, target: TrackTarget, index: usize) -> bool {
+        let moved = match self.to {
+            Property::Position(_) => TrackTarget::LightPosition,
+            Property::Direction(_) => TrackTarget::LightDirection,
+            Property::Color(_) => TrackTarget::LightColor,
+        };
+        (moved, self.number) == (target, index)
     }
 
     fn misfit(&self, cause: &str, instead: &str) -> Failure {

@@ -16,13 +16,14 @@ mod target;
 mod values;
 mod view;
 
+pub use light::LightChange;
 pub use scene::{
     GeometryOptions, ImportOptions, SceneOptions, TargetPoint, scene_help, scene_long_help,
 };
 pub use structures::{StructureOptions, check_hierarchy, check_quality};
 pub use target::TargetOptions;
 pub use values::{
-    builder, bytes, cutoff, distinct, format, quoted, rows, size, structure, threads,
+    builder, bytes, cutoff, distinct, format, quoted, rows, seconds, size, structure, threads,
 };
 
 use clap::Args;

@@ -45,6 +45,10 @@ pub struct SceneOptions {
 
     #[command(flatten)]
     pub geometry: GeometryOptions,
+
+    /// The time of `--time`, in seconds.
+    #[arg(skip)]
+    pub time: Option<f64>,
 }
 
 /// How the geometry of a scene file is read and compiled.
@@ -120,6 +124,12 @@ impl SceneOptions {
     /// Sets the size of the picture, if one is given.
     pub fn sized(mut self, size: Option<[u16; 2]>) -> Self {
         self.view.size = size;
+        self
+    }
+
+    /// Sets the time that a scene is shown at, if one is given.
+    pub fn at(mut self, time: Option<f64>) -> Self {
+        self.time = time;
         self
     }
 }

@@ -123,6 +123,12 @@ pub fn size(text: &str) -> Result<[u16; 2], String> {
     Ok([width, height])
 }
 
+/// Reads a time in seconds.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|it| it.is_finite());
+    value.ok_or_else(|| String::from("write a time in seconds, such as 1.5"))
+}
+
 /// Reads a range of rows, such as `100..200`, whose end is not part of it.
 pub fn rows(text: &str) -> Result<Range<u16>, String> {
     let ends = text
@@ -174,6 +180,14 @@ mod tests {
         ];
         for wrong in wrongs {
             assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn times_are_finite() {
+        assert_eq!((seconds("1.5"), seconds("-2")), (Ok(1.5), Ok(-2.0)));
+        for wrong in ["", "x", "nan", "inf"] {
+            assert!(seconds(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -7,7 +7,7 @@ use glam::DVec3;
 use gridel_core::Up;
 use gridel_core::format::record::View;
 use gridel_host::compile;
-use gridel_host::scene::{Camera, Color, Scene};
+use gridel_host::scene::{Camera, Color, Scene, TrackTarget};
 
 /// From where a scene is seen, in place of what its file or blob states. Help lists these options last, in their
 /// order, with `--target` behind `--eye`.
@@ -102,6 +102,19 @@ impl ViewOptions {
             view.background = compile::radiance(background);
         }
         Ok(view)
+    }
+
+    /// Whether an option was given in place of what a track moves.
+    pub fn replaces(&self, target: TrackTarget) -> bool {
+        let turns = self.eye.is_some() || self.target.is_some() || self.up.is_some();
+        match target {
+            TrackTarget::CameraEye | TrackTarget::CameraOrbit => self.eye.is_some(),
+            TrackTarget::CameraTarget => self.target.is_some(),
+            TrackTarget::CameraUp => self.up.is_some(),
+            TrackTarget::CameraFieldOfView => self.fov.is_some(),
+            TrackTarget::CameraRotation => turns,
+            _ => false,
+        }
     }
 
     fn moves_camera(&self) -> bool {

@@ -2,17 +2,19 @@
 
 use super::census::Census;
 use super::import::Imports;
-use super::material::Palette;
 use super::item::{Content, Item};
+use super::material::Palette;
 use super::object::Reader;
 use super::place::Placer;
 use super::source::Source;
+use super::track::{self, Targets};
 use super::value::Fields;
 use super::view;
 use crate::scene::importer::Input;
 use crate::scene::{Camera, Color, Light, Scene, SceneError};
+use crate::table::printable;
 use glam::DVec3;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 const KEYS: &[&str] = &[
     "camera",
@@ -23,6 +25,7 @@ const KEYS: &[&str] = &[
     "material",
     "object",
     "group",
+    "track",
 ];
 
 const BLACK: Color = [0.0; 3];
@@ -44,6 +47,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     let (lights, light_names) = lights.into_iter().unzip();
     let background = root.or("background", None, |value| value.radiance().map(Some))?;
     let ambient = root.or("ambient", None, |value| value.radiance().map(Some))?;
+    let tracks = root.or("track", Vec::new(), track::read)?;
     let mut palette = root.or("material", Palette::default(), Palette::read)?;
 
     let mut reader = Reader {
@@ -65,7 +69,6 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         ambient: ambient.unwrap_or(BLACK),
         lights,
         light_names,
-        materials: palette.into_materials(),
         objects,
         render: render.unwrap_or_default(),
         ..Scene::default()
@@ -90,6 +93,24 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         scene.background = scene.background.or(import.background);
         if ambient.is_none() && scene.ambient == BLACK {
             scene.ambient = import.ambient;
+        }
+    }
+    let targets = Targets {
+        source: &source,
+        lights: &scene.lights,
+        light_names: &scene.light_names,
+        palette: &palette,
+    };
+    scene.tracks = targets.resolve(tracks)?;
+    scene.materials = palette.into_materials();
+    let used: HashSet<usize> = scene.objects.iter().map(|it| it.material).collect();
+    for track in &scene.tracks {
+        if track.target.is_of_material() && !used.contains(&track.index) {
+            let name = printable(&scene.materials[track.index].name);
+            imports.warnings.push(format!(
+                "{}: no object has the material {name}, so its track moves nothing",
+                track.place
+            ));
         }
     }
     Ok(scene)

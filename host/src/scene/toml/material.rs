@@ -76,6 +76,10 @@ impl Palette {
         })
     }
 
+    pub(super) fn get(&self, index: usize) -> &Material {
+        &self.materials[index]
+    }
+
     /// The material of objects for which nothing names one: the one called `default`, which a
     /// scene may define.
     pub(super) fn fallback(&mut self) -> usize {

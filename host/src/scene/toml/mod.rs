@@ -9,6 +9,7 @@ mod object;
 mod place;
 mod shape;
 pub(crate) mod source;
+mod track;
 mod transform;
 pub(crate) mod value;
 mod view;

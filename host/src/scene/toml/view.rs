@@ -2,6 +2,7 @@
 
 use super::value::Value;
 use crate::scene::{Camera, Light, RenderSettings, SceneError};
+use crate::shape::parallel;
 use glam::DVec3;
 
 /// The largest width and height of a picture.
@@ -40,13 +41,16 @@ pub(super) fn camera(table: Value<'_>) -> Result<Camera, SceneError> {
     Ok(camera)
 }
 
-fn field_of_view(value: Value<'_>) -> Result<f64, SceneError> {
+pub(super) fn field_of_view(value: Value<'_>) -> Result<f64, SceneError> {
     let degrees = value.number()?;
     if degrees > 0.0 && degrees < 180.0 {
         return Ok(degrees);
     }
     Err(value.error(
-        format!("`fov` is {degrees} degrees; it must be above 0 and below 180"),
+        format!(
+            "`{}` is {degrees} degrees; it must be above 0 and below 180",
+            value.key
+        ),
         "write the full vertical angle of view in degrees, such as 45",
     ))
 }

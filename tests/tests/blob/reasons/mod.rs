@@ -5,6 +5,7 @@ mod header;
 mod hierarchies;
 mod records;
 mod tables;
+mod tracks;
 
 use super::small_blob;
 use glam::DVec3;
@@ -19,6 +20,7 @@ use header::{headers, names, prevalidated, section_tables};
 use hierarchies::{deep_hierarchy, hierarchies, wide_hierarchies};
 use records::{primitives, shading_data};
 use tables::{candidates, cells};
+use tracks::{tracks, turned_camera};
 
 /// A field of a record, and what puts it out of its range.
 type Forgery<'f, R> = (Field, &'f dyn Fn(&mut R));
@@ -152,6 +154,8 @@ fn every_field_and_reason_is_named_by_the_error_of_a_forged_blob() {
         cells(),
         candidates(),
         names(),
+        tracks(),
+        turned_camera(),
     ];
     let failures: Vec<&String> = all.iter().flat_map(|errors| &errors.failures).collect();
     assert!(failures.is_empty(), "{failures:#?}");

@@ -5,6 +5,7 @@ mod fixtures;
 mod hostile;
 mod imports;
 mod objects;
+mod tracks;
 mod transforms;
 
 use crate::scene::{Imported, MoleculeOptions, Object, Scene, SceneError, Shape};

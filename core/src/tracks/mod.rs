@@ -1,0 +1,133 @@
+//! Tracks: how the camera, lights and materials of a blob change with time.
+//!
+//! A blob may hold tracks, each of which gives a property values at certain times. [`Tracks`] reads them in place, and
+//! computes the state at any time in integers: the same on every machine and in every number format. The state is
+//! borrowed by a changed scene as values of a program's own are: see [`Scene::with_view`](crate::Scene::with_view),
+//! [`with_lights`](crate::Scene::with_lights) and [`with_materials`](crate::Scene::with_materials).
+
+mod check;
+mod interpolate;
+mod state;
+
+use crate::format::record::{Light, Material};
+use crate::format::track::{Timeline, Track};
+use crate::format::{BlobError, SectionKind, Sections};
+use crate::scene::header;
+
+/// The tracks of a blob, read in place.
+///
+/// [`Scene::from_bytes`](crate::Scene::from_bytes) passes over them, so that a program that asks for no time pays for
+/// the bytes of their sections and for nothing else. [`Scene`](crate::Scene) and tracks are independent: a time changes
+/// nothing until a scene is given its state.
+///
+/// Times are ticks, [`ticks_per_second`](Self::ticks_per_second) of them in a second. Before the first key of a track
+/// its first value holds, and behind the last key the last one.
+///
+/// ```
+/// use gridel_core::format::record::Light;
+/// use gridel_core::{BlobError, Scene, Tracks};
+///
+/// /// The radiance of the first light, halfway through the tracks.
+/// fn halfway(blob: &[u8]) -> Result<[i32; 3], BlobError> {
+///     let scene = Scene::from_bytes(blob)?;
+///     let tracks = Tracks::from_bytes(blob)?;
+///     let [first, last] = tracks.span();
+///     let mut lights = [scene.lights()[0]];
+///     tracks.lights_at(&scene, first.midpoint(last), &mut lights)?;
+///     Ok(scene.with_lights(&lights)?.lights()[0].color)
+/// }
+/// # static BLOB: &[u8] =
+/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+/// // In a blob without tracks nothing moves.
+/// assert_eq!(halfway(BLOB)?, Scene::from_bytes(BLOB)?.lights()[0].color);
+/// # Ok::<(), BlobError>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Tracks<'a> {
+    timeline: Timeline,
+    tracks: &'a [Track],
+    times: &'a [i32],
+    words: &'a [i32],
+}
+
+/// The timeline of a blob without tracks.
+const STILL: Timeline = Timeline {
+    ticks_per_second: 1,
+    first: 0,
+    last: 0,
+};
+
+impl<'a> Tracks<'a> {
+    /// Checks the tracks of a blob and returns them. A blob without tracks has none, which is no error.
+    ///
+    /// Proves that tracks take all keys and words in their order, that times ascend, that every value is in its range,
+    /// that lights and materials exist, and that a moving camera has all that it needs. Costs time linear in the
+    /// number of keys.
+    ///
+    /// # Errors
+    /// If anything of this fails to hold, or the header or the section table is invalid.
+    pub fn from_bytes(blob: &'a [u8]) -> Result<Self, BlobError> {
+        let header = header(blob)?;
+        let sections = Sections::read(blob, header.section_count)?;
+        let timelines: &[Timeline] = sections.records(SectionKind::Timeline)?;
+        let tracks: &[Track] = sections.records(SectionKind::Tracks)?;
+        let expected = usize::from(!tracks.is_empty());
+        if timelines.len() != expected {
+            return Err(BlobError::Count {
+                section: SectionKind::Timeline,
+                found: timelines.len(),
+                expected,
+            });
+        }
+        let all = Self {
+            timeline: timelines.first().copied().unwrap_or(STILL),
+            tracks,
+            times: sections.records(SectionKind::TrackTimes)?,
+            words: sections.records(SectionKind::TrackWords)?,
+        };
+        let lights: &[Light] = sections.records(SectionKind::Lights)?;
+        let materials: &[Material] = sections.records(SectionKind::Materials)?;
+        check::check(&all, lights, materials.len())?;
+        Ok(all)
+    }
+
+    /// Whether the blob has no tracks: its scene is the same at all times.
+    pub fn is_empty(&self) -> bool {
+        self.tracks.is_empty()
+    }
+
+    /// The tracks, in the order of their targets and numbers.
+    pub fn tracks(&self) -> &'a [Track] {
+        self.tracks
+    }
+
+    /// Ticks per second; 1 in a blob without tracks.
+    pub fn ticks_per_second(&self) -> u32 {
+        self.timeline.ticks_per_second
+    }
+
+    /// The times of the earliest and of the latest key; 0 in a blob without tracks.
+    pub fn span(&self) -> [i32; 2] {
+        [self.timeline.first, self.timeline.last]
+    }
+
+    /// The time of a picture, of which there are so many per second: the nearest tick to `number / per_second` seconds,
+    /// at most the last that there is. A rate of 0 counts as 1.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let tracks = gridel_core::Tracks::from_bytes(BLOB)?;
+    /// // A tick is a second here.
+    /// assert_eq!(tracks.frame_time(48, 24), 2);
+    /// assert_eq!(tracks.frame_time(u32::MAX, 1), i32::MAX);
+    /// # Ok::<(), gridel_core::BlobError>(())
+    /// ```
+    pub fn frame_time(&self, number: u32, per_second: u32) -> i32 {
+        let rate = u64::from(per_second.max(1));
+        // Below 2^63.
+        let ticks = u64::from(number) * u64::from(self.timeline.ticks_per_second);
+        let nearest = ticks.wrapping_add(rate / 2) / rate;
+        nearest.min(i32::MAX as u64) as i32
+    }
+}

@@ -1,0 +1,291 @@
+//! Animations: pictures that follow each other in one file.
+//!
+//! Pictures are encoded one after the other, as they come, so that memory does not grow with their number. The same
+//! pictures give the same bytes, wherever they were rendered.
+
+use gif::{Encoder, Frame, Repeat};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// How an animation is stored; all of them repeat without end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AnimationFormat {
+    /// Animated PNG, 8 bits per channel, sRGB.
+    Apng,
+    /// GIF: each picture has a palette of 256 colors of its own, and times are hundredths of a second.
+    Gif,
+}
+
+/// An animation: the size of its pictures, how many there are, and how many per second.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Animation {
+    pub format: AnimationFormat,
+    pub size: [u32; 2],
+    /// At least 1.
+    pub pictures: u32,
+    /// At least 1.
+    pub per_second: u16,
+}
+
+/// Makes a picture by its number, counted from 0: sRGB, three bytes per pixel.
+pub type NextPicture<'p> = &'p mut dyn FnMut(u32) -> io::Result<Vec<u8>>;
+
+impl AnimationFormat {
+    /// The format that a file's extension names: `apng` or `gif`.
+    ///
+    /// ```
+    /// use gridel_host::animation::AnimationFormat;
+    ///
+    /// assert_eq!(AnimationFormat::of("a.GIF".as_ref()), Some(AnimationFormat::Gif));
+    /// assert_eq!(AnimationFormat::of("a.png".as_ref()), None);
+    /// ```
+    pub fn of(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+        match extension.as_str() {
+            "apng" => Some(Self::Apng),
+            "gif" => Some(Self::Gif),
+            _ => None,
+        }
+    }
+
+    /// The most pictures per second that programs show.
+    pub fn most_per_second(self) -> u16 {
+        match self {
+            Self::Apng => 1000,
+            // Browsers slow down what is shown for less than two hundredths.
+            Self::Gif => 50,
+        }
+    }
+}
+
+impl Animation {
+    /// Writes the animation; asks for each picture once, in order.
+    ///
+    /// # Errors
+    /// If `out` or a picture has one, or a picture has another size.
+    ///
+    /// ```
+    /// use gridel_host::animation::{Animation, AnimationFormat};
+    ///
+    /// let animation = Animation {
+    ///     format: AnimationFormat::Apng,
+    ///     size: [2, 1],
+    ///     pictures: 3,
+    ///     per_second: 10,
+    /// };
+    /// let mut file = Vec::new();
+    /// animation.write(&mut file, &mut |number| Ok(vec![number as u8; 6]))?;
+    /// assert!(file.starts_with(b"\x89PNG"));
+    /// # Ok::<(), std::io::Error>(())
+    /// ```
+    pub fn write(&self, out: &mut dyn Write, next: NextPicture<'_>) -> io::Result<()> {
+        match self.format {
+            AnimationFormat::Apng => self.write_apng(out, next),
+            AnimationFormat::Gif => self.write_gif(out, next),
+        }
+    }
+
+    fn write_apng(&self, out: &mut dyn Write, next: NextPicture<'_>) -> io::Result<()> {
+        let plain = |error: png::EncodingError| match error {
+            // As it is, so that a full disk is still known as one.
+            png::EncodingError::IoError(error) => error,
+            error => error.into(),
+        };
+        let [width, height] = self.size;
+        let mut encoder = png::Encoder::new(out, width, height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
+        encoder.set_animated(self.pictures, 0).map_err(plain)?;
+        encoder.set_frame_delay(1, self.per_second).map_err(plain)?;
+        let mut writer = encoder.write_header().map_err(plain)?;
+        for number in 0..self.pictures {
+            writer.write_image_data(&next(number)?).map_err(plain)?;
+        }
+        writer.finish().map_err(plain)
+    }
+
+    fn write_gif(&self, out: &mut dyn Write, next: NextPicture<'_>) -> io::Result<()> {
+        /// How carefully colors are chosen, from 1 to 30, the fastest.
+        const SPEED: i32 = 10;
+        let plain = |error: gif::EncodingError| match error {
+            gif::EncodingError::Io(error) => error,
+            error => io::Error::other(error),
+        };
+        let side = |side: u32| u16::try_from(side).map_err(io::Error::other);
+        let (width, height) = (side(self.size[0])?, side(self.size[1])?);
+        let mut encoder = Encoder::new(out, width, height, &[]).map_err(plain)?;
+        encoder.set_repeat(Repeat::Infinite).map_err(plain)?;
+        // Hundredths of a second until a picture, to nearest, so that the rate is right on average.
+        let rate = u64::from(self.per_second.max(1));
+        let time = |number: u32| (u64::from(number) * 100 + rate / 2) / rate;
+        for number in 0..self.pictures {
+            let pixels = next(number)?;
+            if pixels.len() != 3 * usize::from(width) * usize::from(height) {
+                return Err(io::Error::other("the pictures are not of one size"));
+            }
+            let mut frame = Frame::from_rgb_speed(width, height, &pixels, SPEED);
+            frame.delay = (time(number + 1) - time(number)) as u16;
+            encoder.write_frame(&frame).map_err(plain)?;
+        }
+        Ok(())
+    }
+}
+
+/// The name of numbered files, such as `out-%03d.png`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NumberedName {
+    before: String,
+    digits: usize,
+    behind: String,
+}
+
+impl NumberedName {
+    /// Reads a name with `%d`, or with `%0Nd` for at least `N` digits; `None` without one.
+    ///
+    /// # Errors
+    /// If there are several, or the `%` stands for something else: why.
+    ///
+    /// ```
+    /// use gridel_host::animation::NumberedName;
+    ///
+    /// let name = NumberedName::read("out-%03d.png")?.expect("a number");
+    /// assert_eq!(name.of(7), "out-007.png");
+    /// assert_eq!(name.of(12345), "out-12345.png");
+    /// assert_eq!(NumberedName::read("out.png")?, None);
+    /// # Ok::<(), String>(())
+    /// ```
+    pub fn read(name: &str) -> Result<Option<Self>, String> {
+        let Some((before, rest)) = name.split_once('%') else {
+            return Ok(None);
+        };
+        let number = rest.split_once('d').and_then(|(digits, behind)| {
+            let digits = match digits {
+                "" => 1,
+                _ => digits
+                    .strip_prefix('0')?
+                    .parse()
+                    .ok()
+                    .filter(|it| *it <= 9)?,
+            };
+            Some((digits, behind))
+        });
+        match number {
+            Some((digits, behind)) if !behind.contains('%') => Ok(Some(Self {
+                before: before.to_owned(),
+                digits,
+                behind: behind.to_owned(),
+            })),
+            Some(_) => Err(String::from("it has several `%`, and there is one number")),
+            None => Err(String::from("its `%` stands for no number")),
+        }
+    }
+
+    /// The name with a number.
+    pub fn of(&self, number: u32) -> String {
+        let Self {
+            before,
+            digits,
+            behind,
+        } = self;
+        format!("{before}{number:0digits$}{behind}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture(number: u32) -> Vec<u8> {
+        (0..4 * 3 * 3)
+            .map(|byte| (number * 60 + byte) as u8)
+            .collect()
+    }
+
+    fn written(format: AnimationFormat, pictures: u32, per_second: u16) -> Vec<u8> {
+        let animation = Animation {
+            format,
+            size: [4, 3],
+            pictures,
+            per_second,
+        };
+        let mut file = Vec::new();
+        animation
+            .write(&mut file, &mut |number| Ok(picture(number)))
+            .unwrap();
+        file
+    }
+
+    #[test]
+    fn apng_holds_every_picture_and_its_time() {
+        for pictures in [1, 4] {
+            let file = written(AnimationFormat::Apng, pictures, 24);
+            let mut reader = png::Decoder::new(io::Cursor::new(file))
+                .read_info()
+                .unwrap();
+            let control = reader.info().animation_control().copied().unwrap();
+            assert_eq!((control.num_frames, control.num_plays), (pictures, 0));
+            for number in 0..pictures {
+                let mut pixels = vec![0; 36];
+                reader.next_frame(&mut pixels).unwrap();
+                assert_eq!(pixels, picture(number), "{number}");
+                let frame = reader.info().frame_control().copied().unwrap();
+                assert_eq!((frame.delay_num, frame.delay_den), (1, 24));
+            }
+        }
+    }
+
+    #[test]
+    fn gif_holds_few_colors_as_they_are_and_keeps_the_rate() {
+        let file = written(AnimationFormat::Gif, 12, 24);
+        assert_eq!(file, written(AnimationFormat::Gif, 12, 24));
+        let mut options = gif::DecodeOptions::new();
+        options.set_color_output(gif::ColorOutput::RGBA);
+        let mut decoder = options.read_info(&file[..]).unwrap();
+        let mut hundredths = 0;
+        for number in 0..12 {
+            let frame = decoder.read_next_frame().unwrap().unwrap();
+            hundredths += frame.delay;
+            let colors = frame.buffer.chunks_exact(4).flat_map(|pixel| &pixel[..3]);
+            assert_eq!(colors.copied().collect::<Vec<_>>(), picture(number));
+        }
+        assert!(decoder.read_next_frame().unwrap().is_none());
+        assert_eq!(hundredths, 50);
+    }
+
+    #[test]
+    fn an_error_of_a_picture_ends_the_animation() {
+        for format in [AnimationFormat::Apng, AnimationFormat::Gif] {
+            let animation = Animation {
+                format,
+                size: [4, 3],
+                pictures: 3,
+                per_second: 1,
+            };
+            let write = |next: NextPicture<'_>| animation.write(&mut Vec::new(), next);
+            let failed = write(&mut |number| match number {
+                1 => Err(io::Error::other("no more")),
+                _ => Ok(picture(number)),
+            });
+            assert_eq!(failed.unwrap_err().to_string(), "no more");
+            assert!(write(&mut |_| Ok(vec![0; 35])).is_err());
+        }
+    }
+
+    #[test]
+    fn names_have_one_number_or_none() {
+        let name = |text| NumberedName::read(text).unwrap().unwrap();
+        assert_eq!(name("%d.ppm").of(3), "3.ppm");
+        assert_eq!(name("a/b-%05d").of(31), "a/b-00031");
+        assert_eq!(NumberedName::read("plain.png"), Ok(None));
+        for wrong in [
+            "%",
+            "%x.png",
+            "%3d.png",
+            "%00000000010d",
+            "%d-%d.png",
+            "50%.png",
+        ] {
+            assert!(NumberedName::read(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Numbered pictures become an animation.
+
+use super::Arguments;
+use crate::cli::failure::Failure;
+use crate::cli::output::{print, print_json, reject_inputs, write_file};
+use crate::cli::progress::Progress;
+use gridel_host::animation::{Animation, AnimationFormat};
+use gridel_host::merge::{FramesError, NumberedPicture, PartError, in_order};
+use serde::Serialize;
+use std::fs::File;
+use std::io::{self, BufReader};
+use std::path::Path;
+
+/// The report of `merge` for an animation.
+#[derive(Serialize)]
+struct Merged {
+    pictures: String,
+    frames: [u32; 2],
+    per_second: u16,
+    width: u32,
+    height: u32,
+}
+
+/// Merges frames and writes the animation.
+pub fn run(arguments: &Arguments, format: AnimationFormat) -> Result<(), Failure> {
+    let (inputs, output) = (&arguments.parts, &arguments.output);
+    reject_inputs(inputs.iter().map(|it| it.as_path()), [output], "a frame")?;
+    let read = |path: &Path| {
+        open(path)
+            .map_err(PartError::from)
+            .and_then(NumberedPicture::read)
+            .map_err(|error| wrong(path, &error))
+    };
+    let pictures = inputs
+        .iter()
+        .map(|path| read(path))
+        .collect::<Result<Vec<_>, _>>()?;
+    let order = in_order(&pictures).map_err(|error| failure(arguments, &error))?;
+    // The command line asks for a file at least.
+    let Some((&first, &last)) = order.first().zip(order.last()) else {
+        return Ok(());
+    };
+    let [first, last] = [first, last].map(|index| &pictures[index]);
+    let animation = Animation {
+        format,
+        size: first.size,
+        pictures: order.len() as u32,
+        per_second: first.note.frame.per_second,
+    };
+    let most = format.most_per_second();
+    if animation.per_second > most {
+        return Err(Failure::usage(
+            format!(
+                "{}: a .gif shows at most {most} frames per second, and these are {}",
+                output.display(),
+                animation.per_second
+            ),
+            "merge them into an .apng",
+        ));
+    }
+    let progress = Progress::steps("merging", order.len() as u64);
+    // What went wrong with a frame, rather than that the file could not be written.
+    let mut failure = None;
+    let written = write_file(output, |out| {
+        animation.write(out, &mut |number| {
+            let path = &inputs[order[number as usize]];
+            let pixels = open(path)
+                .map_err(PartError::from)
+                .and_then(NumberedPicture::read_pixels);
+            progress.step();
+            pixels.map_err(|error| {
+                failure = Some(wrong(path, &error));
+                io::Error::other("a frame is missing")
+            })
+        })
+    });
+    drop(progress);
+    if let Some(failure) = failure {
+        return Err(failure);
+    }
+    written?;
+    let merged = Merged {
+        pictures: output.display().to_string(),
+        frames: [first.note.frame.number, last.note.frame.number + 1],
+        per_second: animation.per_second,
+        width: first.size[0],
+        height: first.size[1],
+    };
+    if arguments.json {
+        return print_json(&merged);
+    }
+    let [first, end] = merged.frames;
+    print(format!(
+        "{}: frames {first}..{end} at {} per second, {} x {}\n",
+        merged.pictures, merged.per_second, merged.width, merged.height
+    ))
+}
+
+fn open(path: &Path) -> io::Result<BufReader<File>> {
+    File::open(path).map(BufReader::new)
+}
+
+fn wrong(path: &Path, error: &PartError) -> Failure {
+    Failure::failed(
+        format!("{} cannot be merged: {error}", path.display()),
+        "frames are what `gridel render --frames A..B -o NAME-%03d.png` writes",
+    )
+}
+
+fn failure(arguments: &Arguments, error: &FramesError) -> Failure {
+    let name = |number: usize| arguments.parts[number].display();
+    let misfit = |[one, other]: [usize; 2], remedy: &str| {
+        let cause = format!("{} and {} do not fit: {error}", name(one), name(other));
+        Failure::failed(cause, remedy)
+    };
+    match error {
+        FramesError::Sizes(both, _) | FramesError::Made(both, _) | FramesError::Rates(both, _) => {
+            misfit(
+                *both,
+                "render all frames with one gridel from one blob, with the same options but for the range of `--frames`",
+            )
+        }
+        FramesError::Twice(both, _) => misfit(*both, "leave one of them out"),
+        FramesError::Missing(number) => Failure::failed(
+            format!("the animation is not whole: {error}"),
+            format!("render it with `--frames {number}..{}`", number + 1),
+        ),
+    }
+}

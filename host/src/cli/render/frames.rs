@@ -1,0 +1,263 @@
+//! The pictures of a scene that moves: an animation, or numbered files.
+
+use super::Arguments;
+use crate::cli::arguments;
+use crate::cli::failure::Failure;
+use crate::cli::output::{
+    Content, Warned, check_writable, json, print, reject_inputs, unsupported, write_file,
+    write_files,
+};
+use crate::cli::progress::Progress;
+use crate::cli::source::Source;
+use clap::Args;
+use gridel_core::{Scene, Tracks};
+use gridel_host::animation::{Animation, AnimationFormat, NumberedName};
+use gridel_host::picture::{Frame, Moment, PictureFormat, RenderMetadata, srgb};
+use gridel_host::render::{Job, Picture, render};
+use gridel_host::resolution::Unresolved;
+use gridel_host::table::counted;
+use rayon::ThreadPool;
+use serde::Serialize;
+use std::io;
+use std::ops::Range;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Times of scenes that move.
+#[derive(Args, Clone, Debug)]
+pub struct TimeOptions {
+    /// Show a scene that moves at this time, in seconds [default: as its file states it, without tracks]
+    #[arg(long, value_name = "SECONDS", value_parser = arguments::seconds, allow_hyphen_values = true)]
+    pub time: Option<f64>,
+
+    /// Render frames A to B - 1 of a scene that moves: an animation, .apng or .gif (256 colors per frame), or
+    /// numbered pictures, such as out-%03d.png. Frame N is at N / FPS seconds
+    #[arg(long, value_name = "A..B", value_parser = frames, allow_hyphen_values = true,
+        conflicts_with_all = ["time", "rows", "stats", "heat_map"])]
+    pub frames: Option<Range<u32>>,
+
+    /// Frames per second, 1 to 1000; a .gif has at most 50 [default: 24]
+    #[arg(long, value_name = "N", requires = "frames",
+        value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub fps: Option<u16>,
+}
+
+fn frames(text: &str) -> Result<Range<u32>, String> {
+    let ends = text
+        .split_once("..")
+        .map(|(first, end)| [first, end].map(|frame| frame.parse::<u32>()));
+    match ends {
+        Some([Ok(first), Ok(end)]) if first < end => Ok(first..end),
+        Some([Ok(first), Ok(end)]) => Err(format!(
+            "the range from {first} to {end} (not included) is empty"
+        )),
+        _ => Err(String::from(
+            "write the first frame and the one behind the last, such as 0..48",
+        )),
+    }
+}
+
+/// Where frames go.
+pub enum Output {
+    Animation(AnimationFormat),
+    Numbered(NumberedName, PictureFormat),
+}
+
+impl TimeOptions {
+    fn per_second(&self) -> u16 {
+        self.fps.unwrap_or(24)
+    }
+}
+
+impl Output {
+    /// The output of some frames; an error for names that cannot be written to.
+    pub fn of(arguments: &Arguments, frames: &Range<u32>) -> Result<Self, Failure> {
+        const NAMES: &str = ".apng, .gif or numbered pictures such as out-%03d.png";
+        let path = &arguments.output;
+        let shown = path.display();
+        if let Some(format) = AnimationFormat::of(path) {
+            let (fps, most) = (arguments.time.per_second(), format.most_per_second());
+            if fps > most {
+                return Err(Failure::usage(
+                    format!(
+                        "{shown}: a .gif shows at most {most} frames per second, and {fps} are asked for"
+                    ),
+                    format!("use `--fps {most}` or less, or write an .apng"),
+                ));
+            }
+            reject_inputs([arguments.input.as_path()], [path], "the input")?;
+            check_writable(path)?;
+            return Ok(Self::Animation(format));
+        }
+        let text = path.to_str();
+        let name = NumberedName::read(text.unwrap_or_default()).map_err(|cause| {
+            Failure::usage(
+                format!("{shown}: {cause}"),
+                "write the frame's number as %d, or as %03d for at least 3 digits",
+            )
+        })?;
+        let Some(name) = name else {
+            return Err(match PictureFormat::of(path) {
+                Some(_) => Failure::usage(
+                    format!("{shown} is one picture, and several frames are asked for"),
+                    format!("use {NAMES}"),
+                ),
+                None => unsupported(path, "animation", NAMES),
+            });
+        };
+        let format = PictureFormat::of(path)
+            .ok_or_else(|| unsupported(path, "image", ".png, .ppm or .rgb565"))?;
+        for number in frames.clone() {
+            let path = PathBuf::from(name.of(number));
+            reject_inputs([arguments.input.as_path()], [&path], "the input")?;
+            check_writable(&path)?;
+        }
+        Ok(Self::Numbered(name, format))
+    }
+}
+
+/// The report of `render --frames`.
+#[derive(Serialize)]
+struct Rendered {
+    pictures: String,
+    frames: [u32; 2],
+    per_second: u16,
+    width: u16,
+    height: u16,
+    format: &'static str,
+    accel: &'static str,
+    samples: u16,
+    depth: u8,
+    threads: usize,
+    seconds: f64,
+    /// Objects that the format does not resolve.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    unresolved: Vec<Unresolved>,
+}
+
+/// What frames are rendered from.
+pub struct Shot<'s> {
+    pub arguments: &'s Arguments,
+    pub source: &'s Source,
+    pub scene: &'s Scene<'s>,
+    pub job: &'s Job,
+    pub pool: &'s ThreadPool,
+    pub unresolved: Vec<Unresolved>,
+}
+
+/// Renders frames and writes them.
+pub fn run(shot: Shot<'_>, frames: Range<u32>, output: &Output) -> Result<(), Failure> {
+    let tracks = shot.source.tracks()?;
+    let Shot { arguments, job, .. } = shot;
+    let path = &arguments.output;
+    let per_second = arguments.time.per_second();
+    let progress = Progress::steps("rendering", frames.len() as u64);
+    let begun = Instant::now();
+    match output {
+        Output::Animation(format) => {
+            let animation = Animation {
+                format: *format,
+                size: [job.settings.width.into(), job.settings.height.into()],
+                pictures: frames.len() as u32,
+                per_second,
+            };
+            // What went wrong in a frame, rather than that the file could not be written.
+            let mut failure = None;
+            let written = write_file(path, |out| {
+                animation.write(out, &mut |number| {
+                    let frame = shot.frame(&tracks, frames.start + number, per_second);
+                    let (picture, _) = frame.map_err(|error| {
+                        failure = Some(error);
+                        io::Error::other("a frame is missing")
+                    })?;
+                    progress.step();
+                    Ok(srgb(&picture, job.settings.dither))
+                })
+            });
+            if let Some(failure) = failure {
+                return Err(failure);
+            }
+            written?;
+        }
+        Output::Numbered(name, format) => {
+            for number in frames.clone() {
+                let (picture, metadata) = shot.frame(&tracks, number, per_second)?;
+                let path = PathBuf::from(name.of(number));
+                let content: Content<'_> = &|out| format.write(out, &picture, &metadata);
+                write_files(&[(&path, content)])?;
+                progress.step();
+            }
+        }
+    }
+    drop(progress);
+    let rendered = Rendered {
+        pictures: path.display().to_string(),
+        frames: [frames.start, frames.end],
+        per_second,
+        width: job.settings.width,
+        height: job.settings.height,
+        format: job.format.name(),
+        accel: job.structure.name(),
+        samples: job.settings.samples,
+        depth: job.settings.depth,
+        threads: shot.pool.current_num_threads(),
+        seconds: begun.elapsed().as_secs_f64(),
+        unresolved: shot.unresolved,
+    };
+    match arguments.json {
+        true => print(json(&Warned {
+            value: &rendered,
+            warnings: &shot.source.warnings,
+        })?),
+        false => print(rendered.text()),
+    }
+}
+
+impl Shot<'_> {
+    fn frame(
+        &self,
+        tracks: &Tracks<'_>,
+        number: u32,
+        per_second: u16,
+    ) -> Result<(Picture, RenderMetadata), Failure> {
+        let time = tracks.frame_time(number, per_second.into());
+        let changes = self.source.changes_at(self.scene, tracks, time)?;
+        let scene = changes.apply(self.scene)?;
+        let rendered = self.pool.install(|| render(&scene, self.job, &|| ()));
+        let picture = rendered.map_err(|error| super::rejected(&error))?;
+        let moment = Moment::Frame(Frame { number, per_second });
+        let metadata = RenderMetadata::of(&scene, self.job).at(Some(moment));
+        Ok((picture, metadata))
+    }
+}
+
+impl Rendered {
+    fn text(&self) -> String {
+        let [first, end] = self.frames;
+        format!(
+            "{}: frames {first}..{end} at {} per second, {} x {}, {}, {}, {} per pixel, {:.3} s with {}\n",
+            self.pictures,
+            self.per_second,
+            self.width,
+            self.height,
+            self.format,
+            self.accel,
+            counted(self.samples.into(), "sample"),
+            self.seconds,
+            counted(self.threads, "thread")
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_a_range() {
+        assert_eq!(frames("0..48"), Ok(0..48));
+        for wrong in ["", "3..3", "5..1", "..2", "2..", "-1..2", "0..4294967296"] {
+            assert!(frames(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Tracks: targets, values and tangents.
+
+use super::{load, scene};
+use crate::scene::{Interpolation, Key, Track, TrackTarget};
+use glam::DVec3;
+
+const SCENE: &str = "\
+    [material.red]\n\
+    [material.board]\nchecker = { even = 0, odd = 1 }\n\
+    [[light]]\nkind = 'point'\nposition = [0, 5, 0]\nname = 'lamp'\n\
+    [[light]]\nkind = 'directional'\ndirection = [0, -1, 0]\nname = 'a.b'\n\
+    [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'red'\n\
+    [[object]]\nkind = 'sphere'\ncenter = [2, 0, 0]\nradius = 1\nmaterial = 'board'\n";
+
+fn track(rest: &str) -> Track {
+    let mut tracks = scene(&format!("{SCENE}[[track]]\n{rest}")).tracks;
+    assert_eq!(tracks.len(), 1);
+    tracks.remove(0)
+}
+
+#[test]
+fn targets_are_found_by_name_and_number() {
+    for (target, value, expected, index) in [
+        ("camera.eye", "[1, 2, 3]", TrackTarget::CameraEye, 0),
+        ("camera.target", "[1, 2, 3]", TrackTarget::CameraTarget, 0),
+        ("camera.up", "[0, 1, 0]", TrackTarget::CameraUp, 0),
+        ("camera.fov", "30", TrackTarget::CameraFieldOfView, 0),
+        ("camera.orbit", "-720", TrackTarget::CameraOrbit, 0),
+        (
+            "light.0.position",
+            "[1, 2, 3]",
+            TrackTarget::LightPosition,
+            0,
+        ),
+        ("light.lamp.color", "0.5", TrackTarget::LightColor, 0),
+        (
+            "light.a.b.direction",
+            "[1, 0, 0]",
+            TrackTarget::LightDirection,
+            1,
+        ),
+        ("light.1.color", "'#ffffff'", TrackTarget::LightColor, 1),
+        (
+            "material.red.diffuse",
+            "[0.1, 0.2, 0.3]",
+            TrackTarget::MaterialDiffuse,
+            1,
+        ),
+        (
+            "material.board.checker.even",
+            "0.5",
+            TrackTarget::MaterialDiffuse,
+            0,
+        ),
+        (
+            "material.board.checker.odd",
+            "0.5",
+            TrackTarget::MaterialOdd,
+            0,
+        ),
+        (
+            "material.red.highlight",
+            "0.5",
+            TrackTarget::MaterialHighlight,
+            1,
+        ),
+        ("material.red.mirror", "0.5", TrackTarget::MaterialMirror, 1),
+        (
+            "material.red.transmit",
+            "0.5",
+            TrackTarget::MaterialTransmit,
+            1,
+        ),
+    ] {
+        let track = track(&format!(
+            "target = '{target}'\ntimes = [0]\nvalues = [{value}]"
+        ));
+        assert_eq!(track.target, expected, "{target}");
+        if expected.is_of_material() {
+            // Tables of materials are in the order of the parser.
+            let scene = scene(SCENE);
+            let name = target.split('.').nth(1).unwrap();
+            assert_eq!(scene.materials[track.index].name, name);
+        } else {
+            assert_eq!(track.index, index, "{target}");
+        }
+        assert_eq!(track.interpolation, Interpolation::Linear);
+    }
+}
+
+#[test]
+fn splines_have_given_or_smooth_tangents() {
+    let text = "target = 'camera.eye'\ninterpolation = 'cubic'\ntimes = [0, 1, 3, 4]\n\
+        values = [[0, 0, 0], [1, 2, 3], [6, 3, 0], [0, 0, 0]]";
+    let tangents = |track: &Track| -> Vec<[f64; 4]> {
+        assert!(track.keys.iter().all(|key| key.entering == key.leaving));
+        track.keys.iter().map(|key: &Key| key.leaving).collect()
+    };
+    let still = [0.0; 4];
+    let slopes = [[2.0, 1.0, 0.0, 0.0], [-1.0 / 3.0, -2.0 / 3.0, -1.0, 0.0]];
+    assert_eq!(tangents(&track(text)), [still, slopes[0], slopes[1], still]);
+    let given = format!("{text}\ntangents = [[1, 0, 0], [0, 2, 0], [0, 0, 3], [0, 0, 0]]");
+    let given = track(&given);
+    assert_eq!(tangents(&given)[1], [0.0, 2.0, 0.0, 0.0]);
+    assert_eq!(given.keys[2].vector(), DVec3::new(6.0, 3.0, 0.0));
+}
+
+#[test]
+fn a_material_of_no_object_moves_nothing_and_is_named() {
+    let text = format!(
+        "{SCENE}[material.lost]\n[[track]]\ntarget = 'material.lost.diffuse'\ntimes = [0]\nvalues = [0]"
+    );
+    let imported = load(&text).unwrap();
+    let [warning] = &imported.warnings[..] else {
+        panic!("{:?}", imported.warnings)
+    };
+    assert!(
+        warning.contains("lost") && warning.contains("moves nothing"),
+        "{warning}"
+    );
+}

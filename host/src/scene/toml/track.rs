@@ -1,0 +1,361 @@
+//! The `[[track]]` tables: values of the camera, of lights and of materials at some times.
+
+use super::material::Palette;
+use super::source::{Name, Source, Span, nearest};
+use super::value::{Fields, Value};
+use super::view::field_of_view;
+use crate::scene::{Diffuse, Interpolation, Key, Light, SceneError, Track, TrackTarget};
+use crate::table::counted;
+use glam::DVec3;
+use gridel_core::format::track::ValueKind;
+
+const KEYS: &[&str] = &["target", "times", "values", "interpolation", "tangents"];
+
+const CAMERA: [(&str, TrackTarget); 5] = [
+    ("eye", TrackTarget::CameraEye),
+    ("target", TrackTarget::CameraTarget),
+    ("up", TrackTarget::CameraUp),
+    ("fov", TrackTarget::CameraFieldOfView),
+    ("orbit", TrackTarget::CameraOrbit),
+];
+
+const LIGHT: [(&str, TrackTarget); 3] = [
+    ("position", TrackTarget::LightPosition),
+    ("direction", TrackTarget::LightDirection),
+    ("color", TrackTarget::LightColor),
+];
+
+const EVEN: &str = "checker.even";
+const MATERIAL: [(&str, TrackTarget); 6] = [
+    ("diffuse", TrackTarget::MaterialDiffuse),
+    (EVEN, TrackTarget::MaterialDiffuse),
+    ("checker.odd", TrackTarget::MaterialOdd),
+    ("highlight", TrackTarget::MaterialHighlight),
+    ("mirror", TrackTarget::MaterialMirror),
+    ("transmit", TrackTarget::MaterialTransmit),
+];
+
+/// A track whose light or material is not looked up yet.
+pub(super) struct Unresolved {
+    owner: Owner,
+    /// The target's text and place.
+    target: Name,
+    property: &'static str,
+    track: Track,
+}
+
+enum Owner {
+    Camera,
+    Light(String),
+    Material(String),
+}
+
+/// Reads the tables.
+pub(super) fn read(tables: Value<'_>) -> Result<Vec<Unresolved>, SceneError> {
+    tables
+        .items("`[[track]]` above the keys of each")?
+        .map(track)
+        .collect()
+}
+
+fn track(table: Value<'_>) -> Result<Unresolved, SceneError> {
+    let fields = table.fields("track", &[KEYS])?;
+    let target = fields.require("target")?;
+    let (owner, property, moved) = parse(target)?;
+    let interpolation = fields.or("interpolation", Interpolation::Linear, |value| {
+        let word = value.word(&Interpolation::ALL.map(Interpolation::name))?;
+        let mut all = Interpolation::ALL.into_iter();
+        Ok(all
+            .find(|it| it.name() == word)
+            .unwrap_or(Interpolation::Linear))
+    })?;
+    let mut keys = keys(&fields, moved)?;
+    let tangents = fields.get("tangents");
+    if interpolation == Interpolation::Cubic {
+        match tangents {
+            Some(tangents) => given_tangents(tangents, &mut keys)?,
+            None => smooth_tangents(&mut keys),
+        }
+    } else if let Some(tangents) = tangents {
+        return Err(tangents.error(
+            format!(
+                "a track with {} interpolation has no `tangents`",
+                interpolation.name()
+            ),
+            "remove the key, or write `interpolation = \"cubic\"`",
+        ));
+    }
+    Ok(Unresolved {
+        owner,
+        target: target.name()?,
+        property,
+        track: Track {
+            target: moved,
+            index: 0,
+            interpolation,
+            keys,
+            place: table.source.place(&fields.span),
+        },
+    })
+}
+
+/// Whose property a target is, its name, and what it is.
+fn parse(target: Value<'_>) -> Result<(Owner, &'static str, TrackTarget), SceneError> {
+    const EXAMPLES: &str = "write a property of the camera, a light or a material, such as \"camera.eye\", \"light.0.color\" or \
+         \"material.glass.transmit\"";
+    let text = target.filled()?;
+    let Some((owner, rest)) = text.split_once('.') else {
+        return Err(target.error(
+            format!("`target` is {text:?}, which names no property"),
+            EXAMPLES,
+        ));
+    };
+    let unknown = |properties: &[(&'static str, TrackTarget)]| {
+        let names: Vec<_> = properties.iter().map(|(name, _)| *name).collect();
+        let last = rest.rsplit('.').next().unwrap_or(rest);
+        let near = nearest(last, names.iter().copied()).unwrap_or_default();
+        target.error(
+            format!("`target` is {text:?}, and a {owner} has no such property that moves"),
+            format!(
+                "did you mean `{near}`? The properties are {}",
+                names.join(", ")
+            ),
+        )
+    };
+    let named = |properties: &[(&'static str, TrackTarget)]| {
+        let mut all = properties.iter();
+        let found = all.find_map(|&(name, moved)| {
+            let owner = rest.strip_suffix(name)?.strip_suffix('.')?;
+            (!owner.is_empty()).then(|| (owner.to_owned(), name, moved))
+        });
+        found.ok_or_else(|| unknown(properties))
+    };
+    match owner {
+        "camera" => {
+            let found = CAMERA.iter().find(|(name, _)| *name == rest);
+            let &(name, moved) = found.ok_or_else(|| unknown(&CAMERA))?;
+            Ok((Owner::Camera, name, moved))
+        }
+        "light" => named(&LIGHT).map(|(owner, name, moved)| (Owner::Light(owner), name, moved)),
+        "material" => {
+            named(&MATERIAL).map(|(owner, name, moved)| (Owner::Material(owner), name, moved))
+        }
+        _ => Err(target.error(
+            format!("`target` is {text:?}, and nothing called {owner:?} moves"),
+            EXAMPLES,
+        )),
+    }
+}
+
+fn keys(fields: &Fields<'_>, target: TrackTarget) -> Result<Vec<Key>, SceneError> {
+    let (times, values) = (fields.require("times")?, fields.require("values")?);
+    let mut keys: Vec<Key> = Vec::new();
+    for time in times.items("`times = [0, 1.5]`, in seconds")? {
+        let seconds = time.number()?;
+        if let Some(before) = keys
+            .last()
+            .map(|key| key.seconds)
+            .filter(|it| *it >= seconds)
+        {
+            return Err(time.error(
+                format!("`times` has {seconds} behind {before}; each time must be later than the one before"),
+                "order the times, and give each one value",
+            ));
+        }
+        keys.push(Key {
+            seconds,
+            ..Key::default()
+        });
+    }
+    if keys.is_empty() {
+        return Err(times.error("`times` is empty", "write at least one time, in seconds"));
+    }
+    let kind = target.kind();
+    let example = match kind.components() {
+        1 => "`values = [0, 360]`, one for each time",
+        _ => "`values = [[0, 3, 8], [4, 3, 4]]`, one for each time",
+    };
+    let values_of = values.items(example)?;
+    check_count(values, values_of.len(), keys.len())?;
+    for (key, value) in keys.iter_mut().zip(values_of) {
+        let vector = match kind {
+            ValueKind::Direction | ValueKind::UnitDirection => value.direction()?,
+            ValueKind::FieldOfView => DVec3::X * field_of_view(value)?,
+            ValueKind::Turns => DVec3::X * value.number()?,
+            ValueKind::Radiance | ValueKind::Ratios => DVec3::from_array(value.color()?),
+            ValueKind::Position | ValueKind::Rotation => value.vector()?,
+        };
+        *key = Key::of_vector(key.seconds, vector);
+    }
+    Ok(keys)
+}
+
+fn check_count(values: Value<'_>, found: usize, times: usize) -> Result<(), SceneError> {
+    if found == times {
+        return Ok(());
+    }
+    Err(values.error(
+        format!(
+            "`{}` has {}, and `times` has {times}",
+            values.key,
+            counted(found, "value")
+        ),
+        "write one for each time",
+    ))
+}
+
+/// Changes per second, one for each key.
+fn given_tangents(tangents: Value<'_>, keys: &mut [Key]) -> Result<(), SceneError> {
+    let all = tangents.items("`tangents = [[0, 0, 0], [1, 0, 0]]`, one for each time")?;
+    check_count(tangents, all.len(), keys.len())?;
+    for (key, tangent) in keys.iter_mut().zip(all) {
+        let change = match tangent.is_array() {
+            true => tangent.vector()?,
+            false => DVec3::splat(tangent.number()?),
+        };
+        let [x, y, z] = change.to_array();
+        (key.entering, key.leaving) = ([x, y, z, 0.0], [x, y, z, 0.0]);
+    }
+    Ok(())
+}
+
+/// At each key the change from the key before to the one behind; none at the first and last.
+fn smooth_tangents(keys: &mut [Key]) {
+    let slopes: Vec<[f64; 4]> = keys
+        .windows(3)
+        .map(|keys| {
+            let seconds = keys[2].seconds - keys[0].seconds;
+            std::array::from_fn(|k| (keys[2].value[k] - keys[0].value[k]) / seconds)
+        })
+        .collect();
+    for (key, slope) in keys.iter_mut().skip(1).zip(slopes) {
+        (key.entering, key.leaving) = (slope, slope);
+    }
+}
+
+/// The lights and materials of a scene, to look tracks' targets up.
+pub(super) struct Targets<'t> {
+    pub(super) source: &'t Source,
+    pub(super) lights: &'t [Light],
+    pub(super) light_names: &'t [String],
+    pub(super) palette: &'t Palette,
+}
+
+impl Targets<'_> {
+    /// Looks up lights and materials.
+    pub(super) fn resolve(&self, tracks: Vec<Unresolved>) -> Result<Vec<Track>, SceneError> {
+        let mut resolved: Vec<Track> = Vec::new();
+        for unresolved in tracks {
+            let index = self.index(&unresolved)?;
+            let Unresolved {
+                target, mut track, ..
+            } = unresolved;
+            track.index = index;
+            let same = |it: &&Track| (it.target, it.index) == (track.target, index);
+            if let Some(first) = resolved.iter().find(same) {
+                return Err(self.source.error(
+                    &target.span,
+                    format!(
+                        "{:?} moves already by the track at {}",
+                        target.text, first.place
+                    ),
+                    "put the keys of both into one track",
+                ));
+            }
+            resolved.push(track);
+        }
+        Ok(resolved)
+    }
+
+    fn index(&self, unresolved: &Unresolved) -> Result<usize, SceneError> {
+        let Unresolved {
+            owner,
+            target,
+            property,
+            track,
+        } = unresolved;
+        match owner {
+            Owner::Camera => Ok(0),
+            Owner::Light(name) => {
+                let index = self.light(name, &target.span)?;
+                let instead = match (track.target, self.lights[index]) {
+                    (TrackTarget::LightPosition, Light::Directional { .. }) => "direction",
+                    (TrackTarget::LightDirection, Light::Point { .. }) => "position",
+                    _ => return Ok(index),
+                };
+                Err(self.source.error(
+                    &target.span,
+                    format!("light {name} has no `{property}`"),
+                    format!("move its `{instead}`, or change the light's `kind`"),
+                ))
+            }
+            Owner::Material(name) => {
+                let name = Name {
+                    text: name.clone(),
+                    span: target.span.clone(),
+                };
+                let index = self.palette.find(self.source, &name)?;
+                let plain = matches!(self.palette.get(index).diffuse, Diffuse::Plain(_));
+                let wrong = |cause: &str, remedy: &str| {
+                    let cause = format!("material {:?} {cause}", name.text);
+                    Err(self.source.error(&target.span, cause, remedy))
+                };
+                match (plain, *property) {
+                    (true, EVEN | "checker.odd") => wrong(
+                        "has no `checker`",
+                        "move its `diffuse`, or give it a `checker`",
+                    ),
+                    (false, "diffuse") => wrong(
+                        "has a `checker` in place of a `diffuse` color",
+                        "move its `checker.even` and `checker.odd`",
+                    ),
+                    _ => Ok(index),
+                }
+            }
+        }
+    }
+
+    /// A light by its number or its name.
+    fn light(&self, name: &str, span: &Span) -> Result<usize, SceneError> {
+        let count = self.lights.len();
+        let known = || {
+            self.light_names
+                .iter()
+                .map(String::as_str)
+                .filter(|it| !it.is_empty())
+        };
+        let error = |cause: String, remedy: String| self.source.error(span, cause, remedy);
+        if let Ok(number) = name.parse::<usize>() {
+            return if number < count {
+                Ok(number)
+            } else {
+                Err(error(
+                    format!(
+                        "there is no light {number}: the scene has {}",
+                        counted(count, "light")
+                    ),
+                    String::from("lights count from 0, in the order of the file"),
+                ))
+            };
+        }
+        let mut named = self
+            .light_names
+            .iter()
+            .enumerate()
+            .filter(|(_, it)| *it == name);
+        match (named.next(), named.next()) {
+            (Some((index, _)), None) => Ok(index),
+            (Some(_), Some(_)) => Err(error(
+                format!("several lights are called {name:?}"),
+                String::from("give them different names, or write the light's number"),
+            )),
+            (None, _) => Err(error(
+                format!("there is no light {name:?}"),
+                match nearest(name, known()) {
+                    Some(near) => format!("did you mean {near:?}?"),
+                    None => String::from("write the light's number, or give the light a `name`"),
+                },
+            )),
+        }
+    }
+}
