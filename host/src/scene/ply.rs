@@ -99,6 +99,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         scene,
         warnings: warnings.into_sentences(),
         molecules: false,
+        choices: false,
     })
 }
 
