@@ -213,7 +213,7 @@ fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, CompileE
         for group in groups.into_iter().flatten() {
             for word in &group[..components] {
                 let rounded = word.round();
-                if !(rounded.abs() <= f64::from(i32::MAX)) {
+                if rounded.is_nan() || rounded.abs() > f64::from(i32::MAX) {
                     let cause = match kind {
                         ValueKind::Position => format!(
                             "at {} s it leads beyond the range of scene coordinates",

@@ -4,7 +4,7 @@
 //! tracks have, it is sampled [`RATE`] times per second.
 
 use super::buffers::Buffers;
-use super::transform;
+use super::place::transform;
 use crate::scene::{Choice, Interpolation, Key, SceneError, SourceSpan, Track, TrackTarget};
 use crate::table::printable;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
@@ -198,7 +198,7 @@ impl Motion {
         let times: Vec<f64> = times.map(|key| key.seconds).collect();
         let first = times.iter().copied().fold(f64::INFINITY, f64::min);
         let last = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let steps = ((last - first) * RATE).ceil().min(MOST_SAMPLES).max(0.0);
+        let steps = ((last - first) * RATE).ceil().clamp(0.0, MOST_SAMPLES);
         let time = |step: u32| match steps {
             0.0 => first,
             _ => first + (last - first) * f64::from(step) / steps,

@@ -12,6 +12,7 @@ mod check;
 mod container;
 mod document;
 mod material;
+mod place;
 mod view;
 
 use super::importer::{Importer as Entry, Input};
@@ -20,12 +21,13 @@ use super::text::Warnings;
 use super::{Choice, Imported, Object, SourceSpan, Scene, SceneError, Shape, Up};
 use animation::Motion;
 use buffers::{Buffers, MOST};
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DMat4, DVec3};
 use gltf::mesh::Mode;
 use gltf::scene::Transform;
 use gltf::{Document, Node, Primitive, Semantic};
 use std::collections::HashMap;
 use std::path::Path;
+use place::transform;
 use view::View;
 
 pub(super) const IMPORTER: Entry = Entry {
@@ -448,24 +450,6 @@ impl Importer<'_> {
 /// Returns the name of a part of a mesh in messages.
 fn place(mesh: &gltf::Mesh<'_>, part: &Primitive<'_>) -> String {
     format!("mesh {}, primitive {}", mesh.index(), part.index())
-}
-
-/// Where a node stands in its parent, computed in double precision.
-fn transform(node: &Node<'_>) -> DMat4 {
-    match node.transform() {
-        Transform::Matrix { matrix } => {
-            DMat4::from_cols_array_2d(&matrix.map(|column| column.map(f64::from)))
-        }
-        Transform::Decomposed {
-            translation,
-            rotation,
-            scale,
-        } => DMat4::from_scale_rotation_translation(
-            DVec3::from_array(scale.map(f64::from)),
-            DQuat::from_array(rotation.map(f64::from)).normalize(),
-            DVec3::from_array(translation.map(f64::from)),
-        ),
-    }
 }
 
 /// The triangles that corners stand for, counter-clockwise in front.

@@ -7,7 +7,7 @@ use super::material::Palette;
 use super::object::Reader;
 use super::place::Placer;
 use super::source::Source;
-use super::imported_track::{ImportPlace, with_imported};
+use super::imported_track::{ImportPlace, lost, with_imported};
 use super::track::{self, Targets};
 use super::value::Fields;
 use super::view;
@@ -161,14 +161,4 @@ fn moved_light(source: &Source, item: &Item, light: &Light) -> Result<Light, Sce
     } else {
         Err(lost(source, item, "light"))
     }
-}
-
-pub(super) fn lost(source: &Source, item: &Item, what: &str) -> SceneError {
-    source.error(
-        &item.span,
-        format!("a {what} of this import cannot follow the transform of the import"),
-        format!(
-            "use smaller translations and scales nearer to 1, or give this scene its own {what}"
-        ),
-    )
 }

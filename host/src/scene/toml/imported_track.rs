@@ -1,6 +1,5 @@
 //! The tracks of an import, where its camera, lights and materials are taken over.
 
-use super::document::lost;
 use super::item::Item;
 use super::source::Source;
 use crate::scene::{Scene, SceneError, Track, TrackTarget};
@@ -109,4 +108,15 @@ fn rotation_of(by: &DAffine3) -> Option<DQuat> {
     let squared = turns.transpose() * turns;
     let is_rotation = scale > 0.0 && squared.abs_diff_eq(glam::DMat3::IDENTITY, TOLERANCE);
     is_rotation.then(|| DQuat::from_mat3(&turns))
+}
+
+/// The error of what cannot follow the transform of its import.
+pub(super) fn lost(source: &Source, item: &Item, what: &str) -> SceneError {
+    source.error(
+        &item.span,
+        format!("a {what} of this import cannot follow the transform of the import"),
+        format!(
+            "use smaller translations and scales nearer to 1, or give this scene its own {what}"
+        ),
+    )
 }

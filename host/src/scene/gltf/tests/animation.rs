@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::scene::{Choice, ImportOptions, Interpolation, TrackTarget};
+use glam::DQuat;
 
 /// The document with keys at 0, 1 and 2 seconds in a buffer of their own: accessor 2 has the times, 3 three places,
 /// 4 three rotations about y by 0, 90 and 180 degrees, 5 the places with tangents.
