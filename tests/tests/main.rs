@@ -27,6 +27,7 @@ mod shapes;
 mod spd;
 mod structures;
 mod tables;
+mod tracks;
 mod transforms;
 mod verify;
 mod watertight;

@@ -115,6 +115,11 @@ impl ValueKind {
         }
     }
 
+    /// Whether it is a direction, of any length or of about 1.
+    pub const fn is_direction(self) -> bool {
+        matches!(self, Self::Direction | Self::UnitDirection)
+    }
+
     /// Whether some component must differ from 0.
     pub(crate) const fn has_length(self) -> bool {
         matches!(self, Self::Direction | Self::UnitDirection | Self::Rotation)

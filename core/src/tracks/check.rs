@@ -1,25 +1,25 @@
-//! The proofs that [`Tracks::from_bytes`] makes.
+//! The proofs that [`Tracks::from_bytes`](crate::Tracks::from_bytes) makes.
 
 use crate::format::range::{At, Ranges};
 use crate::format::record::Light;
 use crate::format::track::{Interpolation, Track, TrackTarget, ValueKind};
 use crate::format::{BlobError, Field, Location, Reason, SectionKind};
 use crate::number::Angle;
-use crate::tracks::Tracks;
+use crate::tracks::records::Records;
 
 /// Proves all that is in the tracks of a blob with these lights and so many materials.
 pub(super) fn check(
-    tracks: &Tracks<'_>,
+    records: &Records<'_>,
     lights: &[Light],
     materials: usize,
 ) -> Result<(), BlobError> {
     let section = SectionKind::Timeline;
     let timeline = At { section, index: 0 };
-    tracks.timeline.check_ranges(timeline)?;
+    records.timeline.check_ranges(timeline)?;
     let mut next = Taken::default();
     let mut last = None;
     let mut camera = 0_u32;
-    for (index, track) in tracks.tracks.iter().enumerate() {
+    for (index, track) in records.tracks.iter().enumerate() {
         let section = SectionKind::Tracks;
         let at = At { section, index };
         let target = check_track(at, track, lights, materials)?;
@@ -28,11 +28,11 @@ pub(super) fn check(
         if target.is_of_camera() {
             camera |= 1 << target as u32;
         }
-        next = check_keys(tracks, at, track, target.kind(), next)?;
+        next = check_keys(records, at, track, target.kind(), next)?;
     }
     for (section, found, expected) in [
-        (SectionKind::TrackTimes, tracks.times.len(), next.times),
-        (SectionKind::TrackWords, tracks.words.len(), next.words),
+        (SectionKind::TrackTimes, records.times.len(), next.times),
+        (SectionKind::TrackWords, records.words.len(), next.words),
     ] {
         if found != expected {
             return Err(BlobError::Count {
@@ -42,11 +42,11 @@ pub(super) fn check(
             });
         }
     }
-    let times = tracks.times.iter().copied();
+    let times = records.times.iter().copied();
     let (first, latest) = (times.clone().min(), times.max());
     for (field, found, expected) in [
-        (Field::FirstTime, tracks.timeline.first, first),
-        (Field::LastTime, tracks.timeline.last, latest),
+        (Field::FirstTime, records.timeline.first, first),
+        (Field::LastTime, records.timeline.last, latest),
     ] {
         // Without keys there is no timeline.
         let expected = expected.unwrap_or(found).into();
@@ -119,7 +119,7 @@ struct Taken {
 
 /// Proves the keys of a track, which come behind those of the tracks before.
 fn check_keys(
-    tracks: &Tracks<'_>,
+    records: &Records<'_>,
     at: At,
     track: &Track,
     kind: ValueKind,
@@ -133,8 +133,8 @@ fn check_keys(
     exactly(Field::FirstTime, track.first_time, next.times)?;
     exactly(Field::FirstWord, track.first_word, next.words)?;
     // Both behind each other, so the keys are fewer than the words.
-    let left = tracks.times.len().saturating_sub(next.times);
-    let words_left = tracks.words.len().saturating_sub(next.words);
+    let left = records.times.len().saturating_sub(next.times);
+    let words_left = records.words.len().saturating_sub(next.words);
     let most = left.min(words_left.checked_div(stride).unwrap_or(0));
     at.within(Field::Keys, track.keys.into(), 1, most as i64)?;
     let keys = track.keys as usize;
@@ -143,14 +143,14 @@ fn check_keys(
         words: next.words.saturating_add(keys.saturating_mul(stride)),
     };
     let mut earliest = i64::from(i32::MIN);
-    let times = tracks.times.get(next.times..taken.times).unwrap_or(&[]);
+    let times = records.times.get(next.times..taken.times).unwrap_or(&[]);
     for (&time, index) in times.iter().zip(next.times..) {
         let section = SectionKind::TrackTimes;
         let at = At { section, index };
         at.within(Field::KeyTime, time.into(), earliest, i32::MAX.into())?;
         earliest = i64::from(time) + 1;
     }
-    let words = tracks.words.get(next.words..taken.words).unwrap_or(&[]);
+    let words = records.words.get(next.words..taken.words).unwrap_or(&[]);
     for (key, index) in words.chunks_exact(stride.max(1)).zip(0_usize..) {
         let index = next.words.saturating_add(index.saturating_mul(stride));
         check_value(kind, interpolation, key, index)?;

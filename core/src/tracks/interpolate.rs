@@ -52,11 +52,11 @@ impl Tracks<'_> {
         time: i32,
     ) -> Option<Sample<N>> {
         let first = track.first_time as usize;
-        let times = self.times.get(first..)?.get(..track.keys as usize)?;
+        let times = self.0.times.get(first..)?.get(..track.keys as usize)?;
         let interpolation = track.interpolation()?;
         let (key, part) = locate(times, time);
         let stride = Track::words(kind, interpolation);
-        let words = self.words.get(track.first_word as usize..)?;
+        let words = self.0.words.get(track.first_word as usize..)?;
         let words = words.get(key.wrapping_mul(stride)..)?;
         let take = |start: usize| words.get(start..)?.first_chunk::<N>().copied();
         // Of a spline the value stands between the two changes.
@@ -83,8 +83,11 @@ impl Tracks<'_> {
                 _ => each([value, next], |[from, to]| linear(from, to, part)),
             }
         };
-        // A spline may lead beyond.
-        let [low, high] = kind.range();
+        // A spline may lead beyond; what is made as long as 1 keeps its way.
+        let [low, high] = match kind.has_length() {
+            true => [i32::MIN, i32::MAX],
+            false => kind.range(),
+        };
         Some(Sample::Between(
             between.map(|it| it.clamp(low, high)),
             value,

@@ -7,12 +7,14 @@
 
 mod check;
 mod interpolate;
+mod records;
 mod state;
 
 use crate::format::record::{Light, Material};
 use crate::format::track::{Timeline, Track};
 use crate::format::{BlobError, SectionKind, Sections};
 use crate::scene::header;
+use records::Records;
 
 /// The tracks of a blob, read in place.
 ///
@@ -43,12 +45,7 @@ use crate::scene::header;
 /// # Ok::<(), BlobError>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Tracks<'a> {
-    timeline: Timeline,
-    tracks: &'a [Track],
-    times: &'a [i32],
-    words: &'a [i32],
-}
+pub struct Tracks<'a>(Records<'a>);
 
 /// The timeline of a blob without tracks.
 const STILL: Timeline = Timeline {
@@ -79,7 +76,7 @@ impl<'a> Tracks<'a> {
                 expected,
             });
         }
-        let all = Self {
+        let records = Records {
             timeline: timelines.first().copied().unwrap_or(STILL),
             tracks,
             times: sections.records(SectionKind::TrackTimes)?,
@@ -87,28 +84,28 @@ impl<'a> Tracks<'a> {
         };
         let lights: &[Light] = sections.records(SectionKind::Lights)?;
         let materials: &[Material] = sections.records(SectionKind::Materials)?;
-        check::check(&all, lights, materials.len())?;
-        Ok(all)
+        check::check(&records, lights, materials.len())?;
+        Ok(Self(records))
     }
 
     /// Whether the blob has no tracks: its scene is the same at all times.
     pub fn is_empty(&self) -> bool {
-        self.tracks.is_empty()
+        self.0.tracks.is_empty()
     }
 
     /// The tracks, in the order of their targets and numbers.
     pub fn tracks(&self) -> &'a [Track] {
-        self.tracks
+        self.0.tracks
     }
 
     /// Ticks per second; 1 in a blob without tracks.
     pub fn ticks_per_second(&self) -> u32 {
-        self.timeline.ticks_per_second
+        self.0.timeline.ticks_per_second
     }
 
     /// The times of the earliest and of the latest key; 0 in a blob without tracks.
     pub fn span(&self) -> [i32; 2] {
-        [self.timeline.first, self.timeline.last]
+        [self.0.timeline.first, self.0.timeline.last]
     }
 
     /// The time of a picture, of which there are so many per second: the nearest tick to `number / per_second` seconds,
@@ -126,7 +123,7 @@ impl<'a> Tracks<'a> {
     pub fn frame_time(&self, number: u32, per_second: u32) -> i32 {
         let rate = u64::from(per_second.max(1));
         // Below 2^63.
-        let ticks = u64::from(number) * u64::from(self.timeline.ticks_per_second);
+        let ticks = u64::from(number) * u64::from(self.0.timeline.ticks_per_second);
         let nearest = ticks.wrapping_add(rate / 2) / rate;
         nearest.min(i32::MAX as u64) as i32
     }

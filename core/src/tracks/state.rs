@@ -38,7 +38,7 @@ impl Tracks<'_> {
     }
 
     fn camera<const N: usize>(&self, target: TrackTarget, time: i32) -> Option<[i32; N]> {
-        let mut tracks = self.tracks.iter();
+        let mut tracks = self.0.tracks.iter();
         let track = tracks.find(|track| track.target == target as u16)?;
         Some(self.sample(track, target.kind(), time)?.value())
     }
@@ -56,7 +56,7 @@ impl Tracks<'_> {
         lights: &mut [Light],
     ) -> Result<(), BlobError> {
         copy(SectionKind::Lights, scene.lights(), lights)?;
-        for track in self.tracks {
+        for track in self.0.tracks {
             let Some(target) = track.target() else {
                 continue;
             };
@@ -102,7 +102,7 @@ impl Tracks<'_> {
         materials: &mut [Material],
     ) -> Result<(), BlobError> {
         copy(SectionKind::Materials, scene.materials(), materials)?;
-        for track in self.tracks {
+        for track in self.0.tracks {
             let Some(target) = track.target().filter(|it| it.is_of_material()) else {
                 continue;
             };

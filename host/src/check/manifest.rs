@@ -39,6 +39,8 @@ pub struct Check {
     pub formats: Vec<Format>,
     pub size: Option<[u16; 2]>,
     pub samples: Option<u16>,
+    /// The time in seconds at which a scene that moves is shown.
+    pub time: Option<f64>,
     /// The recorded hash of each format; `None` where pictures are not hashed.
     pub hash: Option<BTreeMap<String, String>>,
     pub reference: Option<Reference>,
@@ -189,6 +191,7 @@ impl Check {
             "formats",
             "size",
             "samples",
+            "time",
             "hash",
             "reference",
             "tolerance",
@@ -237,6 +240,7 @@ impl Check {
             samples: fields.or("samples", None, |value| {
                 Ok(Some(value.integer_in(1..=MAX_SAMPLES.into())? as u16))
             })?,
+            time: fields.or("time", None, |value| value.number().map(Some))?,
             hash: fields.or("hash", None, |value| hashes(value, &formats).map(Some))?,
             reference,
             budget: fields.or("budget", Budget::default(), |table| {

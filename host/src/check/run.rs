@@ -10,7 +10,8 @@ use crate::compile::{self, Options};
 use crate::measure::{Rendered, board_memory};
 use crate::picture::hash;
 use crate::scene::{self, ImportOptions};
-use gridel_core::{Format, Scene, Settings, Structure};
+use crate::state::{State, ticks};
+use gridel_core::{Format, Scene, Settings, Structure, Tracks};
 use std::io;
 
 /// Measures everything. Calls `progress` after each of the [steps](Manifest::steps).
@@ -72,6 +73,11 @@ impl Run<'_> {
         let scene = blob
             .scene()
             .map_err(|error| format!("{}: {error}", check.scene.path.display()))?;
+        let state = self.state(&scene, blob.bytes())?;
+        let shown = match &state {
+            Some(state) => state.apply(&scene).map_err(|error| error.to_string())?,
+            None => scene,
+        };
         let structure = structure(check, &scene)?;
         let budget = check.budget;
         let bytes = Figure::Count(blob.bytes().len() as u64);
@@ -90,7 +96,7 @@ impl Run<'_> {
         );
         self.memory(&scene, blob.bytes());
         for (&format, name) in check.formats.iter().zip(&check.evidence) {
-            self.format(&scene, structure, format, name)?;
+            self.format(&shown, structure, format, name)?;
             progress();
         }
         for number in 0..check.boards.len() {
@@ -98,6 +104,20 @@ impl Run<'_> {
             progress();
         }
         Ok(())
+    }
+
+    /// The state of the scene at the check's time.
+    fn state(&self, scene: &Scene<'_>, blob: &[u8]) -> Result<Option<State>, String> {
+        let Some(seconds) = self.check.time else {
+            return Ok(None);
+        };
+        let path = self.check.scene.path.display();
+        let tracks = Tracks::from_bytes(blob).map_err(|error| format!("{path}: {error}"))?;
+        if tracks.is_empty() {
+            return Err(format!("{path}: nothing moves, so there is no `time`"));
+        }
+        let state = State::at(scene, &tracks, ticks(&tracks, seconds));
+        state.map(Some).map_err(|error| format!("{path}: {error}"))
     }
 
     /// Reads the blob, or compiles the scene for it.

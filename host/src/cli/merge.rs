@@ -49,7 +49,7 @@ struct Merged {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let output = &arguments.output;
     if let Some(format) = AnimationFormat::of(output) {
-        return frames::run(arguments, format);
+        return frames::run(&arguments.parts, output, arguments.json, format);
     }
     let format = format_of(output)?;
     for part in &arguments.parts {

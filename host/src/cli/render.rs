@@ -12,8 +12,7 @@ use super::output::{
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
-use frames::{Output, Shot, TimeOptions};
-use gridel_core::render::RenderError;
+use frames::{Output, Shot, TimeOptions, rejected};
 use gridel_core::{Counters, Scene, Settings, Structure};
 use gridel_host::output::place;
 use gridel_host::picture::{Moment, PictureFormat, RenderMetadata};
@@ -133,7 +132,15 @@ struct HeatMapFile {
 /// Renders a picture, or frames, and writes them.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let frames = arguments.time.frames.clone();
-    let frames = frames.map(|frames| Ok((Output::of(arguments, &frames)?, frames)));
+    let frames = frames.map(|frames| {
+        let output = Output::of(
+            &arguments.time,
+            &frames,
+            &arguments.input,
+            &arguments.output,
+        )?;
+        Ok((output, frames))
+    });
     let frames = frames.transpose()?;
     let format = match frames {
         Some(_) => PictureFormat::Png,
@@ -165,7 +172,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     if let Some((output, frames)) = frames {
         let shot = Shot {
-            arguments,
+            options: &arguments.time,
+            output: &arguments.output,
+            as_json: arguments.json,
             source: &source,
             scene: &scene,
             job: &job,
@@ -221,14 +230,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         false => rendered.text(),
     };
     print_about(&arguments.output, report)
-}
-
-/// The error of settings that nothing is rendered with.
-fn rejected(error: &RenderError) -> Failure {
-    Failure::usage(
-        error.to_string(),
-        "change the option, or the scene file's `[render]`",
-    )
 }
 
 /// The picture's format; an error for names that cannot be written to.

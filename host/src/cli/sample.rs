@@ -102,6 +102,7 @@ static SAMPLES: &[Sample] = &[
         summary: "a closed sphere of 20,480 triangles",
         text: || Ok(sample::obj(&sample::icosphere(5))),
     },
+    fixture!("turntable", "a scene that moves: an orbit, a lamp, a color"),
     fixture!("stress-triangle", "hard cases of triangles"),
     fixture!("stress-sphere", "hard cases of spheres"),
     fixture!("stress-box", "hard cases of boxes"),

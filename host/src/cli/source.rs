@@ -496,6 +496,15 @@ fn import_from(input: &Input, options: &SceneOptions) -> Result<Imported, Failur
             "leave the option out",
         ));
     }
+    if let Some(option) = importing.given_choice().filter(|_| !imported.choices) {
+        return Err(Failure::usage(
+            format!(
+                "{option} is for glTF files, and {} has none",
+                path.display()
+            ),
+            "leave the option out",
+        ));
+    }
     for warning in &imported.warnings {
         warn(warning);
     }

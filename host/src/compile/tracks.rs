@@ -25,6 +25,7 @@ pub fn sections(
     header: &Header,
 ) -> Result<Vec<Section>, CompileError> {
     let mut all: Vec<Track> = tracks.to_vec();
+    check_camera(&all)?;
     complete(&mut all, camera);
     let mut numbered: Vec<(TrackTarget, u32, &Track)> = Vec::new();
     for track in &all {
@@ -39,6 +40,16 @@ pub fn sections(
         numbered.push((track.target, index, track));
     }
     numbered.sort_by_key(|&(target, index, _)| (target, index));
+    for pair in numbered.windows(2) {
+        if (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1) {
+            return Err(CompileError::Track {
+                place: pair[1].2.place.clone(),
+                target: pair[1].0.name(),
+                cause: String::from("the property has two tracks"),
+                remedy: "put the keys of both into one track",
+            });
+        }
+    }
     let mut parts = Parts::default();
     for (target, index, track) in numbered {
         let keys = keys(track, header)?;
@@ -77,6 +88,27 @@ struct Parts {
     tracks: Vec<records::Track>,
     times: Vec<i32>,
     words: Vec<i32>,
+}
+
+/// Proves that a camera that is turned by rotations is turned by nothing else.
+fn check_camera(tracks: &[Track]) -> Result<(), CompileError> {
+    let mut all = tracks.iter();
+    let turned = all.any(|track| track.target == TrackTarget::CameraRotation);
+    let aims = |track: &&Track| {
+        let target = track.target;
+        target == TrackTarget::CameraTarget
+            || target == TrackTarget::CameraUp
+            || target == TrackTarget::CameraOrbit
+    };
+    match tracks.iter().find(aims).filter(|_| turned) {
+        None => Ok(()),
+        Some(track) => Err(CompileError::Track {
+            place: track.place.clone(),
+            target: track.target.name(),
+            cause: String::from("the camera has a rotation that moves, too"),
+            remedy: "remove one of the two",
+        }),
+    }
 }
 
 /// Adds tracks of one key for what stands still of a camera that moves.
@@ -181,7 +213,7 @@ fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, CompileE
         for group in groups.into_iter().flatten() {
             for word in &group[..components] {
                 let rounded = word.round();
-                if !(rounded.abs() <= f64::from(i32::MAX)) {
+                if rounded.is_nan() || rounded.abs() > f64::from(i32::MAX) {
                     let cause = match kind {
                         ValueKind::Position => format!(
                             "at {} s it leads beyond the range of scene coordinates",

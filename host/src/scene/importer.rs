@@ -3,7 +3,7 @@
 use super::access::Access;
 use super::gzip;
 use super::text::{Source, check_encoding, read_file};
-use super::{Imported, MoleculeOptions, SceneError};
+use super::{Choice, Imported, MoleculeOptions, SceneError};
 use gridel_core::Up;
 use std::fmt;
 use std::path::Path;
@@ -104,11 +104,12 @@ impl Importers {
         self,
         path: &'a Path,
         molecule: &'a MoleculeOptions,
+        choice: &'a Choice,
         access: &'a Access,
     ) -> Result<(&'static Importer, Input<'a>), SceneError> {
         // A file that nothing can read is not worth reading.
         self.of_name(path)?;
-        self.input(path, read_file(path)?, molecule, access)
+        self.input(path, read_file(path)?, molecule, choice, access)
     }
 
     /// Content that was read already.
@@ -117,6 +118,7 @@ impl Importers {
         path: &'a Path,
         bytes: Vec<u8>,
         molecule: &'a MoleculeOptions,
+        choice: &'a Choice,
         access: &'a Access,
     ) -> Result<(&'static Importer, Input<'a>), SceneError> {
         let named = self.of_name(path)?;
@@ -130,6 +132,7 @@ impl Importers {
             path,
             bytes,
             molecule,
+            choice,
             access,
         };
         Ok((importer, input))
@@ -166,6 +169,7 @@ pub(super) struct Input<'a> {
     /// The content, inflated if the file was gzipped.
     pub(super) bytes: Vec<u8>,
     pub(super) molecule: &'a MoleculeOptions,
+    pub(super) choice: &'a Choice,
     pub(super) access: &'a Access,
 }
 

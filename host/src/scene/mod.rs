@@ -29,7 +29,7 @@ pub use crate::shape::Shape;
 pub use error::SceneError;
 pub use importer::Importer;
 pub use model::{Camera, Color, Diffuse, Light, Material, Object, RenderSettings, Scene};
-pub use options::{ImportOptions, Imported, MoleculeOptions, MoleculeStyle};
+pub use options::{Choice, ImportOptions, Imported, MoleculeOptions, MoleculeStyle};
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
 pub use track::{Interpolation, Key, Track, TrackTarget};
@@ -106,7 +106,8 @@ pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneEr
 /// ```
 pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, SceneError> {
     let access = Access::of(path, options.allow_outside);
-    let (importer, input) = Importers(IMPORTERS).open(path, &options.molecule, &access)?;
+    let (importer, input) =
+        Importers(IMPORTERS).open(path, &options.molecule, &options.choice, &access)?;
     importer.import(input)
 }
 
@@ -128,6 +129,7 @@ pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, Scene
 /// ```
 pub fn read(name: &Path, bytes: Vec<u8>, options: &ImportOptions) -> Result<Imported, SceneError> {
     let access = Access::of(name, options.allow_outside);
-    let (importer, input) = Importers(IMPORTERS).input(name, bytes, &options.molecule, &access)?;
+    let (importer, input) =
+        Importers(IMPORTERS).input(name, bytes, &options.molecule, &options.choice, &access)?;
     importer.import(input)
 }

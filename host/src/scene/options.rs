@@ -38,13 +38,26 @@ pub struct Imported {
     pub warnings: Vec<String>,
     /// Whether a molecule was read, which [`MoleculeOptions`] are for.
     pub molecules: bool,
+    /// Whether a file with cameras or animations to choose from was read, which [`Choice`] is for.
+    pub choices: bool,
+}
+
+/// Which of a glTF file's cameras and animations is read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Choice {
+    /// The name of a camera or of its node; without one the first that has a perspective.
+    pub camera: Option<String>,
+    /// The name of an animation, or its number from 0; without one the first.
+    pub animation: Option<String>,
 }
 
 /// How a scene file is read.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImportOptions {
     /// Choices that a molecule file leaves open.
     pub molecule: MoleculeOptions,
+    /// Which camera and animation.
+    pub choice: Choice,
     /// Whether the file may name files outside of its folder: imports, materials, buffers. A scene
     /// from elsewhere could read any file of the user's so.
     pub allow_outside: bool,

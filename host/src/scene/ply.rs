@@ -105,6 +105,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         scene,
         warnings: warnings.into_sentences(),
         molecules: false,
+        choices: false,
     })
 }
 

@@ -213,6 +213,7 @@ fn scene(path: &Path, objects: Vec<Object>, warnings: Vec<String>) -> Result<Imp
         scene,
         warnings,
         molecules: false,
+        choices: false,
     })
 }
 

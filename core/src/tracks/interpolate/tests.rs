@@ -1,5 +1,6 @@
 use super::*;
 use crate::format::track::{Timeline, TrackTarget};
+use crate::tracks::records::Records;
 use proptest::prelude::*;
 use std::vec::Vec;
 
@@ -21,7 +22,7 @@ fn value<const N: usize>(
         first_time: 0,
         first_word: 0,
     }];
-    let all = Tracks {
+    let all = Tracks(Records {
         timeline: Timeline {
             ticks_per_second: 1,
             first: 0,
@@ -30,7 +31,7 @@ fn value<const N: usize>(
         tracks: &tracks,
         times,
         words,
-    };
+    });
     let sample = all.sample(&tracks[0], target.kind(), time);
     sample.expect("a value").value()
 }
@@ -166,6 +167,38 @@ fn any_of_65535_keys_is_found() {
     }
 }
 
+/// The middle of a spline between two values, with these changes.
+fn middle(target: TrackTarget, changes: [i32; 2], values: [i32; 2]) -> i32 {
+    let components = target.kind().components();
+    let ([leaving, entering], [from, to]) = (changes, values);
+    let groups = [0, from, leaving, entering, to, 0];
+    let words: Vec<i32> = groups.iter().flat_map(|it| vec![*it; components]).collect();
+    match components {
+        1 => value::<1>(target, Interpolation::Cubic, &[0, 2], &words, 1)[0],
+        4 => value::<4>(target, Interpolation::Cubic, &[0, 2], &words, 1)[0],
+        _ => value::<3>(target, Interpolation::Cubic, &[0, 2], &words, 1)[0],
+    }
+}
+
+#[test]
+fn splines_of_colors_and_angles_stay_in_their_range() {
+    let one = 1 << 30;
+    for (target, [low, high]) in [
+        (TrackTarget::LightColor, [0, i32::MAX]),
+        (TrackTarget::MaterialMirror, [0, one]),
+        (TrackTarget::CameraFieldOfView, [2, i32::MAX]),
+        // A quaternion may be longer than 1 on its way.
+        (TrackTarget::CameraRotation, [i32::MIN, i32::MAX]),
+        (TrackTarget::CameraEye, [i32::MIN, i32::MAX]),
+    ] {
+        let up = middle(target, [i32::MAX, i32::MIN], [high, high]);
+        let down = middle(target, [i32::MIN, i32::MAX], [low, low]);
+        assert_eq!([down, up], [low, high], "{target:?}");
+    }
+    let rotation = TrackTarget::CameraRotation;
+    assert_eq!(middle(rotation, [one, -one], [one, one]), one + one / 4);
+}
+
 /// Spherical interpolation in doubles, of quaternions of length 1.
 fn slerp(from: [f64; 4], to: [f64; 4], part: f64) -> [f64; 4] {
     let dot: f64 = (0..4).map(|k| from[k] * to[k]).sum();
@@ -240,7 +273,7 @@ proptest! {
 
     #[test]
     fn splines_are_within_their_bound(words: [i32; 4], start in -1_000_000_000..0, duration in 1..1 << 30, part: u32) {
-        let passed = u64::from(part) * duration as u64 >> 32;
+        let passed = (u64::from(part) * duration as u64) >> 32;
         check_cubic(words, [start, start + duration], start + passed as i32);
         let small = words.map(|word| word >> 12);
         check_cubic(small, [start, start + duration], start + passed as i32);

@@ -72,6 +72,14 @@ pub struct ImportOptions {
     #[arg(long)]
     pub allow_outside: bool,
 
+    /// Camera of a glTF file, by its name or that of its node [default: the first with a perspective]
+    #[arg(long, value_name = "NAME")]
+    camera: Option<String>,
+
+    /// Animation of a glTF file, by its name or its number from 0; moves cameras and lights [default: the first]
+    #[arg(long, value_name = "NAME")]
+    animation: Option<String>,
+
     #[command(flatten)]
     pub molecule: MoleculeOptions,
 }
@@ -116,6 +124,7 @@ impl GeometryOptions {
             (self.lattice_bits.is_some(), "--lattice-bits"),
             (self.import.allow_outside, "--allow-outside"),
         ])
+        .or(self.import.given_choice())
         .or(self.import.molecule.given())
     }
 }
@@ -151,13 +160,31 @@ impl ImportOptions {
         } else {
             ""
         };
-        format!("{outside}{}", self.molecule.written())
+        let choice = |option: &str, name: &Option<String>| match name {
+            Some(name) => format!(" --{option} {}", quoted(name)),
+            None => String::new(),
+        };
+        let camera = choice("camera", &self.camera);
+        let animation = choice("animation", &self.animation);
+        format!("{outside}{camera}{animation}{}", self.molecule.written())
+    }
+
+    /// The name of an option for glTF files, if one was given.
+    pub fn given_choice(&self) -> Option<&'static str> {
+        first_given([
+            (self.camera.is_some(), "--camera"),
+            (self.animation.is_some(), "--animation"),
+        ])
     }
 
     /// The options for importers.
     pub fn for_import(&self) -> scene::ImportOptions {
         scene::ImportOptions {
             molecule: self.molecule.for_import(),
+            choice: scene::Choice {
+                camera: self.camera.clone(),
+                animation: self.animation.clone(),
+            },
             allow_outside: self.allow_outside,
         }
     }

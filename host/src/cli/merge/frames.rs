@@ -1,6 +1,5 @@
 //! Numbered pictures become an animation.
 
-use super::Arguments;
 use crate::cli::failure::Failure;
 use crate::cli::output::{print, print_json, reject_inputs, write_file};
 use crate::cli::progress::Progress;
@@ -9,7 +8,7 @@ use gridel_host::merge::{FramesError, NumberedPicture, PartError, in_order};
 use serde::Serialize;
 use std::fs::File;
 use std::io::{self, BufReader};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The report of `merge` for an animation.
 #[derive(Serialize)]
@@ -22,8 +21,12 @@ struct Merged {
 }
 
 /// Merges frames and writes the animation.
-pub fn run(arguments: &Arguments, format: AnimationFormat) -> Result<(), Failure> {
-    let (inputs, output) = (&arguments.parts, &arguments.output);
+pub fn run(
+    inputs: &[PathBuf],
+    output: &Path,
+    as_json: bool,
+    format: AnimationFormat,
+) -> Result<(), Failure> {
     reject_inputs(inputs.iter().map(|it| it.as_path()), [output], "a frame")?;
     let read = |path: &Path| {
         open(path)
@@ -35,7 +38,7 @@ pub fn run(arguments: &Arguments, format: AnimationFormat) -> Result<(), Failure
         .iter()
         .map(|path| read(path))
         .collect::<Result<Vec<_>, _>>()?;
-    let order = in_order(&pictures).map_err(|error| failure(arguments, &error))?;
+    let order = in_order(&pictures).map_err(|error| failure(inputs, &error))?;
     // The command line asks for a file at least.
     let Some((&first, &last)) = order.first().zip(order.last()) else {
         return Ok(());
@@ -86,7 +89,7 @@ pub fn run(arguments: &Arguments, format: AnimationFormat) -> Result<(), Failure
         width: first.size[0],
         height: first.size[1],
     };
-    if arguments.json {
+    if as_json {
         return print_json(&merged);
     }
     let [first, end] = merged.frames;
@@ -107,8 +110,8 @@ fn wrong(path: &Path, error: &PartError) -> Failure {
     )
 }
 
-fn failure(arguments: &Arguments, error: &FramesError) -> Failure {
-    let name = |number: usize| arguments.parts[number].display();
+fn failure(inputs: &[PathBuf], error: &FramesError) -> Failure {
+    let name = |number: usize| inputs[number].display();
     let misfit = |[one, other]: [usize; 2], remedy: &str| {
         let cause = format!("{} and {} do not fit: {error}", name(one), name(other));
         Failure::failed(cause, remedy)

@@ -1,6 +1,5 @@
 //! The pictures of a scene that moves: an animation, or numbered files.
 
-use super::Arguments;
 use crate::cli::arguments;
 use crate::cli::failure::Failure;
 use crate::cli::output::{
@@ -10,6 +9,7 @@ use crate::cli::output::{
 use crate::cli::progress::Progress;
 use crate::cli::source::Source;
 use clap::Args;
+use gridel_core::render::RenderError;
 use gridel_core::{Scene, Tracks};
 use gridel_host::animation::{Animation, AnimationFormat, NumberedName};
 use gridel_host::picture::{Frame, Moment, PictureFormat, RenderMetadata, srgb};
@@ -20,7 +20,7 @@ use rayon::ThreadPool;
 use serde::Serialize;
 use std::io;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Times of scenes that move.
@@ -57,6 +57,14 @@ fn frames(text: &str) -> Result<Range<u32>, String> {
     }
 }
 
+/// The error of settings that nothing is rendered with.
+pub fn rejected(error: &RenderError) -> Failure {
+    Failure::usage(
+        error.to_string(),
+        "change the option, or the scene file's `[render]`",
+    )
+}
+
 /// Where frames go.
 pub enum Output {
     Animation(AnimationFormat),
@@ -71,12 +79,16 @@ impl TimeOptions {
 
 impl Output {
     /// The output of some frames; an error for names that cannot be written to.
-    pub fn of(arguments: &Arguments, frames: &Range<u32>) -> Result<Self, Failure> {
+    pub fn of(
+        options: &TimeOptions,
+        frames: &Range<u32>,
+        input: &Path,
+        path: &Path,
+    ) -> Result<Self, Failure> {
         const NAMES: &str = ".apng, .gif or numbered pictures such as out-%03d.png";
-        let path = &arguments.output;
         let shown = path.display();
         if let Some(format) = AnimationFormat::of(path) {
-            let (fps, most) = (arguments.time.per_second(), format.most_per_second());
+            let (fps, most) = (options.per_second(), format.most_per_second());
             if fps > most {
                 return Err(Failure::usage(
                     format!(
@@ -85,7 +97,7 @@ impl Output {
                     format!("use `--fps {most}` or less, or write an .apng"),
                 ));
             }
-            reject_inputs([arguments.input.as_path()], [path], "the input")?;
+            reject_inputs([input], [path], "the input")?;
             check_writable(path)?;
             return Ok(Self::Animation(format));
         }
@@ -109,8 +121,11 @@ impl Output {
             .ok_or_else(|| unsupported(path, "image", ".png, .ppm or .rgb565"))?;
         for number in frames.clone() {
             let path = PathBuf::from(name.of(number));
-            reject_inputs([arguments.input.as_path()], [&path], "the input")?;
-            check_writable(&path)?;
+            reject_inputs([input], [&path], "the input")?;
+            // New files are written as the first of them.
+            if number == frames.start || path.exists() {
+                check_writable(&path)?;
+            }
         }
         Ok(Self::Numbered(name, format))
     }
@@ -137,7 +152,9 @@ struct Rendered {
 
 /// What frames are rendered from.
 pub struct Shot<'s> {
-    pub arguments: &'s Arguments,
+    pub options: &'s TimeOptions,
+    pub output: &'s Path,
+    pub as_json: bool,
     pub source: &'s Source,
     pub scene: &'s Scene<'s>,
     pub job: &'s Job,
@@ -148,9 +165,9 @@ pub struct Shot<'s> {
 /// Renders frames and writes them.
 pub fn run(shot: Shot<'_>, frames: Range<u32>, output: &Output) -> Result<(), Failure> {
     let tracks = shot.source.tracks()?;
-    let Shot { arguments, job, .. } = shot;
-    let path = &arguments.output;
-    let per_second = arguments.time.per_second();
+    let Shot { job, .. } = shot;
+    let path = shot.output;
+    let per_second = shot.options.per_second();
     let progress = Progress::steps("rendering", frames.len() as u64);
     let begun = Instant::now();
     match output {
@@ -204,7 +221,7 @@ pub fn run(shot: Shot<'_>, frames: Range<u32>, output: &Output) -> Result<(), Fa
         seconds: begun.elapsed().as_secs_f64(),
         unresolved: shot.unresolved,
     };
-    match arguments.json {
+    match shot.as_json {
         true => print(json(&Warned {
             value: &rendered,
             warnings: &shot.source.warnings,
@@ -224,7 +241,7 @@ impl Shot<'_> {
         let changes = self.source.changes_at(self.scene, tracks, time)?;
         let scene = changes.apply(self.scene)?;
         let rendered = self.pool.install(|| render(&scene, self.job, &|| ()));
-        let picture = rendered.map_err(|error| super::rejected(&error))?;
+        let picture = rendered.map_err(|error| rejected(&error))?;
         let moment = Moment::Frame(Frame { number, per_second });
         let metadata = RenderMetadata::of(&scene, self.job).at(Some(moment));
         Ok((picture, metadata))

@@ -79,6 +79,42 @@ impl<'a> Buffers<'a> {
         }
     }
 
+    /// Reads the times or values of an animation: floats, or for rotations integers that stand for -1 to 1 or 0 to 1.
+    pub(super) fn numbers<const N: usize>(
+        &self,
+        accessor: &Accessor<'_>,
+    ) -> Result<Vec<[f64; N]>, SceneError> {
+        let dimensions = match N {
+            1 => Dimensions::Scalar,
+            3 => Dimensions::Vec3,
+            _ => Dimensions::Vec4,
+        };
+        let number: fn(&[u8], usize) -> f64 = match accessor.data_type() {
+            DataType::F32 => |bytes, k| f32::from_bits(narrow::<4>(&bytes[4 * k..])).into(),
+            DataType::I8 => |bytes, k| (f64::from(bytes[k] as i8) / 127.0).max(-1.0),
+            DataType::U8 => |bytes, k| f64::from(bytes[k]) / 255.0,
+            DataType::I16 => |bytes, k| {
+                (f64::from(narrow::<2>(&bytes[2 * k..]) as i16) / 32767.0).max(-1.0)
+            },
+            DataType::U16 => |bytes, k| f64::from(narrow::<2>(&bytes[2 * k..])) / 65535.0,
+            DataType::U32 => |_, _| f64::NAN,
+        };
+        let floats = accessor.data_type() == DataType::F32;
+        if accessor.dimensions() != dimensions || !(floats || N == 4 && accessor.normalized()) {
+            return Err(self.error(
+                accessor,
+                format!(
+                    "is to hold {dimensions:?} of an animation and holds {:?} of {:?}",
+                    accessor.dimensions(),
+                    accessor.data_type()
+                ),
+            ));
+        }
+        self.values(accessor, [0.0; N], |bytes| {
+            std::array::from_fn(|component| number(bytes, component))
+        })
+    }
+
     /// Reads the numbers of vertices.
     pub(super) fn indices(&self, accessor: &Accessor<'_>) -> Result<Vec<u32>, SceneError> {
         match (accessor.data_type(), accessor.dimensions()) {

@@ -104,6 +104,17 @@ fn check_indices(path: &Path, root: &Root) -> Result<(), SceneError> {
         let cause = format!("camera {number} lacks the numbers of its type");
         return Err(SceneError::new(path, cause, AGAIN));
     }
+    for (number, animation) in root.animations.iter().enumerate() {
+        let channels = animation.channels.iter().map(|channel| &channel.target);
+        let leads = |target: &gltf::json::animation::Target| {
+            let node = target.node.value() < root.nodes.len();
+            node && matches!(target.path, Checked::Valid(_))
+        };
+        if !channels.clone().all(leads) {
+            let cause = format!("animation {number} moves a node or a property that there is not");
+            return Err(SceneError::new(path, cause, AGAIN));
+        }
+    }
     for (number, mesh) in root.meshes.iter().enumerate() {
         let attributes = mesh.primitives.iter().flat_map(|part| &part.attributes);
         for (_, accessor) in attributes {

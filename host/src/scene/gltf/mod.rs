@@ -2,29 +2,33 @@
 //! materials, cameras and lights.
 //!
 //! Each set of triangles of each node becomes an object, in the order of the nodes; a mesh that
-//! several nodes share is copied. Meshes stand as they are at rest: skins, morph targets and
-//! animations are ignored, and so are normals, textures and vertex colors. A warning names
-//! those of them that a file has. Images are never read, wherever they lie.
+//! several nodes share is copied. Animations of cameras and lights become tracks. Meshes stand as they are
+//! at rest: skins, morph targets and animations of meshes are ignored, and so are normals, textures and
+//! vertex colors. A warning names those of them that a file has. Images are never read, wherever they lie.
 
+mod animation;
 mod buffers;
 mod check;
 mod container;
 mod document;
 mod material;
+mod place;
 mod view;
 
 use super::importer::{Importer as Entry, Input};
 use super::size::Size;
 use super::text::Warnings;
-use super::{Imported, Object, SourceSpan, Scene, SceneError, Shape};
-use gridel_core::Up;
+use super::{Choice, Imported, Object, SourceSpan, Scene, SceneError, Shape};
+use animation::Motion;
 use buffers::{Buffers, MOST};
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DMat4, DVec3};
+use gridel_core::Up;
 use gltf::mesh::Mode;
 use gltf::scene::Transform;
 use gltf::{Document, Node, Primitive, Semantic};
 use std::collections::HashMap;
 use std::path::Path;
+use place::transform;
 use view::View;
 
 pub(super) const IMPORTER: Entry = Entry {
@@ -60,6 +64,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     let Input {
         path,
         bytes,
+        choice,
         access,
         ..
     } = input;
@@ -72,7 +77,8 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         buffers: Buffers::read(path, &document, blob, access)?,
         scene: Scene::default(),
         materials: HashMap::new(),
-        view: View::default(),
+        view: View::with_camera(choice.camera.clone()),
+        motion: Motion::default(),
         vertices: 0,
         triangles: 0,
         size: Size::default(),
@@ -80,17 +86,29 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     };
     importer.check(&document)?;
     importer.ignored(&document);
+    importer.animation(&document, choice)?;
     importer.nodes(&document)?;
+    let missing = |[cause, remedy]: [String; 2]| SceneError::new(path, cause, remedy);
+    importer.view.check_camera().map_err(missing)?;
     if importer.scene.objects.is_empty() {
         importer.warn("the scene of the file has no triangles; nothing is drawn");
     }
     let Importer {
         mut scene,
         view,
+        mut motion,
         place,
         mut warnings,
         ..
     } = importer;
+    scene.tracks = view.tracks(&mut motion, &place);
+    if motion.sampled {
+        warnings.add_times(
+            place.clone(),
+            1,
+            "a camera or light whose node does not move alone is sampled 60 times per second",
+        );
+    }
     view.finish(&mut scene, &mut |sentence| {
         warnings.add_times(place.clone(), 1, sentence);
     });
@@ -98,6 +116,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         scene,
         warnings: warnings.into_sentences(),
         molecules: false,
+        choices: true,
     })
 }
 
@@ -110,6 +129,7 @@ struct Importer<'a> {
     /// Materials in use, by their number in the file; the default has none.
     materials: HashMap<Option<usize>, usize>,
     view: View,
+    motion: Motion,
     vertices: usize,
     triangles: usize,
     size: Size,
@@ -153,8 +173,8 @@ impl Importer<'_> {
             "textures are not drawn; the plain colors are used",
         );
         self.warn_of(
-            document.animations().len() + document.skins().len(),
-            "skins and animations are ignored; meshes stand as they are at rest",
+            document.skins().len(),
+            "skins are ignored; meshes stand as they are at rest",
         );
         for material in document.materials() {
             for sentence in material::ignored(&material) {
@@ -172,6 +192,51 @@ impl Importer<'_> {
         if !others.is_empty() {
             self.warn(format!("extensions are ignored: {}", others.join(", ")));
         }
+    }
+
+    /// Reads the animation, and warns of what of it is not shown.
+    fn animation(&mut self, document: &Document, choice: &Choice) -> Result<(), SceneError> {
+        let chosen = animation::choose(self.path, document, choice)?;
+        let animation = chosen.as_ref().map(|chosen| &chosen.animation);
+        self.motion = Motion::read(self.path, document, animation, &self.buffers)?;
+        let Some(chosen) = chosen.filter(|_| !self.motion.is_empty()) else {
+            return Ok(());
+        };
+        if !chosen.by_name && document.animations().len() > 1 {
+            self.warn("the file has several animations, of which the first is read; choose one with `--animation`");
+        }
+        let bends = |node: &Node<'_>| {
+            let joints = node.skin().into_iter().flat_map(|skin| skin.joints());
+            let mut joints = joints.map(|joint| joint.index());
+            self.motion.has_weights(node.index()) || joints.any(|joint| self.motion.moves(joint))
+        };
+        let bent = document.nodes().filter(|node| node.mesh().is_some() && bends(node));
+        let bent: Vec<_> = bent.collect();
+        if let Some(node) = bent.first().filter(|_| chosen.by_name) {
+            let name = node.name().map_or(String::new(), |name| format!(" {name:?}"));
+            let by = match self.motion.has_weights(node.index()) {
+                true => "morph targets",
+                false => "a skin",
+            };
+            return Err(self.error(
+                format!("the animation bends node {}{name} by {by}, which is not supported", node.index()),
+                "choose another `--animation`, or bake the mesh without it",
+            ));
+        }
+        self.warn_of(
+            bent.len(),
+            "a mesh that the animation bends stands as it is at rest; skins and morph targets do not move",
+        );
+        let carried = |node: &Node<'_>| {
+            let moves = node.mesh().is_some() && self.motion.moves(node.index());
+            moves && !bent.iter().any(|it| it.index() == node.index())
+        };
+        let carried = document.nodes().filter(carried).count();
+        self.warn_of(
+            carried,
+            "an object that the animation moves stands as it is at rest; only cameras and lights move",
+        );
+        Ok(())
     }
 
     /// Walks the nodes of the default scene, or else of the first, or else all.
@@ -275,10 +340,11 @@ impl Importer<'_> {
 
     fn node(&mut self, node: &Node<'_>, world: &DMat4) -> Result<(), SceneError> {
         if let Some(camera) = node.camera() {
-            self.view.camera(&camera, world, &mut self.scene.render);
+            self.view
+                .camera(&camera, node, world, &mut self.scene.render);
         }
         if let Some(light) = node.light() {
-            self.view.light(&light, node.name(), world);
+            self.view.light(&light, node, world);
         }
         let Some(mesh) = node.mesh() else {
             return Ok(());
@@ -385,24 +451,6 @@ impl Importer<'_> {
 /// Returns the name of a part of a mesh in messages.
 fn place(mesh: &gltf::Mesh<'_>, part: &Primitive<'_>) -> String {
     format!("mesh {}, primitive {}", mesh.index(), part.index())
-}
-
-/// Where a node stands in its parent, computed in double precision.
-fn transform(node: &Node<'_>) -> DMat4 {
-    match node.transform() {
-        Transform::Matrix { matrix } => {
-            DMat4::from_cols_array_2d(&matrix.map(|column| column.map(f64::from)))
-        }
-        Transform::Decomposed {
-            translation,
-            rotation,
-            scale,
-        } => DMat4::from_scale_rotation_translation(
-            DVec3::from_array(scale.map(f64::from)),
-            DQuat::from_array(rotation.map(f64::from)).normalize(),
-            DVec3::from_array(translation.map(f64::from)),
-        ),
-    }
 }
 
 /// The triangles that corners stand for, counter-clockwise in front.

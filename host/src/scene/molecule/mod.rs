@@ -74,6 +74,7 @@ pub(super) fn import(
         scene,
         warnings: warnings.into_sentences(),
         molecules: true,
+        choices: false,
     })
 }
 

@@ -277,6 +277,7 @@ impl<'a> Importer<'a> {
             scene: self.scene,
             warnings: self.warnings.into_sentences(),
             molecules: false,
+            choices: false,
         })
     }
 }

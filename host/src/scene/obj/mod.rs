@@ -97,6 +97,7 @@ fn import(source: &Source, access: &Access) -> Result<Imported, SceneError> {
         scene,
         warnings: warnings.into_sentences(),
         molecules: false,
+        choices: false,
     })
 }
 

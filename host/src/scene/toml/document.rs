@@ -7,6 +7,7 @@ use super::material::Palette;
 use super::object::Reader;
 use super::place::Placer;
 use super::source::Source;
+use super::imported_track::{ImportPlace, lost, with_imported};
 use super::track::{self, Targets};
 use super::value::Fields;
 use super::view;
@@ -74,10 +75,22 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         ..Scene::default()
     };
     let lit = !scene.lights.is_empty();
+    let mut imported_tracks = Vec::new();
     for item in &items {
-        let Content::Import { scene: import, .. } = &item.content else {
+        let Content::Import {
+            scene: import,
+            materials,
+        } = &item.content
+        else {
             continue;
         };
+        let takes_camera = scene.camera.is_none() && import.camera.is_some();
+        let place = ImportPlace {
+            camera: takes_camera,
+            lights: (!lit).then_some(scene.lights.len()),
+            materials,
+        };
+        imported_tracks.extend(place.tracks(&source, item, import)?);
         if let (None, Some(camera)) = (scene.camera, import.camera) {
             scene.camera = Some(moved_camera(&source, item, &camera)?);
             scene.render = render.unwrap_or(import.render);
@@ -101,7 +114,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         light_names: &scene.light_names,
         palette: &palette,
     };
-    scene.tracks = targets.resolve(tracks)?;
+    scene.tracks = with_imported(targets.resolve(tracks)?, imported_tracks);
     scene.materials = palette.into_materials();
     let used: HashSet<usize> = scene.objects.iter().map(|it| it.material).collect();
     for track in &scene.tracks {
@@ -148,14 +161,4 @@ fn moved_light(source: &Source, item: &Item, light: &Light) -> Result<Light, Sce
     } else {
         Err(lost(source, item, "light"))
     }
-}
-
-fn lost(source: &Source, item: &Item, what: &str) -> SceneError {
-    source.error(
-        &item.span,
-        format!("a {what} of this import cannot follow the transform of the import"),
-        format!(
-            "use smaller translations and scales nearer to 1, or give this scene its own {what}"
-        ),
-    )
 }

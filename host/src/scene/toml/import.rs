@@ -3,7 +3,7 @@
 use super::source::{Name, Source};
 use crate::scene::access::Access;
 use crate::scene::importer::{Importers, Input};
-use crate::scene::{MoleculeOptions, Scene, SceneError};
+use crate::scene::{Choice, MoleculeOptions, Scene, SceneError};
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -30,6 +30,10 @@ pub(super) struct Imports {
     pub(super) warnings: Vec<String>,
     /// Whether a molecule is among the files.
     pub(super) molecules: bool,
+    /// Which cameras and animations are read.
+    choice: Choice,
+    /// Whether a file to choose them from is among the files.
+    pub(super) choices: bool,
 }
 
 impl Imports {
@@ -43,6 +47,8 @@ impl Imports {
             done: HashMap::new(),
             warnings: Vec::new(),
             molecules: false,
+            choice: input.choice.clone(),
+            choices: false,
         }
     }
 
@@ -97,7 +103,8 @@ impl Imports {
             return Ok(Rc::clone(scene));
         }
         let access = self.access.clone();
-        let opened = self.importers.open(&path, options, &access);
+        let choice = self.choice.clone();
+        let opened = self.importers.open(&path, options, &choice, &access);
         let scene = opened.and_then(|(importer, input)| {
             if importer.name == self.own.0 {
                 return self.nested(input, canonical.clone());
@@ -105,6 +112,7 @@ impl Imports {
             let imported = importer.import(input)?;
             self.warnings.extend(imported.warnings);
             self.molecules |= imported.molecules;
+            self.choices |= imported.choices;
             Ok(imported.scene)
         });
         let scene = scene.map(Rc::new).map_err(|mut error| {

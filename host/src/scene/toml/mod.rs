@@ -3,6 +3,7 @@
 mod census;
 mod document;
 mod import;
+mod imported_track;
 mod item;
 mod material;
 mod object;
@@ -61,5 +62,6 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         scene,
         warnings: imports.warnings,
         molecules: imports.molecules,
+        choices: imports.choices,
     })
 }

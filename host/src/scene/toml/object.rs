@@ -98,6 +98,12 @@ impl Reader<'_> {
             "instance" => Content::Instance(fields.require("group")?.name()?),
             "import" => {
                 let scene = self.import(&fields)?;
+                if self.imports.nesting > 0 && !scene.tracks.is_empty() {
+                    let place = self.source.place(&fields.span);
+                    self.imports.warnings.push(format!(
+                        "{place}: the tracks of an import inside of a group move nothing"
+                    ));
+                }
                 // Objects that all get another material do not need their own.
                 let adopt = |own| self.palette.adopt(own, &name);
                 let materials = match material {

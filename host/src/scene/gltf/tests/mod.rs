@@ -1,3 +1,4 @@
+mod animation;
 mod appearance;
 mod files;
 mod geometry;

@@ -1,0 +1,476 @@
+//! The animations of a glTF file: tracks of its camera and its lights.
+//!
+//! A node's own translation and rotation keep their keys. Where nodes above it move as well, or the way is not one that
+//! tracks have, it is sampled [`RATE`] times per second.
+
+use super::buffers::Buffers;
+use super::place::transform;
+use crate::scene::{Choice, Interpolation, Key, SceneError, SourceSpan, Track, TrackTarget};
+use crate::table::printable;
+use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use gltf::animation::Property;
+use gltf::{Animation, Document};
+use std::collections::HashMap;
+use std::path::Path;
+
+/// Samples per second of a way that has no keys of its own.
+const RATE: f64 = 60.0;
+
+/// Most samples of a way; longer ones are sampled less often.
+const MOST_SAMPLES: f64 = 65_536.0;
+
+/// How a property of a node moves.
+#[derive(Clone, Debug)]
+struct Way {
+    interpolation: Interpolation,
+    keys: Vec<Key>,
+}
+
+/// What of a node moves.
+#[derive(Clone, Debug, Default)]
+struct Moves {
+    translation: Option<Way>,
+    rotation: Option<Way>,
+    scale: Option<Way>,
+    weights: bool,
+}
+
+/// The animation that is read, by the nodes that it moves.
+#[derive(Default)]
+pub(super) struct Motion {
+    nodes: HashMap<usize, Moves>,
+    /// The node above each node.
+    parents: Vec<Option<usize>>,
+    /// Where each node stands in the one above, at rest.
+    rest: Vec<DMat4>,
+    /// Whether some way was sampled.
+    pub(super) sampled: bool,
+}
+
+/// Whether the animation was chosen by the user, and what it is called.
+pub(super) struct Chosen<'d> {
+    pub(super) animation: Animation<'d>,
+    pub(super) by_name: bool,
+}
+
+/// The animation that is asked for, or the first.
+pub(super) fn choose<'d>(
+    path: &Path,
+    document: &'d Document,
+    choice: &Choice,
+) -> Result<Option<Chosen<'d>>, SceneError> {
+    let Some(wanted) = &choice.animation else {
+        let first = document.animations().next();
+        return Ok(first.map(|animation| Chosen {
+            animation,
+            by_name: false,
+        }));
+    };
+    let named = document.animations().find(|it| it.name() == Some(wanted));
+    let number = wanted.parse().ok();
+    let numbered = || document.animations().nth(number?);
+    let found = named.or_else(numbered);
+    let names = document.animations().map(|it| match it.name() {
+        Some(name) => printable(name),
+        None => it.index().to_string(),
+    });
+    let names: Vec<_> = names.collect();
+    let remedy = match names.is_empty() {
+        true => String::from("leave `--animation` out"),
+        false => format!("choose one of {}", names.join(", ")),
+    };
+    let error = || SceneError::new(path, format!("there is no animation {wanted:?}"), remedy);
+    found.ok_or_else(error).map(|animation| {
+        Some(Chosen {
+            animation,
+            by_name: true,
+        })
+    })
+}
+
+impl Motion {
+    /// Reads an animation.
+    pub(super) fn read(
+        path: &Path,
+        document: &Document,
+        animation: Option<&Animation<'_>>,
+        buffers: &Buffers<'_>,
+    ) -> Result<Self, SceneError> {
+        let mut motion = Self {
+            parents: vec![None; document.nodes().len()],
+            rest: document.nodes().map(|node| transform(&node)).collect(),
+            ..Self::default()
+        };
+        for node in document.nodes() {
+            for child in node.children() {
+                motion.parents[child.index()] = Some(node.index());
+            }
+        }
+        let channels = animation.into_iter().flat_map(Animation::channels);
+        for (number, channel) in channels.enumerate() {
+            let target = channel.target();
+            let moves = motion.nodes.entry(target.node().index()).or_default();
+            let way = match target.property() {
+                Property::MorphTargetWeights => {
+                    moves.weights = true;
+                    continue;
+                }
+                Property::Translation => &mut moves.translation,
+                Property::Rotation => &mut moves.rotation,
+                Property::Scale => &mut moves.scale,
+            };
+            let found = way_of(&channel, buffers)?;
+            let error = |cause: &str| {
+                SceneError::new(
+                    path,
+                    format!(
+                        "animation {}, channel {number} of node {}: {cause}",
+                        channel.animation().index(),
+                        target.node().index()
+                    ),
+                    "export the animation again",
+                )
+            };
+            found.check(target.property()).map_err(error)?;
+            *way = Some(found);
+        }
+        Ok(motion)
+    }
+
+    /// Whether nothing moves.
+    pub(super) fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// Whether the weights of a node's morph targets change.
+    pub(super) fn has_weights(&self, node: usize) -> bool {
+        self.nodes.get(&node).is_some_and(|moves| moves.weights)
+    }
+
+    /// Whether a node, or one above it, moves.
+    pub(super) fn moves(&self, node: usize) -> bool {
+        self.chain(node).any(|it| self.moves_itself(it))
+    }
+
+    fn moves_itself(&self, node: usize) -> bool {
+        let moves = self.nodes.get(&node);
+        moves.is_some_and(|it| it.translation.is_some() || it.rotation.is_some() || it.scale.is_some())
+    }
+
+    /// A node and those above it, from below.
+    fn chain(&self, node: usize) -> impl Iterator<Item = usize> {
+        std::iter::successors(Some(node), |&node| self.parents[node])
+    }
+
+    /// Where a node stands in the one above it.
+    fn local(&self, node: usize, seconds: f64) -> DMat4 {
+        let rest = self.rest[node];
+        let Some(moves) = self.nodes.get(&node) else {
+            return rest;
+        };
+        let (scale, rotation, translation) = rest.to_scale_rotation_translation();
+        let at = |way: &Option<Way>| way.as_ref().map(|way| way.at(seconds));
+        let vector = |[x, y, z, _]: [f64; 4]| DVec3::new(x, y, z);
+        DMat4::from_scale_rotation_translation(
+            at(&moves.scale).map_or(scale, vector),
+            at(&moves.rotation).map_or(rotation, |it| DQuat::from_array(it).normalize()),
+            at(&moves.translation).map_or(translation, vector),
+        )
+    }
+
+    /// Where a node stands in the scene.
+    fn world(&self, node: usize, seconds: f64) -> DMat4 {
+        let locals = self.chain(node).map(|it| self.local(it, seconds));
+        locals.fold(DMat4::IDENTITY, |world, local| local * world)
+    }
+
+    /// Where a node stands that does not move itself.
+    fn above(&self, node: usize) -> DMat4 {
+        let parent = self.parents[node];
+        parent.map_or(DMat4::IDENTITY, |parent| self.world(parent, 0.0))
+    }
+
+    /// The times at which a node is sampled.
+    fn sample_times(&self, node: usize) -> Vec<f64> {
+        let moves = self.chain(node).filter_map(|it| self.nodes.get(&it));
+        let ways = moves.flat_map(|it| [&it.translation, &it.rotation, &it.scale]);
+        let times = ways.flatten().flat_map(|way| way.keys.iter());
+        let times: Vec<f64> = times.map(|key| key.seconds).collect();
+        let first = times.iter().copied().fold(f64::INFINITY, f64::min);
+        let last = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let steps = ((last - first) * RATE).ceil().clamp(0.0, MOST_SAMPLES);
+        let time = |step: u32| match steps {
+            0.0 => first,
+            _ => first + (last - first) * f64::from(step) / steps,
+        };
+        (0..=steps as u32).map(time).collect()
+    }
+
+    /// The tracks of a camera at a node; none if it stands still.
+    pub(super) fn camera(&mut self, node: usize, place: &SourceSpan) -> Vec<Track> {
+        if !self.moves(node) {
+            return Vec::new();
+        }
+        let track = |target, way: Way| Track {
+            target,
+            index: 0,
+            interpolation: way.interpolation,
+            keys: way.keys,
+            place: place.clone(),
+        };
+        let [eye, rotation] = self.own_ways(node).unwrap_or_else(|| {
+            self.sampled = true;
+            let times = self.sample_times(node);
+            let worlds: Vec<_> = times.iter().map(|&it| (it, self.world(node, it))).collect();
+            let eye = |&(seconds, world): &(f64, DMat4)| {
+                Key::of_vector(seconds, world.transform_point3(DVec3::ZERO))
+            };
+            let rotation = |(seconds, world): &(f64, DMat4)| Key {
+                seconds: *seconds,
+                value: turned(world).to_array(),
+                ..Key::default()
+            };
+            let linear = |keys| Way {
+                interpolation: Interpolation::Linear,
+                keys,
+            };
+            [
+                linear(worlds.iter().map(eye).collect()),
+                linear(worlds.iter().map(rotation).collect()),
+            ]
+        });
+        vec![
+            track(TrackTarget::CameraEye, eye),
+            track(TrackTarget::CameraRotation, rotation),
+        ]
+    }
+
+    /// Place and rotation of a node of which nothing above moves, with its own keys.
+    fn own_ways(&self, node: usize) -> Option<[Way; 2]> {
+        if self.chain(node).skip(1).any(|it| self.moves_itself(it)) {
+            return None;
+        }
+        let moves = self.nodes.get(&node)?;
+        let above = DAffine3::from_mat4(self.above(node));
+        let world = self.world(node, 0.0);
+        let still = |value: [f64; 4]| Way {
+            interpolation: Interpolation::Step,
+            keys: vec![Key {
+                seconds: first_time(moves),
+                value,
+                ..Key::default()
+            }],
+        };
+        let eye = match &moves.translation {
+            Some(way) => way.placed(&above),
+            None => {
+                let [x, y, z] = world.transform_point3(DVec3::ZERO).to_array();
+                still([x, y, z, 0.0])
+            }
+        };
+        let rotation = match &moves.rotation {
+            Some(way) => {
+                let above = rotation_of(above.matrix3)?;
+                way.map(|value| (above * DQuat::from_array(value)).to_array())
+            }
+            None => still(turned(&world).to_array()),
+        };
+        Some([eye, rotation])
+    }
+
+    /// The track of a light at a node, if it moves.
+    pub(super) fn light(
+        &mut self,
+        node: usize,
+        index: usize,
+        directional: bool,
+        place: &SourceSpan,
+    ) -> Option<Track> {
+        if !self.moves(node) {
+            return None;
+        }
+        let own = self.own_ways(node).filter(|_| !directional);
+        let way = match own {
+            Some([way, _]) => way,
+            None => {
+                self.sampled = true;
+                let key = |seconds: f64| {
+                    let world = self.world(node, seconds);
+                    let vector = match directional {
+                        true => world.transform_vector3(-DVec3::Z),
+                        false => world.transform_point3(DVec3::ZERO),
+                    };
+                    Key::of_vector(seconds, vector)
+                };
+                Way {
+                    interpolation: Interpolation::Linear,
+                    keys: self.sample_times(node).into_iter().map(key).collect(),
+                }
+            }
+        };
+        let aims = way.keys.iter().all(|key| key.vector() != DVec3::ZERO);
+        (aims || !directional).then(|| Track {
+            target: match directional {
+                true => TrackTarget::LightDirection,
+                false => TrackTarget::LightPosition,
+            },
+            index,
+            interpolation: way.interpolation,
+            keys: way.keys,
+            place: place.clone(),
+        })
+    }
+}
+
+/// The time of a node's first key.
+fn first_time(moves: &Moves) -> f64 {
+    let ways = [&moves.translation, &moves.rotation, &moves.scale];
+    let keys = ways.into_iter().flatten().flat_map(|way| &way.keys);
+    keys.map(|key| key.seconds).fold(f64::INFINITY, f64::min)
+}
+
+/// How a camera is turned that looks along -z of a node, with y upwards as far as can be.
+fn turned(world: &DMat4) -> DQuat {
+    let back = world.transform_vector3(DVec3::Z).normalize_or(DVec3::Z);
+    let right = world.transform_vector3(DVec3::Y).cross(back);
+    let right = right.normalize_or(back.any_orthonormal_vector());
+    DQuat::from_mat3(&DMat3::from_cols(right, back.cross(right), back))
+}
+
+/// The rotation of a matrix that turns and scales alike in all directions; `None` for another.
+fn rotation_of(matrix: DMat3) -> Option<DQuat> {
+    /// Of single precision.
+    const TOLERANCE: f64 = 1e-6;
+    let scale = matrix.determinant().cbrt();
+    let turns = matrix * (1.0 / scale);
+    let squared = turns.transpose() * turns;
+    (scale > 0.0 && squared.abs_diff_eq(DMat3::IDENTITY, TOLERANCE))
+        .then(|| DQuat::from_mat3(&turns).normalize())
+}
+
+impl Way {
+    /// The way with each value, and each change of it, mapped linearly.
+    fn map(&self, map: impl Fn([f64; 4]) -> [f64; 4]) -> Self {
+        let key = |key: &Key| Key {
+            seconds: key.seconds,
+            value: map(key.value),
+            entering: map(key.entering),
+            leaving: map(key.leaving),
+        };
+        Self {
+            interpolation: self.interpolation,
+            keys: self.keys.iter().map(key).collect(),
+        }
+    }
+
+    /// The way of places, seen from the scene.
+    fn placed(&self, above: &DAffine3) -> Self {
+        let vector = |[x, y, z, _]: [f64; 4]| {
+            let [x, y, z] = above.transform_vector3(DVec3::new(x, y, z)).to_array();
+            [x, y, z, 0.0]
+        };
+        let mut way = self.map(vector);
+        for (placed, key) in way.keys.iter_mut().zip(&self.keys) {
+            let [x, y, z] = above.transform_point3(key.vector()).to_array();
+            placed.value = [x, y, z, 0.0];
+        }
+        way
+    }
+
+    /// Proves what glTF promises.
+    fn check(&self, property: Property) -> Result<(), &'static str> {
+        if self.keys.is_empty() {
+            return Err("it has no keys, or not a value for each");
+        }
+        let numbers = self.keys.iter().flat_map(|key| {
+            let vectors = [key.value, key.entering, key.leaving];
+            vectors.into_iter().flatten().chain([key.seconds])
+        });
+        if !numbers.into_iter().all(f64::is_finite) {
+            return Err("a number is not finite");
+        }
+        if !self.keys.is_sorted_by(|one, other| one.seconds < other.seconds) {
+            return Err("its times do not ascend");
+        }
+        let turns = |key: &Key| key.value != [0.0; 4];
+        if property == Property::Rotation && !self.keys.iter().all(turns) {
+            return Err("a rotation has length 0");
+        }
+        Ok(())
+    }
+
+    /// The value at a time, as glTF defines it.
+    fn at(&self, seconds: f64) -> [f64; 4] {
+        let after = self.keys.partition_point(|key| key.seconds <= seconds);
+        let one = &self.keys[after.saturating_sub(1)];
+        let Some(other) = self.keys.get(after).filter(|_| after > 0) else {
+            return one.value;
+        };
+        let duration = other.seconds - one.seconds;
+        let part = (seconds - one.seconds) / duration;
+        let mix = |component: usize| match self.interpolation {
+            Interpolation::Step => one.value[component],
+            Interpolation::Linear => {
+                one.value[component] + part * (other.value[component] - one.value[component])
+            }
+            Interpolation::Cubic => {
+                let (square, cube) = (part * part, part * part * part);
+                (2.0 * cube - 3.0 * square + 1.0) * one.value[component]
+                    + (cube - 2.0 * square + part) * duration * one.leaving[component]
+                    + (3.0 * square - 2.0 * cube) * other.value[component]
+                    + (cube - square) * duration * other.entering[component]
+            }
+        };
+        // Of four components are rotations alone.
+        let is_rotation = self.keys.iter().any(|key| key.value[3] != 0.0);
+        if is_rotation && self.interpolation == Interpolation::Linear {
+            let [one, other] = [one, other].map(|key| DQuat::from_array(key.value).normalize());
+            return one.slerp(other, part).to_array();
+        }
+        std::array::from_fn(mix)
+    }
+}
+
+/// Reads the keys of a channel; none if its counts do not fit.
+fn way_of(channel: &gltf::animation::Channel<'_>, buffers: &Buffers<'_>) -> Result<Way, SceneError> {
+    let sampler = channel.sampler();
+    let times = buffers.numbers::<1>(&sampler.input())?;
+    let values: Vec<[f64; 4]> = match channel.target().property() {
+        Property::Rotation => buffers.numbers::<4>(&sampler.output())?,
+        _ => {
+            let vectors = buffers.numbers::<3>(&sampler.output())?;
+            vectors.into_iter().map(|[x, y, z]| [x, y, z, 0.0]).collect()
+        }
+    };
+    let interpolation = match sampler.interpolation() {
+        gltf::animation::Interpolation::Step => Interpolation::Step,
+        gltf::animation::Interpolation::Linear => Interpolation::Linear,
+        gltf::animation::Interpolation::CubicSpline => Interpolation::Cubic,
+    };
+    let each = match interpolation {
+        Interpolation::Cubic => 3,
+        _ => 1,
+    };
+    let keys = if values.len() == each * times.len() {
+        let key = |([seconds], values): (&[f64; 1], &[[f64; 4]])| match *values {
+            [entering, value, leaving] => Key {
+                seconds: *seconds,
+                value,
+                entering,
+                leaving,
+            },
+            _ => Key {
+                seconds: *seconds,
+                value: values[0],
+                ..Key::default()
+            },
+        };
+        times.iter().zip(values.chunks_exact(each)).map(key).collect()
+    } else {
+        Vec::new()
+    };
+    Ok(Way {
+        interpolation,
+        keys,
+    })
+}

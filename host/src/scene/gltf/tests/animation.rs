@@ -1,0 +1,203 @@
+//! Tracks of animated cameras and lights.
+
+use super::*;
+use crate::scene::{Choice, ImportOptions, Interpolation, TrackTarget};
+use glam::DQuat;
+
+/// The document with keys at 0, 1 and 2 seconds in a buffer of their own: accessor 2 has the times, 3 three places,
+/// 4 three rotations about y by 0, 90 and 180 degrees, 5 the places with tangents.
+fn animated(animations: Value) -> Value {
+    let mut document = document();
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let places = [[0.5_f32, 0.5, 4.0], [1.5, 0.5, 4.0], [1.5, 2.5, 4.0]];
+    let mut floats: Vec<f32> = vec![0.0, 1.0, 2.0];
+    floats.extend(places.as_flattened());
+    floats.extend([0.0, 0.0, 0.0, 1.0, 0.0, half, 0.0, half, 0.0, 1.0, 0.0, 0.0]);
+    for place in places {
+        floats.extend([3.0, 0.0, 0.0]);
+        floats.extend(place);
+        floats.extend([0.0, 0.0, 6.0]);
+    }
+    let bytes: Vec<u8> = floats.iter().flat_map(|it| it.to_le_bytes()).collect();
+    let data = STANDARD.encode(&bytes);
+    let buffers = document["buffers"].as_array_mut().unwrap();
+    buffers.push(json!({"byteLength": bytes.len(),
+        "uri": format!("data:application/octet-stream;base64,{data}")}));
+    let mut offset = 0;
+    for (count, kind, components) in [(3, "SCALAR", 1), (3, "VEC3", 3), (3, "VEC4", 4), (9, "VEC3", 3)] {
+        let length = 4 * count * components;
+        let view = document["bufferViews"].as_array().unwrap().len();
+        document["bufferViews"].as_array_mut().unwrap().push(
+            json!({"buffer": 1, "byteOffset": offset, "byteLength": length}));
+        document["accessors"].as_array_mut().unwrap().push(json!({"bufferView": view,
+            "componentType": 5126, "count": count, "type": kind, "min": [0], "max": [2]}));
+        let accessor = document["accessors"].as_array_mut().unwrap().last_mut().unwrap();
+        if kind != "SCALAR" {
+            accessor.as_object_mut().unwrap().retain(|key, _| key != "min" && key != "max");
+        }
+        offset += length;
+    }
+    document["animations"] = animations;
+    document
+}
+
+fn channel(sampler: usize, node: usize, path: &str) -> Value {
+    json!({"sampler": sampler, "target": {"node": node, "path": path}})
+}
+
+fn sampler(output: usize, interpolation: &str) -> Value {
+    json!({"input": 2, "output": output, "interpolation": interpolation})
+}
+
+fn tracks(document: &Value) -> (Vec<crate::scene::Track>, Vec<String>) {
+    let imported = read(document.to_string().as_bytes()).unwrap();
+    (imported.scene.tracks, imported.warnings)
+}
+
+fn chosen(document: &Value, choice: Choice) -> Result<Imported, SceneError> {
+    let options = ImportOptions {
+        choice,
+        ..ImportOptions::default()
+    };
+    crate::scene::read("a.gltf".as_ref(), document.to_string().into_bytes(), &options)
+}
+
+#[test]
+fn a_node_keeps_its_keys() {
+    for (interpolation, name) in [
+        (Interpolation::Step, "STEP"),
+        (Interpolation::Linear, "LINEAR"),
+        (Interpolation::Cubic, "CUBICSPLINE"),
+    ] {
+        let places = if name == "CUBICSPLINE" { 5 } else { 3 };
+        let document = animated(json!([{"channels": [channel(0, 1, "translation")],
+            "samplers": [sampler(places, name)]}]));
+        let (tracks, warnings) = tracks(&document);
+        assert_eq!(warnings, Vec::<String>::new());
+        let [eye, rotation, light] = &tracks[..] else {
+            panic!("{tracks:?}")
+        };
+        assert_eq!((eye.target, eye.interpolation), (TrackTarget::CameraEye, interpolation));
+        assert_eq!((light.target, light.index), (TrackTarget::LightPosition, 0));
+        assert_eq!(eye.keys, light.keys);
+        assert_eq!(eye.keys[1].vector(), DVec3::new(1.5, 0.5, 4.0));
+        assert_eq!(eye.keys[2].seconds, 2.0);
+        if interpolation == Interpolation::Cubic {
+            assert_eq!(eye.keys[0].leaving, [0.0, 0.0, 6.0, 0.0]);
+            assert_eq!(eye.keys[0].entering, [3.0, 0.0, 0.0, 0.0]);
+        }
+        // It keeps looking along -z.
+        assert_eq!(rotation.target, TrackTarget::CameraRotation);
+        assert_eq!(rotation.keys.len(), 1);
+        assert_eq!(rotation.keys[0].value, [0.0, 0.0, 0.0, 1.0]);
+    }
+}
+
+#[test]
+fn rotations_follow_what_stands_above() {
+    let mut document = animated(json!([{"channels": [channel(0, 1, "rotation")],
+        "samplers": [sampler(4, "LINEAR")]}]));
+    // Above it a node that is turned by 90 degrees about z, scaled and moved.
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    document["nodes"].as_array_mut().unwrap().push(json!({"children": [1],
+        "rotation": [0, 0, half, half], "scale": [2, 2, 2], "translation": [1, 0, 0]}));
+    document["scenes"] = json!([{"nodes": [0, 2]}]);
+    let (tracks, warnings) = tracks(&document);
+    assert_eq!(warnings, Vec::<String>::new());
+    assert_eq!(tracks[0].keys.len(), 1);
+    let eye = tracks[0].keys[0].vector();
+    assert!(eye.distance(DVec3::new(0.0, 1.0, 8.0)) < 1e-6, "{eye}");
+    let ahead = |key: usize| DQuat::from_array(tracks[1].keys[key].value) * DVec3::NEG_Z;
+    assert!(ahead(0).distance(DVec3::NEG_Z) < 1e-6);
+    // Turned to -x about its own y, which is -y of the scene.
+    assert!(ahead(1).distance(DVec3::NEG_Y) < 1e-6, "{}", ahead(1));
+    assert!(ahead(2).distance(DVec3::Z) < 1e-6);
+}
+
+#[test]
+fn a_rig_is_sampled() {
+    let mut document = animated(json!([{"channels": [channel(0, 2, "rotation")],
+        "samplers": [sampler(4, "LINEAR")]}]));
+    document["nodes"].as_array_mut().unwrap().push(json!({"children": [1]}));
+    document["scenes"] = json!([{"nodes": [0, 2]}]);
+    let (tracks, warnings) = tracks(&document);
+    assert!(warnings.len() == 1 && warnings[0].contains("60 times"), "{warnings:?}");
+    let eye = &tracks[0];
+    assert_eq!((eye.keys.len(), eye.interpolation), (121, Interpolation::Linear));
+    for (key, expected) in [(0, [0.5, 0.5, 4.0]), (60, [4.0, 0.5, -0.5]), (120, [-0.5, 0.5, -4.0])] {
+        let found = eye.keys[key].vector();
+        assert!(found.distance(DVec3::from_array(expected)) < 1e-6, "{found}");
+    }
+    let ahead = DQuat::from_array(tracks[1].keys[60].value) * DVec3::NEG_Z;
+    assert!(ahead.distance(DVec3::NEG_X) < 1e-6, "{ahead}");
+}
+
+#[test]
+fn cameras_and_animations_are_chosen_by_name() {
+    let mut document = animated(json!([
+        {"name": "still", "channels": [channel(0, 0, "translation")], "samplers": [sampler(3, "STEP")]},
+        {"name": "dolly", "channels": [channel(0, 1, "translation")], "samplers": [sampler(3, "STEP")]},
+    ]));
+    document["nodes"].as_array_mut().unwrap().push(json!({"name": "top", "camera": 0, "translation": [0, 9, 0]}));
+    document["scenes"] = json!([{"nodes": [0, 1, 2]}]);
+    let choice = |camera: Option<&str>, animation: Option<&str>| Choice {
+        camera: camera.map(str::to_owned),
+        animation: animation.map(str::to_owned),
+    };
+    let first = chosen(&document, Choice::default()).unwrap();
+    assert!(first.scene.tracks.is_empty());
+    let warned = |words: &str| first.warnings.iter().any(|it| it.contains(words));
+    assert!(warned("several animations") && warned("only cameras and lights move"));
+    for name in ["dolly", "1"] {
+        let dolly = chosen(&document, choice(None, Some(name))).unwrap();
+        assert_eq!(dolly.scene.tracks.len(), 3);
+    }
+    let top = chosen(&document, choice(Some("top"), Some("dolly"))).unwrap();
+    assert_eq!(top.scene.camera.unwrap().eye, DVec3::new(0.0, 9.0, 0.0));
+    // Of the light alone.
+    assert_eq!(top.scene.tracks.len(), 1);
+    let error = chosen(&document, choice(Some("side"), None)).unwrap_err();
+    assert!(error.cause.contains("side") && error.remedy.contains("top"), "{error}");
+    let error = chosen(&document, choice(None, Some("2"))).unwrap_err();
+    assert!(error.remedy.contains("still, dolly"), "{error}");
+}
+
+#[test]
+fn skins_and_morph_targets_that_are_asked_for_are_rejected() {
+    let mut document = animated(json!([{"name": "bend", "channels": [channel(0, 2, "rotation")],
+        "samplers": [sampler(4, "LINEAR")]}]));
+    document["nodes"].as_array_mut().unwrap().push(json!({"name": "joint"}));
+    document["scenes"] = json!([{"nodes": [0, 1, 2]}]);
+    document["nodes"][0]["skin"] = json!(0);
+    document["skins"] = json!([{"joints": [2]}]);
+    let bend = Choice {
+        animation: Some(String::from("bend")),
+        ..Choice::default()
+    };
+    let error = chosen(&document, bend.clone()).unwrap_err();
+    assert!(error.cause.contains("\"tile\" by a skin"), "{error}");
+    let warnings = chosen(&document, Choice::default()).unwrap().warnings;
+    assert!(warnings.iter().any(|it| it.contains("bends")), "{warnings:?}");
+    document["animations"][0]["channels"] = json!([channel(0, 0, "weights")]);
+    let error = chosen(&document, bend).unwrap_err();
+    assert!(error.cause.contains("morph targets"), "{error}");
+}
+
+#[test]
+fn broken_channels_are_rejected() {
+    let animation = |channel: Value, sampler: Value| {
+        let document = animated(json!([{"channels": [channel], "samplers": [sampler]}]));
+        read(document.to_string().as_bytes()).unwrap_err().cause
+    };
+    let translated = |node| channel(0, node, "translation");
+    assert!(animation(translated(7), sampler(3, "LINEAR")).contains("that there is not"));
+    assert!(animation(translated(1), sampler(4, "LINEAR")).contains("accessor 4"));
+    assert!(animation(translated(1), sampler(3, "CUBICSPLINE")).contains("not a value for each"));
+    assert!(animation(channel(0, 1, "rotation"), sampler(3, "LINEAR")).contains("accessor 3"));
+    assert!(animation(channel(1, 1, "translation"), sampler(3, "LINEAR")).contains("animations[0]"));
+    let backwards = json!({"input": 2, "output": 3});
+    let mut document = animated(json!([{"channels": [translated(1)], "samplers": [backwards]}]));
+    document["accessors"][2]["bufferView"] = document["accessors"][3]["bufferView"].clone();
+    let error = read(document.to_string().as_bytes()).unwrap_err();
+    assert!(error.cause.contains("do not ascend"), "{error}");
+}

@@ -1,0 +1,122 @@
+//! The tracks of an import, where its camera, lights and materials are taken over.
+
+use super::item::Item;
+use super::source::Source;
+use crate::scene::{Scene, SceneError, Track, TrackTarget};
+use glam::{DAffine3, DQuat, DVec3};
+use gridel_core::format::track::ValueKind;
+
+/// What of an import is taken over.
+pub(super) struct ImportPlace<'p> {
+    pub(super) camera: bool,
+    /// The number of its first light.
+    pub(super) lights: Option<usize>,
+    /// The numbers of its materials; none if all its objects have another.
+    pub(super) materials: &'p [usize],
+}
+
+impl ImportPlace<'_> {
+    /// The import's tracks in this scene.
+    pub(super) fn tracks(
+        &self,
+        source: &Source,
+        item: &Item,
+        import: &Scene,
+    ) -> Result<Vec<Track>, SceneError> {
+        let mut tracks = Vec::new();
+        for track in &import.tracks {
+            let (index, what) = if track.target.is_of_camera() {
+                (self.camera.then_some(0), "camera")
+            } else if track.target.is_of_material() {
+                (self.materials.get(track.index).copied(), "material")
+            } else {
+                (self.lights.map(|first| first + track.index), "light")
+            };
+            if let Some(index) = index {
+                let moved = moved(track, &item.transform);
+                let moved = moved.ok_or_else(|| lost(source, item, what))?;
+                tracks.push(Track { index, ..moved });
+            }
+        }
+        Ok(tracks)
+    }
+}
+
+/// A scene's own tracks, and those of imports of what it does not move itself.
+pub(super) fn with_imported(mut own: Vec<Track>, imported: Vec<Track>) -> Vec<Track> {
+    let aims = own.iter().any(|track| {
+        let target = track.target;
+        target == TrackTarget::CameraTarget
+            || target == TrackTarget::CameraUp
+            || target == TrackTarget::CameraOrbit
+    });
+    for track in imported {
+        let same = |it: &Track| (it.target, it.index) == (track.target, track.index);
+        let instead = aims && track.target == TrackTarget::CameraRotation;
+        if !instead && !own.iter().any(same) {
+            own.push(track);
+        }
+    }
+    own
+}
+
+/// A track after a transform; `None` where it cannot follow.
+fn moved(track: &Track, by: &DAffine3) -> Option<Track> {
+    let mut moved = track.clone();
+    let rotation = match track.target.kind() {
+        ValueKind::Rotation => Some(rotation_of(by)?),
+        _ => None,
+    };
+    // A mirror image turns the other way.
+    let turns = by.matrix3.determinant().signum();
+    let vector = |[x, y, z, _]: [f64; 4]| {
+        let [x, y, z] = by.transform_vector3(DVec3::new(x, y, z)).to_array();
+        [x, y, z, 0.0]
+    };
+    for key in &mut moved.keys {
+        let place = by.transform_point3(key.vector());
+        for value in [&mut key.value, &mut key.entering, &mut key.leaving] {
+            *value = match (track.target.kind(), rotation) {
+                (ValueKind::Position | ValueKind::Direction | ValueKind::UnitDirection, _) => {
+                    vector(*value)
+                }
+                (ValueKind::Rotation, Some(by)) => (by * DQuat::from_array(*value)).to_array(),
+                (ValueKind::Turns, _) => value.map(|it| it * turns),
+                _ => *value,
+            };
+        }
+        if track.target.kind() == ValueKind::Position {
+            let [x, y, z] = place.to_array();
+            key.value = [x, y, z, 0.0];
+        }
+        let all = [key.value, key.entering, key.leaving];
+        let is_direction = track.target.kind().is_direction();
+        let finite = all.iter().flatten().all(|it| it.is_finite());
+        if !finite || is_direction && key.value == [0.0; 4] {
+            return None;
+        }
+    }
+    Some(moved)
+}
+
+/// The rotation of a transform that turns and scales alike in all directions.
+fn rotation_of(by: &DAffine3) -> Option<DQuat> {
+    /// Far above rounding, and far below what is seen.
+    const TOLERANCE: f64 = 1e-9;
+    let scale = by.matrix3.determinant().cbrt();
+    let turns = by.matrix3 * (1.0 / scale);
+    let squared = turns.transpose() * turns;
+    let is_rotation = scale > 0.0 && squared.abs_diff_eq(glam::DMat3::IDENTITY, TOLERANCE);
+    is_rotation.then(|| DQuat::from_mat3(&turns))
+}
+
+/// The error of what cannot follow the transform of its import.
+pub(super) fn lost(source: &Source, item: &Item, what: &str) -> SceneError {
+    source.error(
+        &item.span,
+        format!("a {what} of this import cannot follow the transform of the import"),
+        format!(
+            "use smaller translations and scales nearer to 1, or give this scene its own {what}"
+        ),
+    )
+}
