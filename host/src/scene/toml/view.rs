@@ -2,7 +2,6 @@
 
 use super::value::Value;
 use crate::scene::{Camera, Light, RenderSettings, SceneError};
-use crate::shape::parallel;
 use glam::DVec3;
 
 /// The largest width and height of a picture.
