@@ -16,11 +16,12 @@ use std::path::{Path, PathBuf};
 
 /// Join parts of a picture, or frames of an animation
 ///
-/// Parts are what `render --rows` writes. Each stores its rows, its blob and its settings. Parts can come from several machines, in
-/// any order, and can overlap if they agree. Parts of different pictures are rejected. The result
-/// has the bytes that one machine writes. Frames are
-/// numbered .png files that `render --frames` writes. Each stores its number, rate, blob and settings. The
-/// animation has the bytes that one machine writes.
+/// Parts are what `render --rows` writes. Each stores its rows, its blob and its settings. Parts can come
+/// from several machines, in any order, and can overlap if they agree. Parts of different pictures are
+/// rejected. The result has the bytes that one machine writes.
+///
+/// Frames are numbered .png files that `render --frames` writes. Each stores its number, rate, blob and
+/// settings. The animation has the bytes that one machine writes.
 #[derive(Args)]
 #[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {
