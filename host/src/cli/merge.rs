@@ -14,12 +14,14 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Join parts of a picture that `render --rows` wrote, or frames that `render --frames` wrote
+/// Join parts of a picture, or frames of an animation
 ///
-/// Each part stores its rows, its blob and its settings. Parts can come from several machines, in
-/// any order, and can overlap if they agree. Parts of different pictures are rejected. The result
-/// has the bytes that one machine writes. So has an animation of frames, numbered .png files each of
-/// which stores its number, rate, blob and settings.
+/// Parts are what `render --rows` writes. Each stores its rows, its blob and its settings. Parts can come
+/// from several machines, in any order, and can overlap if they agree. Parts of different pictures are
+/// rejected. The result has the bytes that one machine writes.
+///
+/// Frames are numbered .png files that `render --frames` writes. Each stores its number, rate, blob and
+/// settings. The animation has the bytes that one machine writes.
 #[derive(Args)]
 #[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {

@@ -38,7 +38,8 @@ fn find(base: &Base, target: TrackTarget) -> (usize, Track) {
 }
 
 /// A track and a change of it.
-type TrackForgery<'f> = (TrackTarget, Field, &'f dyn Fn(&mut Track));
+type TrackForgery<'f> = (TrackTarget, Field, TrackChange<'f>);
+type TrackChange<'f> = &'f dyn Fn(&mut Track);
 
 pub(super) fn tracks() -> Errors {
     let mut errors = everything();
@@ -147,7 +148,7 @@ pub(super) fn tracks() -> Errors {
     let (eye, _) = find(&base, TrackTarget::CameraEye);
     let (color, _) = find(&base, TrackTarget::LightColor);
     let (direction, _) = find(&base, TrackTarget::LightDirection);
-    let reasons: [(usize, Reason, &dyn Fn(&mut Track)); 3] = [
+    let reasons: [(usize, Reason, TrackChange); 3] = [
         (eye + 1, Reason::TrackOrder, &|it| {
             it.target = TrackTarget::CameraEye as u16
         }),
