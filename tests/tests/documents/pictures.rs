@@ -1,13 +1,38 @@
 //! The pictures that the README shows are those that the program renders.
 
-use super::{README, repository, text};
+use super::{README, block, repository, text};
 use gridel_core::render::Pixel;
 use gridel_core::{Format, Rgb888, Settings, Structure};
 use gridel_host::compile::{Options, compile};
-use gridel_host::picture::write_png;
+use gridel_host::picture::{hash, write_png};
 use gridel_host::render::{Job, render};
 use gridel_tests::scenes;
 use std::fs;
+
+/// Whoever copies the example of a manifest sees it pass.
+#[test]
+fn hashes_of_the_manifests_example_are_those_of_its_scene() {
+    let manifest = text("host/docs/CHECK.md");
+    let example = block(&manifest, "## Example", "toml");
+    let scene = scenes::read(&scenes::fixture_folder().join("quick.toml"));
+    let options = Options {
+        structures: vec![Structure::Flagged],
+        ..Options::default()
+    };
+    let blob = compile(&scene, &options).expect("compiles").blob;
+    let scene = blob.scene().expect("the compiler's blob");
+    let settings = Settings {
+        width: 48,
+        height: 36,
+        ..Settings::of(&scene)
+    };
+    for format in [Format::Fixed, Format::F32] {
+        let job = Job::whole(format, Structure::Flagged, settings);
+        let picture = render(&scene, &job, &|| ()).expect("a picture");
+        let stated = format!("{} = \"{}\"", format.name(), hash(&picture.pixels));
+        assert!(example.contains(&stated), "CHECK.md lacks {stated}");
+    }
+}
 
 /// Rows and columns of a pixel of the board's display.
 const ENLARGED: usize = 3;
