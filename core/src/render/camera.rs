@@ -385,7 +385,8 @@ mod tests {
         assert_eq!(look([0; 3], FIELD), Err(CameraError::AlongUp));
         assert_eq!(look([0, 0, 7], FIELD), Err(CameraError::AlongUp));
         assert_eq!(look([0, 1, i32::MAX], FIELD), Err(CameraError::AlongUp));
-        assert!(look([0, 1 << 9, i32::MIN], FIELD).is_ok());
+        assert!(look([0, 1 << 14, i32::MIN], FIELD).is_err());
+        assert!(look([0, 1 << 16, i32::MIN], FIELD).is_ok());
         for field in [Angle(0), Angle(1), Angle::HALF, Angle::degrees(-1)] {
             assert_eq!(look([0, 1, 0], field), Err(CameraError::FieldOfView(field)));
         }

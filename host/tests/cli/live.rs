@@ -95,10 +95,7 @@ fn changes_that_do_not_fit_are_rejected() {
         ),
         (["--light", "0.size=1,0,0"], "position, direction or color"),
         (["--light", "0.position=1e30,0,0"], "too far"),
-        (
-            ["--eye", "1e30,0,0"],
-            "beyond the range of scene coordinates",
-        ),
+        (["--eye", "1e30,0,0"], "where the blob's coordinates end"),
         (
             ["--lattice-bits", "16"],
             "--lattice-bits is for scene files",

@@ -221,7 +221,7 @@ fn cameras_that_cannot_be_and_flags_for_blobs_are_rejected() {
     };
     render(&["--eye", "1,2"], &["write three numbers with commas"]);
     render(&["--fov", "180"], &["above 0 and below 180"]);
-    render(&["--background=-1,0,0"], &["at or above 0"]);
+    render(&["--background=-1,0,0"], &["from 0 to 2047"]);
     render(
         &["--eye", "1,1,1", "--target", "1,1,1"],
         &["the same point"],

@@ -243,7 +243,10 @@ impl Shot<'_> {
         let rendered = self.pool.install(|| render(&scene, self.job, &|| ()));
         let picture = rendered.map_err(|error| rejected(&error))?;
         let moment = Moment::Frame(Frame { number, per_second });
-        let metadata = RenderMetadata::of(&scene, self.job).at(Some(moment));
+        // What all frames have in common: the view of the first, and the options.
+        let start = self.source.changes_at(self.scene, tracks, 0)?;
+        let start = start.apply(self.scene)?;
+        let metadata = RenderMetadata::of(&start, self.job).at(Some(moment));
         Ok((picture, metadata))
     }
 }
