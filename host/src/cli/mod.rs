@@ -21,6 +21,7 @@ mod source;
 
 mod accuracy;
 mod build;
+mod changes;
 mod check;
 mod compare;
 mod explain;

@@ -2,17 +2,17 @@
 //! The first bytes distinguish them.
 
 use super::arguments::{LightChange, SceneOptions, TraceOptions, check_quality};
+use super::changes::{Changes, fault};
 use super::failure::Failure;
 use super::input::Input;
 use super::output::warn;
 use super::progress::Progress;
-use gridel_core::format::record::{self, View};
 use gridel_core::{BlobError, Format, Scene, Structure, Tracks};
 use gridel_host::blob::{self, Blob};
 use gridel_host::compile::{self, CompileError, Compiled, Names};
 use gridel_host::measure::board::{Fit, MemoryReport};
 use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
-use gridel_host::scene::{self, Imported, Light, Track};
+use gridel_host::scene::{self, Imported, Track};
 use gridel_host::state::{self, State, StateError};
 use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::Path;
@@ -337,63 +337,6 @@ impl Source {
                 ));
             }
         }
-    }
-}
-
-/// What is to be otherwise than in a blob.
-pub struct Changes {
-    view: View,
-    lights: Vec<record::Light>,
-    materials: Option<Vec<record::Material>>,
-    /// In ticks.
-    time: Option<i32>,
-}
-
-/// The error of values that are proved to be in their range.
-fn fault(error: BlobError) -> Failure {
-    Failure::failed(error.to_string(), "report this as a fault of gridel")
-}
-
-impl Changes {
-    /// The scene with these changes.
-    pub fn apply<'a>(&'a self, scene: &Scene<'a>) -> Result<Scene<'a>, Failure> {
-        self.of_scene(scene).map_err(fault)
-    }
-
-    fn of_scene<'a>(&'a self, scene: &Scene<'a>) -> Result<Scene<'a>, BlobError> {
-        let changed = scene.with_view(&self.view)?.with_lights(&self.lights)?;
-        match &self.materials {
-            Some(materials) => changed.with_materials(materials),
-            None => Ok(changed),
-        }
-    }
-
-    fn of(scene: &Scene<'_>, options: &SceneOptions) -> Result<Self, Failure> {
-        let mut view = options.view.in_blob(scene)?;
-        if let Some(cutoff) = options.cutoff {
-            [view.cutoff, ..] = compile::radiance([cutoff; 3]);
-        }
-        let own = scene.lights();
-        let mut lights: Vec<Light> = own.iter().map(|it| Light::of_blob(scene, it)).collect();
-        let before = lights.clone();
-        for change in &options.lights {
-            change.apply(&mut lights)?;
-        }
-        let records = lights.iter().enumerate().map(|(number, light)| {
-            // Those that stay keep their bits.
-            if before[number] == *light {
-                Ok(own[number])
-            } else {
-                light.in_blob(scene, number)
-            }
-        });
-        let lights = records.collect::<Result<_, _>>();
-        Ok(Self {
-            materials: None,
-            time: None,
-            view,
-            lights: lights.map_err(|error| Failure::Usage(miette::Report::new(error)))?,
-        })
     }
 }
 

@@ -1,0 +1,67 @@
+//! What options put in place of a blob's own values.
+
+use super::arguments::SceneOptions;
+use super::failure::Failure;
+use gridel_core::format::record::{self, View};
+use gridel_core::{BlobError, Scene};
+use gridel_host::compile;
+use gridel_host::scene::Light;
+
+/// What is to be otherwise than in a blob.
+pub struct Changes {
+    pub view: View,
+    pub lights: Vec<record::Light>,
+    pub materials: Option<Vec<record::Material>>,
+    /// In ticks.
+    pub time: Option<i32>,
+}
+
+/// The error of values that are proved to be in their range.
+pub fn fault(error: BlobError) -> Failure {
+    Failure::failed(error.to_string(), "report this as a fault of gridel")
+}
+
+impl Changes {
+    /// The scene with these changes.
+    pub fn apply<'a>(&'a self, scene: &Scene<'a>) -> Result<Scene<'a>, Failure> {
+        self.of_scene(scene).map_err(fault)
+    }
+
+    /// The scene with these changes, or why they do not fit it.
+    pub fn of_scene<'a>(&'a self, scene: &Scene<'a>) -> Result<Scene<'a>, BlobError> {
+        let changed = scene.with_view(&self.view)?.with_lights(&self.lights)?;
+        match &self.materials {
+            Some(materials) => changed.with_materials(materials),
+            None => Ok(changed),
+        }
+    }
+
+    /// What options change.
+    pub fn of(scene: &Scene<'_>, options: &SceneOptions) -> Result<Self, Failure> {
+        let mut view = options.view.in_blob(scene)?;
+        if let Some(cutoff) = options.cutoff {
+            [view.cutoff, ..] = compile::radiance([cutoff; 3]);
+        }
+        let own = scene.lights();
+        let mut lights: Vec<Light> = own.iter().map(|it| Light::of_blob(scene, it)).collect();
+        let before = lights.clone();
+        for change in &options.lights {
+            change.apply(&mut lights)?;
+        }
+        let records = lights.iter().enumerate().map(|(number, light)| {
+            // Those that stay keep their bits.
+            if before[number] == *light {
+                Ok(own[number])
+            } else {
+                light.in_blob(scene, number)
+            }
+        });
+        let lights = records.collect::<Result<_, _>>();
+        Ok(Self {
+            materials: None,
+            time: None,
+            view,
+            lights: lights.map_err(|error| Failure::Usage(miette::Report::new(error)))?,
+        })
+    }
+}
