@@ -145,18 +145,23 @@ macro_rules! structure {
             #[inline(always)]
             fn check_ranges(
                 &self,
-                place: impl $crate::format::range::Place,
+                location: $crate::format::Location,
             ) -> Result<(), $crate::format::BlobError> {
-                let _ = place;
+                #[allow(unused_mut, reason = "some records have no ranges")]
+                let mut result = Ok(());
                 $($({
                     const RANGE: core::ops::RangeInclusive<i64> = $range;
-                    let field = $crate::format::Field::$field;
-                    let [low, high] = [*RANGE.start(), *RANGE.end()];
-                    $crate::format::range::Numbers::within(
-                        &self.$field_name, place, field, low, high,
-                    )?;
+                    const FIELD: $crate::format::range::FieldRange = $crate::format::range::FieldRange {
+                        field: $crate::format::Field::$field,
+                        low: *RANGE.start(),
+                        high: *RANGE.end(),
+                    };
+                    $crate::format::range::Numbers::test(
+                        &self.$field_name, &mut result, &location, &FIELD,
+                    );
                 })?)*
-                Ok(())
+                let _ = location;
+                result
             }
         }
     };

@@ -79,99 +79,65 @@ impl Location {
     }
 }
 
-/// Errors for the header.
+/// The range of a field that its declaration states.
 #[derive(Clone, Copy)]
-pub(crate) struct InHeader;
-
-/// Where a record lies, for errors.
-pub(crate) trait Place: Copy {
-    /// An error unless `found` lies in `low..=high`.
-    fn number(self, field: Field, found: i64, low: i64, high: i64) -> Result<(), BlobError>;
-
-    /// An error unless every one of `found` lies in `low..=high`.
-    #[inline(always)]
-    fn numbers<T: Into<i64> + Copy>(
-        self,
-        field: Field,
-        found: &[T],
-        low: i64,
-        high: i64,
-    ) -> Result<(), BlobError> {
-        found
-            .iter()
-            .try_for_each(|&value| self.number(field, value.into(), low, high))
-    }
-}
-
-impl Place for At {
-    #[inline(always)]
-    fn number(self, field: Field, found: i64, low: i64, high: i64) -> Result<(), BlobError> {
-        self.within(field, found, low, high)
-    }
-
-    #[inline(always)]
-    fn numbers<T: Into<i64> + Copy>(
-        self,
-        field: Field,
-        found: &[T],
-        low: i64,
-        high: i64,
-    ) -> Result<(), BlobError> {
-        self.all_within(field, found, low, high)
-    }
-}
-
-impl Place for InHeader {
-    #[inline(always)]
-    fn number(self, field: Field, found: i64, low: i64, high: i64) -> Result<(), BlobError> {
-        if found < low || found > high {
-            return Err(Location::Header.out_of_range(field, found, [low, high]));
-        }
-        Ok(())
-    }
+pub(crate) struct FieldRange {
+    pub(crate) field: Field,
+    pub(crate) low: i64,
+    pub(crate) high: i64,
 }
 
 /// A record whose fields are tested against the ranges that its declaration states.
 pub(crate) trait Ranges {
     /// An error unless every field lies in its range.
-    fn check_ranges(&self, place: impl Place) -> Result<(), BlobError>;
+    fn check_ranges(&self, location: Location) -> Result<(), BlobError>;
 }
 
 /// A field: a number or an array of numbers.
 pub(crate) trait Numbers {
-    /// An error unless all of it lies in `low..=high`.
-    fn within(&self, place: impl Place, field: Field, low: i64, high: i64)
-    -> Result<(), BlobError>;
+    /// Puts an error in place of the result unless all of it lies in a range, or there is an error already.
+    // One result for all fields of a record: each of its own would take call stack.
+    fn test(&self, result: &mut Result<(), BlobError>, location: &Location, range: &FieldRange);
+}
+
+/// Tests a number; see [`Numbers::test`].
+fn test(found: i64, result: &mut Result<(), BlobError>, location: &Location, range: &FieldRange) {
+    if result.is_ok() && (found < range.low || found > range.high) {
+        *result = Err(location.out_of_range(range.field, found, [range.low, range.high]));
+    }
 }
 
 macro_rules! numbers {
     ($($number:ident)*) => {
         $(impl Numbers for $number {
             #[inline(always)]
-            fn within(
+            fn test(
                 &self,
-                place: impl Place,
-                field: Field,
-                low: i64,
-                high: i64,
-            ) -> Result<(), BlobError> {
-                place.number(field, i64::from(*self), low, high)
+                result: &mut Result<(), BlobError>,
+                location: &Location,
+                range: &FieldRange,
+            ) {
+                test(i64::from(*self), result, location, range);
             }
         })*
     };
 }
 
-numbers!(u8 u16 u32 i16 i32);
+numbers!(u8 u16 u32 i16 i32 i64);
 
-impl<T: Into<i64> + Copy, const N: usize> Numbers for [T; N] {
+impl<T: Numbers, const N: usize> Numbers for [T; N] {
     #[inline(always)]
-    fn within(
-        &self,
-        place: impl Place,
-        field: Field,
-        low: i64,
-        high: i64,
-    ) -> Result<(), BlobError> {
-        place.numbers(field, self, low, high)
+    fn test(&self, result: &mut Result<(), BlobError>, location: &Location, range: &FieldRange) {
+        for number in self {
+            number.test(result, location, range);
+        }
+    }
+}
+
+impl At {
+    /// Where the record lies, for errors.
+    #[inline(always)]
+    pub(crate) fn location(self) -> Location {
+        Location::Record(self.section, self.index)
     }
 }

@@ -385,7 +385,7 @@ impl Primitive for Cone {
         scene.point(Field::BaseCenter, self.base)?;
         scene.point(Field::ApexCenter, self.apex)?;
         scene.at.ensure(self.base != self.apex, Reason::ZeroAxis)?;
-        self.check_ranges(scene.at)?;
+        self.check_ranges(scene.at.location())?;
         let radii = [self.base_radius, self.apex_radius];
         scene.at.ensure(radii != [0; 2], Reason::ZeroRadii)?;
         scene.inner(&self.bounds)

@@ -74,7 +74,7 @@ impl Primitive for Disc {
     fn validate(&self, scene: InScene<'_>) -> Result<(), BlobError> {
         let at = scene.at;
         scene.point(Field::Center, self.center)?;
-        self.check_ranges(at)?;
+        self.check_ranges(at.location())?;
         at.ensure(self.normal != [0; 3], Reason::ZeroNormal)?;
         scene.inner(&self.bounds)
     }

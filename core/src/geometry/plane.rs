@@ -135,7 +135,7 @@ impl Primitive for Plane {
 
     fn validate(&self, scene: InScene<'_>) -> Result<(), BlobError> {
         let at = scene.at;
-        self.check_ranges(at)?;
+        self.check_ranges(at.location())?;
         at.ensure(self.normal != [0; 3], Reason::ZeroNormal)
     }
 }

@@ -213,7 +213,7 @@ impl Primitive for Torus {
     fn validate(&self, scene: InScene<'_>) -> Result<(), BlobError> {
         let at = scene.at;
         scene.point(Field::Center, self.center)?;
-        self.check_ranges(at)?;
+        self.check_ranges(at.location())?;
         at.ensure(self.axis != [0; 3], Reason::ZeroAxis)?;
         let [major, minor] = [self.major_radius, self.minor_radius].map(i64::from);
         // The sum of both is the reach.

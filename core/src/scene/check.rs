@@ -45,7 +45,7 @@ fn check_lights(scene: &Scene<'_>) -> Result<(), BlobError> {
 pub(super) fn check_light(index: usize, light: &Light) -> Result<(), BlobError> {
     let section = SectionKind::Lights;
     let at = At { section, index };
-    light.check_ranges(at)?;
+    light.check_ranges(at.location())?;
     let most = if light.directional == 1 {
         ONE
     } else {
@@ -88,7 +88,7 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
 pub(super) fn check_material(index: usize, material: &Material) -> Result<(), BlobError> {
     let section = SectionKind::Materials;
     let at = At { section, index };
-    material.check_ranges(at)?;
+    material.check_ranges(at.location())?;
     at.ensure(material.spare == 0, Reason::SpareNotZero)
 }
 

@@ -4,7 +4,7 @@ use crate::accel::StructureViews;
 use crate::accel::space::Space;
 use crate::accel::stack::Entry;
 use crate::format::limits::DISPLAY_VALUES;
-use crate::format::range::{At, InHeader, Ranges, exactly};
+use crate::format::range::{At, Ranges, exactly};
 use crate::format::record::{ALIGNMENT, ENDIANNESS, Header, MAGIC, VERSION, View};
 use crate::format::{
     BlobError, Effects, Field, Indices, Location, Reason, SectionKind, Sections, Structure,
@@ -95,7 +95,7 @@ fn check_limits(header: &Header) -> Result<(), BlobError> {
     header_has(unknown == 0, Reason::UnknownStructures)?;
     let list = header.structures & Structure::List.bit();
     header_has(list != 0, Reason::MissingList)?;
-    header.check_ranges(InHeader)?;
+    header.check_ranges(Location::Header)?;
     let stack_bytes = u32::from(header.stack_depth) * size_of::<Entry>() as u32;
     exactly(Field::StackBytes, header.stack_bytes, stack_bytes)?;
     let storage_bits = if header.lattice_bits <= 16 { 16 } else { 24 };
@@ -131,7 +131,7 @@ fn the_view<'a>(sections: &Sections<'a>) -> Result<&'a View, BlobError> {
 pub(super) fn check_view(view: &View) -> Result<(), BlobError> {
     let section = SectionKind::View;
     let at = At { section, index: 0 };
-    view.check_ranges(at)?;
+    view.check_ranges(at.location())?;
     if !DISPLAY_VALUES && view.display_values != 0 {
         let missing = "display-values";
         return Err(BlobError::MissingPart { missing });

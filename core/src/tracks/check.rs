@@ -15,7 +15,7 @@ pub(super) fn check(
 ) -> Result<(), BlobError> {
     let section = SectionKind::Timeline;
     let timeline = At { section, index: 0 };
-    records.timeline.check_ranges(timeline)?;
+    records.timeline.check_ranges(timeline.location())?;
     let mut next = Taken::default();
     let mut last = None;
     let mut camera = 0_u32;
@@ -106,7 +106,7 @@ fn check_track(
         _ => true,
     };
     at.ensure(fits, Reason::WrongLight)?;
-    track.check_ranges(at)?;
+    track.check_ranges(at.location())?;
     Ok(target)
 }
 

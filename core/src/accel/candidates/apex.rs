@@ -321,7 +321,7 @@ impl<'a> Records<'a> for Views<'a> {
         for (index, point) in self.points.iter().enumerate() {
             let section = SectionKind::ApexPoints;
             let at = At { section, index };
-            point.check_ranges(at)?;
+            point.check_ranges(at.location())?;
             for window in point.windows {
                 if window != Apex::NO_WINDOW {
                     at.within(Field::Window, window.into(), 0, last)?;
@@ -331,7 +331,7 @@ impl<'a> Records<'a> for Views<'a> {
         for (index, direction) in self.directions.iter().enumerate() {
             let section = SectionKind::ApexDirections;
             let at = At { section, index };
-            direction.check_ranges(at)?;
+            direction.check_ranges(at.location())?;
             at.within(Field::Window, direction.window.into(), 0, last)?;
         }
         let mut next: u32 = 0;
@@ -340,7 +340,7 @@ impl<'a> Records<'a> for Views<'a> {
             let at = At { section, index };
             let first = next.into();
             at.within(Field::FirstCell, window.first_cell.into(), first, first)?;
-            window.check_ranges(at)?;
+            window.check_ranges(at.location())?;
             let cells = u32::from(window.cells[0]) * u32::from(window.cells[1]);
             // A table has fewer cells than a blob bytes.
             next = next.saturating_add(cells);
