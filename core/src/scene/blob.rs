@@ -23,8 +23,7 @@ pub struct Scene<'a> {
     pub(in crate::scene) object_first: Indices<'a>,
     pub(in crate::scene) object_material: Indices<'a>,
     pub(in crate::scene) order: Indices<'a>,
-    /// What the scene requires: the bits of [`Effects`], as few as there are.
-    pub(in crate::scene) effects: u16,
+    pub(in crate::scene) effects: Effects,
     /// Whether any primitive's test needs the norm of the ray's direction.
     pub(crate) needs_norm: bool,
     /// Whether any primitive is in no structure because it has no box.
@@ -101,7 +100,7 @@ impl<'a> Scene<'a> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn effects(&self) -> Effects {
-        Effects(self.effects.into())
+        self.effects
     }
 
     /// Entries that the traversal stack needs.

@@ -60,7 +60,7 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// If a number is out of its range, or this build lacks an effect that a light calls for.
     pub fn with_lights(&self, lights: &'a [Light]) -> Result<Self, BlobError> {
-        let mut effects = self.effects();
+        let mut effects = self.effects;
         for (index, light) in lights.iter().enumerate() {
             check_light(index, light)?;
             if self.lights.is_empty() {
@@ -69,7 +69,7 @@ impl<'a> Scene<'a> {
         }
         check_available(effects)?;
         Ok(Self {
-            effects: effects.0 as u16,
+            effects,
             lights,
             ..*self
         })
@@ -105,14 +105,14 @@ impl<'a> Scene<'a> {
                 expected: self.materials.len(),
             });
         }
-        let mut effects = self.effects();
+        let mut effects = self.effects;
         for (index, material) in materials.iter().enumerate() {
             check_material(index, material)?;
             effects = effects.with(material.effects());
         }
         check_available(effects)?;
         Ok(Self {
-            effects: effects.0 as u16,
+            effects,
             materials,
             ..*self
         })

@@ -67,7 +67,7 @@ pub(crate) fn scene<'a>(
             simd: WideOnly::new(SimdLevel::default),
         },
         structures: StructureViews::read(sections)?,
-        effects: header.effects as u16,
+        effects: Effects(header.effects),
         view,
         lights: sections.records(SectionKind::Lights)?,
         materials: sections.records(SectionKind::Materials)?,
@@ -138,6 +138,3 @@ pub(super) fn check_view(view: &View) -> Result<(), BlobError> {
     }
     Ok(())
 }
-
-// A scene keeps them in 16 bits.
-const _: () = assert!(Effects::ALL.0 <= u16::MAX as u32);
