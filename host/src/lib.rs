@@ -11,7 +11,7 @@
 //! | know the boards that blobs are for | [`measure::board`] |
 //! | write a blob as a Rust module | [`emit`] |
 //! | render a blob on all cores | [`render`], then [`picture`] to encode what comes out |
-//! | change the camera and the lights of a blob | [`live`] |
+//! | change the camera and the lights of a blob | [`scene::Camera::in_blob`], [`scene::Light::in_blob`] |
 //! | know a scene at a time of its tracks | [`state`] |
 //! | compare structures on a scene | [`compare`] |
 //! | put parts of a picture together, and pictures into an animation | [`merge`], [`animation`] |
