@@ -130,13 +130,12 @@ fn a_camera_at_run_time_is_the_one_that_is_compiled() {
             let other = built(&file);
             let compiled = other.scene().expect("a scene");
             let coordinates = |scene: &Scene<'_>| {
-                (
-                    scene.header().coordinate_shift,
-                    scene.header().unit_exponent,
-                )
+                let header = scene.header();
+                let origin = header.origin.map(f64::to_bits);
+                (header.coordinate_shift, header.unit_exponent, origin)
             };
             if coordinates(&compiled) != coordinates(&scene) {
-                // For an eye so far away coordinates are coarser; so is the lattice of planes alone.
+                // For an eye so far away coordinates are coarser; planes alone have another lattice.
                 continue;
             }
             compared += 1;
