@@ -13,6 +13,9 @@ pub(crate) type WideOnly<T> = InSomeBuilds<T, { WIDE as usize }>;
 pub(crate) type AllStructuresOnly<T> =
     InSomeBuilds<T, { cfg!(feature = "all-structures") as usize }>;
 
+/// A value that only builds with the code for instances hold.
+pub(crate) type InstancesOnly<T> = InSomeBuilds<T, { crate::format::limits::INSTANCES as usize }>;
+
 /// A value that builds hold for which `COUNT` is 1; it has no size where `COUNT` is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct InSomeBuilds<T, const COUNT: usize>([T; COUNT]);

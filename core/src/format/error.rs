@@ -56,6 +56,13 @@ pub enum BlobError {
         /// The structure that leads to it.
         needed_by: Structure,
     },
+    /// The blob has other parts than those that it was loaded with.
+    Parts {
+        /// Parts that were given.
+        found: usize,
+        /// Parts that the blob has.
+        expected: usize,
+    },
     /// The records of a section have a size that no record of its kind has.
     Stride {
         /// The section.
@@ -195,6 +202,11 @@ impl fmt::Display for BlobError {
                  `gridel build`",
                 needed_by.name(),
                 missing.name()
+            ),
+            BlobError::Parts { found, expected } => write!(
+                f,
+                "the blob has {expected} parts and was loaded with {found}: load its parts by \
+                 `Parts::from_bytes` and the scene by `Scene::with_parts`"
             ),
             BlobError::Stride {
                 section,

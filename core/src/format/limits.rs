@@ -36,6 +36,15 @@ pub const FARTHEST_HIT: i64 = 1 << 62;
 /// So some point of it is a length in every format, with as much to spare.
 pub const FARTHEST_POINT: i64 = 1 << 25;
 
+/// Most instances of a scene.
+pub const MAX_INSTANCES: usize = 1 << 20;
+
+/// Most levels of the hierarchy above instances.
+pub const MAX_INSTANCE_LEVELS: usize = 24;
+
+/// The powers of two by which an instance scales from scene units to units of its part.
+pub const INSTANCE_EXPONENT: [i64; 2] = [-4, 18];
+
 /// The narrowest and the widest [angle](crate::Angle) that a camera of a track sees.
 pub const FIELD_OF_VIEW: [i32; 2] = [2, i32::MAX];
 
@@ -50,3 +59,6 @@ pub(crate) const WIDE_INDICES: bool = cfg!(feature = "wide-indices");
 
 /// Whether this build holds the code for shapes without bounds.
 pub(crate) const UNBOUNDED: bool = cfg!(feature = "unbounded");
+
+/// Whether this build holds the code for parts and their instances.
+pub(crate) const INSTANCES: bool = cfg!(feature = "instances");

@@ -8,6 +8,7 @@ pub mod cluster;
 pub(crate) mod effects;
 mod error;
 mod index;
+pub mod instance;
 pub(crate) mod kind;
 pub mod layout;
 mod leaf;

@@ -129,6 +129,14 @@ texts! {
         FieldOfView => "field of view",
         Rotation => "rotation",
         RotationAngle => "angle to the next rotation",
+        // Parts and instances.
+        Parts => "number of parts",
+        Start => "start",
+        Length => "length",
+        MatrixEntry => "matrix entry",
+        InstanceExponent => "exponent",
+        Part => "part",
+        Instance => "instance",
     }
 }
 
@@ -185,6 +193,12 @@ texts! {
         TrackOrder => "it does not follow the track before it in the order of targets and numbers",
         WrongLight => "its light is of the other kind, which has no such property",
         ZeroRotation => "its rotation has length 0",
+        // Parts and instances.
+        NotRotation => "its matrix is not a rotation times a factor from 1/2 to 1",
+        BoxTooSmall => "its box does not hold its part",
+        OtherStructures => "its structures are not those of the scene",
+        UnboundedPart => "it has a shape without bounds",
+        OtherPart => "the part that was given is not the one in the blob",
         CameraInPart => "its camera lacks tracks: those of a camera are eye and field of view with either target and up or rotation, and orbit only with a target",
     }
 }

@@ -180,6 +180,17 @@ macro_rules! sections {
             TrackTimes = 66, "track-times", [i32], "key" of "tracks";
             /// The [values](crate::format::track) of the keys of all tracks, `i32` each.
             TrackWords = 67, "track-words", [i32], "word" of "tracks";
+            /// [`Part`](crate::format::instance::Part)s.
+            Parts = 68, "parts", [instance::Part], "part" of "";
+            /// The blobs of all parts, one behind the other, in words of [`ALIGNMENT`](crate::format::record::ALIGNMENT)
+            /// bytes.
+            PartBlobs = 69, "part-blobs", [[u32; 4]], "word" of "parts";
+            /// [`Instance`](crate::format::instance::Instance)s.
+            Instances = 70, "instances", [instance::Instance], "instance" of "";
+            /// [`Pair`](crate::format::record::Pair)s of the hierarchy above the instances, whose leaves are instances.
+            InstancePairs = 71, "instance-pairs", [record::Pair], "pair" of "instances";
+            /// For each instance, its number in scene-file order. Absent where they are in that order.
+            InstanceOrder = 72, "instance-order", [u8, u16, [u8; 3], u32], "instance" of "instance-order";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

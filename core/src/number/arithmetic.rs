@@ -2,9 +2,10 @@
 
 use crate::number::convert::Convert;
 use crate::number::error_bounds::ErrorBounds;
+use crate::number::powers::Powers;
 use crate::number::vectors::Vectors;
 
 /// The arithmetic of a number format. Kernels of rays require more: see [`Number`](crate::number::Arithmetic).
-pub trait Arithmetic: Convert + Vectors + ErrorBounds {}
+pub trait Arithmetic: Convert + Vectors + ErrorBounds + Powers {}
 
-impl<N: Convert + Vectors + ErrorBounds> Arithmetic for N {}
+impl<N: Convert + Vectors + ErrorBounds + Powers> Arithmetic for N {}

@@ -6,6 +6,7 @@
 use crate::axis::pick;
 use crate::number::Convert;
 use crate::number::ErrorBounds;
+use crate::number::Powers;
 use crate::number::Products;
 use crate::number::Scalar;
 use crate::number::Vectors;
@@ -392,6 +393,21 @@ macro_rules! float_number {
             #[inline(always)]
             fn scale_down(self, _: u32) -> Self {
                 self
+            }
+        }
+
+        impl Powers for $float {
+            fn far_of_product(product: Self, exponent: i32) -> Self {
+                Self::far_times_power(product, exponent)
+            }
+
+            fn far_times_power(wide: Self, exponent: i32) -> Self {
+                let power = 1_u32.wrapping_shl(exponent.unsigned_abs()) as Self;
+                if exponent < 0 {
+                    wide * (1.0 / power)
+                } else {
+                    wide * power
+                }
             }
         }
 

@@ -4,10 +4,11 @@ use crate::accel::Number;
 use crate::format::Leaf;
 use crate::format::limits::UNBOUNDED;
 use crate::observe::event::QueryHit;
+use crate::query::placed::{self, InInstance};
 use crate::query::search::Candidate;
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::target::inline_on_hosts;
+use crate::target::{InstancesOnly, inline_on_hosts};
 
 /// The first primitive that a ray meets, and its t: a hit without its surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +18,8 @@ pub struct PrimitiveHit<N: Number> {
     /// The primitive, counted in scene-file order over all objects.
     pub primitive: u32,
     pub(super) best: Candidate<N>,
+    /// Where it lies in the scene if it is an instance's; `best` is then counted in the part.
+    pub(super) placed: InstancesOnly<Option<InInstance<N>>>,
 }
 
 impl<N: Number> PrimitiveHit<N> {
@@ -38,6 +41,9 @@ impl<N: Number> PrimitiveHit<N> {
         /// # Ok::<(), Box<dyn std::error::Error>>(())
         /// ```
         pub fn hit(&self, scene: &Scene<'_>, ray: &Ray<N>) -> Option<Hit<N>> {
+            if let Some(Some(instance)) = self.placed.get() {
+                return placed::hit(self, instance, scene, ray);
+            }
             let best = self.best;
             let point = ray.at(best.t);
             let (surface, front) = scene
@@ -59,6 +65,7 @@ impl<N: Number> PrimitiveHit<N> {
                     count: 1,
                 }
                 .to_word(),
+                instance: InstancesOnly::new(|| NO_INSTANCE),
             })
         }
     );
@@ -96,10 +103,15 @@ pub struct Hit<N: Number> {
     /// No other object and no extent of the scene counts.
     pub error: N,
     /// Whether `point` lies on the surface exactly.
-    is_exact: bool,
+    pub(super) is_exact: bool,
     /// The primitive by kind and slot, as a leaf's word, whichever structure found it.
-    place: u32,
+    pub(super) place: u32,
+    /// The instance that it is part of.
+    pub(super) instance: InstancesOnly<u32>,
 }
+
+/// The instance of a hit of the scene's own objects.
+const NO_INSTANCE: u32 = u32::MAX;
 
 impl<N: Number> Hit<N> {
     /// Returns the origin for a ray that goes on from here on the normal's side and must not meet this surface again:
@@ -141,6 +153,9 @@ impl<N: Number> Hit<N> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn inside(&self, scene: &Scene<'_>) -> [N; 3] {
+        if let Some(instance) = self.instance() {
+            return placed::inside(self, instance, scene);
+        }
         let surface = [self.point, self.normal];
         match Leaf::from_word(self.place) {
             Some(Leaf { kind, first, .. }) => {
@@ -178,6 +193,13 @@ impl<N: Number> Hit<N> {
         } else {
             [x, y]
         }
+    }
+
+    /// The place of the instance that was hit among the scene's [instances](Scene::instances); `None` for a hit of the
+    /// scene's own objects.
+    pub fn instance(&self) -> Option<u32> {
+        let instance = self.instance.get().copied()?;
+        (instance != NO_INSTANCE).then_some(instance)
     }
 
     /// The origin for a ray that leads away from the surface on the normal's side and has a t above 0: the point itself

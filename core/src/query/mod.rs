@@ -7,6 +7,7 @@ mod clusters;
 #[cfg(feature = "all-structures")]
 mod dynamic;
 mod hit;
+mod placed;
 mod search;
 mod unbounded;
 
@@ -15,12 +16,12 @@ pub use hit::{Hit, PrimitiveHit};
 use crate::accel::cull::Culling;
 use crate::accel::stack::StackView;
 use crate::accel::{Accel, Number};
-use crate::format::limits::UNBOUNDED;
+use crate::format::limits::{INSTANCES, UNBOUNDED};
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::target::{inline_on_hosts, inline_on_hosts_hint_on_boards};
+use crate::target::{InstancesOnly, inline_on_hosts, inline_on_hosts_hint_on_boards};
 use search::{Candidate, Search};
 
 inline_on_hosts_hint_on_boards!(
@@ -69,6 +70,21 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
     if C::ENABLED {
         count.event(ray.query(any));
     }
+    if INSTANCES && !scene.instances().is_empty() {
+        return search_placed::<N, A, C, ANY>(scene, ray, stack, count, any);
+    }
+    search_own::<N, A, C, ANY>(scene, ray, stack, count, any)
+}
+
+/// The nearest primitive among the scene's own objects; see [`search`].
+#[inline(always)]
+fn search_own<N: Number, A: Accel, C: Observer, const ANY: bool>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    stack: &mut StackView,
+    count: &mut C,
+    any: bool,
+) -> Option<PrimitiveHit<N>> {
     if UNBOUNDED && scene.has_unbounded {
         return search_all::<N, A, C, ANY>(scene, ray, stack, count, any);
     }
@@ -77,7 +93,29 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
         t: best.t.widen() + ray.start_t,
         primitive: scene.primitive_at(best.place),
         best,
+        placed: InstancesOnly::new(|| None),
     })
+}
+
+/// The nearest primitive on a ray in a scene with instances; see [`search`].
+#[cold]
+#[inline(never)]
+fn search_placed<N: Number, A: Accel, C: Observer, const ANY: bool>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    stack: &mut StackView,
+    count: &mut C,
+    any: bool,
+) -> Option<PrimitiveHit<N>> {
+    let own = if scene.has_own() {
+        search_own::<N, A, C, ANY>(scene, ray, stack, count, any)
+    } else {
+        None
+    };
+    if any && own.is_some() {
+        return own;
+    }
+    placed::nearest::<N, A, C, ANY>(scene, ray, own, stack, count, any)
 }
 
 /// The nearest primitive on a ray in a scene with unbounded shapes; see [`search`].
@@ -110,6 +148,7 @@ fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(
         t,
         primitive: scene.primitive_at(best.place),
         best,
+        placed: InstancesOnly::new(|| None),
     })
 }
 

@@ -10,6 +10,7 @@ use crate::format::{
 use crate::number::Fixed;
 use crate::number::Scalar;
 use crate::scene::Scene;
+use crate::scene::parts::Placed;
 
 /// Proves that no byte of a blob was changed since it was written.
 pub(crate) fn check_sum(blob: &[u8], header: &Header) -> Result<(), BlobError> {
@@ -29,6 +30,9 @@ pub(crate) fn check<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<()
     check_materials(scene)?;
     scene.space.shapes.validate(scene.space.header)?;
     check_objects(scene)?;
+    if let Some(placed) = scene.placed.get() {
+        placed.check(scene.space.header, sections)?;
+    }
     check_structures(scene, sections)
 }
 
@@ -134,7 +138,8 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
     }
     let order = &scene.order;
     let slots = scene.space.shapes.total();
-    if !order.is_empty() || slots as i64 != primitives {
+    let own = scene.own_primitives();
+    if !order.is_empty() || slots as i64 != own {
         let section = SectionKind::Order;
         if order.len() != slots {
             return Err(BlobError::Count {
@@ -145,7 +150,7 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
         }
         for index in 0..order.len() {
             let value = order.get(index).unwrap_or(0).into();
-            At { section, index }.within(Field::Primitive, value, 0, primitives - 1)?;
+            At { section, index }.within(Field::Primitive, value, 0, own - 1)?;
         }
     }
     Ok(())
@@ -159,6 +164,8 @@ fn check_structures<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<()
         longest,
     )?;
     let (depth, all_proved) = scene.structures.check(&scene.space, sections)?;
+    let parts = scene.placed.get().map_or(0, Placed::stack_depth);
+    let depth = depth.max(parts);
     let found = scene.space.header.stack_depth;
     if all_proved || usize::from(found) < depth {
         exactly(Field::StackDepth, found.into(), depth as u32)?;

@@ -3,7 +3,7 @@
 use crate::format::{BlobError, Sections};
 use crate::scene::blob::Scene;
 use crate::scene::prevalidated::Prevalidated;
-use crate::scene::{check, read};
+use crate::scene::read;
 
 impl<'a> Scene<'a> {
     /// Checks a blob and returns a view of it.
@@ -32,17 +32,10 @@ impl<'a> Scene<'a> {
     ///
     /// # Errors
     /// If anything of this fails to hold, or the scene requires an effect, or holds a kind of
-    /// primitive, that this build was compiled without. Shortcomings of the scene itself (no lights, no objects) are no errors.
+    /// primitive, that this build was compiled without, or the blob has parts: those are loaded by
+    /// [`Scene::with_parts`]. Shortcomings of the scene itself (no lights, no objects) are no errors.
     pub fn from_bytes(blob: &'a [u8]) -> Result<Self, BlobError> {
-        let header = read::header(blob)?;
-        check::check_sum(blob, header)?;
-        let sections = Sections::read(blob, header.section_count)?;
-        // Checked where it lies: boards have no stack for a copy.
-        let scene = read::scene(header, &sections);
-        if let Ok(scene) = &scene {
-            check::check(scene, &sections)?;
-        }
-        scene
+        Self::with_parts(blob, &[])
     }
 
     /// Returns the view of a [prevalidated](Prevalidated) blob, in constant time.
@@ -63,6 +56,6 @@ impl<'a> Scene<'a> {
     pub fn prevalidated(blob: Prevalidated<'a>) -> Result<Self, BlobError> {
         let header = read::header(blob.blob)?;
         let sections = Sections::read(blob.blob, header.section_count)?;
-        read::scene(header, &sections)
+        read::scene(header, &sections, &[])
     }
 }

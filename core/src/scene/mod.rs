@@ -10,11 +10,13 @@ mod coordinates;
 mod features;
 mod load;
 mod names;
+pub(crate) mod parts;
 mod prevalidated;
 mod read;
 
 pub use blob::Scene;
 pub use coordinates::Position;
 pub use names::Names;
+pub use parts::{Parts, part_blobs};
 pub use prevalidated::Prevalidated;
 pub(crate) use read::header;

@@ -11,6 +11,7 @@ use crate::format::{
 };
 use crate::geometry::Shapes;
 use crate::scene::Scene;
+use crate::scene::parts::Placed;
 use crate::simd::SimdLevel;
 use crate::target::{AllStructuresOnly, WideOnly};
 use core::mem::size_of;
@@ -49,11 +50,17 @@ pub(crate) fn header(blob: &[u8]) -> Result<&Header, BlobError> {
     Ok(header)
 }
 
+/// The header of a part, of which nothing is proved.
+pub(in crate::scene) fn header_of_part(blob: &[u8]) -> Option<&Header> {
+    bytemuck::try_from_bytes(blob.get(..size_of::<Header>())?).ok()
+}
+
 /// The view of a blob. Of its records only the one of the camera is read; that all others lie in the
 /// blob is proved, and nothing of what is in them.
 pub(crate) fn scene<'a>(
     header: &'a Header,
     sections: &Sections<'a>,
+    parts: &'a [Scene<'a>],
 ) -> Result<Scene<'a>, BlobError> {
     check_limits(header)?;
     let view = the_view(sections)?;
@@ -74,6 +81,7 @@ pub(crate) fn scene<'a>(
         object_first: Indices::read(sections, SectionKind::ObjectFirst)?,
         object_material: Indices::read(sections, SectionKind::ObjectMaterial)?,
         order: Indices::read(sections, SectionKind::Order)?,
+        placed: Placed::read(sections, parts)?,
         needs_norm: shapes.needs_norm(),
         has_unbounded: shapes.has_unbounded(),
     })

@@ -80,10 +80,7 @@ impl Order {
 
     /// Takes the current node, a pair.
     #[inline(always)]
-    pub(in crate::accel) const fn pair(
-        &mut self,
-        [left, right]: [Node; 2],
-    ) -> Result<(), BlobError> {
+    pub(crate) const fn pair(&mut self, [left, right]: [Node; 2]) -> Result<(), BlobError> {
         if let Err(error) = self.child(left.is_leaf(), left.number()) {
             return Err(error);
         }

@@ -4,6 +4,7 @@ use crate::number::Convert;
 use crate::number::ErrorBounds;
 use crate::number::Fixed;
 use crate::number::Format;
+use crate::number::Powers;
 use crate::number::Products;
 use crate::number::Scalar;
 use crate::number::Vectors;
@@ -311,6 +312,16 @@ impl Vectors for Fixed {
         } else {
             Fixed(round_off(self.0 as i64, bits) as i32)
         }
+    }
+}
+
+impl Powers for Fixed {
+    fn far_of_product(product: Product, exponent: i32) -> Product {
+        product.shifted(exponent.wrapping_sub(RATIO_BITS as i32))
+    }
+
+    fn far_times_power(wide: Product, exponent: i32) -> Product {
+        wide.shifted(exponent)
     }
 }
 

@@ -103,6 +103,17 @@ impl Product {
         }
     );
 
+    /// The product times a power of two: up without a check, or down and rounded to nearest, away from zero at a tie.
+    pub(super) fn shifted(self, exponent: i32) -> Self {
+        let bits = exponent.unsigned_abs() & 63;
+        if exponent >= 0 {
+            return Self(self.0.wrapping_shl(bits));
+        }
+        let half = (1_u64 << bits >> 1) as i64;
+        let rounded = self.0.wrapping_add(half).wrapping_add(self.0 >> 63);
+        Self(rounded >> bits)
+    }
+
     /// [`Products::far_over`](crate::number::Products::far_over).
     pub(super) fn over_ratios(self, denominator: Self) -> Self {
         let sign = self.0 ^ denominator.0;

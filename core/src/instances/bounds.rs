@@ -1,0 +1,85 @@
+//! The box of an instance.
+
+use crate::format::Reason;
+use crate::format::instance::{Instance, MATRIX_BITS};
+use crate::format::record::UnitBox;
+
+/// How far the squares of a matrix' rows, and the products of two rows, may be off: 2^-20 of the largest, with twice the
+/// fraction bits of an entry.
+const TOLERANCE: i64 = 1 << (2 * MATRIX_BITS - 20);
+
+/// Units by which a box is widened: for what a matrix' tolerance and rounding move, less than a unit each, and for a
+/// hit that lies beside its part's box.
+const MARGIN: i64 = 3;
+
+/// The square of a row's length, with twice the fraction bits of an entry. Entries are within their range.
+fn dot([a, b, c]: [i32; 3], [x, y, z]: [i32; 3]) -> i64 {
+    let product = |a: i32, b: i32| i64::from(a).wrapping_mul(b.into());
+    product(a, x)
+        .wrapping_add(product(b, y))
+        .wrapping_add(product(c, z))
+}
+
+/// An error unless a matrix is a rotation times a factor from 1/2 to 1, within a [tolerance](TOLERANCE).
+pub(crate) fn check_rotation(matrix: &[[i32; 3]; 3]) -> Result<(), Reason> {
+    let &[x, y, z] = matrix;
+    let square = dot(x, x);
+    let largest = 1_i64 << (2 * MATRIX_BITS);
+    let is_small = |difference: i64| difference.wrapping_abs() <= TOLERANCE;
+    let scaled = square >= largest / 4 - TOLERANCE && square <= largest + TOLERANCE;
+    let even = is_small(dot(y, y).wrapping_sub(square)) && is_small(dot(z, z).wrapping_sub(square));
+    let upright = is_small(dot(x, y)) && is_small(dot(y, z)) && is_small(dot(z, x));
+    // Near enough to a rotation or a reflection that the rounded product tells which.
+    let wedge = |i: usize, j: usize| {
+        let product = |a: i32, b: i32| i64::from(a).wrapping_mul(b.into());
+        (product(x[i], y[j]).wrapping_sub(product(x[j], y[i])) >> MATRIX_BITS) as i32
+    };
+    let cross = [wedge(1, 2), wedge(2, 0), wedge(0, 1)];
+    if scaled && even && upright && dot(cross, z) > 0 {
+        Ok(())
+    } else {
+        Err(Reason::NotRotation)
+    }
+}
+
+/// The box in the scene around the box of a part; `None` where it would leave the scene's lattice. The matrix is a
+/// [rotation](check_rotation).
+pub(crate) fn around(instance: &Instance, part: &UnitBox) -> Option<UnitBox> {
+    let [x, y, z] = instance.matrix;
+    let square = dot(x, x) >> 16;
+    // The inverse is the matrix turned over, divided by the square: in 1/256 unit, from half units.
+    let back = |sum: i64, rounded: i64| {
+        let shift = 14 - i32::from(instance.exponent);
+        let scaled = if shift >= 0 {
+            sum.wrapping_shl(shift.unsigned_abs())
+        } else {
+            sum >> (shift.unsigned_abs() & 31)
+        };
+        scaled
+            .checked_div(square)
+            .map(|it| it.wrapping_add(rounded))
+    };
+    let [middle, half] = [
+        part.0
+            .map(|[low, high]| i32::from(low).wrapping_add(high.into())),
+        part.0
+            .map(|[low, high]| i32::from(high).wrapping_sub(low.into())),
+    ];
+    let mut bounds = UnitBox([[0; 2]; 3]);
+    for (axis, sides) in bounds.0.iter_mut().enumerate() {
+        let column = [x[axis], y[axis], z[axis]];
+        let middle = back(dot(column, middle), i64::from(instance.center[axis]))?;
+        let half = back(dot(column.map(i32::wrapping_abs), half), 2)?;
+        let [low, high] = [
+            middle.wrapping_sub(half) >> 8,
+            middle.wrapping_add(half) >> 8,
+        ];
+        let low = i16::try_from(low.wrapping_sub(MARGIN)).ok()?;
+        let high = i16::try_from(high.wrapping_add(1).wrapping_add(MARGIN)).ok()?;
+        if low == i16::MIN {
+            return None;
+        }
+        *sides = [low, high];
+    }
+    Some(bounds)
+}

@@ -1,0 +1,190 @@
+//! The map of an instance: rays into the part, hits back into the scene.
+//!
+//! All numbers of a map are integers that every format holds exactly; what is rounded is what the map is applied to.
+//! The power of two stays apart, so that ratios are ratios.
+
+use crate::format::instance::{Instance, MATRIX_BITS};
+use crate::format::record::UnitBox;
+use crate::number::{Arithmetic, extent};
+use crate::ray::Ray;
+
+/// The map of an instance, in a number format.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Map<N> {
+    rows: [[N; 3]; 3],
+    center: [N; 3],
+    exponent: i32,
+}
+
+/// A ray in the units of a part.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedRay<N: Arithmetic> {
+    pub(crate) ray: Ray<N>,
+    /// How much longer t is in the part, without the map's power of two: a product of two ratios, above 1/4.
+    stretch: N::Wide,
+    exponent: i32,
+}
+
+impl<N: Arithmetic> Map<N> {
+    #[inline(always)]
+    pub(crate) fn new(instance: &Instance) -> Self {
+        let entry = |steps: i32| N::ratio(steps.wrapping_shl(30 - MATRIX_BITS));
+        let row = |[x, y, z]: [i32; 3]| [entry(x), entry(y), entry(z)];
+        let [first, second, third] = instance.matrix;
+        let [x, y, z] = instance.center;
+        Self {
+            rows: [row(first), row(second), row(third)],
+            center: [N::from_lattice(x), N::from_lattice(y), N::from_lattice(z)],
+            exponent: instance.exponent.into(),
+        }
+    }
+
+    #[inline(always)]
+    fn rotate(&self, v: [N; 3]) -> [N::Wide; 3] {
+        let [x, y, z] = self.rows;
+        [N::dot(x, v), N::dot(y, v), N::dot(z, v)]
+    }
+
+    /// A place as seen from the center.
+    #[inline(always)]
+    fn apart(&self, [x, y, z]: [N; 3]) -> [N; 3] {
+        let [a, b, c] = self.center;
+        [x - a, y - b, z - c]
+    }
+
+    /// A place of the scene in the part.
+    #[inline(always)]
+    pub(crate) fn point(&self, place: [N; 3]) -> [N::Wide; 3] {
+        let [x, y, z] = self.rotate(self.apart(place));
+        let far = |product: N::Wide| N::far_of_product(product, self.exponent);
+        [far(x), far(y), far(z)]
+    }
+
+    /// A ray of the scene in the part, whose box is given, with hits up to a t that is counted from the ray's start.
+    /// `None` if it misses the part's surroundings.
+    #[inline(always)]
+    pub(crate) fn ray(&self, bounds: &UnitBox, ray: &Ray<N>, tmax: N) -> Option<PlacedRay<N>> {
+        let direction = self.rotate(ray.slope);
+        let zero = N::Wide::default();
+        let magnitude = |wide: N::Wide| if wide < zero { -wide } else { wide };
+        let [x, y, z] = direction.map(magnitude);
+        let larger = if x > y { x } else { y };
+        let stretch = if larger > z { larger } else { z };
+        let exponent = self.exponent;
+        let into = |t: N| {
+            let scaled = N::wide_scale(t.widen(), N::from_wide(stretch));
+            N::far_times_power(scaled, exponent)
+        };
+        // What starts beside a surface stays beside it.
+        let tmin = if ray.tmin > N::ZERO {
+            let (mapped, beside) = (into(ray.tmin), N::step_beside(N::ZERO).widen());
+            if mapped > beside { mapped } else { beside }
+        } else {
+            zero
+        };
+        let origin = self.point(ray.origin);
+        let ray = Ray::new(bounds, origin, direction, tmin, into(tmax)).ok()?;
+        Some(PlacedRay {
+            ray,
+            stretch,
+            exponent,
+        })
+    }
+
+    /// A normal of the part in the scene, and the part's units per unit along it, without the map's power of two.
+    #[inline(always)]
+    fn normal(&self, normal: [N; 3]) -> ([N; 3], N) {
+        let column = |k: usize| [self.rows[0][k], self.rows[1][k], self.rows[2][k]];
+        let component = |k: usize| N::from_wide(N::dot(column(k), normal));
+        N::normalize([component(0), component(1), component(2)])
+    }
+
+    /// A length of the part in the scene, along a normal.
+    #[inline(always)]
+    fn length(&self, length: N, along: N) -> N {
+        let length = length.div(along).widen();
+        N::narrow(N::far_times_power(length, self.exponent.wrapping_neg()))
+    }
+
+    /// The surface that a part's is in the scene: point, normal and error bound. `near` is the place on the scene's ray
+    /// at the hit's t.
+    ///
+    /// The point is the one of the mapped tangent plane next to `near`, so the part's rounding and the way there count,
+    /// and not how well the map can be inverted. **Error bound**, beside the part's own: mapping a place rounds each
+    /// coordinate by 4 u of three products, 12 u of its distance from the center in all, once here and once for the next
+    /// ray; the point and the start of that ray are rounded by 2 u of a coordinate each. In `fixed` a mapped coordinate
+    /// is rounded to a sub-step of the part.
+    pub(crate) fn surface(&self, near: [N; 3], surface: &PlacedSurface<N>) -> PlacedSurface<N> {
+        let (normal, along) = self.normal(surface.normal);
+        let there = self.point(near).map(N::narrow);
+        let [x, y, z] = surface.point;
+        let gap = [x - there[0], y - there[1], z - there[2]];
+        let gap = self.length(N::from_wide(N::dot(gap, surface.normal)), along);
+        let step = |k: usize| near[k] + gap * normal[k];
+        let point = [step(0), step(1), step(2)];
+        let mapped = N::error_bound(extent(self.apart(near)));
+        let beside = N::step_beside(extent(point));
+        let beside = beside + beside;
+        let own = self.length(surface.error + N::ABSOLUTE_ERROR, along);
+        PlacedSurface {
+            point,
+            normal,
+            error: own + mapped + mapped + beside + beside,
+        }
+    }
+
+    /// The inverse of [`surface`](Self::surface) for a place of the scene on it: that place, the normal and a length
+    /// along it, in the part.
+    pub(crate) fn into_part(&self, surface: &PlacedSurface<N>) -> PlacedSurface<N> {
+        let point = self.point(surface.point).map(N::narrow);
+        let mapped = self.rotate(surface.normal).map(N::from_wide);
+        let (normal, along) = N::normalize(mapped);
+        let error = N::far_times_power((surface.error * along).widen(), self.exponent);
+        PlacedSurface {
+            point,
+            normal,
+            error: N::narrow(error),
+        }
+    }
+
+    /// A way of the part in the scene: less than a few error bounds long, so that the matrix turned over is its inverse.
+    pub(crate) fn step(&self, way: [N; 3]) -> [N; 3] {
+        let (direction, length) = N::normalize(way);
+        let (direction, along) = self.normal(direction);
+        let length = self.length(length, along);
+        direction.map(|component| length * component)
+    }
+}
+
+/// A place on a surface, the normal there, and a length along it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedSurface<N> {
+    pub(crate) point: [N; 3],
+    pub(crate) normal: [N; 3],
+    pub(crate) error: N,
+}
+
+impl<N: Arithmetic> PlacedRay<N> {
+    /// A t of the part, counted from the mapped start, as one of the scene's ray, counted from its start.
+    #[inline(always)]
+    pub(crate) fn to_scene(&self, t: N::Wide) -> N {
+        let up = if self.exponent < 0 {
+            N::far_times_power(t, self.exponent.wrapping_neg())
+        } else {
+            t
+        };
+        let over = N::far_over(up, self.stretch);
+        N::narrow(if self.exponent < 0 {
+            over
+        } else {
+            N::far_times_power(over, self.exponent.wrapping_neg())
+        })
+    }
+}
+
+/// A t that no hit of an instance exceeds whose t in the scene is at most this one: what the ways there and back round.
+#[inline(always)]
+pub(crate) fn beyond<N: Arithmetic>(t: N) -> N {
+    let rounded = N::wide_over(t.widen(), 1 << 16) + N::far(4);
+    N::narrow(t.widen() + rounded)
+}

@@ -1,0 +1,300 @@
+//! Parts: blobs in a blob, loaded once and lent to the scene that places them.
+
+use crate::accel::stack::Entry;
+use crate::format::instance::{Instance, Part};
+use crate::format::limits::INSTANCES;
+use crate::format::range::{At, exactly};
+use crate::format::record::{ALIGNMENT, Header};
+use crate::format::{BlobError, Field, Indices, Location, Reason, SectionKind, Sections};
+use crate::instances::check::{check_instance, check_top};
+use crate::instances::top::Top;
+use crate::scene::{Scene, read};
+use crate::target::InstancesOnly;
+use heapless::Vec;
+
+/// The instances of a scene and the parts that they place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placed<'a> {
+    pub(crate) top: Top<'a>,
+    /// The numbers of instances in scene-file order; empty where they are in that order.
+    order: Indices<'a>,
+    pub(crate) directory: &'a [Part],
+    pub(crate) parts: &'a [Scene<'a>],
+}
+
+/// The parts of a blob, loaded: a view of a few hundred bytes for each, of at most `MOST`.
+///
+/// ```
+/// # static BLOB: &[u8] =
+/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+/// use gridel_core::{Parts, Scene};
+///
+/// // This blob has no parts; one with parts is loaded likewise.
+/// let parts = Parts::<4>::from_bytes(BLOB)?;
+/// let scene = Scene::with_parts(BLOB, &parts)?;
+/// assert_eq!(scene.instances().len(), 0);
+/// # Ok::<(), gridel_core::BlobError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Parts<'a, const MOST: usize>(Vec<Scene<'a>, MOST>);
+
+impl<'a, const MOST: usize> Parts<'a, MOST> {
+    /// Loads the parts of a blob, each with the checks of [`Scene::from_bytes`].
+    ///
+    /// # Errors
+    /// If a part is invalid, or there are more than `MOST`.
+    pub fn from_bytes(blob: &'a [u8]) -> Result<Self, BlobError> {
+        let mut parts = Vec::new();
+        for part in part_blobs(blob)? {
+            if parts.push(Scene::from_bytes(part)?).is_err() {
+                let found = part_blobs(blob)?.count() as u32;
+                exactly(Field::Parts, found, MOST as u32)?;
+            }
+        }
+        Ok(Self(parts))
+    }
+}
+
+impl<'a, const MOST: usize> core::ops::Deref for Parts<'a, MOST> {
+    type Target = [Scene<'a>];
+
+    fn deref(&self) -> &[Scene<'a>] {
+        &self.0
+    }
+}
+
+/// Returns the blobs of a blob's parts, in order, each a blob of its own.
+///
+/// ```
+/// # static BLOB: &[u8] =
+/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+/// assert_eq!(gridel_core::scene::part_blobs(BLOB)?.count(), 0);
+/// # Ok::<(), gridel_core::BlobError>(())
+/// ```
+///
+/// # Errors
+/// If header or section table are invalid, or a part does not lie in the section of parts.
+pub fn part_blobs<'a>(blob: &'a [u8]) -> Result<impl Iterator<Item = &'a [u8]>, BlobError> {
+    let header = read::header(blob)?;
+    let sections = Sections::read(blob, header.section_count)?;
+    let directory: &[Part] = sections.records(SectionKind::Parts)?;
+    let bytes = sections.get(SectionKind::PartBlobs).bytes;
+    check_directory(directory, bytes.len() / ALIGNMENT)?;
+    Ok(directory.iter().map(|part| blob_of(part, bytes)))
+}
+
+/// The bytes of a part; empty where it does not lie in the section.
+fn blob_of<'a>(part: &Part, bytes: &'a [u8]) -> &'a [u8] {
+    let start = (part.start as usize).saturating_mul(ALIGNMENT);
+    let end = start.saturating_add((part.length as usize).saturating_mul(ALIGNMENT));
+    let padded = bytes.get(start..end).unwrap_or_default();
+    // A blob's own length is not a multiple of the alignment; what it says is what its checks rely on.
+    let length =
+        read::header_of_part(padded).map_or(padded.len(), |header| header.blob_bytes as usize);
+    let needed = length.checked_next_multiple_of(ALIGNMENT);
+    if needed == Some(padded.len()) {
+        padded.get(..length).unwrap_or(padded)
+    } else {
+        padded
+    }
+}
+
+/// Proves that parts lie one behind the other and fill the section.
+fn check_directory(directory: &[Part], words: usize) -> Result<(), BlobError> {
+    let section = SectionKind::Parts;
+    let mut end = 0_i64;
+    for (index, part) in directory.iter().enumerate() {
+        let at = At { section, index };
+        at.within(Field::Start, part.start.into(), end, end)?;
+        let left = (words as i64).saturating_sub(end);
+        at.within(Field::Length, part.length.into(), 1, left)?;
+        at.ensure(part.spare == 0, Reason::SpareNotZero)?;
+        end = end.saturating_add(part.length.into());
+    }
+    if end != words as i64 {
+        let range = [end; 2];
+        let location = Location::Section(SectionKind::PartBlobs);
+        return Err(location.out_of_range(Field::Length, words as i64, range));
+    }
+    Ok(())
+}
+
+impl<'a> Placed<'a> {
+    /// Finds instances and parts. Proves nothing of what is in them but that the parts are the blob's.
+    pub(in crate::scene) fn read(
+        sections: &Sections<'a>,
+        parts: &'a [Scene<'a>],
+    ) -> Result<InstancesOnly<Self>, BlobError> {
+        let directory: &[Part] = sections.records(SectionKind::Parts)?;
+        if !INSTANCES && !directory.is_empty() {
+            let missing = "instances";
+            return Err(BlobError::MissingPart { missing });
+        }
+        if directory.len() != parts.len() {
+            let (found, expected) = (parts.len(), directory.len());
+            return Err(BlobError::Parts { found, expected });
+        }
+        let placed = Self {
+            top: Top {
+                instances: sections.records(SectionKind::Instances)?,
+                pairs: sections.records(SectionKind::InstancePairs)?,
+            },
+            order: Indices::read(sections, SectionKind::InstanceOrder)?,
+            directory,
+            parts,
+        };
+        Ok(InstancesOnly::new(|| placed))
+    }
+
+    /// The number, in scene-file order, of an instance.
+    pub(crate) fn number(&self, index: u32) -> u32 {
+        self.order.get(index as usize).unwrap_or(index)
+    }
+
+    /// The part of an instance.
+    #[inline(always)]
+    pub(crate) fn part(&self, instance: &Instance) -> Option<(&'a Scene<'a>, u32)> {
+        let number = usize::from(instance.part);
+        let part = self.parts.get(number)?;
+        Some((part, self.directory.get(number)?.first_primitive))
+    }
+
+    /// Proves parts, instances and the hierarchy above them; see [`Scene::with_parts`].
+    pub(in crate::scene) fn check(
+        &self,
+        header: &Header,
+        sections: &Sections<'a>,
+    ) -> Result<(), BlobError> {
+        let bytes = sections.get(SectionKind::PartBlobs).bytes;
+        check_directory(self.directory, bytes.len() / ALIGNMENT)?;
+        let section = SectionKind::Parts;
+        let mut next = i64::from(self.own_primitives(header.primitives));
+        for (index, (part, scene)) in self.directory.iter().zip(self.parts).enumerate() {
+            let at = At { section, index };
+            let held: *const u8 = blob_of(part, bytes).as_ptr();
+            let given: *const Header = scene.header();
+            at.ensure(core::ptr::eq(held.cast(), given), Reason::OtherPart)?;
+            at.within(
+                Field::FirstPrimitive,
+                part.first_primitive.into(),
+                next,
+                next,
+            )?;
+            next = next.saturating_add(scene.header().primitives.into());
+            let same = scene.header().structures == header.structures;
+            at.ensure(same, Reason::OtherStructures)?;
+            at.ensure(!scene.has_unbounded, Reason::UnboundedPart)?;
+        }
+        exactly(
+            Field::Primitive,
+            header.primitives,
+            next.clamp(0, u32::MAX.into()) as u32,
+        )?;
+        let section = SectionKind::Instances;
+        for (index, instance) in self.top.instances.iter().enumerate() {
+            let at = At { section, index };
+            let last = self.parts.len() as i64 - 1;
+            at.within(Field::Part, instance.part.into(), 0, last)?;
+            if let Some((part, _)) = self.part(instance) {
+                check_instance(index, instance, part.bounds())?;
+            }
+        }
+        check_top(&self.top, &header.bounds)?;
+        self.check_order()
+    }
+
+    fn check_order(&self) -> Result<(), BlobError> {
+        let (found, expected) = (self.order.len(), self.top.instances.len());
+        let section = SectionKind::InstanceOrder;
+        if found != 0 && found != expected {
+            return Err(BlobError::Count {
+                section,
+                found,
+                expected,
+            });
+        }
+        for index in 0..found {
+            let at = At { section, index };
+            let number = self.order.get(index).unwrap_or(0);
+            at.within(Field::Instance, number.into(), 0, expected as i64 - 1)?;
+        }
+        Ok(())
+    }
+
+    /// Number of primitives of the scene's own objects.
+    fn own_primitives(&self, all: u32) -> u32 {
+        self.directory
+            .first()
+            .map_or(all, |part| part.first_primitive)
+    }
+
+    /// Entries of the traversal stack that a walk through the deepest part needs.
+    pub(in crate::scene) fn stack_depth(&self) -> usize {
+        let depths = self.parts.iter().map(Scene::stack_depth);
+        depths.max().unwrap_or(0)
+    }
+}
+
+const _: () = assert!(size_of::<Entry>() == 12);
+
+impl<'a> Scene<'a> {
+    /// Checks a blob that has parts and returns a view of it. The parts are loaded before: by [`Parts`], or one by one
+    /// from their [blobs](part_blobs).
+    ///
+    /// Proves what [`Scene::from_bytes`] proves, and that every instance places a part by a rotation and a uniform
+    /// scale, that its box holds the placed part, and that the hierarchy above leads to every instance once.
+    ///
+    /// # Errors
+    /// If anything of this fails to hold, or these are not all parts of this blob in their order.
+    pub fn with_parts(blob: &'a [u8], parts: &'a [Scene<'a>]) -> Result<Self, BlobError> {
+        let header = read::header(blob)?;
+        crate::scene::check::check_sum(blob, header)?;
+        let sections = Sections::read(blob, header.section_count)?;
+        // Checked where it lies: boards have no stack for a copy.
+        let scene = read::scene(header, &sections, parts);
+        if let Ok(scene) = &scene {
+            crate::scene::check::check(scene, &sections)?;
+        }
+        scene
+    }
+
+    /// Number of primitives of the scene's own objects, to which structures lead.
+    pub(in crate::scene) fn own_primitives(&self) -> i64 {
+        let all = self.space.header.primitives;
+        let own = self
+            .placed
+            .get()
+            .map_or(all, |placed| placed.own_primitives(all));
+        own.into()
+    }
+
+    /// Whether the scene has objects of its own.
+    #[inline(always)]
+    pub(crate) fn has_own(&self) -> bool {
+        let parts = self.placed.get().map_or(&[][..], |placed| placed.directory);
+        parts.first().is_none_or(|part| part.first_primitive > 0)
+    }
+
+    /// The instances, in the order of the hierarchy above them.
+    pub fn instances(&self) -> &'a [Instance] {
+        self.placed.get().map_or(&[], |placed| placed.top.instances)
+    }
+
+    /// The number, in scene-file order, of an instance, given by its place among the [instances](Self::instances).
+    pub fn instance_number(&self, index: u32) -> u32 {
+        self.placed
+            .get()
+            .map_or(index, |placed| placed.number(index))
+    }
+
+    /// The parts that instances place.
+    pub fn parts(&self) -> &'a [Scene<'a>] {
+        self.placed.get().map_or(&[], |placed| placed.parts)
+    }
+
+    /// The number of the first primitive of a part among all primitives of the scene.
+    pub fn first_primitive_of_part(&self, part: usize) -> Option<u32> {
+        let directory = self.placed.get()?.directory;
+        directory.get(part).map(|part| part.first_primitive)
+    }
+}
