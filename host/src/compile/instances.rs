@@ -1,0 +1,222 @@
+//! Parts and instances: parts become blobs of their own, and placements become maps of integers.
+
+use super::instance_tree::{Tree, build};
+use super::section::{Section, indices, section};
+use super::{Compiled, CompileError, OnProgress, Options, Role, compile_as};
+use crate::scene::{Instance, Material, Object, Part, Scene, Shape};
+use crate::shape::{Lattice, exp2};
+use crate::table::printable;
+use glam::DVec3;
+use gridel_core::format::instance::{LARGEST_CENTER, MATRIX_BITS};
+use gridel_core::format::limits::{INSTANCE_EXPONENT, MAX_INSTANCES};
+use gridel_core::format::record::{ALIGNMENT, UnitBox};
+use gridel_core::format::{SectionKind, instance};
+
+/// The compiled parts of a scene.
+#[derive(Debug, Default)]
+pub struct Parts {
+    pub compiled: Vec<Compiled>,
+    lattices: Vec<Lattice>,
+    bounds: Vec<UnitBox>,
+    /// For each object of all parts, its first primitive, counted from that of the first part.
+    pub object_first: Vec<u32>,
+    /// For each part, its first primitive, counted likewise; then how many there are.
+    first_primitive: Vec<u32>,
+}
+
+/// Placed parts as a blob holds them.
+#[derive(Debug, Default)]
+pub struct Placed {
+    records: Vec<instance::Instance>,
+    tree: Tree,
+    /// How far maps of integers move a surface at most, in scene units.
+    pub displacement: f64,
+}
+
+impl Parts {
+    /// Compiles all parts of a scene, with the structures that the options name.
+    pub fn compile(
+        scene: &Scene,
+        options: &Options,
+        on_progress: OnProgress<'_>,
+    ) -> Result<Self, CompileError> {
+        let most = usize::from(u16::MAX);
+        for (what, count, most) in [
+            ("parts", scene.parts.len(), most),
+            ("instances", scene.instances.len(), MAX_INSTANCES),
+        ] {
+            if count > most {
+                return Err(CompileError::TooMany { what, count, most });
+            }
+        }
+        let options = Options {
+            names: false,
+            max_bytes: None,
+            ..options.clone()
+        };
+        let mut parts = Self::default();
+        let mut primitives = 0_u32;
+        parts.first_primitive.push(0);
+        for part in &scene.parts {
+            let compiled = compile_as(Role::Part, &alone(part)?, &options, on_progress)?;
+            let header = compiled.blob.header();
+            parts.lattices.push(Lattice {
+                bits: header.lattice_bits,
+                unit_exponent: header.unit_exponent,
+                origin: DVec3::from_array(header.origin),
+            });
+            parts.bounds.push(header.bounds);
+            parts.compiled.push(compiled);
+            for object in &part.objects {
+                parts.object_first.push(primitives);
+                let count = match &object.shape {
+                    Shape::Mesh { triangles, .. } => triangles.len() as u32,
+                    _ => 1,
+                };
+                primitives = primitives.saturating_add(count);
+            }
+            parts.first_primitive.push(primitives);
+        }
+        Ok(parts)
+    }
+
+    /// Number of primitives of all parts.
+    pub fn primitives(&self) -> u32 {
+        self.first_primitive.last().copied().unwrap_or(0)
+    }
+
+    /// Entries of the traversal stack that the deepest part needs.
+    pub fn stack_depth(&self) -> u16 {
+        let depths = self.compiled.iter().map(|it| it.blob.header().stack_depth);
+        depths.max().unwrap_or(0)
+    }
+
+    /// Places all instances of a scene on its lattice; `None` where one reaches beyond it.
+    pub fn place(&self, scene: &Scene, lattice: &Lattice) -> Result<Option<Placed>, CompileError> {
+        let mut records = Vec::with_capacity(scene.instances.len());
+        let mut displacement = 0_f64;
+        for instance in &scene.instances {
+            let part = &self.lattices[instance.part];
+            let mut record = self.map(instance, lattice)?;
+            let Some(bounds) = record.around(&self.bounds[instance.part]) else {
+                return Ok(None);
+            };
+            record.bounds = bounds;
+            records.push(record);
+            let reach = part.unit() * instance.placement.scale * exp2(16);
+            let rounded = lattice.unit() / 256.0 + reach * exp2(2 - MATRIX_BITS as i32);
+            let own = &self.compiled[instance.part].report;
+            let moved = own.largest_displacement * instance.placement.scale;
+            displacement = displacement.max(rounded + moved);
+        }
+        let tree = build(&records);
+        let records = tree.order.iter().map(|&number| records[number as usize]);
+        Ok(Some(Placed {
+            records: records.collect(),
+            tree,
+            displacement,
+        }))
+    }
+
+    /// The map of an instance, without its box.
+    fn map(&self, instance: &Instance, lattice: &Lattice) -> Result<instance::Instance, CompileError> {
+        let part = &self.lattices[instance.part];
+        let placement = &instance.placement;
+        let stretch = lattice.unit() / (placement.scale * part.unit());
+        let exponent = libm::ceil(libm::log2(stretch)) as i64;
+        let [least, most] = INSTANCE_EXPONENT;
+        if !(least..=most).contains(&exponent) {
+            return Err(CompileError::InstanceSize {
+                instance: instance_name(instance),
+                least: exp2(-(most as i32)),
+            });
+        }
+        let factor = stretch * exp2(MATRIX_BITS as i32 - exponent as i32);
+        // The columns of a rotation are the rows of its inverse.
+        let rotation = glam::DMat3::from_quat(placement.rotation);
+        let row = |column: DVec3| (column * factor).round().to_array().map(|x| x as i32);
+        let middle = placement.point(part.origin);
+        let center = (lattice.in_fine(middle)).round();
+        if center.abs().max_element() > LARGEST_CENTER as f64 || !center.is_finite() {
+            return Err(CompileError::InstanceCenter {
+                instance: instance_name(instance),
+            });
+        }
+        Ok(instance::Instance {
+            matrix: [row(rotation.x_axis), row(rotation.y_axis), row(rotation.z_axis)],
+            center: center.to_array().map(|x| x as i32),
+            bounds: UnitBox([[0; 2]; 3]),
+            exponent: exponent as i16,
+            part: instance.part as u16,
+        })
+    }
+
+    /// The sections of parts, whose primitives come after so many of the scene's own.
+    pub fn sections(&self, own_primitives: u32) -> Vec<Section> {
+        let (mut start, mut words) = (0, Vec::new());
+        let mut directory = Vec::with_capacity(self.compiled.len());
+        for (part, first) in self.compiled.iter().zip(&self.first_primitive) {
+            words.extend_from_slice(part.blob.bytes());
+            words.resize(words.len().next_multiple_of(ALIGNMENT), 0);
+            let end = (words.len() / ALIGNMENT) as u32;
+            directory.push(instance::Part {
+                start,
+                length: end - start,
+                first_primitive: own_primitives + first,
+                spare: 0,
+            });
+            start = end;
+        }
+        let blobs = Section {
+            kind: SectionKind::PartBlobs,
+            stride: ALIGNMENT,
+            bytes: words,
+        };
+        vec![section(SectionKind::Parts, &directory), blobs]
+    }
+}
+
+impl Placed {
+    /// The sections of instances.
+    pub fn sections(&self) -> Vec<Section> {
+        let mut sections = vec![
+            section(SectionKind::Instances, &self.records),
+            section(SectionKind::InstancePairs, &self.tree.pairs),
+        ];
+        if !self.tree.order.is_sorted() {
+            sections.push(indices(SectionKind::InstanceOrder, &self.tree.order, 1));
+        }
+        sections
+    }
+
+    /// The box around a box and all instances; that of the instances alone without one.
+    pub fn around(&self, own: Option<UnitBox>) -> Option<UnitBox> {
+        let boxes = self.records.iter().map(|record| record.bounds);
+        own.into_iter().chain(boxes).reduce(|a, b| a.union(&b))
+    }
+}
+
+/// A scene of a part's objects, in which all have one material and light comes from everywhere.
+fn alone(part: &Part) -> Result<Scene, CompileError> {
+    let unbounded = part.objects.iter().find(|it| !it.shape.is_bounded());
+    if let Some(object) = unbounded {
+        return Err(CompileError::UnboundedPart {
+            object: format!("{} ({})", printable(&object.name), object.place),
+            part: printable(&part.name),
+        });
+    }
+    let plain = |object: &Object| Object {
+        material: 0,
+        ..object.clone()
+    };
+    Ok(Scene {
+        ambient: [1.0; 3],
+        materials: vec![Material::default()],
+        objects: part.objects.iter().map(plain).collect(),
+        ..Scene::default()
+    })
+}
+
+fn instance_name(instance: &Instance) -> String {
+    format!("{} ({})", printable(&instance.name), instance.place)
+}
