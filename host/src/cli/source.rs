@@ -159,8 +159,12 @@ impl Source {
         drop(progress);
         let Compiled { blob, report } =
             compiled.map_err(|error| Failure::compiling(input.path(), error))?;
+        let flat = imported.scene.flattened();
+        let flat = flat.map_err(|error| Failure::Failed(miette::Report::new(error)))?;
+        let names = Names::of_scene(&flat);
+        drop(flat);
         let mut warnings = imported.warnings;
-        if imported.scene.objects.is_empty() {
+        if imported.scene.objects.is_empty() && imported.scene.instances.is_empty() {
             let file = input.path().display();
             let warning = format!("{file}: the scene has no object: pictures show the background");
             warn(&warning);
@@ -181,7 +185,7 @@ impl Source {
             warnings,
             changes: None,
             for_pictures: None,
-            names: Some(Names::of_scene(&imported.scene)),
+            names: Some(names),
             made_by: Some((options.geometry.import.for_import(), compiling)),
         })
     }

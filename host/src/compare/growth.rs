@@ -1,6 +1,7 @@
 //! How structures fare as a scene grows: the same comparison on ever larger parts of it.
 
 use super::{CompareError, Options, Row, compare};
+use crate::compile::CompileError;
 use crate::scene::{Object, Scene, Shape};
 use glam::DVec3;
 use serde::Serialize;
@@ -31,6 +32,7 @@ pub fn growth(
     options: &Options<'_>,
     progress: &dyn Fn(&str),
 ) -> Result<Growth, CompareError> {
+    let scene = &*scene.flattened().map_err(CompileError::from)?;
     let nearest = by_distance(scene);
     let mut steps = Vec::new();
     for size in sizes(nearest.len()) {
@@ -47,6 +49,9 @@ pub fn growth(
 
 /// How often [`growth`] reports its next step.
 pub fn growth_steps(scene: &Scene, options: &Options<'_>) -> u64 {
+    // Without its instances where these cannot be flattened; the comparison says why.
+    let flat = scene.flattened();
+    let scene = flat.as_deref().unwrap_or(scene);
     sizes(by_distance(scene).len()).len() as u64 * options.steps()
 }
 
@@ -122,6 +127,8 @@ fn part(scene: &Scene, primitives: &[Part]) -> Scene {
         materials: scene.materials.clone(),
         light_names: Vec::new(),
         tracks: Vec::new(),
+        parts: Vec::new(),
+        instances: Vec::new(),
         ..*scene
     }
 }

@@ -1,12 +1,15 @@
 //! Why a scene cannot be compiled.
 
-use crate::scene::SourceSpan;
+use crate::scene::{SceneError, SourceSpan};
 use glam::DVec3;
 use gridel_core::render::CameraError;
 
 /// Why a scene cannot be compiled.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum CompileError {
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scene(#[from] SceneError),
     #[error("{object} has a coordinate or a length that is infinite or not a number")]
     NotFinite { object: String },
     #[error("the scene's size is {size:e}, which no lattice can hold")]

@@ -163,6 +163,7 @@ pub fn compile_with_progress(
     options: &Options,
     on_progress: OnProgress<'_>,
 ) -> Result<Compiled, CompileError> {
+    let scene = &*scene.flattened()?;
     check(scene, options)?;
     let extent = primitives::extent(scene);
     let (lattice, snapped) = snap(scene, extent, options.lattice_bits)?;

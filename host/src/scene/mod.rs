@@ -1,8 +1,9 @@
 //! The scene in memory: what every importer produces and the compiler reads.
 //!
 //! All coordinates are `f64` scene units in one right-handed world space: importers bake the
-//! transforms of groups and instances into the geometry, so that nothing downstream knows of
-//! them. Colors are linear RGB, 1.0 being full display white, unless [`Scene::display_values`] says
+//! transforms of groups and nodes into the geometry, so that nothing downstream knows of them. The
+//! exception are [parts](Part), which have coordinates of their own and are placed by [instances](Instance).
+//! [`Scene::flattened`] makes objects of them. Colors are linear RGB, 1.0 being full display white, unless [`Scene::display_values`] says
 //! otherwise.
 
 mod access;
@@ -11,11 +12,13 @@ mod bad;
 #[cfg(test)]
 mod damaged;
 mod error;
+mod flatten;
 mod gzip;
 mod importer;
 mod model;
 pub(crate) mod molecule;
 mod options;
+mod part;
 mod polygon;
 mod size;
 mod source_span;
@@ -30,6 +33,7 @@ pub use error::SceneError;
 pub use importer::Importer;
 pub use model::{Camera, Color, Diffuse, Light, Material, Object, RenderSettings, Scene};
 pub use options::{Choice, ImportOptions, Imported, MoleculeOptions, MoleculeStyle};
+pub use part::{Instance, Part, Placement};
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
 pub use track::{Interpolation, Key, Track, TrackTarget};

@@ -1,5 +1,6 @@
 //! The scene as data.
 
+use super::part::{Instance, Part};
 use super::source_span::SourceSpan;
 use super::track::Track;
 use crate::shape::{Shape, unit};
@@ -33,6 +34,10 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Objects in scene-file order; that order is the one in which `trace` counts them.
     pub objects: Vec<Object>,
+    /// Objects that [`Scene::instances`] place. They are counted after the scene's own, part by part.
+    pub parts: Vec<Part>,
+    /// Placed parts. Checkerboards lie in the scene's coordinates on them too.
+    pub instances: Vec<Instance>,
     /// How camera, lights and materials change with time, at most one track for each property.
     pub tracks: Vec<Track>,
     /// Defaults for rendering that the scene file states.
@@ -185,6 +190,8 @@ impl Default for Scene {
             light_names: Vec::new(),
             materials: Vec::new(),
             objects: Vec::new(),
+            parts: Vec::new(),
+            instances: Vec::new(),
             tracks: Vec::new(),
             render: RenderSettings::default(),
             unnamed: false,

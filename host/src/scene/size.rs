@@ -21,6 +21,20 @@ const TRIANGLE: u64 = 224;
 /// How often a name is held: in the scene, and for messages.
 const NAMES: u64 = 2;
 
+/// The most primitives that a scene may hold.
+pub(super) const MOST_PRIMITIVES: u64 = 16_777_216;
+
+/// Returns how many primitives a shape is; vertices that no triangle uses weigh as triangles would.
+pub(super) fn primitives(shape: &Shape) -> u64 {
+    match shape {
+        Shape::Mesh {
+            vertices,
+            triangles,
+        } => triangles.len().max(vertices.len() / 3).max(1) as u64,
+        _ => 1,
+    }
+}
+
 /// The content of a scene, or of a part, in numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Size {
@@ -34,10 +48,7 @@ impl Size {
     /// One object; `name` is the length of its name.
     pub(super) fn of(shape: &Shape, name: usize) -> Self {
         let triangles = match shape {
-            Shape::Mesh {
-                vertices,
-                triangles,
-            } => triangles.len().max(vertices.len() / 3).max(1) as u64,
+            Shape::Mesh { .. } => primitives(shape),
             _ => 0,
         };
         Self {

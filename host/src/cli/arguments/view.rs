@@ -80,9 +80,14 @@ impl ViewOptions {
                 }
             }
         }
-        let camera = scene
-            .camera
-            .unwrap_or_else(|| compile::framing(scene, self.fov));
+        let camera = match scene.camera {
+            Some(camera) => camera,
+            None => {
+                let flat = scene.flattened();
+                let flat = flat.map_err(|error| Failure::Failed(miette::Report::new(error)))?;
+                compile::framing(&flat, self.fov)
+            }
+        };
         scene.camera = Some(self.moved(camera)?);
         Ok(())
     }

@@ -4,12 +4,10 @@
 use super::material::Palette;
 use super::item::{Content, Group, Item};
 use super::source::{Name, Source, Span, nearest};
-use crate::scene::size::Size;
-use crate::scene::{Object, SceneError, Shape};
+use crate::scene::size::{MOST_PRIMITIVES, Size, primitives};
+use crate::scene::{Object, SceneError};
 use std::collections::{BTreeMap, HashMap};
 
-/// The most primitives that a scene may hold.
-pub(super) const MAX_PRIMITIVES: u64 = 16_777_216;
 /// How deep groups may be nested; reading and placing them takes stack.
 pub(super) const MAX_NESTING: usize = 64;
 
@@ -112,7 +110,7 @@ impl<'c> Census<'c> {
             total.size = total.size.plus(cost.size);
             total.primitives = total.primitives.saturating_add(cost.primitives);
             total.nesting = total.nesting.max(cost.nesting);
-            if total.primitives > MAX_PRIMITIVES {
+            if total.primitives > MOST_PRIMITIVES {
                 return Err(too_many(self.source, item));
             }
             check_size(self.source, item, total.size)?;
@@ -180,7 +178,7 @@ pub(super) fn too_deep(source: &Source, span: &Span) -> SceneError {
 pub(super) fn too_many(source: &Source, item: &Item) -> SceneError {
     source.error(
         &item.span,
-        format!("with this object the scene holds more than {MAX_PRIMITIVES} primitives"),
+        format!("with this object the scene holds more than {MOST_PRIMITIVES} primitives"),
         "use fewer instances, or simpler groups and meshes",
     )
 }
@@ -225,15 +223,4 @@ fn imported_size(objects: &[Object]) -> Size {
 
 fn imported(objects: &[Object]) -> u64 {
     objects.iter().map(|object| primitives(&object.shape)).sum()
-}
-
-/// Returns how many primitives a shape is; vertices that no triangle uses weigh as triangles would.
-pub(super) fn primitives(shape: &Shape) -> u64 {
-    match shape {
-        Shape::Mesh {
-            vertices,
-            triangles,
-        } => triangles.len().max(vertices.len() / 3).max(1) as u64,
-        _ => 1,
-    }
 }

@@ -1,10 +1,10 @@
 //! Places the objects of groups, instances and imports in the world.
 
-use super::census::{self, MAX_PRIMITIVES};
+use super::census;
 use super::material::Palette;
 use super::item::{Content, Group, Item};
 use super::source::Source;
-use crate::scene::size::Size;
+use crate::scene::size::{MOST_PRIMITIVES, Size, primitives};
 use crate::scene::{Object, SceneError, Shape};
 use glam::DAffine3;
 use std::collections::BTreeMap;
@@ -123,8 +123,8 @@ impl<'p> Placer<'p> {
             let cause = format!("the object {name:?} {}", misfit.cause);
             self.source.error(&item.span, cause, misfit.remedy)
         })?;
-        self.primitives += census::primitives(&shape);
-        if self.primitives > MAX_PRIMITIVES {
+        self.primitives += primitives(&shape);
+        if self.primitives > MOST_PRIMITIVES {
             return Err(census::too_many(self.source, item));
         }
         self.size = self.size.plus(Size::of(&shape, name.len()));
