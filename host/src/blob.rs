@@ -1,8 +1,9 @@
 //! Blobs in memory and on disk.
 
 use crate::simd;
-use gridel_core::format::record::{ALIGNMENT, MAGIC};
-use gridel_core::{Scene, Structure};
+use gridel_core::format::record::{ALIGNMENT, Header, MAGIC};
+use gridel_core::{BlobError, Scene, Structure};
+use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
@@ -20,23 +21,31 @@ use std::path::Path;
 /// assert!(Blob::new(b"no blob").scene().is_err());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
-pub struct Blob {
+pub struct Blob(Loaded);
+
+/// The bytes of a blob to be.
+#[derive(Debug)]
+pub(crate) struct Buffer {
     words: Vec<u128>,
     length: usize,
 }
 
+/// The checked views of a blob's parts, which borrow from its bytes.
+type Parts<'b> = Result<Vec<Scene<'b>>, BlobError>;
+
+// A view of a scene borrows the views of its parts, so these have to live as long as the bytes.
+self_cell::self_cell!(
+    struct Loaded {
+        owner: Buffer,
+        #[covariant]
+        dependent: Parts,
+    }
+);
+
 const _: () = assert!(align_of::<u128>() == ALIGNMENT && size_of::<u128>() == ALIGNMENT);
 
-impl Blob {
-    /// Copies bytes into aligned memory.
-    pub fn new(bytes: &[u8]) -> Self {
-        let mut blob = Self::zeros(bytes.len());
-        blob.bytes_mut().copy_from_slice(bytes);
-        blob
-    }
-
-    /// So many zeros, to be written to.
+impl Buffer {
+    /// So many zeros.
     pub(crate) fn zeros(length: usize) -> Self {
         Self {
             words: vec![0; length.div_ceil(ALIGNMENT)],
@@ -44,8 +53,30 @@ impl Blob {
         }
     }
 
+    fn bytes(&self) -> &[u8] {
+        &bytemuck::cast_slice(&self.words)[..self.length]
+    }
+
     pub(crate) fn bytes_mut(&mut self) -> &mut [u8] {
         &mut bytemuck::cast_slice_mut(&mut self.words)[..self.length]
+    }
+
+    /// The blob, whose parts are checked now.
+    pub(crate) fn into_blob(self) -> Blob {
+        Blob(Loaded::new(self, |buffer| {
+            let parts = gridel_core::scene::part_blobs(buffer.bytes())?;
+            let load = |part| Ok(Scene::from_bytes(part)?.with_simd(simd::level()));
+            parts.map(load).collect()
+        }))
+    }
+}
+
+impl Blob {
+    /// Copies bytes into aligned memory.
+    pub fn new(bytes: &[u8]) -> Self {
+        let mut buffer = Buffer::zeros(bytes.len());
+        buffer.bytes_mut().copy_from_slice(bytes);
+        buffer.into_blob()
     }
 
     /// Reads a blob file, unchecked.
@@ -55,12 +86,36 @@ impl Blob {
 
     /// The bytes.
     pub fn bytes(&self) -> &[u8] {
-        &bytemuck::cast_slice(&self.words)[..self.length]
+        self.0.borrow_owner().bytes()
+    }
+
+    /// The header, of a blob that this crate compiled.
+    pub(crate) fn header(&self) -> &Header {
+        bytemuck::from_bytes(&self.bytes()[..size_of::<Header>()])
     }
 
     /// The checked view, for queries with [these instructions](crate::simd::level).
     pub fn scene(&self) -> Result<Scene<'_>, gridel_core::BlobError> {
-        Ok(Scene::from_bytes(self.bytes())?.with_simd(simd::level()))
+        // The scene's own faults come first: without a header that is read no part is.
+        match self.0.borrow_dependent() {
+            Ok(parts) => Ok(Scene::with_parts(self.bytes(), parts)?.with_simd(simd::level())),
+            Err(error) => {
+                Scene::from_bytes(self.bytes())?;
+                Err(*error)
+            }
+        }
+    }
+}
+
+impl Clone for Blob {
+    fn clone(&self) -> Self {
+        Self::new(self.bytes())
+    }
+}
+
+impl fmt::Debug for Blob {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Blob({} bytes)", self.bytes().len())
     }
 }
 

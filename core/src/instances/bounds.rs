@@ -83,3 +83,13 @@ pub(crate) fn around(instance: &Instance, part: &UnitBox) -> Option<UnitBox> {
     }
     Some(bounds)
 }
+
+impl Instance {
+    /// Returns a box around the placed box of a part, in units of the scene; `None` where it would leave the scene's
+    /// lattice, or the matrix is not a rotation times a factor from 1/2 to 1. Loading proves that an instance's own box
+    /// holds this one.
+    pub fn around(&self, part: &UnitBox) -> Option<UnitBox> {
+        check_rotation(&self.matrix).ok()?;
+        around(self, part)
+    }
+}

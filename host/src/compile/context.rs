@@ -1,7 +1,9 @@
 //! The input of structures' builders.
 
+use super::Role;
 use super::candidates::target::Targets;
 use super::hierarchy::{Node, Primitive};
+use super::instances::Placed;
 use super::options::{OnProgress, Options};
 use super::pairs::Flat;
 use super::primitives::Primitives;
@@ -28,6 +30,8 @@ pub struct BuildContext<'g> {
     /// The box of all primitives; a point without any.
     pub bounds: UnitBox,
     pub shading_data: &'g ShadingData,
+    pub role: Role<'g>,
+    pub placed: &'g Placed,
     pub options: &'g Options,
     pub on_progress: OnProgress<'g>,
 }

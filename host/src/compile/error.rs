@@ -101,6 +101,17 @@ pub enum CompileError {
         budget: u64,
         remedy: &'static str,
     },
+    #[error("{object} has no box, so it cannot be in the part {part}, whose instances have one")]
+    #[diagnostic(help("make it an object of the scene itself"))]
+    UnboundedPart { object: String, part: String },
+    #[error(
+        "the instance {instance} is too small for the scene, or too large for its part's lattice"
+    )]
+    #[diagnostic(help(
+        "place it at a size of at least {least:.1e} of the scene's, or flatten the scene with \
+         `--instances flatten`"
+    ))]
+    InstanceSize { instance: String, least: f64 },
     #[error("the blob would have {bytes} bytes, {over} more than --max-bytes allows")]
     #[diagnostic(help("{advice}"))]
     TooLarge {

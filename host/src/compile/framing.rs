@@ -1,6 +1,6 @@
 //! The camera and the background of a scene that states none.
 
-use super::primitives::in_extent;
+use super::extent::in_extent;
 use crate::scene::{Camera, Color, Scene};
 use glam::DVec3;
 
@@ -110,7 +110,7 @@ fn is_seen_from_edge(scene: &Scene, forward: DVec3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compile::primitives::extent;
+    use crate::compile::extent::extent;
     use crate::scene::{Material, Object, Shape, SourceSpan};
     use crate::shape::Cuboid;
     use gridel_core::Up;

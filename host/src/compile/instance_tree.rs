@@ -48,9 +48,7 @@ pub fn build(instances: &[Instance]) -> Tree {
             }
         });
         let [left, right] = boxes.map(|it| it.0);
-        let planes = [0, 1, 2].map(|axis| {
-            [0, 1].map(|side| [left[axis][side], right[axis][side]])
-        });
+        let planes = [0, 1, 2].map(|axis| [0, 1].map(|side| [left[axis][side], right[axis][side]]));
         tree.pairs.push(Pair { planes, children });
     }
     tree
@@ -91,7 +89,9 @@ fn split(instances: &[Instance], numbers: &mut [u32], levels: usize) -> usize {
 }
 
 fn around(instances: &[Instance], numbers: &[u32]) -> UnitBox {
-    let boxes = numbers.iter().map(|&number| instances[number as usize].bounds);
+    let boxes = numbers
+        .iter()
+        .map(|&number| instances[number as usize].bounds);
     let none = UnitBox([[0; 2]; 3]);
     boxes.reduce(|a, b| a.union(&b)).unwrap_or(none)
 }

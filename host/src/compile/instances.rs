@@ -2,7 +2,7 @@
 
 use super::instance_tree::{Tree, build};
 use super::section::{Section, indices, section};
-use super::{Compiled, CompileError, OnProgress, Options, Role, compile_as};
+use super::{CompileError, Compiled, OnProgress, Options, Role, compile_as};
 use crate::scene::{Instance, Material, Object, Part, Scene, Shape};
 use crate::shape::{Lattice, exp2};
 use crate::table::printable;
@@ -119,7 +119,11 @@ impl Parts {
     }
 
     /// The map of an instance, without its box.
-    fn map(&self, instance: &Instance, lattice: &Lattice) -> Result<instance::Instance, CompileError> {
+    fn map(
+        &self,
+        instance: &Instance,
+        lattice: &Lattice,
+    ) -> Result<instance::Instance, CompileError> {
         let part = &self.lattices[instance.part];
         let placement = &instance.placement;
         let stretch = lattice.unit() / (placement.scale * part.unit());
@@ -138,12 +142,17 @@ impl Parts {
         let middle = placement.point(part.origin);
         let center = (lattice.in_fine(middle)).round();
         if center.abs().max_element() > LARGEST_CENTER as f64 || !center.is_finite() {
-            return Err(CompileError::InstanceCenter {
+            return Err(CompileError::InstanceSize {
                 instance: instance_name(instance),
+                least: exp2(-(most as i32)),
             });
         }
         Ok(instance::Instance {
-            matrix: [row(rotation.x_axis), row(rotation.y_axis), row(rotation.z_axis)],
+            matrix: [
+                row(rotation.x_axis),
+                row(rotation.y_axis),
+                row(rotation.z_axis),
+            ],
             center: center.to_array().map(|x| x as i32),
             bounds: UnitBox([[0; 2]; 3]),
             exponent: exponent as i16,

@@ -11,9 +11,12 @@ mod cuts;
 mod dual_split;
 mod error;
 mod estimate;
+mod extent;
 mod flattened;
 mod framing;
 mod hierarchy;
+mod instance_tree;
+mod instances;
 mod lattice;
 mod layout;
 mod names;
@@ -57,6 +60,7 @@ use gridel_core::format::Leaf;
 use gridel_core::format::record::{Gridels, UnitBox};
 use gridel_core::{Kind, Structure};
 use hierarchy::{Node, Primitive, Splits};
+use instances::{Parts, Placed};
 use pairs::Flat;
 use primitives::Primitives;
 use std::time::{Duration, Instant};
@@ -163,10 +167,28 @@ pub fn compile_with_progress(
     options: &Options,
     on_progress: OnProgress<'_>,
 ) -> Result<Compiled, CompileError> {
-    let scene = &*scene.flattened()?;
     check(scene, options)?;
-    let extent = primitives::extent(scene);
-    let (lattice, snapped) = snap(scene, extent, options.lattice_bits)?;
+    let parts = Parts::compile(scene, options, on_progress)?;
+    compile_as(Role::Whole(&parts), scene, options, on_progress)
+}
+
+/// What a blob is made for.
+#[derive(Clone, Copy, Debug)]
+enum Role<'p> {
+    /// To be loaded, with these parts in it.
+    Whole(&'p Parts),
+    /// To be a part of another, which knows its objects and materials.
+    Part,
+}
+
+fn compile_as(
+    role: Role<'_>,
+    scene: &Scene,
+    options: &Options,
+    on_progress: OnProgress<'_>,
+) -> Result<Compiled, CompileError> {
+    let extent = extent::extent(scene);
+    let (lattice, snapped, placed) = snap(role, scene, extent, options.lattice_bits)?;
     let structures = held(&options.structures);
     let shading_data = shading_data::ShadingData::of(scene, &lattice, extent)?;
     // WebAssembly without a system has no clock, and asking for the time would panic.
@@ -178,7 +200,8 @@ pub fn compile_with_progress(
         flat,
         wide,
     } = Hierarchies::build(scene, &snapped, &structures, options)?;
-    let mut bounds = hierarchy::bounds(&order).unwrap_or(UnitBox([[0; 2]; 3]));
+    let own = hierarchy::bounds(&order);
+    let mut bounds = placed.around(own).unwrap_or(UnitBox([[0; 2]; 3]));
     if structures.contains(&Structure::Octree) {
         let boxes: Vec<_> = order.iter().map(|primitive| primitive.bounds).collect();
         bounds = octree::bounds(&bounds, &boxes);
@@ -194,6 +217,8 @@ pub fn compile_with_progress(
         primitives: &snapped,
         bounds,
         shading_data: &shading_data,
+        role,
+        placed: &placed,
         options,
         on_progress,
     };
@@ -244,9 +269,10 @@ pub fn compile_with_progress(
     let displacements = snapped.displacements.iter().map(|it| it / fine_steps);
     let displacements: Vec<f32> = displacements.collect();
     let largest_displacement = displacements.iter().copied().fold(0.0, f32::max);
-    let report = Report {
+    let largest_displacement = f64::from(largest_displacement) * lattice.step();
+    let mut report = Report {
         step: lattice.step(),
-        largest_displacement: f64::from(largest_displacement) * lattice.step(),
+        largest_displacement: largest_displacement.max(placed.displacement),
         displacements,
         far_moved: snapped.far_moved.clone(),
         collapsed: snapped.collapsed.clone(),
@@ -260,21 +286,49 @@ pub fn compile_with_progress(
         tables,
         names,
     };
+    if let Role::Whole(parts) = role {
+        let parts = parts.compiled.iter();
+        parts.for_each(|part| report.add_part(&part.report));
+    }
     Ok(Compiled { blob, report })
+}
+
+impl Report {
+    /// Adds what a part has to report, whose primitives come after those before it.
+    fn add_part(&mut self, part: &Report) {
+        let steps = (part.step / self.step) as f32;
+        let displacements = part.displacements.iter().map(|it| it * steps);
+        self.displacements.extend(displacements);
+        for (all, of_part) in [
+            (&mut self.far_moved, &part.far_moved),
+            (&mut self.collapsed, &part.collapsed),
+            (&mut self.without_area, &part.without_area),
+        ] {
+            all.add_all(of_part);
+        }
+        self.longest_list = self.longest_list.max(part.longest_list);
+        self.setup += part.setup;
+        self.tables.extend(part.tables.iter().copied());
+    }
 }
 
 /// Snaps a scene of some extent to the finest lattice that holds it once it is snapped.
 fn snap(
+    role: Role<'_>,
     scene: &Scene,
     (lowest, highest): (DVec3, DVec3),
     bits: u8,
-) -> Result<(Lattice, Primitives), CompileError> {
+) -> Result<(Lattice, Primitives, Placed), CompileError> {
     let mut coarser = 0;
     loop {
         let lattice = Lattice::around([lowest, highest], bits, coarser)?;
         let primitives = Primitives::snap(scene, &lattice)?;
-        if !primitives.needs_room {
-            return Ok((lattice, primitives));
+        let placed = match role {
+            Role::Part => Some(Placed::default()),
+            Role::Whole(parts) => parts.place(scene, &lattice)?,
+        };
+        if let Some(placed) = placed.filter(|_| !primitives.needs_room) {
+            return Ok((lattice, primitives, placed));
         }
         // A power of two makes as much room as the scene takes; no surface is moved that far.
         coarser += 1;
@@ -289,7 +343,7 @@ fn check(scene: &Scene, options: &Options) -> Result<(), CompileError> {
         });
     }
     let bad = |object: &&Object| !object.shape.is_finite();
-    if let Some(object) = scene.objects.iter().find(bad) {
+    if let Some(object) = scene.all_objects().find(bad) {
         return Err(CompileError::NotFinite {
             object: printable(&object.name),
         });
@@ -390,7 +444,7 @@ impl Hierarchies {
 /// ```
 pub fn cube_census(scene: &Scene, gridels: u32) -> Result<CubeCensus, CompileError> {
     let bits = Options::default().lattice_bits;
-    let (_, snapped) = snap(scene, primitives::extent(scene), bits)?;
+    let (_, snapped, _) = snap(Role::Part, scene, extent::extent(scene), bits)?;
     let mut order: Vec<Primitive> = snapped.boxes();
     let root = hierarchy::build(&mut order, Splits::Swept, Options::default().leaf_size);
     let flat = root.as_ref().map(|root| pairs::flatten(root, &order));

@@ -60,7 +60,7 @@ impl Names {
             name[..end].to_owned()
         };
         let mut numbers = vec![None; scene.materials.len()];
-        for object in &scene.objects {
+        for object in scene.all_objects() {
             let number = *numbers[object.material].get_or_insert_with(|| {
                 let name = &scene.materials[object.material].name;
                 names.materials.push(cut(name));
@@ -68,7 +68,7 @@ impl Names {
             });
             names.object_material.push(number);
         }
-        names.objects = scene.objects.iter().map(|it| cut(&it.name)).collect();
+        names.objects = scene.all_objects().map(|it| cut(&it.name)).collect();
         names.lights = scene.light_names.iter().map(|it| cut(it)).collect();
         names.shortened = shortened;
         names

@@ -67,6 +67,11 @@ impl LeftOut {
         self.count += 1;
     }
 
+    pub(super) fn add_all(&mut self, others: &Self) {
+        others.names.iter().for_each(|name| self.add(name.clone()));
+        self.count += others.count - others.names.len();
+    }
+
     /// How many there are.
     pub fn count(&self) -> usize {
         self.count
@@ -86,34 +91,6 @@ impl Serialize for LeftOut {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.names(NAMED).serialize(serializer)
     }
-}
-
-/// Returns the shapes that make up the extent of a scene: the bounded ones, or all if none is bounded.
-pub fn in_extent(scene: &Scene) -> impl Iterator<Item = &Shape> + Clone {
-    let shapes = scene.objects.iter().map(|object| &object.shape);
-    let none_bounded = !shapes.clone().any(Shape::is_bounded);
-    shapes.filter(move |shape| none_bounded || shape.is_bounded())
-}
-
-/// The box of everything in a scene that has one, or else of points of what has none and of the camera; a point for an
-/// empty one.
-pub fn extent(scene: &Scene) -> (DVec3, DVec3) {
-    let nowhere = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    let [mut lowest, mut highest] = in_extent(scene)
-        .map(Shape::bounds)
-        .fold(nowhere, |[low, high], [lowest, highest]| {
-            [low.min(lowest), high.max(highest)]
-        });
-    if lowest.x > highest.x {
-        return (DVec3::ZERO, DVec3::ZERO);
-    }
-    let is_bounded = scene.objects.iter().any(|object| object.shape.is_bounded());
-    if let Some(camera) = scene.camera.filter(|_| !is_bounded) {
-        for place in [camera.eye, camera.target] {
-            (lowest, highest) = (lowest.min(place), highest.max(place));
-        }
-    }
-    (lowest, highest)
 }
 
 impl Primitives {

@@ -3,6 +3,7 @@
 use super::CompileError;
 use super::camera::place;
 use super::coordinates::Coordinates;
+use super::extent::shapes;
 use super::framing::{BACKGROUND, framing};
 use super::section::Section;
 use super::tracks;
@@ -75,7 +76,7 @@ impl ShadingData {
         let mut materials = Vec::new();
         let mut required_by: Vec<(Effects, String)> = Vec::new();
         let mut object_material = Vec::with_capacity(scene.objects.len());
-        for object in &scene.objects {
+        for object in scene.all_objects() {
             let material = &scene.materials[object.material];
             if !object.shape.is_bounded() && has_large_cells(material, lattice) {
                 return Err(CompileError::CheckerSize {
@@ -106,7 +107,7 @@ impl ShadingData {
         } else {
             Effects::SHADOW
         };
-        if !scene.objects.is_empty() {
+        if scene.all_objects().next().is_some() {
             let effects = (0..).zip(lights.iter().map(record::Light::effects));
             required_by.extend(effects.map(|(number, effects): (usize, _)| {
                 (effects.without(unwanted), format!("light {number}"))
@@ -164,7 +165,7 @@ fn over_a_shoulder(scene: &Scene, camera: &Camera) -> (DVec3, &'static str) {
     let aside = 0.5 * unit(view.cross(up));
     let [left, right] = [aside, -aside].map(|aside| view + aside - 0.7 * up);
     let lit = |direction: DVec3| -> f64 {
-        let faces = scene.objects.iter().flat_map(|object| object.shape.faces());
+        let faces = shapes(scene).flat_map(|shape| shape.faces());
         let towards = |normal: DVec3| normal * -normal.dot(view).signum();
         faces
             .map(|normal| -towards(normal).dot(direction))

@@ -1,6 +1,5 @@
 //! Writes the sections of a blob, each in the narrowest form that its values allow.
 
-use super::CompileError;
 use super::context::BuildContext;
 use super::layout::Layout;
 use super::names::{KeptNames, Names};
@@ -8,7 +7,8 @@ use super::pairs::Flat;
 use super::primitives::Primitives;
 use super::records::in_order;
 use super::section::{Section, indices, section};
-use crate::blob::Blob;
+use super::{CompileError, Role};
+use crate::blob::{Blob, Buffer};
 use crate::shape::Lattice;
 use gridel_core::accel::Entry;
 use gridel_core::format::record::{
@@ -83,18 +83,33 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
         shading_data,
         ..
     } = *context;
-    let objects = scene.objects.len() as u32;
-    let total = primitives.total;
+    let own = primitives.total;
+    let mut object_first = primitives.object_first.clone();
+    let mut objects = scene.all_objects().count() as u32;
+    let mut total = own;
+    match context.role {
+        // The scene that places a part knows its objects.
+        Role::Part if objects != total => {
+            objects = objects.min(1);
+            object_first.clear();
+        }
+        Role::Part => (),
+        Role::Whole(parts) => {
+            total = own.saturating_add(parts.primitives());
+            object_first.extend(
+                parts
+                    .object_first
+                    .iter()
+                    .map(|first| own.saturating_add(*first)),
+            );
+        }
+    }
 
     let mut sections = vec![section(SectionKind::View, &[shading_data.view])];
     sections.push(section(SectionKind::Lights, &shading_data.lights));
     sections.push(section(SectionKind::Materials, &shading_data.materials));
     if objects != total && objects > 1 {
-        sections.push(indices(
-            SectionKind::ObjectFirst,
-            &primitives.object_first,
-            2,
-        ));
+        sections.push(indices(SectionKind::ObjectFirst, &object_first, 2));
     }
     if shading_data.materials.len() > 1 {
         sections.push(indices(
@@ -112,7 +127,7 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
                 .map(|&index| numbers[index as usize])
         })
         .collect();
-    if !counts_up(&order) || order.len() as u32 != total {
+    if !counts_up(&order) || order.len() as u32 != own {
         sections.push(indices(SectionKind::Order, &order, 2));
     }
     sections.extend(shading_data.tracks.iter().cloned());
@@ -121,7 +136,14 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
         sections.push(section(SectionKind::Leaves, &flat.leaves));
     }
     let depths = layouts.iter().map(|layout| layout.stack_depth);
-    let stack_depth = depths.max().unwrap_or(0) as u16;
+    let mut stack_depth = depths.max().unwrap_or(0) as u16;
+    if let Role::Whole(parts) = context.role
+        && parts.primitives() > 0
+    {
+        sections.extend(parts.sections(own));
+        sections.extend(context.placed.sections());
+        stack_depth = stack_depth.max(parts.stack_depth());
+    }
     let structures = layouts
         .iter()
         .map(|layout| layout.structure)
@@ -236,8 +258,8 @@ pub fn write(parts: Parts) -> Result<Blob, CompileError> {
     }
     header.blob_bytes = offset as u32;
     let table = size_of::<Header>()..size_of::<Header>() + size_of_val(&entries[..]);
-    let mut blob = Blob::zeros(offset);
-    let bytes = blob.bytes_mut();
+    let mut buffer = Buffer::zeros(offset);
+    let bytes = buffer.bytes_mut();
     bytes[table].copy_from_slice(bytemuck::cast_slice(&entries));
     for (section, entry) in sections.into_iter().zip(&entries) {
         let start = entry.offset as usize;
@@ -246,5 +268,5 @@ pub fn write(parts: Parts) -> Result<Blob, CompileError> {
     bytes[..size_of::<Header>()].copy_from_slice(bytemuck::bytes_of(&header));
     header.checksum = checksum(bytes);
     bytes[..size_of::<Header>()].copy_from_slice(bytemuck::bytes_of(&header));
-    Ok(blob)
+    Ok(buffer.into_blob())
 }

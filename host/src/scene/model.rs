@@ -178,6 +178,14 @@ impl Default for Material {
     }
 }
 
+impl Scene {
+    /// Returns all objects in the order in which they are counted: the scene's own, and those of all parts.
+    pub fn all_objects(&self) -> impl Iterator<Item = &Object> {
+        let parts = self.parts.iter().flat_map(|part| &part.objects);
+        self.objects.iter().chain(parts)
+    }
+}
+
 impl Default for Scene {
     fn default() -> Self {
         Self {
