@@ -13,6 +13,7 @@ mod documents;
 mod explain;
 mod fixed_point;
 mod grids;
+mod instances;
 mod large_scenes;
 #[path = "lattice/main.rs"]
 mod lattice;

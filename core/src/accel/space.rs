@@ -42,6 +42,17 @@ impl<'a> Space<'a> {
         self.simd.get().copied().unwrap_or_default()
     }
 
+    /// Whether another space's walks are chosen alike.
+    #[inline(always)]
+    pub(crate) fn same_choice(&self, other: &Space<'_>) -> bool {
+        self.chosen == other.chosen && self.simd == other.simd
+    }
+
+    /// Chooses walks as in another space.
+    pub(crate) fn choose_as(&mut self, other: &Space<'_>) {
+        (self.chosen, self.simd) = (other.chosen, other.simd);
+    }
+
     /// A leaf by its number.
     #[inline(always)]
     pub(crate) fn leaf(&self, number: u32) -> Option<Leaf> {

@@ -128,6 +128,7 @@ impl Requirements {
             self.wide_indices => "wide-indices",
             self.display_values => "display-values",
             clusters_alone => "wide",
+            self.has(SectionKind::Instances) => "instances",
             } };
         }
         let parts = shapes!(all);

@@ -46,18 +46,13 @@ pub(crate) fn check_rotation(matrix: &[[i32; 3]; 3]) -> Result<(), Reason> {
 /// [rotation](check_rotation).
 pub(crate) fn around(instance: &Instance, part: &UnitBox) -> Option<UnitBox> {
     let [x, y, z] = instance.matrix;
-    let square = dot(x, x) >> 16;
-    // The inverse is the matrix turned over, divided by the square: in 1/256 unit, from half units.
+    // The inverse is the matrix turned over, divided by the square: from 2^28 to 2^30, so over 2^60 up to 2^32.
+    let inverse = (1_i64 << 60).checked_div(dot(x, x) >> 16)?;
+    // In 1/256 unit, from half units: sums have up to 43 bits, of which 13 are far below that.
+    let shift = (33 + i32::from(instance.exponent)).unsigned_abs() & 63;
     let back = |sum: i64, rounded: i64| {
-        let shift = 14 - i32::from(instance.exponent);
-        let scaled = if shift >= 0 {
-            sum.wrapping_shl(shift.unsigned_abs())
-        } else {
-            sum >> (shift.unsigned_abs() & 31)
-        };
-        scaled
-            .checked_div(square)
-            .map(|it| it.wrapping_add(rounded))
+        let scaled = (sum >> 13).wrapping_mul(inverse) >> shift;
+        scaled.wrapping_add(rounded)
     };
     let [middle, half] = [
         part.0
@@ -68,8 +63,8 @@ pub(crate) fn around(instance: &Instance, part: &UnitBox) -> Option<UnitBox> {
     let mut bounds = UnitBox([[0; 2]; 3]);
     for (axis, sides) in bounds.0.iter_mut().enumerate() {
         let column = [x[axis], y[axis], z[axis]];
-        let middle = back(dot(column, middle), i64::from(instance.center[axis]))?;
-        let half = back(dot(column.map(i32::wrapping_abs), half), 2)?;
+        let middle = back(dot(column, middle), i64::from(instance.center[axis]));
+        let half = back(dot(column.map(i32::wrapping_abs), half), 2);
         let [low, high] = [
             middle.wrapping_sub(half) >> 8,
             middle.wrapping_add(half) >> 8,

@@ -50,6 +50,14 @@ pub(super) fn nearest<N: Number, A: Accel, C: Observer, const ANY: bool>(
             let Some((part, first)) = placed.part(instance) else {
                 return Some(tmax);
             };
+            let mut chosen;
+            let part = if part.space.same_choice(&scene.space) {
+                part
+            } else {
+                chosen = *part;
+                chosen.space.choose_as(&scene.space);
+                &chosen
+            };
             let end = best.map_or(ray.tmax, |(t, _)| ray.tmax.min(beyond(t)));
             let Some(mapped) = Map::new(instance).ray(part.bounds(), ray, end) else {
                 return Some(tmax);

@@ -17,13 +17,16 @@ impl Scene<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn features(&self) -> impl Iterator<Item = &'static str> {
-        let kinds = Kind::ALL.map(|kind| (self.count(kind) > 0, kind.name()));
+        let any = |has: fn(&Self, Kind) -> bool, kind| {
+            has(self, kind) || self.parts().iter().any(|part| has(part, kind))
+        };
+        let kinds = Kind::ALL.map(|kind| (any(|it, kind| it.count(kind) > 0, kind), kind.name()));
+        let wide_lattice = |it: &Self, _| it.space.header.storage_bits > 16;
+        let wide_indices = |it: &Self, _| matches!(it.space.shapes.triangles, Triangles::U32(_));
         let others = [
-            (self.space.header.storage_bits > 16, "wide-lattice"),
-            (
-                matches!(self.space.shapes.triangles, Triangles::U32(_)),
-                "wide-indices",
-            ),
+            (any(wide_lattice, Kind::Triangle), "wide-lattice"),
+            (any(wide_indices, Kind::Triangle), "wide-indices"),
+            (!self.parts().is_empty(), "instances"),
             (self.view.display_values != 0, "display-values"),
         ];
         let required = kinds.into_iter().chain(others);

@@ -89,7 +89,9 @@ impl<'a> Prevalidated<'a> {
             let entry = size_of::<Header>() + index * size_of::<SectionEntry>();
             let kind = proved!(half(blob, entry + offset_of!(SectionEntry, kind)));
             // What lies between is that of other structures.
-            if kind > SectionKind::DualNodes as u16 && kind <= SectionKind::Radii as u16 {
+            let is_other =
+                kind > SectionKind::DualNodes as u16 && kind <= SectionKind::Radii as u16;
+            if is_other || kind == SectionKind::Parts as u16 {
                 return Err(Location::Table(index).invalid(Reason::NotPrevalidated));
             }
             let levels = proved!(levels(blob, entry, kind));

@@ -192,6 +192,8 @@ struct Contents {
     primitives: u32,
     collapsed: usize,
     kinds: BTreeMap<&'static str, usize>,
+    parts: usize,
+    instances: usize,
     lights: usize,
     materials: usize,
 }
@@ -258,12 +260,17 @@ fn limits(scene: &Scene<'_>) -> Limits {
 
 fn contents(scene: &Scene<'_>) -> Contents {
     let header = scene.header();
-    let kinds = Kind::ALL.map(|kind| (kind.name(), scene.count(kind)));
+    let all = || std::iter::once(scene).chain(scene.parts());
+    let count = |kind| all().map(|scene| scene.count(kind)).sum::<usize>();
+    let kinds = Kind::ALL.map(|kind| (kind.name(), count(kind)));
     // A triangle that was cut has several slots.
     let mut kept = vec![false; header.primitives as usize];
-    for kind in Kind::ALL {
-        for slot in 0..scene.count(kind) as u32 {
-            kept[scene.primitive(kind, slot) as usize] = true;
+    let parts = (0..).map_while(|part| scene.first_primitive_of_part(part));
+    for (scene, first) in all().zip(std::iter::once(0).chain(parts)) {
+        for kind in Kind::ALL {
+            for slot in 0..scene.count(kind) as u32 {
+                kept[(first + scene.primitive(kind, slot)) as usize] = true;
+            }
         }
     }
     Contents {
@@ -276,6 +283,8 @@ fn contents(scene: &Scene<'_>) -> Contents {
         primitives: header.primitives,
         collapsed: kept.into_iter().filter(|kept| !kept).count(),
         kinds: kinds.into_iter().filter(|&(_, count)| count > 0).collect(),
+        parts: scene.parts().len(),
+        instances: scene.instances().len(),
         lights: scene.lights().len(),
         materials: scene.materials().len(),
     }
@@ -348,6 +357,16 @@ impl Inspection {
                 ),
             },
         );
+        if contents.instances > 0 {
+            line(
+                "instances",
+                format!(
+                    "{} of {}",
+                    grouped(contents.instances),
+                    counted(contents.parts, "part")
+                ),
+            );
+        }
         line("materials", contents.materials.to_string());
         line("lights", contents.lights.to_string());
         for (what, names) in [

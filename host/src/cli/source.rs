@@ -159,10 +159,7 @@ impl Source {
         drop(progress);
         let Compiled { blob, report } =
             compiled.map_err(|error| Failure::compiling(input.path(), error))?;
-        let flat = imported.scene.flattened();
-        let flat = flat.map_err(|error| Failure::Failed(miette::Report::new(error)))?;
-        let names = Names::of_scene(&flat);
-        drop(flat);
+        let names = Names::of_scene(&imported.scene);
         let mut warnings = imported.warnings;
         if imported.scene.objects.is_empty() && imported.scene.instances.is_empty() {
             let file = input.path().display();
