@@ -210,7 +210,8 @@ fn integers(text: &str) -> Option<(Vec<u64>, &str)> {
     Some((integers?, rest))
 }
 
-/// Writes hits, as an array of shape (N,).
+/// Writes hits, as an array of shape (N,). Hits of scenes with instances have a field more: `instance`, behind
+/// `primitive`.
 ///
 /// # Errors
 /// If `out` has one.
@@ -220,13 +221,22 @@ fn integers(text: &str) -> Option<(Vec<u64>, &str)> {
 /// use gridel_host::trace::SceneHit;
 ///
 /// let mut file = Vec::new();
-/// write_hits(&mut file, &[SceneHit::MISS; 3])?;
+/// write_hits(&mut file, &[SceneHit::MISS; 3], false)?;
 /// assert!(file.starts_with(b"\x93NUMPY"));
 /// # Ok::<(), std::io::Error>(())
 /// ```
-pub fn write_hits(out: &mut dyn Write, hits: &[SceneHit]) -> io::Result<()> {
+pub fn write_hits(
+    out: &mut dyn Write,
+    hits: &[SceneHit],
+    with_instances: bool,
+) -> io::Result<()> {
+    let instance = if with_instances {
+        "('instance', '<u4'), "
+    } else {
+        ""
+    };
     let mut header = format!(
-        "{{'descr': [('t', '<f8'), ('object', '<u4'), ('primitive', '<u4'), \
+        "{{'descr': [('t', '<f8'), ('object', '<u4'), ('primitive', '<u4'), {instance}\
          ('normal', '<f4', (3,)), ], 'fortran_order': False, 'shape': ({}, ), }}",
         hits.len()
     );
@@ -238,14 +248,15 @@ pub fn write_hits(out: &mut dyn Write, hits: &[SceneHit]) -> io::Result<()> {
     out.write_all(&(header.len() as u16).to_le_bytes())?;
     out.write_all(header.as_bytes())?;
     for hit in hits {
-        let mut record = [0; 28];
-        record[..8].copy_from_slice(&hit.t.to_le_bytes());
-        record[8..12].copy_from_slice(&hit.object.to_le_bytes());
-        record[12..16].copy_from_slice(&hit.primitive.to_le_bytes());
-        for (bytes, normal) in record[16..].chunks_exact_mut(4).zip(hit.normal) {
-            bytes.copy_from_slice(&normal.to_le_bytes());
+        out.write_all(&hit.t.to_le_bytes())?;
+        out.write_all(&hit.object.to_le_bytes())?;
+        out.write_all(&hit.primitive.to_le_bytes())?;
+        if with_instances {
+            out.write_all(&hit.instance.to_le_bytes())?;
         }
-        out.write_all(&record)?;
+        for x in hit.normal {
+            out.write_all(&x.to_le_bytes())?;
+        }
     }
     Ok(())
 }
@@ -414,7 +425,7 @@ mod tests {
             normal: [0.0, -1.0, 0.5],
         };
         let mut file = Vec::new();
-        write_hits(&mut file, &[hit, SceneHit::MISS]).unwrap();
+        write_hits(&mut file, &[hit, SceneHit::MISS], false).unwrap();
         let data = &file[file.len() - 56..];
         assert_eq!(data[..8], 1.5_f64.to_le_bytes());
         assert_eq!(data[8..12], 2_u32.to_le_bytes());

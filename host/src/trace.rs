@@ -33,6 +33,8 @@ pub struct SceneHit {
     pub t: f64,
     pub object: u32,
     pub primitive: u32,
+    /// The instance, in scene-file order; `u32::MAX` for the scene's own objects.
+    pub instance: u32,
     pub normal: [f32; 3],
 }
 
@@ -42,6 +44,7 @@ impl SceneHit {
         t: f64::INFINITY,
         object: u32::MAX,
         primitive: u32::MAX,
+        instance: u32::MAX,
         normal: [0.0; 3],
     };
 
@@ -56,6 +59,7 @@ impl SceneHit {
         t: 0.0,
         object: 0,
         primitive: 0,
+        instance: u32::MAX,
         normal: [0.0; 3],
     };
 
@@ -275,6 +279,9 @@ fn closest_of_each<N: Number, A: Accel, C: Observer>(
                     t: direction_scale.multiple(N::far_to_f64(found.t), error)?,
                     object: found.object,
                     primitive: found.primitive,
+                    instance: found
+                        .instance()
+                        .map_or(u32::MAX, |index| scene.instance_number(index)),
                     normal: found.normal.map(|x| x.ratio_to_f64() as f32),
                 })
             });

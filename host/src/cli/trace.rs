@@ -213,7 +213,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .collect();
     drop(progress);
     let names = source.names(&scene);
-    let write_hits: Content<'_> = &|out| write_hits(out, &hits);
+    let write_hits: Content<'_> = &|out| write_hits(out, &hits, !scene.instances().is_empty());
     match &arguments.names {
         Some(Some(path)) => {
             let table = json(&NameTable::of(&scene, &names))?;

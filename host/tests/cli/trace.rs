@@ -65,6 +65,7 @@ fn hits(file: &[u8]) -> Vec<SceneHit> {
                 t: f64::from_le_bytes(record[..8].try_into().unwrap()),
                 object: u32::from_le_bytes(word(8)),
                 primitive: u32::from_le_bytes(word(12)),
+                instance: u32::MAX,
                 normal: [16, 20, 24].map(|at| f32::from_le_bytes(word(at))),
             }
         })
@@ -146,6 +147,7 @@ fn any_hits_are_those_that_have_a_closest_one() {
                 t: 0.0,
                 object: 0,
                 primitive: 0,
+                instance: u32::MAX,
                 normal: [0.0; 3],
             };
             assert_eq!(*any, expected);
