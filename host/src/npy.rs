@@ -225,11 +225,7 @@ fn integers(text: &str) -> Option<(Vec<u64>, &str)> {
 /// assert!(file.starts_with(b"\x93NUMPY"));
 /// # Ok::<(), std::io::Error>(())
 /// ```
-pub fn write_hits(
-    out: &mut dyn Write,
-    hits: &[SceneHit],
-    with_instances: bool,
-) -> io::Result<()> {
+pub fn write_hits(out: &mut dyn Write, hits: &[SceneHit], with_instances: bool) -> io::Result<()> {
     let instance = if with_instances {
         "('instance', '<u4'), "
     } else {
@@ -422,6 +418,7 @@ mod tests {
             t: 1.5,
             object: 2,
             primitive: 3,
+            instance: 7,
             normal: [0.0, -1.0, 0.5],
         };
         let mut file = Vec::new();
@@ -440,5 +437,13 @@ mod tests {
         assert!(header.contains("'normal', '<f4', (3,)"), "{header}");
         assert!(header.contains("'shape': (2, )"), "{header}");
         assert_eq!((file.len() - 56) % 16, 0);
+        let mut placed = Vec::new();
+        write_hits(&mut placed, &[hit], true).unwrap();
+        let header = String::from_utf8_lossy(&placed[..placed.len() - 32]).into_owned();
+        assert!(
+            header.contains("('primitive', '<u4'), ('instance', '<u4'), ('normal'"),
+            "{header}"
+        );
+        assert_eq!(placed[placed.len() - 16..][..4], 7_u32.to_le_bytes());
     }
 }

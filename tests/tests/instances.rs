@@ -108,7 +108,14 @@ fn random_ray(random: &mut Random, scene: &Loaded<'_>) -> (DVec3, DVec3) {
             low.midpoint(high) + reach * random.signed() * (high - low) / 2.0
         }))
     };
-    let (from, to) = (point(3.0), point(1.0));
+    let (from, mut to) = (point(3.0), point(1.0));
+    if !random.one_in(4) {
+        let instances = scene.instances();
+        let sides = instances[random.below(instances.len())].bounds.0;
+        to = DVec3::from_array(sides.map(|[low, high]| {
+            f64::from(low) + random.unit() * (f64::from(high) - f64::from(low))
+        }));
+    }
     (from, (to - from).normalize())
 }
 

@@ -85,11 +85,11 @@ impl Primitive for Cuboid {
         let (axis, is_upper) = (usize::from(part / 2), part & 1 != 0);
         let side = if is_upper { self.highest } else { self.lowest };
         let coordinate = N::from_lattice(pick(side, axis));
-        flat::face(axis, is_upper, coordinate, self.beneath_faces(point))
+        flat::face(axis, is_upper, coordinate, self.beneath_faces(point, N::ZERO))
     }
 
-    fn inside<N: Arithmetic>(&self, [point, _]: [[N; 3]; 2], _: N) -> [N; 3] {
-        self.beneath_faces(point)
+    fn inside<N: Arithmetic>(&self, [point, _]: [[N; 3]; 2], depth: N) -> [N; 3] {
+        self.beneath_faces(point, depth)
     }
 
     fn validate(&self, scene: InScene<'_>) -> Result<(), BlobError> {
@@ -102,13 +102,16 @@ impl Primitive for Cuboid {
 }
 
 impl Cuboid {
-    /// The point beneath all faces that is nearest to a point: a step beside them, or where the box is no
-    /// thicker than that, halfway between them.
-    fn beneath_faces<N: Arithmetic>(&self, point: [N; 3]) -> [N; 3] {
+    /// The point beneath all faces that is nearest to a point: a step beside them or a depth, whichever is more, or
+    /// where the box is no thicker than that, halfway between them.
+    fn beneath_faces<N: Arithmetic>(&self, point: [N; 3], depth: N) -> [N; 3] {
         let axis = |k: usize| {
             let low = N::from_lattice(self.lowest[k]);
             let high = N::from_lattice(self.highest[k]);
-            let (first, last) = (low + N::step_beside(low), high - N::step_beside(high));
+            let (first, last) = (
+                low + N::step_beside(low).max(depth),
+                high - N::step_beside(high).max(depth),
+            );
             if first > last {
                 low.half() + high.half()
             } else {
