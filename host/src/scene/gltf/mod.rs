@@ -15,7 +15,7 @@ mod material;
 mod place;
 mod view;
 
-use super::importer::{Importer as Entry, Input};
+use super::importer::{Choices, Importer as Entry, Input};
 use super::size::Size;
 use super::text::Warnings;
 use super::{Choice, Imported, Object, SourceSpan, Scene, SceneError, Shape};
@@ -64,7 +64,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     let Input {
         path,
         bytes,
-        choice,
+        choices: Choices { choice, .. },
         access,
         ..
     } = input;
@@ -117,6 +117,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         warnings: warnings.into_sentences(),
         molecules: false,
         choices: true,
+        assemblies: false,
     })
 }
 
