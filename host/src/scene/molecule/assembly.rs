@@ -122,7 +122,7 @@ pub(super) fn assemble(
     }
     if copied.is_empty() {
         return Err(source.error(
-            format!("assembly {wanted} has no atoms"),
+            format!("assembly {wanted} places no atoms"),
             "leave `--assembly` out, or check that the file is complete",
         ));
     }

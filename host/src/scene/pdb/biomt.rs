@@ -36,7 +36,12 @@ impl<'a> Assemblies<'a> {
             let row = columns(row, 1, 1);
             let offset = text.find("BIOMT").unwrap_or_default() + "BIOMT".len();
             let behind = &text[offset..];
-            self.row(line, row, [columns(behind, 2, 5), columns(behind, 6, 80)], groups);
+            self.row(
+                line,
+                row,
+                [columns(behind, 2, 5), columns(behind, 6, 80)],
+                groups,
+            );
         }
     }
 
