@@ -31,7 +31,10 @@ impl Shared {
         let mut uses: HashMap<usize, Vec<(usize, Placement)>> = HashMap::new();
         let mut saved: HashMap<usize, u64> = HashMap::new();
         for (node, world) in placed {
-            let Some(mesh) = node.mesh().filter(|_| node.skin().is_none() && !moves(node)) else {
+            let Some(mesh) = node
+                .mesh()
+                .filter(|_| node.skin().is_none() && !moves(node))
+            else {
                 continue;
             };
             let matrix = DMat3::from_mat4(*world);
@@ -118,7 +121,10 @@ impl Importer<'_> {
             for part in mesh.primitives() {
                 let vertices = part.get(&Semantic::Positions).map_or(0, |it| it.count());
                 let triangles = triangle_count(&part);
-                if matches!(part.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
+                if matches!(
+                    part.mode(),
+                    Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip
+                ) {
                     continue;
                 }
                 size = size.plus(Size {

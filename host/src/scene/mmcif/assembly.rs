@@ -22,7 +22,7 @@ impl GroupColumns {
     pub(super) fn read<'a>(&self, table: &Table<'a>) -> Group<'a> {
         let chains = table.value([self.chains]).split(',').map(str::trim);
         Group {
-            assembly: table.value([self.assembly]),
+            assemblies: [table.value([self.assembly])].into(),
             chains: Some(chains.filter(|it| !it.is_empty()).collect()),
             operators: Operators::Expression(table.value([self.expression])),
             line: table.line,

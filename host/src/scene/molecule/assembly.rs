@@ -8,6 +8,7 @@ use crate::scene::text::{Source, Warnings};
 use crate::scene::{Placement, SceneError};
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap, HashSet};
+use std::rc::Rc;
 
 /// The most instances of an assembly.
 pub(super) const MOST_INSTANCES: u64 = 65_535;
@@ -17,8 +18,8 @@ const LISTED: usize = 20;
 
 /// Chains of an assembly that have operators in common, as the file has them.
 pub(in crate::scene) struct Group<'a> {
-    /// The number or name of the assembly.
-    pub(in crate::scene) assembly: &'a str,
+    /// The numbers or names of the assemblies that it belongs to.
+    pub(in crate::scene) assemblies: Rc<[&'a str]>,
     /// Names of chains as in [`Atom::asym`]; `None` for all.
     pub(in crate::scene) chains: Option<Vec<&'a str>>,
     pub(in crate::scene) operators: Operators<'a>,
@@ -62,7 +63,12 @@ pub(super) fn assemble(
     wanted: &str,
     warnings: &mut Warnings,
 ) -> Result<Vec<Copied>, SceneError> {
-    let chosen = || parsed.groups.iter().filter(|it| it.assembly == wanted);
+    let chosen = || {
+        parsed
+            .groups
+            .iter()
+            .filter(|it| it.assemblies.contains(&wanted))
+    };
     if chosen().next().is_none() {
         return Err(unknown(source, parsed, wanted));
     }
@@ -196,9 +202,9 @@ fn in_words(chains: &Chains<'_>) -> String {
 fn unknown(source: &Source, parsed: &Parsed<'_>, wanted: &str) -> SceneError {
     let mut names: Vec<&str> = Vec::new();
     let mut seen = HashSet::new();
-    for group in &parsed.groups {
-        if seen.insert(group.assembly) {
-            names.push(group.assembly);
+    for &name in parsed.groups.iter().flat_map(|it| &*it.assemblies) {
+        if seen.insert(name) {
+            names.push(name);
         }
     }
     if names.is_empty() {

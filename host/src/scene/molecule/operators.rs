@@ -9,6 +9,12 @@ use glam::{DMat3, DVec3};
 /// How far the entries of a matrix can be from those of a rotation: files round them to six digits or fewer.
 const TOLERANCE: f64 = 1e-3;
 
+/// The most factors of a product. Files have two or three.
+const MOST_FACTORS: usize = 16;
+
+/// The most characters of an operator's name that are kept. Files have one to three.
+const MOST_CHARACTERS: usize = 32;
+
 /// An operator as the file writes it.
 #[derive(Clone)]
 pub(in crate::scene) struct Matrix<'a> {
@@ -128,7 +134,7 @@ impl Matrix<'_> {
                 .at_line(self.line)
         })?;
         Ok(Operator {
-            name: self.name.to_owned(),
+            name: self.name.chars().take(MOST_CHARACTERS).collect(),
             placement,
         })
     }
@@ -158,6 +164,9 @@ fn factors<'a>(source: &Source, text: &'a str, line: usize) -> Result<Vec<&'a st
         }
         if items(factor).any(str::is_empty) {
             return Err(broken("have an empty place in a list"));
+        }
+        if factors.len() == MOST_FACTORS {
+            return Err(broken(&format!("have more than {MOST_FACTORS} factors")));
         }
         factors.push(factor);
         rest = behind.trim_start();

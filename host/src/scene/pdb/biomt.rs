@@ -2,14 +2,15 @@
 
 use super::columns;
 use crate::scene::molecule::{Group, Matrix, Operators};
+use std::rc::Rc;
 
 /// The state of reading remarks, which follow each other.
 #[derive(Default)]
 pub(super) struct Assemblies<'a> {
     /// The numbers of the assemblies that are open.
-    open: Vec<&'a str>,
-    /// How many groups at the end of the list are open: one for each assembly.
-    groups: usize,
+    open: Rc<[&'a str]>,
+    /// Whether a group is open, the last one.
+    in_group: bool,
 }
 
 impl<'a> Assemblies<'a> {
@@ -19,44 +20,36 @@ impl<'a> Assemblies<'a> {
         if let Some(names) = trimmed.strip_prefix("BIOMOLECULE:") {
             let names = names.split(',').map(str::trim);
             self.open = names.filter(|it| !it.is_empty()).collect();
-            self.groups = 0;
+            self.in_group = false;
         } else if let Some((head, names)) = trimmed.split_once("CHAINS:") {
-            if !head.starts_with("AND") || self.groups == 0 {
+            if !(head.starts_with("AND") && self.in_group) {
                 self.begin(line, groups);
             }
             let names = names.split(',').map(str::trim).filter(|it| !it.is_empty());
             // What files call chains without a name.
             let names = names.map(|name| if name == "NULL" { "" } else { name });
-            let from = groups.len() - self.groups;
-            for group in &mut groups[from..] {
-                group.chains.get_or_insert_default().extend(names.clone());
+            if let Some(group) = groups.last_mut() {
+                group.chains.get_or_insert_default().extend(names);
             }
-        } else if let Some(row) = trimmed.strip_prefix("BIOMT") {
-            // The numbers stand in columns, of which the first two can touch.
-            let row = columns(row, 1, 1);
-            let offset = text.find("BIOMT").unwrap_or_default() + "BIOMT".len();
-            let behind = &text[offset..];
-            self.row(
-                line,
-                row,
-                [columns(behind, 2, 5), columns(behind, 6, 80)],
-                groups,
-            );
+        } else if let Some(rest) = trimmed.strip_prefix("BIOMT") {
+            // The row and the operator's number stand in columns, which can touch.
+            let numbers = [columns(rest, 2, 5), columns(rest, 6, 80)];
+            self.row(line, columns(rest, 1, 1), numbers, groups);
         }
     }
 
-    /// Begins a group of chains in each open assembly.
+    /// Begins a group of chains in the open assemblies.
     fn begin(&mut self, line: usize, groups: &mut Vec<Group<'a>>) {
         if self.open.is_empty() {
-            self.open.push("1");
+            self.open = ["1"].into();
         }
-        groups.extend(self.open.iter().map(|assembly| Group {
-            assembly,
+        groups.push(Group {
+            assemblies: Rc::clone(&self.open),
             chains: None,
             operators: Operators::Listed(Vec::new()),
             line,
-        }));
-        self.groups = self.open.len();
+        });
+        self.in_group = true;
     }
 
     /// Takes in a row of a matrix: the operator's number, and four numbers.
@@ -70,7 +63,7 @@ impl<'a> Assemblies<'a> {
         let Some(row) = ["1", "2", "3"].iter().position(|it| *it == row) else {
             return;
         };
-        if self.groups == 0 {
+        if !self.in_group {
             self.begin(line, groups);
         }
         let mut words = [""; 4];
@@ -78,22 +71,20 @@ impl<'a> Assemblies<'a> {
             *word = number;
         }
         let name = name.trim();
-        let from = groups.len() - self.groups;
-        for group in &mut groups[from..] {
-            let Operators::Listed(matrices) = &mut group.operators else {
-                continue;
-            };
-            match matrices.last_mut() {
-                Some(last) if last.name == name && row > 0 => last.words[row] = words,
-                _ => {
-                    let mut matrix = Matrix {
-                        name,
-                        words: [[""; 4]; 3],
-                        line,
-                    };
-                    matrix.words[row] = words;
-                    matrices.push(matrix);
-                }
+        let Some(Operators::Listed(matrices)) = groups.last_mut().map(|it| &mut it.operators)
+        else {
+            return;
+        };
+        match matrices.last_mut() {
+            Some(last) if last.name == name && row > 0 => last.words[row] = words,
+            _ => {
+                let mut matrix = Matrix {
+                    name,
+                    words: [[""; 4]; 3],
+                    line,
+                };
+                matrix.words[row] = words;
+                matrices.push(matrix);
             }
         }
     }

@@ -1,8 +1,8 @@
 //! Counts what a scene will hold before anything is placed: groups in groups can grow beyond all
 //! memory in a few lines.
 
-use super::material::Palette;
 use super::item::{Content, Group, Item, PartItem};
+use super::material::Palette;
 use super::source::{Name, Source, Span, nearest};
 use crate::scene::size::{MOST_PRIMITIVES, Size, primitives};
 use crate::scene::{Object, Scene, SceneError};

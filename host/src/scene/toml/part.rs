@@ -39,7 +39,9 @@ pub(super) fn instances(
     parts: &[PartItem],
 ) -> Result<Vec<InstanceItem>, SceneError> {
     let numbers = parts.iter().enumerate();
-    let numbers: HashMap<&str, usize> = numbers.map(|(at, it)| (it.name.text.as_str(), at)).collect();
+    let numbers: HashMap<&str, usize> = numbers
+        .map(|(at, it)| (it.name.text.as_str(), at))
+        .collect();
     let mut names = HashSet::new();
     let mut instances = Vec::new();
     for table in list.items("`[[instance]]` above its keys")? {
@@ -87,7 +89,10 @@ pub(super) fn unplaced(
     let unplaced = parts.filter(|(number, _)| !placed.contains(number));
     let warning = |(_, part): (usize, &PartItem)| {
         let place = source.place(&part.span);
-        format!("{place}: no instance places the part {:?}; it is left out", part.name.text)
+        format!(
+            "{place}: no instance places the part {:?}; it is left out",
+            part.name.text
+        )
     };
     unplaced.map(warning).collect()
 }

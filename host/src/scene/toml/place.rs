@@ -90,7 +90,10 @@ impl<'p> Placer<'p> {
                 if self.placed.objects.is_empty() {
                     return Err(self.source.error(
                         &part.span,
-                        format!("the part {:?} has no object: its imports are empty", part.name.text),
+                        format!(
+                            "the part {:?} has no object: its imports are empty",
+                            part.name.text
+                        ),
                         "add objects to it, or remove it",
                     ));
                 }

@@ -51,7 +51,10 @@ fn shared_mesh_that_saves_enough_is_a_part() {
     let expected = DQuat::from_rotation_y(30_f64.to_radians());
     assert!(placement.rotation.dot(expected).abs() > 1.0 - 1e-12);
     assert!((placement.scale - 2.0).abs() < 1e-6);
-    assert_eq!(scene.instances[2].placement.translation, DVec3::new(3.0, 0.0, 0.0));
+    assert_eq!(
+        scene.instances[2].placement.translation,
+        DVec3::new(3.0, 0.0, 0.0)
+    );
     assert_eq!(scene.flattened().unwrap().objects[2].name, "right/tree");
 }
 
@@ -137,8 +140,10 @@ fn nodes_that_move_are_copied() {
     views.push(json!({"buffer": 0, "byteLength": 4}));
     views.push(json!({"buffer": 0, "byteLength": 12}));
     let accessors = document["accessors"].as_array_mut().unwrap();
-    accessors.push(json!({"bufferView": 2, "componentType": 5126, "count": 1, "type": "SCALAR",
-        "min": [0], "max": [0]}));
+    accessors.push(
+        json!({"bufferView": 2, "componentType": 5126, "count": 1, "type": "SCALAR",
+        "min": [0], "max": [0]}),
+    );
     accessors.push(json!({"bufferView": 3, "componentType": 5126, "count": 1, "type": "VEC3"}));
     document["animations"] = json!([{
         "samplers": [{"input": 2, "output": 3}],

@@ -301,6 +301,7 @@ fn faults_of_expressions_name_line_cause_and_remedy() {
         ("(1)(2))", "one too many"),
         ("1,,2", "empty place"),
         ("()", "empty place"),
+        (&"(1)".repeat(17), "more than 16 factors"),
         ("(1-4000000000)", "more than 65535 operators"),
         (
             "(1-4)(1-4)(1-4)(1-4)(1-4)(1-4)(1-4)(1-4)",

@@ -1,8 +1,8 @@
 //! Objects of valid files.
 
-use crate::shape::{Cone, Cuboid, Sphere};
 use super::{example, load, material_of, named, scene};
 use crate::scene::{Diffuse, Light, Material, RenderSettings, Scene, Shape};
+use crate::shape::{Cone, Cuboid, Sphere};
 use glam::DVec3;
 
 #[test]

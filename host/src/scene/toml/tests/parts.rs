@@ -29,7 +29,10 @@ fn part_is_held_once_and_placed_often() {
     let [first, left] = &scene.instances[..] else {
         panic!("{:?}", scene.instances)
     };
-    assert_eq!((first.name.as_str(), first.placement), ("wheel 1", Placement::IDENTITY));
+    assert_eq!(
+        (first.name.as_str(), first.placement),
+        ("wheel 1", Placement::IDENTITY)
+    );
     assert_eq!((left.name.as_str(), left.place.line), ("left", 10));
     let placement = left.placement;
     let quarter = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
@@ -50,7 +53,13 @@ fn instance_stands_where_a_group_would() {
     let flat = part.flattened().unwrap();
     let group = scene(&group);
     let support = |scene: &Scene, direction: DVec3| scene.objects[0].shape.support(direction);
-    for direction in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE, DVec3::new(1.0, -2.0, 0.5)] {
+    for direction in [
+        DVec3::X,
+        DVec3::Y,
+        DVec3::Z,
+        DVec3::ONE,
+        DVec3::new(1.0, -2.0, 0.5),
+    ] {
         let [a, b] = [&flat, &group].map(|scene| support(scene, direction));
         assert!((a - b).abs() < 1e-12, "{a} {b}");
     }
@@ -110,8 +119,14 @@ fn import_that_is_mirrored_or_in_a_part_has_copies() {
     assert!(mirrored.parts.is_empty() && mirrored.instances.is_empty());
     let names: Vec<_> = mirrored.objects.iter().map(|it| it.name.as_str()).collect();
     assert_eq!(names[..2], ["cart/left/hub", "cart/right/hub"]);
-    assert_eq!(mirrored.objects[1].shape.middle(), Some(DVec3::new(-5.0, 0.0, 0.0)));
-    let part = ["[[part]]\nname = 'outer'\n", "\n[[instance]]\npart = 'outer'\n"];
+    assert_eq!(
+        mirrored.objects[1].shape.middle(),
+        Some(DVec3::new(-5.0, 0.0, 0.0))
+    );
+    let part = [
+        "[[part]]\nname = 'outer'\n",
+        "\n[[instance]]\npart = 'outer'\n",
+    ];
     let nested = importing("", part);
     assert_eq!((nested.parts.len(), nested.instances.len()), (1, 1));
     assert_eq!(nested.parts[0].objects.len(), 4);
@@ -208,5 +223,8 @@ ATOM      1  CA  CYS A   3      11.000   2.000   3.000  1.00  0.00           C
     assert!(imported.assemblies);
     let flat = imported.scene.flattened().unwrap();
     assert_eq!(flat.objects[0].name, "capsid/1/A/CYS 3/CA");
-    assert_eq!(flat.objects[0].shape.middle(), Some(DVec3::new(-11.0, -2.0, 3.0)));
+    assert_eq!(
+        flat.objects[0].shape.middle(),
+        Some(DVec3::new(-11.0, -2.0, 3.0))
+    );
 }
