@@ -449,6 +449,15 @@ fn import_from(input: &Input, options: &SceneOptions) -> Result<Imported, Failur
             "leave the option out",
         ));
     }
+    if let Some(option) = importing.given_assembly().filter(|_| !imported.assemblies) {
+        return Err(Failure::usage(
+            format!(
+                "{option} is for PDB and mmCIF files, and {} has none",
+                path.display()
+            ),
+            "leave the option out",
+        ));
+    }
     for warning in &imported.warnings {
         warn(warning);
     }

@@ -4,7 +4,6 @@ use super::size::{MOST_PRIMITIVES, Size, primitives};
 use super::{Instance, Object, Part, Scene, SceneError};
 use crate::shape::transform::Misfit;
 use crate::table::grouped;
-use glam::DAffine3;
 use std::borrow::Cow;
 
 const KEEP: &str = "keep the instances with `--instances keep`, or place fewer of them";
@@ -91,11 +90,7 @@ impl Scene {
 
 /// An object of a part where an instance places it.
 fn placed(instance: &Instance, object: &Object) -> Result<Object, SceneError> {
-    let placement = &instance.placement;
-    let by = DAffine3 {
-        matrix3: placement.matrix(),
-        translation: placement.translation,
-    };
+    let by = instance.placement.affine();
     let misfit = |Misfit { cause, remedy }| {
         let cause = format!(
             "the object {:?} of instance {:?} {cause}",

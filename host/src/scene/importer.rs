@@ -3,7 +3,7 @@
 use super::access::Access;
 use super::gzip;
 use super::text::{Source, check_encoding, read_file};
-use super::{Choice, Imported, MoleculeOptions, SceneError};
+use super::{Choice, ImportOptions, Imported, MoleculeOptions, SceneError};
 use gridel_core::Up;
 use std::fmt;
 use std::path::Path;
@@ -103,13 +103,12 @@ impl Importers {
     pub(super) fn open<'a>(
         self,
         path: &'a Path,
-        molecule: &'a MoleculeOptions,
-        choice: &'a Choice,
+        choices: Choices<'a>,
         access: &'a Access,
     ) -> Result<(&'static Importer, Input<'a>), SceneError> {
         // A file that nothing can read is not worth reading.
         self.of_name(path)?;
-        self.input(path, read_file(path)?, molecule, choice, access)
+        self.input(path, read_file(path)?, choices, access)
     }
 
     /// Content that was read already.
@@ -117,8 +116,7 @@ impl Importers {
         self,
         path: &'a Path,
         bytes: Vec<u8>,
-        molecule: &'a MoleculeOptions,
-        choice: &'a Choice,
+        choices: Choices<'a>,
         access: &'a Access,
     ) -> Result<(&'static Importer, Input<'a>), SceneError> {
         let named = self.of_name(path)?;
@@ -131,8 +129,7 @@ impl Importers {
             importers: self,
             path,
             bytes,
-            molecule,
-            choice,
+            choices,
             access,
         };
         Ok((importer, input))
@@ -160,6 +157,24 @@ fn dotted(extensions: &[&str]) -> Vec<String> {
     extensions.iter().map(|it| format!(".{it}")).collect()
 }
 
+/// What a file leaves open, as it is chosen.
+#[derive(Clone, Copy)]
+pub(super) struct Choices<'a> {
+    pub(super) molecule: &'a MoleculeOptions,
+    pub(super) assembly: Option<&'a str>,
+    pub(super) choice: &'a Choice,
+}
+
+impl<'a> Choices<'a> {
+    pub(super) fn of(options: &'a ImportOptions) -> Self {
+        Self {
+            molecule: &options.molecule,
+            assembly: options.assembly.as_deref(),
+            choice: &options.choice,
+        }
+    }
+}
+
 /// A file on its way to an importer.
 pub(super) struct Input<'a> {
     /// Importers of files that this one names.
@@ -168,8 +183,7 @@ pub(super) struct Input<'a> {
     pub(super) path: &'a Path,
     /// The content, inflated if the file was gzipped.
     pub(super) bytes: Vec<u8>,
-    pub(super) molecule: &'a MoleculeOptions,
-    pub(super) choice: &'a Choice,
+    pub(super) choices: Choices<'a>,
     pub(super) access: &'a Access,
 }
 

@@ -32,14 +32,14 @@ pub use crate::shape::Shape;
 pub use error::SceneError;
 pub use importer::Importer;
 pub use model::{Camera, Color, Diffuse, Light, Material, Object, RenderSettings, Scene};
-pub use options::{Choice, ImportOptions, Imported, MoleculeOptions, MoleculeStyle};
+pub use options::{Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle};
 pub use part::{Instance, Part, Placement};
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
 pub use track::{Interpolation, Key, Track, TrackTarget};
 
 use access::Access;
-use importer::Importers;
+use importer::{Choices, Importers};
 use std::path::Path;
 
 importer::formats! {
@@ -110,9 +110,16 @@ pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneEr
 /// ```
 pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, SceneError> {
     let access = Access::of(path, options.allow_outside);
-    let (importer, input) =
-        Importers(IMPORTERS).open(path, &options.molecule, &options.choice, &access)?;
-    importer.import(input)
+    let (importer, input) = Importers(IMPORTERS).open(path, Choices::of(options), &access)?;
+    finish(importer.import(input)?, options)
+}
+
+/// Flattens what was read, if that is asked for.
+fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, SceneError> {
+    if options.instances == Instances::Flatten {
+        imported.scene = imported.scene.into_flattened()?;
+    }
+    Ok(imported)
 }
 
 /// Reads a scene from bytes as [`load_with`] reads a file of this name, which need not exist. Files
@@ -134,6 +141,6 @@ pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, Scene
 pub fn read(name: &Path, bytes: Vec<u8>, options: &ImportOptions) -> Result<Imported, SceneError> {
     let access = Access::of(name, options.allow_outside);
     let (importer, input) =
-        Importers(IMPORTERS).input(name, bytes, &options.molecule, &options.choice, &access)?;
-    importer.import(input)
+        Importers(IMPORTERS).input(name, bytes, Choices::of(options), &access)?;
+    finish(importer.import(input)?, options)
 }

@@ -116,6 +116,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         warnings: warnings.into_sentences(),
         molecules: false,
         choices: false,
+        assemblies: false,
     })
 }
 

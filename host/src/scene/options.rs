@@ -40,6 +40,8 @@ pub struct Imported {
     pub molecules: bool,
     /// Whether a file with cameras or animations to choose from was read, which [`Choice`] is for.
     pub choices: bool,
+    /// Whether a file that can hold assemblies was read, which [`ImportOptions::assembly`] is for.
+    pub assemblies: bool,
 }
 
 /// Which of a glTF file's cameras and animations is read.
@@ -51,13 +53,28 @@ pub struct Choice {
     pub animation: Option<String>,
 }
 
+/// What becomes of instances.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Instances {
+    /// Parts are held once, and instances place them.
+    #[default]
+    Keep,
+    /// Each instance becomes objects of its own.
+    Flatten,
+}
+
 /// How a scene file is read.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImportOptions {
     /// Choices that a molecule file leaves open.
     pub molecule: MoleculeOptions,
+    /// Which assembly of a PDB or mmCIF file, by its number or name; without one the asymmetric unit, which
+    /// is the atoms as the file lists them.
+    pub assembly: Option<String>,
     /// Which camera and animation.
     pub choice: Choice,
+    /// Whether instances are kept.
+    pub instances: Instances,
     /// Whether the file may name files outside of its folder: imports, materials, buffers. A scene
     /// from elsewhere could read any file of the user's so.
     pub allow_outside: bool,

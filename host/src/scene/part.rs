@@ -2,7 +2,7 @@
 
 use super::model::Object;
 use super::source_span::SourceSpan;
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 /// A group of objects in coordinates of its own, which instances place.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,6 +73,14 @@ impl Placement {
         self.turn() * self.scale
     }
 
+    /// The map as an affine transform.
+    pub(crate) fn affine(&self) -> DAffine3 {
+        DAffine3 {
+            matrix3: self.matrix(),
+            translation: self.translation,
+        }
+    }
+
     /// The rotation, whose quarter turns are exact.
     fn turn(&self) -> DMat3 {
         /// A few roundings of an `f64`.
@@ -118,7 +126,7 @@ impl Placement {
     /// scale above 0, within 1e-6 of the scale; a mirror is none.
     ///
     /// ```
-    /// use glam::{DMat3, DVec3};
+    /// use glam::{DAffine3, DMat3, DVec3};
     /// use gridel_host::scene::Placement;
     ///
     /// let even = DMat3::from_diagonal(DVec3::splat(2.0));

@@ -1,14 +1,17 @@
-//! The columns of a PDB file (format 3.3): ATOM, HETATM, MODEL, ENDMDL, END and CONECT. Atoms behind
+//! The columns of a PDB file (format 3.3): ATOM, HETATM, MODEL, ENDMDL, END, CONECT and REMARK 350. Atoms behind
 //! an END begin a model of their own, because programs of dynamics end their frames so.
 //!
 //! Columns are those of the format's description, counted from 1. What drawing does not need is
 //! not read, so that files that leave it out or bend its rules are welcome: serial numbers may be
 //! `*****` or hexadecimal, and everything after the coordinates may be missing.
 
+mod biomt;
+
 use super::importer::{Importer, Input};
 use super::molecule::{self, Atom, Element, End, Model, Parsed, Site};
 use super::text::{Source, Warnings};
 use super::{Imported, SceneError};
+use biomt::Assemblies;
 use glam::DVec3;
 use gridel_core::Up;
 
@@ -45,6 +48,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
 /// If a line of an atom is too short, or its coordinates are no finite numbers.
 fn parse<'a>(source: &'a Source, warnings: &mut Warnings) -> Result<Parsed<'a>, SceneError> {
     let mut parsed = Parsed::default();
+    let mut assemblies = Assemblies::default();
     // Whether the next atom starts a model, and what number the file gives that.
     let mut next_model = Some("1");
     for (number, line) in source.lines() {
@@ -59,6 +63,9 @@ fn parse<'a>(source: &'a Source, warnings: &mut Warnings) -> Result<Parsed<'a>, 
                 parsed
                     .atoms
                     .push(atom(source, number, line, model, warnings)?);
+            }
+            "REMARK" if columns(line, 7, 10).trim() == "350" => {
+                assemblies.remark(number, columns(line, 11, 80), &mut parsed.groups);
             }
             // Some programs leave ENDMDL out, or let atoms without a MODEL follow it.
             "MODEL" => next_model = Some(columns(line, 7, 80).trim()),
@@ -132,6 +139,7 @@ fn atom<'a>(
         name: field.trim(),
         altloc: columns(line, 17, 17).trim(),
         chain: columns(line, 22, 22).trim(),
+        asym: columns(line, 22, 22).trim(),
         residue,
         number: columns(line, 23, 26).trim(),
         insertion: columns(line, 27, 27).trim(),

@@ -214,6 +214,7 @@ fn scene(path: &Path, objects: Vec<Object>, warnings: Vec<String>) -> Result<Imp
         warnings,
         molecules: false,
         choices: false,
+        assemblies: false,
     })
 }
 

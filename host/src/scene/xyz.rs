@@ -38,7 +38,7 @@ pub(super) const IMPORTER: Importer = Importer {
 
 /// Reads an XYZ file. It has no camera and no lights; the compiler adds them.
 fn read(input: Input<'_>) -> Result<Imported, SceneError> {
-    let chosen = input.molecule.model;
+    let chosen = input.choices.molecule.model;
     molecule::import(input, |source, warnings| parse(source, chosen, warnings))
 }
 
@@ -165,6 +165,7 @@ fn atom<'a>(
         name,
         altloc: "",
         chain: "",
+        asym: "",
         residue: "",
         number: "",
         insertion: "",

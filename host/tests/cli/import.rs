@@ -127,3 +127,83 @@ fn two_to_the_23_instances_are_rejected_under_4_gb() {
         assert!(said.contains(words), "no {words:?} in {said}");
     }
 }
+
+/// A part with two instances.
+const CART: &str = "[[part]]\nname = 'wheel'\n[[part.object]]\nkind = 'sphere'\n\
+    center = [0, 0, 0]\nradius = 1\nname = 'hub'\n\
+    [[instance]]\npart = 'wheel'\nname = 'left'\n\
+    [[instance]]\npart = 'wheel'\nname = 'right'\ntranslate = [3, 0, 0]\n";
+
+#[test]
+fn instances_are_kept_or_flattened() {
+    let folder = Folder::new();
+    folder.write("cart.toml", CART.as_bytes());
+    for choice in ["keep", "flatten"] {
+        let picture = format!("{choice}.png");
+        folder.done(&[
+            "render",
+            "cart.toml",
+            "--instances",
+            choice,
+            "--size",
+            "20x15",
+            "-o",
+            &picture,
+        ]);
+    }
+    folder.done(&[
+        "build",
+        "cart.toml",
+        "--instances",
+        "flatten",
+        "-o",
+        "flat.gridel",
+    ]);
+    let names = folder.done(&["trace", "--help"]);
+    assert!(names.contains("--instances"), "{names}");
+    folder.fails(
+        2,
+        &["inspect", "flat.gridel", "--instances", "flatten"],
+        &["--instances is for scene files"],
+    );
+    folder.fails(
+        2,
+        &[
+            "build",
+            "cart.toml",
+            "--instances",
+            "copy",
+            "-o",
+            "a.gridel",
+        ],
+        &["possible values: keep, flatten"],
+    );
+}
+
+#[test]
+fn assembly_is_chosen_by_its_number() {
+    let folder = Folder::new();
+    folder.write("cart.toml", CART.as_bytes());
+    let pdb = "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n\
+REMARK 350   BIOMT1   1 -1.000000  0.000000  0.000000        0.00000\n\
+REMARK 350   BIOMT2   1  0.000000 -1.000000  0.000000        0.00000\n\
+REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000        0.00000\n\
+ATOM      1  CA  CYS A   3      11.000   2.000   3.000  1.00  0.00           C\n";
+    folder.write("a.pdb", pdb.as_bytes());
+    folder.done(&["build", "a.pdb", "--assembly", "1", "-o", "a.gridel"]);
+    folder.fails(
+        1,
+        &["build", "a.pdb", "--assembly", "2", "-o", "b.gridel"],
+        &["there is no assembly", "choose one of 1"],
+    );
+    folder.fails(
+        2,
+        &["build", "cart.toml", "--assembly", "1", "-o", "b.gridel"],
+        &["--assembly is for PDB and mmCIF files"],
+    );
+    folder.fails(
+        2,
+        &["inspect", "a.gridel", "--assembly", "1"],
+        &["--assembly is for scene files"],
+    );
+}

@@ -76,6 +76,8 @@ fn scene_page_lists_exactly_the_keys_of_tables() {
         ("Materials", "[material.a]\nunknown = 1"),
         ("Checkerboard", "[material.a]\nchecker = { unknown = 1 }"),
         ("Groups", "[group.a]\nunknown = 1"),
+        ("Parts", "[[part]]\nunknown = 1"),
+        ("Instances", "[[instance]]\nunknown = 1"),
         (
             "Rotations",
             "[[object]]\nkind = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n\

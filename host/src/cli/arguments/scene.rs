@@ -6,7 +6,7 @@ use super::view::ViewOptions;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
-use gridel_host::scene::{self, MoleculeStyle};
+use gridel_host::scene::{self, Instances, MoleculeStyle};
 use std::num::NonZeroUsize;
 
 /// Help for the argument that names a scene file.
@@ -80,6 +80,14 @@ pub struct ImportOptions {
     #[arg(long, value_name = "NAME")]
     animation: Option<String>,
 
+    /// Keep parts that are placed several times as instances, or copy their objects [default: keep]
+    #[arg(long, value_parser = instances())]
+    instances: Option<Instances>,
+
+    /// Biological assembly of a PDB or mmCIF file, by its number or name [default: the asymmetric unit]
+    #[arg(long, value_name = "ID")]
+    assembly: Option<String>,
+
     #[command(flatten)]
     pub molecule: MoleculeOptions,
 }
@@ -123,6 +131,8 @@ impl GeometryOptions {
         first_given([
             (self.lattice_bits.is_some(), "--lattice-bits"),
             (self.import.allow_outside, "--allow-outside"),
+            (self.import.instances.is_some(), "--instances"),
+            (self.import.assembly.is_some(), "--assembly"),
         ])
         .or(self.import.given_choice())
         .or(self.import.molecule.given())
@@ -166,7 +176,14 @@ impl ImportOptions {
         };
         let camera = choice("camera", &self.camera);
         let animation = choice("animation", &self.animation);
-        format!("{outside}{camera}{animation}{}", self.molecule.written())
+        let instances = match self.instances {
+            Some(Instances::Keep) => " --instances keep",
+            Some(Instances::Flatten) => " --instances flatten",
+            None => "",
+        };
+        let assembly = choice("assembly", &self.assembly);
+        let molecule = self.molecule.written();
+        format!("{outside}{camera}{animation}{instances}{assembly}{molecule}")
     }
 
     /// The name of an option for glTF files, if one was given.
@@ -177,10 +194,17 @@ impl ImportOptions {
         ])
     }
 
+    /// The name of an option for files with assemblies, if one was given.
+    pub fn given_assembly(&self) -> Option<&'static str> {
+        first_given([(self.assembly.is_some(), "--assembly")])
+    }
+
     /// The options for importers.
     pub fn for_import(&self) -> scene::ImportOptions {
         scene::ImportOptions {
             molecule: self.molecule.for_import(),
+            assembly: self.assembly.clone(),
+            instances: self.instances.unwrap_or_default(),
             choice: scene::Choice {
                 camera: self.camera.clone(),
                 animation: self.animation.clone(),
@@ -238,6 +262,13 @@ impl TargetPoint {
         options.view.target = self.target;
         options
     }
+}
+
+fn instances() -> impl TypedValueParser<Value = Instances> {
+    PossibleValuesParser::new(["keep", "flatten"]).map(|name| match name.as_str() {
+        "flatten" => Instances::Flatten,
+        _ => Instances::Keep,
+    })
 }
 
 fn style() -> impl TypedValueParser<Value = MoleculeStyle> {

@@ -1,8 +1,8 @@
 //! Reads glTF 2.0, as text (`.gltf`) and binary (`.glb`): the default scene with its nodes, meshes,
 //! materials, cameras and lights.
 //!
-//! Each set of triangles of each node becomes an object, in the order of the nodes; a mesh that
-//! several nodes share is copied. Animations of cameras and lights become tracks. Meshes stand as they are
+//! Each set of triangles of each node becomes an object, in the order of the nodes. A mesh that several
+//! nodes share is a [part](super::Part), or is copied where that costs little. Animations of cameras and lights become tracks. Meshes stand as they are
 //! at rest: skins, morph targets and animations of meshes are ignored, and so are normals, textures and
 //! vertex colors. A warning names those of them that a file has. Images are never read, wherever they lie.
 
@@ -11,12 +11,12 @@ mod buffers;
 mod check;
 mod container;
 mod document;
+mod instances;
 mod material;
 mod place;
 mod view;
 
-use super::importer::{Importer as Entry, Input};
-use super::size::Size;
+use super::importer::{Choices, Importer as Entry, Input};
 use super::text::Warnings;
 use super::{Choice, Imported, Object, SourceSpan, Scene, SceneError, Shape};
 use animation::Motion;
@@ -28,6 +28,7 @@ use gltf::scene::Transform;
 use gltf::{Document, Node, Primitive, Semantic};
 use std::collections::HashMap;
 use std::path::Path;
+use instances::Shared;
 use place::transform;
 use view::View;
 
@@ -64,7 +65,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     let Input {
         path,
         bytes,
-        choice,
+        choices: Choices { choice, .. },
         access,
         ..
     } = input;
@@ -81,7 +82,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         motion: Motion::default(),
         vertices: 0,
         triangles: 0,
-        size: Size::default(),
+        shared: Shared::default(),
         warnings,
     };
     importer.check(&document)?;
@@ -90,7 +91,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     importer.nodes(&document)?;
     let missing = |[cause, remedy]: [String; 2]| SceneError::new(path, cause, remedy);
     importer.view.check_camera().map_err(missing)?;
-    if importer.scene.objects.is_empty() {
+    if importer.scene.objects.is_empty() && importer.scene.instances.is_empty() {
         importer.warn("the scene of the file has no triangles; nothing is drawn");
     }
     let Importer {
@@ -117,7 +118,14 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         warnings: warnings.into_sentences(),
         molecules: false,
         choices: true,
+        assemblies: false,
     })
+}
+
+/// A mesh, and the name of its objects.
+struct Named<'m> {
+    mesh: &'m gltf::Mesh<'m>,
+    name: &'m str,
 }
 
 /// The scene so far.
@@ -132,7 +140,7 @@ struct Importer<'a> {
     motion: Motion,
     vertices: usize,
     triangles: usize,
-    size: Size,
+    shared: Shared,
     warnings: Warnings,
 }
 
@@ -272,48 +280,16 @@ impl Importer<'_> {
                     "export the file again, or repair the node",
                 ));
             }
-            self.weigh(&node)?;
             let from = open.len();
             open.extend(node.children().map(|child| (child, world)));
             open[from..].reverse();
             placed.push((node, world));
         }
+        self.shared = Shared::of(&placed, |node| self.motion.moves(node.index()));
+        self.weigh(&placed)?;
         placed
             .iter()
             .try_for_each(|(node, world)| self.node(node, world))
-    }
-
-    /// Adds what a node will take to what others do, before any of it is made.
-    fn weigh(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
-        let Some(mesh) = node.mesh() else {
-            return Ok(());
-        };
-        let name = node.name().or(mesh.name()).map_or(0, str::len);
-        for part in mesh.primitives() {
-            let vertices = part.get(&Semantic::Positions).map_or(0, |it| it.count());
-            let corners = part.indices().map_or(vertices, |it| it.count());
-            let triangles = match part.mode() {
-                Mode::Triangles => corners / 3,
-                Mode::TriangleStrip | Mode::TriangleFan => corners.saturating_sub(2),
-                _ => continue,
-            };
-            self.size = self.size.plus(Size {
-                objects: 1,
-                names: name as u64,
-                triangles: triangles.max(vertices / 3) as u64,
-            });
-            if let Some(excess) = self.size.excess() {
-                let place = place(&mesh, &part);
-                return Err(self.error(
-                    format!(
-                        "up to node {}, {place}, instances counted, the file takes {excess}",
-                        node.index()
-                    ),
-                    "export a part of the scene, or coarser meshes",
-                ));
-            }
-        }
-        Ok(())
     }
 
     /// A matrix must keep the points at infinity there.
@@ -349,27 +325,43 @@ impl Importer<'_> {
         let Some(mesh) = node.mesh() else {
             return Ok(());
         };
+        if self.instance(node)? {
+            return Ok(());
+        }
         let name = node.name().or(mesh.name());
         let name = name.map_or_else(|| format!("node {}", node.index()), str::to_owned);
+        let named = Named {
+            mesh: &mesh,
+            name: &name,
+        };
+        let objects = self.objects(&named, world)?;
+        self.scene.objects.extend(objects);
+        Ok(())
+    }
+
+    /// The objects of a mesh, in this place.
+    fn objects(&mut self, named: &Named<'_>, world: &DMat4) -> Result<Vec<Object>, SceneError> {
+        let Named { mesh, name } = *named;
         let parts = mesh.primitives().len();
+        let mut objects = Vec::with_capacity(parts);
         for part in mesh.primitives() {
-            let place = place(&mesh, &part);
+            let place = place(mesh, &part);
             let Some(shape) = self.mesh(&place, &part, world)? else {
                 continue;
             };
             let name = match parts {
-                1 => name.clone(),
+                1 => name.to_owned(),
                 _ => format!("{name} {}", part.index()),
             };
             let material = self.material(&part);
-            self.scene.objects.push(Object {
+            objects.push(Object {
                 name,
                 material,
                 shape,
                 place: self.place.clone(),
             });
         }
-        Ok(())
+        Ok(objects)
     }
 
     fn material(&mut self, part: &Primitive<'_>) -> usize {
@@ -451,6 +443,18 @@ impl Importer<'_> {
 /// Returns the name of a part of a mesh in messages.
 fn place(mesh: &gltf::Mesh<'_>, part: &Primitive<'_>) -> String {
     format!("mesh {}, primitive {}", mesh.index(), part.index())
+}
+
+/// Returns how many triangles a part of a mesh has, as its accessors say.
+fn triangle_count(part: &Primitive<'_>) -> u64 {
+    let vertices = part.get(&Semantic::Positions).map_or(0, |it| it.count());
+    let corners = part.indices().map_or(vertices, |it| it.count());
+    let count = match part.mode() {
+        Mode::Triangles => corners / 3,
+        Mode::TriangleStrip | Mode::TriangleFan => corners.saturating_sub(2),
+        _ => 0,
+    };
+    count as u64
 }
 
 /// The triangles that corners stand for, counter-clockwise in front.

@@ -1,7 +1,7 @@
 //! Where nodes stand.
 
 use glam::{DMat4, DQuat, DVec3};
-use gltf::Node;
+use gltf::{Mesh, Node};
 use gltf::scene::Transform;
 
 /// Where a node stands in its parent, computed in double precision.
@@ -20,4 +20,10 @@ pub(super) fn transform(node: &Node<'_>) -> DMat4 {
             DVec3::from_array(translation.map(f64::from)),
         ),
     }
+}
+
+/// The name of a mesh, or one made of its number.
+pub(super) fn mesh_name(mesh: &Mesh<'_>) -> String {
+    let name = mesh.name().map(str::to_owned);
+    name.unwrap_or_else(|| format!("mesh {}", mesh.index()))
 }

@@ -1,9 +1,11 @@
-//! The categories of mmCIF that say where atoms are (`atom_site`) and which of them are bonded
-//! beyond those that distances imply (`struct_conn`).
+//! The categories of mmCIF that say where atoms are (`atom_site`), which of them are bonded beyond those
+//! that distances imply (`struct_conn`), and how they are copied (`pdbx_struct_assembly_gen`,
+//! `pdbx_struct_oper_list`).
 //!
 //! The author's chain and residue names (`auth_`) come before the archive's (`label_`), as in PDB
 //! files of the same structure.
 
+mod assembly;
 mod cif;
 
 use super::importer::{Importer, Input};
@@ -11,6 +13,7 @@ use super::molecule::{self, Atom, Element, End, Model, Parsed, Site};
 use super::text::{Source, Warnings};
 use super::{Imported, SceneError};
 use gridel_core::Up;
+use assembly::{GroupColumns, OperatorColumns};
 use cif::{Token, Tokens};
 use glam::DVec3;
 use std::collections::HashMap;
@@ -163,25 +166,19 @@ impl<'a> Parser<'a, '_> {
             table.tags.push(tag);
             token = tokens.next()?;
         }
-        let atoms = table.is_of("atom_site").then(|| AtomColumns::of(&table));
-        let bonds = table.is_of("struct_conn").then(|| BondColumns::of(&table));
-        if atoms.is_none() && bonds.is_none() {
+        let Some(columns) = Columns::of(&table) else {
             while let Some(Token::Value(_)) = token {
                 token = tokens.next()?;
             }
             return Ok(token);
-        }
+        };
         while let Some(Token::Value(value)) = token {
             if table.row.is_empty() {
                 table.line = tokens.line;
             }
             table.row.push(value);
             if table.row.len() == table.tags.len() {
-                if let Some(columns) = &atoms {
-                    self.atom(&table, columns)?;
-                } else if let Some(columns) = &bonds {
-                    self.bond(&table, columns);
-                }
+                self.read(&table, &columns)?;
                 table.row.clear();
             }
             token = tokens.next()?;
@@ -205,10 +202,21 @@ impl<'a> Parser<'a, '_> {
 
     /// Reads a table of one row.
     fn row(&mut self, table: &Table<'a>) -> Result<(), SceneError> {
-        if table.is_of("atom_site") {
-            self.atom(table, &AtomColumns::of(table))?;
-        } else if table.is_of("struct_conn") {
-            self.bond(table, &BondColumns::of(table));
+        match Columns::of(table) {
+            Some(columns) => self.read(table, &columns),
+            None => Ok(()),
+        }
+    }
+
+    fn read(&mut self, table: &Table<'a>, columns: &Columns) -> Result<(), SceneError> {
+        match columns {
+            Columns::Atom(columns) => self.atom(table, columns)?,
+            Columns::Bond(columns) => self.bond(table, columns),
+            Columns::Group(columns) => self.parsed.groups.push(columns.read(table)),
+            Columns::Operator(columns) => {
+                let matrix = columns.read(table);
+                self.parsed.operators.insert(matrix.name, matrix);
+            }
         }
         Ok(())
     }
@@ -261,6 +269,7 @@ impl<'a> Parser<'a, '_> {
             name,
             altloc: table.value([columns.altloc]),
             chain: table.value(columns.chain),
+            asym: table.value(columns.asym),
             residue: table.value(columns.residue),
             number: table.value(columns.number),
             insertion: table.value([columns.insertion]),
@@ -294,6 +303,26 @@ impl<'a> Parser<'a, '_> {
 
 type Column = Option<usize>;
 
+/// The columns of a table that is read.
+enum Columns {
+    Atom(AtomColumns),
+    Bond(BondColumns),
+    Group(GroupColumns),
+    Operator(OperatorColumns),
+}
+
+impl Columns {
+    fn of(table: &Table<'_>) -> Option<Self> {
+        Some(match category(table.tags.first()?).to_ascii_lowercase().as_str() {
+            "atom_site" => Self::Atom(AtomColumns::of(table)),
+            "struct_conn" => Self::Bond(BondColumns::of(table)),
+            "pdbx_struct_assembly_gen" => Self::Group(GroupColumns::of(table)),
+            "pdbx_struct_oper_list" => Self::Operator(OperatorColumns::of(table)),
+            _ => return None,
+        })
+    }
+}
+
 struct AtomColumns {
     serial: Column,
     symbol: Column,
@@ -301,6 +330,7 @@ struct AtomColumns {
     altloc: Column,
     residue: [Column; 2],
     chain: [Column; 2],
+    asym: [Column; 2],
     number: [Column; 2],
     insertion: Column,
     position: [Column; 3],
@@ -317,6 +347,7 @@ impl AtomColumns {
             altloc: column("label_alt_id"),
             residue: [column("auth_comp_id"), column("label_comp_id")],
             chain: [column("auth_asym_id"), column("label_asym_id")],
+            asym: [column("label_asym_id"), column("auth_asym_id")],
             number: [column("auth_seq_id"), column("label_seq_id")],
             insertion: column("pdbx_PDB_ins_code"),
             position: ["Cartn_x", "Cartn_y", "Cartn_z"].map(column),

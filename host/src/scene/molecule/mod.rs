@@ -9,22 +9,27 @@
 //! `H 3 2`, or a blank residue name), regroups atoms by chain so that file order is lost, reads
 //! neither CONECT nor struct_conn, and knows no lines for mmCIF.
 
+mod assembly;
 mod bonds;
 mod draw;
 mod element;
+mod operators;
 mod parsed;
 mod select;
 
+pub(super) use assembly::Group;
 pub(crate) use bonds::perceive;
 pub(crate) use draw::{BoundingSphere, draw};
 pub(crate) use element::Element;
+pub(super) use operators::{Matrix, Operators};
 pub(crate) use parsed::Site;
 pub(super) use parsed::{Atom, End, Model, Parsed};
 
 use super::importer::Input;
 use super::size::Size;
 use super::text::{Source, Warnings};
-use super::{Imported, MoleculeStyle, Scene, SceneError};
+use super::{Imported, Instance, Material, MoleculeStyle, Part, Scene, SceneError};
+use assembly::{Copied, assemble};
 use std::collections::{HashMap, HashSet};
 
 /// Makes a scene of what `parse` reads from a file.
@@ -36,7 +41,8 @@ pub(super) fn import(
     input: Input<'_>,
     parse: impl for<'a> Fn(&'a Source, &mut Warnings) -> Result<Parsed<'a>, SceneError>,
 ) -> Result<Imported, SceneError> {
-    let options = input.molecule;
+    let options = input.choices.molecule;
+    let assembly = input.choices.assembly;
     let source = &input.into_source()?;
     let mut warnings = Warnings::default();
     let parsed = parse(source, &mut warnings)?;
@@ -55,45 +61,125 @@ pub(super) fn import(
         MoleculeStyle::SpaceFilling => Vec::new(),
         MoleculeStyle::BallAndStick => find_bonds(source, &parsed, &atoms, &mut warnings),
     };
-    check_size(source, &atoms, &bonds)?;
-    let balls = atoms
-        .into_iter()
-        .map(|atom| BoundingSphere {
-            site: atom.site,
-            name: atom.full_name(),
-            place: source.place(atom.line),
-        })
-        .collect();
-    let (materials, objects) = draw(balls, options.style, &bonds);
-    let scene = Scene {
-        materials,
-        objects,
-        ..Scene::default()
+    let molecule = Molecule {
+        source,
+        atoms: &atoms,
+        bonds: &bonds,
+        style: options.style,
+    };
+    let scene = match assembly {
+        Some(wanted) => {
+            let copied = assemble(source, &parsed, &atoms, wanted, &mut warnings)?;
+            molecule.assembled(copied)?
+        }
+        None => molecule.whole()?,
     };
     Ok(Imported {
         scene,
         warnings: warnings.into_sentences(),
         molecules: true,
         choices: false,
+        assemblies: true,
     })
 }
 
+/// The atoms of a model, and their bonds.
+struct Molecule<'m, 'a> {
+    source: &'m Source,
+    atoms: &'m [&'m Atom<'a>],
+    bonds: &'m [[u32; 2]],
+    style: MoleculeStyle,
+}
+
+impl Molecule<'_, '_> {
+    /// All of it, where it stands.
+    fn whole(&self) -> Result<Scene, SceneError> {
+        check_size(self.source, self.atoms.len(), self.bonds.len())?;
+        let (materials, objects) = draw(self.balls(0..self.atoms.len()), self.style, self.bonds);
+        Ok(Scene {
+            materials,
+            objects,
+            ..Scene::default()
+        })
+    }
+
+    /// Copies of some of it. Those that stand where they are in the file alone are objects, others parts.
+    fn assembled(&self, copied: Vec<Copied>) -> Result<Scene, SceneError> {
+        let within: Vec<_> = copied.iter().map(|it| self.bonds_of(&it.atoms)).collect();
+        let atoms = copied.iter().map(|it| it.atoms.len()).sum();
+        let bonds = within.iter().map(Vec::len).sum();
+        check_size(self.source, atoms, bonds)?;
+        let mut scene = Scene::default();
+        for (copied, bonds) in copied.into_iter().zip(within) {
+            let atoms = copied.atoms.iter().map(|&at| at as usize);
+            let (materials, mut objects) = draw(self.balls(atoms), self.style, &bonds);
+            let numbers = shared(&mut scene.materials, materials);
+            for object in &mut objects {
+                object.material = numbers[object.material];
+            }
+            if copied.is_single() {
+                scene.objects.extend(objects);
+                continue;
+            }
+            let place = self.source.place(copied.line);
+            for (name, placement) in copied.places {
+                scene.instances.push(Instance {
+                    name,
+                    part: scene.parts.len(),
+                    placement,
+                    place: place.clone(),
+                });
+            }
+            scene.parts.push(Part {
+                name: copied.name,
+                objects,
+                place,
+            });
+        }
+        Ok(scene)
+    }
+
+    fn balls(&self, atoms: impl Iterator<Item = usize>) -> Vec<BoundingSphere> {
+        let ball = |at: usize| BoundingSphere {
+            site: self.atoms[at].site,
+            name: self.atoms[at].full_name(),
+            place: self.source.place(self.atoms[at].line),
+        };
+        atoms.map(ball).collect()
+    }
+
+    /// The bonds between some atoms, by their place among these.
+    fn bonds_of(&self, atoms: &[u32]) -> Vec<[u32; 2]> {
+        // Atoms rise, so a search finds them.
+        let find = |end: u32| atoms.binary_search(&end).ok().map(|at| at as u32);
+        let among = |[a, b]: &[u32; 2]| Some([find(*a)?, find(*b)?]);
+        self.bonds.iter().filter_map(among).collect()
+    }
+}
+
+/// Adds materials to those that there are, unless one of their name is among them, and returns their numbers.
+fn shared(all: &mut Vec<Material>, more: Vec<Material>) -> Vec<usize> {
+    let number = |material: Material| {
+        let known = all.iter().position(|it| it.name == material.name);
+        known.unwrap_or_else(|| {
+            all.push(material);
+            all.len() - 1
+        })
+    };
+    more.into_iter().map(number).collect()
+}
+
 /// Rejects atoms so crowded that their bonds fit into no memory.
-fn check_size(source: &Source, atoms: &[&Atom<'_>], bonds: &[[u32; 2]]) -> Result<(), SceneError> {
+fn check_size(source: &Source, atoms: usize, bonds: usize) -> Result<(), SceneError> {
     // A name has a few words, of which each has a few letters.
-    let objects = (atoms.len() + 2 * bonds.len()) as u64;
     let size = Size {
-        objects,
+        objects: (atoms + 2 * bonds) as u64,
         ..Size::default()
     };
     match size.excess() {
         None => Ok(()),
         Some(excess) => Err(source.error(
-            format!(
-                "{} bonds of {} atoms take {excess}",
-                bonds.len(),
-                atoms.len()
-            ),
+            format!("{bonds} bonds of {atoms} atoms take {excess}"),
             "use the style space-filling, or check that the coordinates are in angstroms",
         )),
     }

@@ -1,7 +1,10 @@
 //! The content of a molecule file.
 
+use super::assembly::Group;
 use super::element::Element;
+use super::operators::Matrix;
 use glam::DVec3;
+use std::collections::HashMap;
 
 /// An element at a position in angstroms.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +23,8 @@ pub(in crate::scene) struct Atom<'a> {
     pub(in crate::scene) name: &'a str,
     pub(in crate::scene) altloc: &'a str,
     pub(in crate::scene) chain: &'a str,
+    /// The chain's name in assemblies.
+    pub(in crate::scene) asym: &'a str,
     pub(in crate::scene) residue: &'a str,
     /// Number of the residue in its chain, and the code of residues inserted after it.
     pub(in crate::scene) number: &'a str,
@@ -74,4 +79,8 @@ pub(in crate::scene) struct Parsed<'a> {
     pub(in crate::scene) models: Vec<Model<'a>>,
     /// The ends of each, and its line.
     pub(in crate::scene) bonds: Vec<(usize, [End<'a>; 2])>,
+    /// The assemblies, in file order.
+    pub(in crate::scene) groups: Vec<Group<'a>>,
+    /// Operators by their name, for expressions.
+    pub(in crate::scene) operators: HashMap<&'a str, Matrix<'a>>,
 }

@@ -278,6 +278,7 @@ impl<'a> Importer<'a> {
             warnings: self.warnings.into_sentences(),
             molecules: false,
             choices: false,
+            assemblies: false,
         })
     }
 }

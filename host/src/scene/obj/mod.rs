@@ -98,6 +98,7 @@ fn import(source: &Source, access: &Access) -> Result<Imported, SceneError> {
         warnings: warnings.into_sentences(),
         molecules: false,
         choices: false,
+        assemblies: false,
     })
 }
 

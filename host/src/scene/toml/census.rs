@@ -1,11 +1,11 @@
 //! Counts what a scene will hold before anything is placed: groups in groups can grow beyond all
 //! memory in a few lines.
 
+use super::item::{Content, Group, Item, PartItem};
 use super::material::Palette;
-use super::item::{Content, Group, Item};
 use super::source::{Name, Source, Span, nearest};
 use crate::scene::size::{MOST_PRIMITIVES, Size, primitives};
-use crate::scene::{Object, SceneError};
+use crate::scene::{Object, Scene, SceneError};
 use std::collections::{BTreeMap, HashMap};
 
 /// How deep groups may be nested; reading and placing them takes stack.
@@ -66,9 +66,16 @@ impl<'c> Census<'c> {
         }
     }
 
-    /// Proves it for a scene.
-    pub(super) fn take(mut self, items: &'c [Item]) -> Result<Usage, SceneError> {
+    /// Proves it for a scene and its parts.
+    pub(super) fn take(
+        mut self,
+        items: &'c [Item],
+        parts: &'c [PartItem],
+    ) -> Result<Usage, SceneError> {
         let objects = self.items(items, 0)?.size.objects;
+        for part in parts {
+            self.items(&part.items, 1)?;
+        }
         let used = |name: &String| self.known.contains_key(name.as_str());
         let unused: Vec<_> = self.groups.iter().filter(|(name, _)| !used(name)).collect();
         let mut warnings = Vec::new();
@@ -100,8 +107,8 @@ impl<'c> Census<'c> {
                 },
                 // An import is weighed as at least 1, so that nothing can be repeated for free.
                 Content::Import { scene, .. } => Cost {
-                    primitives: imported(&scene.objects).max(1),
-                    size: imported_size(&scene.objects).with_longer_names(item.name.len() + 1),
+                    primitives: imported(scene).max(1),
+                    size: imported_size(scene).with_longer_names(item.name.len() + 1),
                     nesting: 0,
                 },
                 Content::Group(items) => self.nested(items, nesting, item)?.inside(item),
@@ -216,11 +223,24 @@ pub(super) fn find<'g>(
     })
 }
 
-fn imported_size(objects: &[Object]) -> Size {
-    let sizes = objects.iter().map(|it| Size::of(&it.shape, it.name.len()));
-    sizes.fold(Size::default(), Size::plus)
+fn imported_size(scene: &Scene) -> Size {
+    let objects = objects_of(scene).map(|it| Size::of(&it.shape, it.name.len()));
+    let instances = scene.instances.iter().map(|it| Size {
+        objects: 1,
+        names: it.name.len() as u64,
+        triangles: 0,
+    });
+    objects.chain(instances).fold(Size::default(), Size::plus)
 }
 
-fn imported(objects: &[Object]) -> u64 {
-    objects.iter().map(|object| primitives(&object.shape)).sum()
+/// The primitives of an import; instances weigh as much, so that they do not multiply for free.
+fn imported(scene: &Scene) -> u64 {
+    let objects = objects_of(scene).map(|object| primitives(&object.shape));
+    objects.sum::<u64>() + scene.instances.len() as u64
+}
+
+/// A scene's own objects and those of its parts.
+fn objects_of(scene: &Scene) -> impl Iterator<Item = &Object> {
+    let of_parts = scene.parts.iter().flat_map(|part| &part.objects);
+    scene.objects.iter().chain(of_parts)
 }

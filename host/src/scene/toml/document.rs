@@ -5,6 +5,7 @@ use super::import::Imports;
 use super::item::{Content, Item};
 use super::material::Palette;
 use super::object::Reader;
+use super::part;
 use super::place::Placer;
 use super::source::Source;
 use super::imported_track::{ImportPlace, lost, with_imported};
@@ -26,13 +27,15 @@ const KEYS: &[&str] = &[
     "material",
     "object",
     "group",
+    "part",
+    "instance",
     "track",
 ];
 
 const BLACK: Color = [0.0; 3];
 
 pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, SceneError> {
-    let molecule = input.molecule;
+    let molecule = input.choices.molecule;
     let source = Source::new(input.path, input.bytes)?;
     let document = source.parse()?;
     let root = Fields::new(
@@ -59,10 +62,14 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     };
     let groups = root.or("group", BTreeMap::new(), |tables| reader.groups(tables))?;
     let items = root.or("object", Vec::new(), |list| reader.items(list))?;
+    let parts = root.or("part", Vec::new(), |list| reader.parts(list))?;
+    let instances = root.or("instance", Vec::new(), |list| part::instances(list, &parts))?;
 
-    let taken = Census::new(&source, &groups, &palette).take(&items)?;
+    let taken = Census::new(&source, &groups, &palette).take(&items, &parts)?;
     imports.warnings.extend(taken.warnings);
-    let objects = Placer::new(&source, &groups, &mut palette, taken.objects).place(&items)?;
+    imports.warnings.extend(part::unplaced(&source, &parts, &instances));
+    let placer = Placer::new(&source, &groups, &mut palette, taken.objects);
+    let placed = placer.place(&items, &parts, &instances)?;
 
     let mut scene = Scene {
         camera,
@@ -70,7 +77,9 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         ambient: ambient.unwrap_or(BLACK),
         lights,
         light_names,
-        objects,
+        objects: placed.objects,
+        parts: placed.parts,
+        instances: placed.instances,
         render: render.unwrap_or_default(),
         ..Scene::default()
     };
@@ -116,7 +125,9 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     };
     scene.tracks = with_imported(targets.resolve(tracks)?, imported_tracks);
     scene.materials = palette.into_materials();
-    let used: HashSet<usize> = scene.objects.iter().map(|it| it.material).collect();
+    let of_parts = scene.parts.iter().flat_map(|part| &part.objects);
+    let objects = scene.objects.iter().chain(of_parts);
+    let used: HashSet<usize> = objects.map(|it| it.material).collect();
     for track in &scene.tracks {
         if track.target.is_of_material() && !used.contains(&track.index) {
             let name = printable(&scene.materials[track.index].name);

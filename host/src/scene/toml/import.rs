@@ -2,7 +2,7 @@
 
 use super::source::{Name, Source};
 use crate::scene::access::Access;
-use crate::scene::importer::{Importers, Input};
+use crate::scene::importer::{Choices, Importers, Input};
 use crate::scene::{Choice, MoleculeOptions, Scene, SceneError};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -26,7 +26,7 @@ pub(super) struct Imports {
     /// How many groups are open inside each other, in all open files together.
     pub(super) nesting: usize,
     /// A scene may import a file many times, but with few different options.
-    done: HashMap<PathBuf, Vec<(MoleculeOptions, Rc<Scene>)>>,
+    done: HashMap<PathBuf, Vec<(Molecules, Rc<Scene>)>>,
     pub(super) warnings: Vec<String>,
     /// Whether a molecule is among the files.
     pub(super) molecules: bool,
@@ -34,6 +34,18 @@ pub(super) struct Imports {
     choice: Choice,
     /// Whether a file to choose them from is among the files.
     pub(super) choices: bool,
+    /// The assembly of imports that name none.
+    assembly: Option<String>,
+    /// Whether a file that can hold assemblies is among the files.
+    pub(super) assemblies: bool,
+}
+
+/// How an import reads molecules.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Molecules {
+    pub(super) options: MoleculeOptions,
+    /// `None` for that of the command line.
+    pub(super) assembly: Option<String>,
 }
 
 impl Imports {
@@ -47,8 +59,10 @@ impl Imports {
             done: HashMap::new(),
             warnings: Vec::new(),
             molecules: false,
-            choice: input.choice.clone(),
+            choice: input.choices.choice.clone(),
             choices: false,
+            assembly: input.choices.assembly.map(str::to_owned),
+            assemblies: false,
         }
     }
 
@@ -71,7 +85,7 @@ impl Imports {
         &mut self,
         source: &Source,
         file: &Name,
-        options: &MoleculeOptions,
+        molecules: Molecules,
     ) -> Result<Rc<Scene>, SceneError> {
         let allowed = self.access.resolve(&source.path, &file.text);
         let path = allowed.map_err(|[cause, remedy]| {
@@ -99,12 +113,18 @@ impl Imports {
             ));
         }
         let done = self.done.get(&canonical).into_iter().flatten();
-        if let Some((_, scene)) = done.into_iter().find(|(with, _)| with == options) {
+        if let Some((_, scene)) = done.into_iter().find(|(with, _)| *with == molecules) {
             return Ok(Rc::clone(scene));
         }
         let access = self.access.clone();
         let choice = self.choice.clone();
-        let opened = self.importers.open(&path, options, &choice, &access);
+        let assembly = molecules.assembly.clone().or(self.assembly.clone());
+        let choices = Choices {
+            molecule: &molecules.options,
+            assembly: assembly.as_deref(),
+            choice: &choice,
+        };
+        let opened = self.importers.open(&path, choices, &access);
         let scene = opened.and_then(|(importer, input)| {
             if importer.name == self.own.0 {
                 return self.nested(input, canonical.clone());
@@ -113,6 +133,7 @@ impl Imports {
             self.warnings.extend(imported.warnings);
             self.molecules |= imported.molecules;
             self.choices |= imported.choices;
+            self.assemblies |= imported.assemblies;
             Ok(imported.scene)
         });
         let scene = scene.map(Rc::new).map_err(|mut error| {
@@ -122,7 +143,7 @@ impl Imports {
         self.done
             .entry(canonical)
             .or_default()
-            .push((*options, Rc::clone(&scene)));
+            .push((molecules, Rc::clone(&scene)));
         Ok(scene)
     }
 

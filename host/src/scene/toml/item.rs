@@ -1,7 +1,7 @@
 //! Objects and groups as the file states them.
 
 use super::source::{Name, Span};
-use crate::scene::{Scene, Shape};
+use crate::scene::{Placement, Scene, Shape};
 use glam::DAffine3;
 use std::rc::Rc;
 
@@ -32,4 +32,20 @@ pub(super) enum Content {
 pub(super) struct Group {
     pub(super) span: Span,
     pub(super) items: Vec<Item>,
+}
+
+/// A `[[part]]`.
+pub(super) struct PartItem {
+    pub(super) name: Name,
+    pub(super) span: Span,
+    pub(super) items: Vec<Item>,
+}
+
+/// An `[[instance]]`.
+pub(super) struct InstanceItem {
+    pub(super) name: String,
+    /// Which part of the list.
+    pub(super) part: usize,
+    pub(super) placement: Placement,
+    pub(super) span: Span,
 }

@@ -7,6 +7,7 @@ mod imported_track;
 mod item;
 mod material;
 mod object;
+mod part;
 mod place;
 mod shape;
 pub(crate) mod source;
@@ -63,5 +64,6 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         warnings: imports.warnings,
         molecules: imports.molecules,
         choices: imports.choices,
+        assemblies: imports.assemblies,
     })
 }

@@ -1,7 +1,7 @@
 //! The `[[object]]` and `[group.NAME]` tables, read into a tree that is placed later.
 
 use super::census::{MAX_NESTING, too_deep};
-use super::import::Imports;
+use super::import::{Imports, Molecules};
 use super::item::{Content, Group, Item};
 use super::material::Palette;
 use super::source::Source;
@@ -36,7 +36,7 @@ impl Reader<'_> {
         let mut groups = BTreeMap::new();
         for (name, table) in tables.entries()? {
             let fields = table.fields("group", &[&["object"]])?;
-            let items = self.members(&fields)?;
+            let items = self.members(&fields, "group")?;
             groups.insert(
                 name.text,
                 Group {
@@ -48,9 +48,9 @@ impl Reader<'_> {
         Ok(groups)
     }
 
-    /// The objects of a group, of which there must be some: groups of nothing could be nested
+    /// The objects of a group or part, of which there must be some: groups of nothing could be nested
     /// without end at no cost in primitives.
-    fn members(&mut self, fields: &Fields<'_>) -> Result<Vec<Item>, SceneError> {
+    pub(super) fn members(&mut self, fields: &Fields<'_>, what: &str) -> Result<Vec<Item>, SceneError> {
         let list = fields.require("object")?;
         self.imports.nesting += 1;
         if self.imports.nesting > MAX_NESTING {
@@ -60,7 +60,7 @@ impl Reader<'_> {
         self.imports.nesting -= 1;
         if items.is_empty() {
             return Err(list.error(
-                "this group holds no object",
+                format!("this {what} holds no object"),
                 "add objects to it, or remove it",
             ));
         }
@@ -83,7 +83,7 @@ impl Reader<'_> {
         let keys: &[&str] = match kind {
             "group" => &["object"],
             "instance" => &["group"],
-            "import" => &["file", "style", "model", "altloc"],
+            "import" => &["file", "style", "model", "altloc", "assembly"],
             _ => shape::keys(kind),
         };
         let fields = table.fields(kind, &[KEYS, keys, transform::KEYS])?;
@@ -94,14 +94,14 @@ impl Reader<'_> {
             None => format!("{kind} {number}"),
         };
         let content = match kind {
-            "group" => Content::Group(self.members(&fields)?),
+            "group" => Content::Group(self.members(&fields, "group")?),
             "instance" => Content::Instance(fields.require("group")?.name()?),
             "import" => {
                 let scene = self.import(&fields)?;
                 if self.imports.nesting > 0 && !scene.tracks.is_empty() {
                     let place = self.source.place(&fields.span);
                     self.imports.warnings.push(format!(
-                        "{place}: the tracks of an import inside of a group move nothing"
+                        "{place}: the tracks of an import inside of a group or part move nothing"
                     ));
                 }
                 // Objects that all get another material do not need their own.
@@ -126,14 +126,18 @@ impl Reader<'_> {
 
     fn import(&mut self, fields: &Fields<'_>) -> Result<Rc<Scene>, SceneError> {
         let file = fields.require("file")?.name()?;
-        let molecule = MoleculeOptions {
+        let options = MoleculeOptions {
             style: fields.or("style", self.molecule.style, style)?,
             model: fields.or("model", self.molecule.model, |value| {
                 Ok(value.integer_in(1..=u32::MAX)? as usize)
             })?,
             altloc: fields.or("altloc", self.molecule.altloc, altloc)?,
         };
-        self.imports.import(self.source, &file, &molecule)
+        let assembly = fields.or("assembly", None, |value| {
+            value.filled().map(|it| Some(it.to_owned()))
+        })?;
+        let molecules = Molecules { options, assembly };
+        self.imports.import(self.source, &file, molecules)
     }
 }
 

@@ -1,23 +1,36 @@
-//! Places the objects of groups, instances and imports in the world.
+//! Places the objects of groups, instances and imports in the world, or in parts.
 
 use super::census;
+use super::item::{Content, Group, InstanceItem, Item, PartItem};
 use super::material::Palette;
-use super::item::{Content, Group, Item};
 use super::source::Source;
 use crate::scene::size::{MOST_PRIMITIVES, Size, primitives};
-use crate::scene::{Object, SceneError, Shape};
+use crate::scene::{Instance, Object, Part, Placement, Scene, SceneError, Shape};
+use crate::shape::transform::OUT_OF_RANGE;
 use glam::DAffine3;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Flattens the tree of items, which must have passed the census, into objects.
 pub(super) struct Placer<'p> {
     source: &'p Source,
     groups: &'p BTreeMap<String, Group>,
     palette: &'p mut Palette,
-    objects: Vec<Object>,
+    placed: Placed,
+    /// Whether the objects are those of a part, which holds no instances.
+    in_part: bool,
+    /// The first part of each import that has some, by the import and its materials here.
+    imported: HashMap<(*const Scene, Vec<usize>), usize>,
     /// Counted again, because boxes that are turned become twelve triangles.
     primitives: u64,
     size: Size,
+}
+
+/// What the tables of a file come to.
+#[derive(Default)]
+pub(super) struct Placed {
+    pub(super) objects: Vec<Object>,
+    pub(super) parts: Vec<Part>,
+    pub(super) instances: Vec<Instance>,
 }
 
 /// Where the objects of a list go.
@@ -30,6 +43,12 @@ struct Site<'s> {
     path: &'s str,
 }
 
+const WORLD: Site<'_> = Site {
+    transform: DAffine3::IDENTITY,
+    material: None,
+    path: "",
+};
+
 impl<'p> Placer<'p> {
     pub(super) fn new(
         source: &'p Source,
@@ -37,25 +56,68 @@ impl<'p> Placer<'p> {
         palette: &'p mut Palette,
         objects: usize,
     ) -> Self {
+        let placed = Placed {
+            objects: Vec::with_capacity(objects),
+            ..Placed::default()
+        };
         Self {
             source,
             groups,
             palette,
-            objects: Vec::with_capacity(objects),
+            placed,
+            in_part: false,
+            imported: HashMap::new(),
             primitives: 0,
             size: Size::default(),
         }
     }
 
-    /// The objects that a scene's own list comes to.
-    pub(super) fn place(mut self, items: &[Item]) -> Result<Vec<Object>, SceneError> {
-        let world = Site {
-            transform: DAffine3::IDENTITY,
-            material: None,
-            path: "",
-        };
-        self.items(items, world)?;
-        Ok(self.objects)
+    /// The objects that a scene's own list comes to, and its parts, as far as instances place them.
+    pub(super) fn place(
+        mut self,
+        items: &[Item],
+        parts: &[PartItem],
+        instances: &[InstanceItem],
+    ) -> Result<Placed, SceneError> {
+        self.items(items, WORLD)?;
+        let own = std::mem::take(&mut self.placed.objects);
+        self.in_part = true;
+        let mut numbers = vec![None; parts.len()];
+        instances.iter().for_each(|it| numbers[it.part] = Some(0));
+        for (part, number) in parts.iter().zip(&mut numbers) {
+            if let Some(number) = number {
+                self.items(&part.items, WORLD)?;
+                if self.placed.objects.is_empty() {
+                    return Err(self.source.error(
+                        &part.span,
+                        format!(
+                            "the part {:?} has no object: its imports are empty",
+                            part.name.text
+                        ),
+                        "add objects to it, or remove it",
+                    ));
+                }
+                *number = self.placed.parts.len();
+                self.placed.parts.push(Part {
+                    name: part.name.text.clone(),
+                    objects: std::mem::take(&mut self.placed.objects),
+                    place: self.source.place(&part.span),
+                });
+            }
+        }
+        for instance in instances {
+            let Some(part) = numbers[instance.part] else {
+                continue;
+            };
+            self.placed.instances.push(Instance {
+                name: instance.name.clone(),
+                part,
+                placement: instance.placement,
+                place: self.source.place(&instance.span),
+            });
+        }
+        self.placed.objects = own;
+        Ok(self.placed)
     }
 
     fn items(&mut self, items: &[Item], site: Site<'_>) -> Result<(), SceneError> {
@@ -77,7 +139,7 @@ impl<'p> Placer<'p> {
                     let shape = self.shape(item, &transform, &name, shape)?;
                     let material = material.unwrap_or_else(|| self.palette.fallback());
                     let place = self.source.place(&item.span);
-                    self.objects.push(Object {
+                    self.placed.objects.push(Object {
                         name,
                         material,
                         shape,
@@ -90,23 +152,108 @@ impl<'p> Placer<'p> {
                     self.items(&group.items, inside)?;
                 }
                 Content::Import { scene, materials } => {
+                    // Only the import's own `material` overrides what its objects have.
+                    let materials = match (&item.material, material) {
+                        (Some(_), Some(material)) => vec![material; scene.materials.len()],
+                        _ => materials.clone(),
+                    };
                     for object in &scene.objects {
-                        let name = format!("{path}{}", object.name);
-                        let shape = self.shape(item, &transform, &name, &object.shape)?;
-                        // Only the import's own `material` overrides what its objects have.
-                        let material = match (&item.material, material) {
-                            (Some(_), Some(material)) => material,
-                            _ => materials[object.material],
-                        };
-                        let place = object.place.clone();
-                        self.objects.push(Object {
-                            name,
-                            material,
-                            shape,
-                            place,
-                        });
+                        let object = self.object(item, inside, object, &materials)?;
+                        self.placed.objects.push(object);
                     }
+                    self.instances(item, inside, scene, materials)?;
                 }
+            }
+        }
+        Ok(())
+    }
+
+    /// The object of an import.
+    fn object(
+        &mut self,
+        item: &Item,
+        site: Site<'_>,
+        object: &Object,
+        materials: &[usize],
+    ) -> Result<Object, SceneError> {
+        let name = format!("{}{}", site.path, object.name);
+        Ok(Object {
+            shape: self.shape(item, &site.transform, &name, &object.shape)?,
+            name,
+            material: materials[object.material],
+            place: object.place.clone(),
+        })
+    }
+
+    /// Places the instances of an import. They become objects inside of parts, and where they are mirrored
+    /// or scaled unevenly.
+    fn instances(
+        &mut self,
+        item: &Item,
+        site: Site<'_>,
+        scene: &Scene,
+        materials: Vec<usize>,
+    ) -> Result<(), SceneError> {
+        if scene.instances.is_empty() {
+            return Ok(());
+        }
+        let outer = Placement::from_affine(site.transform.matrix3, site.transform.translation);
+        let Some(outer) = outer.filter(|_| !self.in_part) else {
+            return self.flattened(item, site, scene, &materials);
+        };
+        let key = (std::ptr::from_ref(scene), materials);
+        let first = match self.imported.get(&key) {
+            Some(&first) => first,
+            None => {
+                let first = self.placed.parts.len();
+                let bare = Site { path: "", ..WORLD };
+                for part in &scene.parts {
+                    let objects = part.objects.iter();
+                    let objects = objects.map(|it| self.object(item, bare, it, &key.1));
+                    let objects = objects.collect::<Result<_, _>>()?;
+                    self.placed.parts.push(Part {
+                        name: format!("{}{}", site.path, part.name),
+                        objects,
+                        place: part.place.clone(),
+                    });
+                }
+                self.imported.insert(key, first);
+                first
+            }
+        };
+        for instance in &scene.instances {
+            let placement = instance.placement.within(&outer);
+            if !placement.is_valid() {
+                let cause = format!("the instance {:?} {}", instance.name, OUT_OF_RANGE.cause);
+                return Err(self.source.error(&item.span, cause, OUT_OF_RANGE.remedy));
+            }
+            self.placed.instances.push(Instance {
+                name: format!("{}{}", site.path, instance.name),
+                part: first + instance.part,
+                placement,
+                place: instance.place.clone(),
+            });
+        }
+        Ok(())
+    }
+
+    fn flattened(
+        &mut self,
+        item: &Item,
+        site: Site<'_>,
+        scene: &Scene,
+        materials: &[usize],
+    ) -> Result<(), SceneError> {
+        for instance in &scene.instances {
+            let path = format!("{}{}/", site.path, instance.name);
+            let inside = Site {
+                transform: site.transform * instance.placement.affine(),
+                path: &path,
+                ..site
+            };
+            for object in &scene.parts[instance.part].objects {
+                let object = self.object(item, inside, object, materials)?;
+                self.placed.objects.push(object);
             }
         }
         Ok(())
@@ -119,6 +266,13 @@ impl<'p> Placer<'p> {
         name: &str,
         shape: &Shape,
     ) -> Result<Shape, SceneError> {
+        if self.in_part && !shape.is_bounded() {
+            return Err(self.source.error(
+                &item.span,
+                format!("the object {name:?} has no end, and a part has a box"),
+                "move it out of the part, to the scene's own objects",
+            ));
+        }
         let shape = shape.transformed(transform).map_err(|misfit| {
             let cause = format!("the object {name:?} {}", misfit.cause);
             self.source.error(&item.span, cause, misfit.remedy)

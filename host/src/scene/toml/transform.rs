@@ -1,9 +1,9 @@
 //! Transforms of objects, as a file states them.
 
 use super::value::{Fields, Value};
-use crate::scene::SceneError;
+use crate::scene::{Placement, SceneError};
 use crate::shape::unit;
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 /// The keys that state a transform.
 pub(super) const KEYS: &[&str] = &["translate", "rotate", "scale"];
@@ -16,6 +16,25 @@ pub(super) fn read(fields: &Fields<'_>) -> Result<DAffine3, SceneError> {
     Ok(DAffine3 {
         matrix3: rotation * DMat3::from_diagonal(scale),
         translation,
+    })
+}
+
+/// Reads the keys of an instance, which is scaled by one number.
+pub(super) fn placement(fields: &Fields<'_>) -> Result<Placement, SceneError> {
+    let scale = fields.or("scale", 1.0, |value| {
+        if value.is_array() {
+            return Err(value.error(
+                "`scale` holds several numbers; an instance is scaled by one, the same on every axis",
+                "write one number above 0, or use a group for objects that are scaled unevenly",
+            ));
+        }
+        value.positive()
+    })?;
+    let rotation = fields.or("rotate", DMat3::IDENTITY, rotation)?;
+    Ok(Placement {
+        rotation: DQuat::from_mat3(&rotation).normalize(),
+        translation: fields.or("translate", DVec3::ZERO, Value::vector)?,
+        scale,
     })
 }
 

@@ -78,11 +78,18 @@ fn broken_documents() {
 fn a_million_instances_are_rejected() {
     let mut document = document();
     let count = 100_000;
-    document["nodes"] = json!(vec![json!({"mesh": 0}); count]);
+    // Copied, because their scale is uneven.
+    document["nodes"] = json!(vec![json!({"mesh": 0, "scale": [1, 2, 1]}); count]);
     document["scenes"][0]["nodes"] = json!((0..count).collect::<Vec<_>>());
     document["meshes"][0]["primitives"] =
         json!(vec![document["meshes"][0]["primitives"][0].clone(); 50]);
     assert!(cause(&document).contains("instances counted"));
+    // As instances they fit, until they are flattened.
+    document["nodes"] = json!(vec![json!({"mesh": 0}); count]);
+    let scene = scene(&document);
+    assert_eq!((scene.parts.len(), scene.instances.len()), (1, count));
+    let error = scene.flattened().unwrap_err();
+    assert!(error.remedy.contains("--instances keep"), "{error}");
 }
 
 #[test]
@@ -148,7 +155,7 @@ fn nodes_that_multiply_beyond_all_memory_are_rejected_with_the_figure() {
     document["meshes"][0]["primitives"] = json!(vec![part; 4000]);
     let name = "n".repeat(1000);
     let count = 3000;
-    document["nodes"] = json!(vec![json!({"mesh": 0, "name": name}); count]);
+    document["nodes"] = json!(vec![json!({"mesh": 0, "name": name, "scale": [1, 2, 1]}); count]);
     document["scenes"][0]["nodes"] = json!((0..count).collect::<Vec<_>>());
     let cause = cause(&document);
     assert!(cause.contains("GB of memory, for"), "{cause}");

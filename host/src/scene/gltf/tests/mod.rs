@@ -2,6 +2,7 @@ mod animation;
 mod appearance;
 mod files;
 mod geometry;
+mod instances;
 mod invalid;
 
 use super::*;

@@ -5,6 +5,7 @@ mod fixtures;
 mod hostile;
 mod imports;
 mod objects;
+mod parts;
 mod tracks;
 mod transforms;
 

@@ -1,8 +1,8 @@
 //! Objects of valid files.
 
-use crate::shape::{Cone, Cuboid, Sphere};
 use super::{example, load, material_of, named, scene};
 use crate::scene::{Diffuse, Light, Material, RenderSettings, Scene, Shape};
+use crate::shape::{Cone, Cuboid, Sphere};
 use glam::DVec3;
 
 #[test]
@@ -29,6 +29,11 @@ fn the_documented_example_holds_what_it_says() {
         "mesh 7",
     ];
     assert_eq!(names, expected);
+    assert_eq!(scene.parts.len(), 1);
+    let flat = scene.flattened().unwrap();
+    let names: Vec<_> = flat.objects.iter().map(|it| it.name.as_str()).collect();
+    assert_eq!(names[11..], ["front/torus 1", "rear/torus 1"]);
+    assert_eq!(material_of(&flat, "rear/torus 1"), "steel");
     assert_eq!(material_of(&scene, "left/cylinder 1"), "steel");
     assert_eq!(material_of(&scene, "left/ball"), "glass");
     assert_eq!(material_of(&scene, "right/cylinder 1"), "default");

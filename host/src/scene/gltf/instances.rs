@@ -1,0 +1,159 @@
+//! Meshes that several nodes place: parts and instances, where that saves enough.
+
+use super::place::mesh_name;
+use super::{Importer, Named, triangle_count};
+use crate::scene::size::Size;
+use crate::scene::{Instance, Part, Placement, SceneError};
+use glam::{DMat3, DMat4};
+use gltf::mesh::Mode;
+use gltf::{Node, Semantic};
+use std::collections::HashMap;
+
+/// The triangles that a part must save. A part has a structure of its own, and an instance a record.
+const LEAST_SAVED: u64 = 1024;
+
+/// A node with a mesh, where it stands in the scene.
+pub(super) type Placed<'d> = (Node<'d>, DMat4);
+
+/// The meshes that become parts, by their number in the file.
+#[derive(Default)]
+pub(super) struct Shared {
+    /// The part of each; `None` for a mesh without triangles.
+    parts: HashMap<usize, Option<usize>>,
+    /// Where the nodes of these meshes stand, by the number of the node.
+    placements: HashMap<usize, Placement>,
+}
+
+impl Shared {
+    /// Chooses the meshes that at least two nodes place by a rotation, a translation and one scale. Nodes
+    /// that `moves` are left as they are.
+    pub(super) fn of(placed: &[Placed<'_>], moves: impl Fn(&Node<'_>) -> bool) -> Self {
+        let mut uses: HashMap<usize, Vec<(usize, Placement)>> = HashMap::new();
+        let mut saved: HashMap<usize, u64> = HashMap::new();
+        for (node, world) in placed {
+            let Some(mesh) = node
+                .mesh()
+                .filter(|_| node.skin().is_none() && !moves(node))
+            else {
+                continue;
+            };
+            let matrix = DMat3::from_mat4(*world);
+            let placement = Placement::from_affine(matrix, world.w_axis.truncate());
+            let Some(placement) = placement else {
+                continue;
+            };
+            let uses = uses.entry(mesh.index()).or_default();
+            if !uses.is_empty() {
+                let triangles: u64 = mesh.primitives().map(|it| triangle_count(&it)).sum();
+                let saved = saved.entry(mesh.index()).or_default();
+                *saved = saved.saturating_add(triangles);
+            }
+            uses.push((node.index(), placement));
+        }
+        uses.retain(|mesh, _| saved.get(mesh).is_some_and(|it| *it >= LEAST_SAVED));
+        Self {
+            parts: HashMap::new(),
+            placements: uses.into_values().flatten().collect(),
+        }
+    }
+}
+
+impl Importer<'_> {
+    /// Places the mesh of a node as an instance, if it is a part. Returns whether it is.
+    pub(super) fn instance(&mut self, node: &Node<'_>) -> Result<bool, SceneError> {
+        let placement = self.shared.placements.get(&node.index()).copied();
+        let (Some(placement), Some(mesh)) = (placement, node.mesh()) else {
+            return Ok(false);
+        };
+        let part = match self.shared.parts.get(&mesh.index()) {
+            Some(&part) => part,
+            None => {
+                let name = mesh_name(&mesh);
+                let named = Named {
+                    mesh: &mesh,
+                    name: &name,
+                };
+                let objects = self.objects(&named, &DMat4::IDENTITY)?;
+                let part = (!objects.is_empty()).then_some(self.scene.parts.len());
+                if part.is_some() {
+                    self.scene.parts.push(Part {
+                        name,
+                        objects,
+                        place: self.place.clone(),
+                    });
+                }
+                self.shared.parts.insert(mesh.index(), part);
+                part
+            }
+        };
+        if let Some(part) = part {
+            let name = node.name().or(mesh.name());
+            let name = name.map_or_else(|| format!("node {}", node.index()), str::to_owned);
+            self.scene.instances.push(Instance {
+                name,
+                part,
+                placement,
+                place: self.place.clone(),
+            });
+        }
+        Ok(true)
+    }
+
+    /// Proves that nodes fit into memory, before anything is made of them.
+    pub(super) fn weigh(&self, placed: &[Placed<'_>]) -> Result<(), SceneError> {
+        let mut size = Size::default();
+        let mut parts = HashMap::new();
+        for (node, _) in placed {
+            let Some(mesh) = node.mesh() else {
+                continue;
+            };
+            let name = node.name().or(mesh.name()).map_or(0, str::len);
+            let is_instance = self.shared.placements.contains_key(&node.index());
+            if is_instance && parts.insert(mesh.index(), ()).is_some() {
+                size = size.plus(Size {
+                    objects: 1,
+                    names: name as u64,
+                    triangles: 0,
+                });
+                self.check_size(size, node, || format!("mesh {}", mesh.index()))?;
+                continue;
+            }
+            for part in mesh.primitives() {
+                let vertices = part.get(&Semantic::Positions).map_or(0, |it| it.count());
+                let triangles = triangle_count(&part);
+                if matches!(
+                    part.mode(),
+                    Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip
+                ) {
+                    continue;
+                }
+                size = size.plus(Size {
+                    objects: 1,
+                    names: name as u64,
+                    triangles: triangles.max((vertices / 3) as u64),
+                });
+                self.check_size(size, node, || super::place(&mesh, &part))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_size(
+        &self,
+        size: Size,
+        node: &Node<'_>,
+        place: impl Fn() -> String,
+    ) -> Result<(), SceneError> {
+        match size.excess() {
+            None => Ok(()),
+            Some(excess) => Err(self.error(
+                format!(
+                    "up to node {}, {}, instances counted, the file takes {excess}",
+                    node.index(),
+                    place()
+                ),
+                "export a part of the scene, or coarser meshes",
+            )),
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! The tables of assemblies.
+
+use super::{Column, Table};
+use crate::scene::molecule::{Group, Matrix, Operators};
+
+/// Columns of `pdbx_struct_assembly_gen`.
+pub(super) struct GroupColumns {
+    assembly: Column,
+    expression: Column,
+    chains: Column,
+}
+
+impl GroupColumns {
+    pub(super) fn of(table: &Table<'_>) -> Self {
+        Self {
+            assembly: table.column("assembly_id"),
+            expression: table.column("oper_expression"),
+            chains: table.column("asym_id_list"),
+        }
+    }
+
+    pub(super) fn read<'a>(&self, table: &Table<'a>) -> Group<'a> {
+        let chains = table.value([self.chains]).split(',').map(str::trim);
+        Group {
+            assemblies: [table.value([self.assembly])].into(),
+            chains: Some(chains.filter(|it| !it.is_empty()).collect()),
+            operators: Operators::Expression(table.value([self.expression])),
+            line: table.line,
+        }
+    }
+}
+
+/// Columns of `pdbx_struct_oper_list`.
+pub(super) struct OperatorColumns {
+    name: Column,
+    /// Three rows of the matrix, each with its entry of the vector.
+    rows: [[Column; 4]; 3],
+}
+
+impl OperatorColumns {
+    pub(super) fn of(table: &Table<'_>) -> Self {
+        let row = |row: usize| {
+            let entry = |column: usize| table.column(&format!("matrix[{row}][{column}]"));
+            let vector = table.column(&format!("vector[{row}]"));
+            [entry(1), entry(2), entry(3), vector]
+        };
+        Self {
+            name: table.column("id"),
+            rows: [row(1), row(2), row(3)],
+        }
+    }
+
+    pub(super) fn read<'a>(&self, table: &Table<'a>) -> Matrix<'a> {
+        Matrix {
+            name: table.value([self.name]),
+            words: self.rows.map(|row| row.map(|column| table.value([column]))),
+            line: table.line,
+        }
+    }
+}

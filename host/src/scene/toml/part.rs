@@ -1,0 +1,98 @@
+//! The `[[part]]` and `[[instance]]` tables.
+
+use super::item::{InstanceItem, PartItem};
+use super::object::Reader;
+use super::source::{Source, nearest};
+use super::transform;
+use super::value::Value;
+use crate::scene::SceneError;
+use std::collections::{HashMap, HashSet};
+
+impl Reader<'_> {
+    /// Reads the parts, each under a name of its own.
+    pub(super) fn parts(&mut self, list: Value<'_>) -> Result<Vec<PartItem>, SceneError> {
+        let mut parts: Vec<PartItem> = Vec::new();
+        let mut names = HashSet::new();
+        for table in list.items("`[[part]]` above its name and its objects")? {
+            let fields = table.fields("part", &[&["name", "object"]])?;
+            let name = fields.require("name")?.name()?;
+            if !names.insert(name.text.clone()) {
+                return Err(self.source.error(
+                    &name.span,
+                    format!("there are two parts {:?}", name.text),
+                    "give one of them another name",
+                ));
+            }
+            parts.push(PartItem {
+                items: self.members(&fields, "part")?,
+                span: fields.span,
+                name,
+            });
+        }
+        Ok(parts)
+    }
+}
+
+/// Reads the instances of these parts.
+pub(super) fn instances(
+    list: Value<'_>,
+    parts: &[PartItem],
+) -> Result<Vec<InstanceItem>, SceneError> {
+    let numbers = parts.iter().enumerate();
+    let numbers: HashMap<&str, usize> = numbers
+        .map(|(at, it)| (it.name.text.as_str(), at))
+        .collect();
+    let mut names = HashSet::new();
+    let mut instances = Vec::new();
+    for table in list.items("`[[instance]]` above its keys")? {
+        let fields = table.fields("instance", &[&["part", "name"], transform::KEYS])?;
+        let part = fields.require("part")?;
+        let text = part.filled()?;
+        let number = numbers.get(text).copied().ok_or_else(|| {
+            let remedy = match nearest(text, parts.iter().map(|it| it.name.text.as_str())) {
+                Some(near) => format!("did you mean {near:?}? Or define a `[[part]]` of this name"),
+                None => format!("define it: `[[part]]` with `name = {text:?}`"),
+            };
+            part.error(format!("there is no part {text:?}"), remedy)
+        })?;
+        let name = match fields.get("name") {
+            None => format!("{text} {}", instances.len() + 1),
+            Some(value) => {
+                let name = value.filled()?;
+                if !names.insert(name) {
+                    return Err(value.error(
+                        format!("there are two instances {name:?}"),
+                        "give one of them another name",
+                    ));
+                }
+                name.to_owned()
+            }
+        };
+        instances.push(InstanceItem {
+            name,
+            part: number,
+            placement: transform::placement(&fields)?,
+            span: fields.span,
+        });
+    }
+    Ok(instances)
+}
+
+/// Warnings about parts that no instance places.
+pub(super) fn unplaced(
+    source: &Source,
+    parts: &[PartItem],
+    instances: &[InstanceItem],
+) -> Vec<String> {
+    let placed: HashSet<usize> = instances.iter().map(|it| it.part).collect();
+    let parts = parts.iter().enumerate();
+    let unplaced = parts.filter(|(number, _)| !placed.contains(number));
+    let warning = |(_, part): (usize, &PartItem)| {
+        let place = source.place(&part.span);
+        format!(
+            "{place}: no instance places the part {:?}; it is left out",
+            part.name.text
+        )
+    };
+    unplaced.map(warning).collect()
+}
