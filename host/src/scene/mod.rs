@@ -1,10 +1,10 @@
 //! The scene in memory: what every importer produces and the compiler reads.
 //!
-//! All coordinates are `f64` scene units in one right-handed world space: importers bake the
-//! transforms of groups and nodes into the geometry, so that nothing downstream knows of them. The
-//! exception are [parts](Part), which have coordinates of their own and are placed by [instances](Instance).
-//! [`Scene::flattened`] makes objects of them. Colors are linear RGB, 1.0 being full display white, unless [`Scene::display_values`] says
-//! otherwise.
+//! All coordinates are `f64` scene units in one right-handed world space: importers bake the transforms of
+//! groups and nodes into the geometry, so that nothing downstream knows of them. [Parts](Part) are the
+//! exception: they have coordinates of their own, and [instances](Instance) place them.
+//! [`Scene::flattened`] makes objects of these. Colors are linear RGB, 1.0 being full display white, unless
+//! [`Scene::display_values`] says otherwise.
 
 mod access;
 #[cfg(test)]
@@ -18,7 +18,7 @@ mod importer;
 mod model;
 pub(crate) mod molecule;
 mod options;
-mod part;
+mod placement;
 mod polygon;
 mod size;
 mod source_span;
@@ -31,9 +31,11 @@ mod words;
 pub use crate::shape::Shape;
 pub use error::SceneError;
 pub use importer::Importer;
-pub use model::{Camera, Color, Diffuse, Light, Material, Object, RenderSettings, Scene};
+pub use model::{
+    Camera, Color, Diffuse, Instance, Light, Material, Object, Part, RenderSettings, Scene,
+};
 pub use options::{Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle};
-pub use part::{Instance, Part, Placement};
+pub use placement::Placement;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
 pub use track::{Interpolation, Key, Track, TrackTarget};

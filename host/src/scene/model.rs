@@ -1,6 +1,6 @@
 //! The scene as data.
 
-use super::part::{Instance, Part};
+use super::placement::Placement;
 use super::source_span::SourceSpan;
 use super::track::Track;
 use crate::shape::{Shape, unit};
@@ -129,6 +129,27 @@ pub struct Object {
     /// Index into [`Scene::materials`].
     pub material: usize,
     pub shape: Shape,
+    /// Where the scene file says so, for messages.
+    pub place: SourceSpan,
+}
+
+/// A group of objects in coordinates of its own, which instances place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    pub name: String,
+    /// At least one, each with a box; materials are the scene's.
+    pub objects: Vec<Object>,
+    /// Where the scene file says so, for messages.
+    pub place: SourceSpan,
+}
+
+/// A placed part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instance {
+    pub name: String,
+    /// Index into [`Scene::parts`].
+    pub part: usize,
+    pub placement: Placement,
     /// Where the scene file says so, for messages.
     pub place: SourceSpan,
 }

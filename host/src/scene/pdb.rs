@@ -6,12 +6,14 @@
 //! `*****` or hexadecimal, and everything after the coordinates may be missing.
 
 mod biomt;
+mod columns;
 
 use super::importer::{Importer, Input};
 use super::molecule::{self, Atom, Element, End, Model, Parsed, Site};
 use super::text::{Source, Warnings};
 use super::{Imported, SceneError};
 use biomt::Assemblies;
+use columns::columns;
 use glam::DVec3;
 use gridel_core::Up;
 
@@ -168,18 +170,4 @@ fn element_of_name(field: &str, hetero: bool) -> Option<Element> {
     } else {
         Element::from_symbol(one)
     }
-}
-
-/// The columns `first` to `last` of a line, counted from 1; fewer where the line is shorter.
-fn columns(line: &str, first: usize, last: usize) -> &str {
-    let offset = |column: usize| {
-        if line.is_ascii() {
-            column.min(line.len())
-        } else {
-            line.char_indices()
-                .nth(column)
-                .map_or(line.len(), |(offset, _)| offset)
-        }
-    };
-    &line[offset(first - 1)..offset(last)]
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::part::tests::any;
+use crate::scene::placement::tests::any;
 use crate::scene::{Material, Placement, Shape, SourceSpan};
 use crate::shape::random::Random;
 use crate::shape::{Cuboid, Sphere};

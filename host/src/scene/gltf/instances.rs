@@ -1,62 +1,14 @@
 //! Meshes that several nodes place: parts and instances, where that saves enough.
 
 use super::place::mesh_name;
-use super::{Importer, Named, triangle_count};
+use super::shared::{Placed, triangle_count};
+use super::{Importer, Named};
 use crate::scene::size::Size;
-use crate::scene::{Instance, Part, Placement, SceneError};
-use glam::{DMat3, DMat4};
+use crate::scene::{Instance, Part, SceneError};
+use glam::DMat4;
 use gltf::mesh::Mode;
 use gltf::{Node, Semantic};
 use std::collections::HashMap;
-
-/// The triangles that a part must save. A part has a structure of its own, and an instance a record.
-const LEAST_SAVED: u64 = 1024;
-
-/// A node with a mesh, where it stands in the scene.
-pub(super) type Placed<'d> = (Node<'d>, DMat4);
-
-/// The meshes that become parts, by their number in the file.
-#[derive(Default)]
-pub(super) struct Shared {
-    /// The part of each; `None` for a mesh without triangles.
-    parts: HashMap<usize, Option<usize>>,
-    /// Where the nodes of these meshes stand, by the number of the node.
-    placements: HashMap<usize, Placement>,
-}
-
-impl Shared {
-    /// Chooses the meshes that at least two nodes place by a rotation, a translation and one scale. Nodes
-    /// that `moves` are left as they are.
-    pub(super) fn of(placed: &[Placed<'_>], moves: impl Fn(&Node<'_>) -> bool) -> Self {
-        let mut uses: HashMap<usize, Vec<(usize, Placement)>> = HashMap::new();
-        let mut saved: HashMap<usize, u64> = HashMap::new();
-        for (node, world) in placed {
-            let Some(mesh) = node
-                .mesh()
-                .filter(|_| node.skin().is_none() && !moves(node))
-            else {
-                continue;
-            };
-            let matrix = DMat3::from_mat4(*world);
-            let placement = Placement::from_affine(matrix, world.w_axis.truncate());
-            let Some(placement) = placement else {
-                continue;
-            };
-            let uses = uses.entry(mesh.index()).or_default();
-            if !uses.is_empty() {
-                let triangles: u64 = mesh.primitives().map(|it| triangle_count(&it)).sum();
-                let saved = saved.entry(mesh.index()).or_default();
-                *saved = saved.saturating_add(triangles);
-            }
-            uses.push((node.index(), placement));
-        }
-        uses.retain(|mesh, _| saved.get(mesh).is_some_and(|it| *it >= LEAST_SAVED));
-        Self {
-            parts: HashMap::new(),
-            placements: uses.into_values().flatten().collect(),
-        }
-    }
-}
 
 impl Importer<'_> {
     /// Places the mesh of a node as an instance, if it is a part. Returns whether it is.

@@ -14,6 +14,7 @@ mod document;
 mod instances;
 mod material;
 mod place;
+mod shared;
 mod view;
 
 use super::importer::{Choices, Importer as Entry, Input};
@@ -28,8 +29,8 @@ use gltf::scene::Transform;
 use gltf::{Document, Node, Primitive, Semantic};
 use std::collections::HashMap;
 use std::path::Path;
-use instances::Shared;
 use place::transform;
+use shared::Shared;
 use view::View;
 
 pub(super) const IMPORTER: Entry = Entry {
@@ -443,18 +444,6 @@ impl Importer<'_> {
 /// Returns the name of a part of a mesh in messages.
 fn place(mesh: &gltf::Mesh<'_>, part: &Primitive<'_>) -> String {
     format!("mesh {}, primitive {}", mesh.index(), part.index())
-}
-
-/// Returns how many triangles a part of a mesh has, as its accessors say.
-fn triangle_count(part: &Primitive<'_>) -> u64 {
-    let vertices = part.get(&Semantic::Positions).map_or(0, |it| it.count());
-    let corners = part.indices().map_or(vertices, |it| it.count());
-    let count = match part.mode() {
-        Mode::Triangles => corners / 3,
-        Mode::TriangleStrip | Mode::TriangleFan => corners.saturating_sub(2),
-        _ => 0,
-    };
-    count as u64
 }
 
 /// The triangles that corners stand for, counter-clockwise in front.

@@ -1,6 +1,6 @@
 //! The tables of assemblies.
 
-use super::{Column, Table};
+use super::table::{Column, Table};
 use crate::scene::molecule::{Group, Matrix, Operators};
 
 /// Columns of `pdbx_struct_assembly_gen`.

@@ -7,6 +7,7 @@
 
 mod assembly;
 mod cif;
+mod table;
 
 use super::importer::{Importer, Input};
 use super::molecule::{self, Atom, Element, End, Model, Parsed, Site};
@@ -15,6 +16,7 @@ use super::{Imported, SceneError};
 use gridel_core::Up;
 use assembly::{GroupColumns, OperatorColumns};
 use cif::{Token, Tokens};
+use table::{Column, Table, category};
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -107,46 +109,6 @@ fn parse<'a>(source: &'a Source, warnings: &mut Warnings) -> Result<Parsed<'a>, 
         ));
     }
     Ok(parser.parsed)
-}
-
-fn category(tag: &str) -> &str {
-    tag.split('.').next().unwrap_or("")
-}
-
-/// A row of a table and the names of its columns.
-#[derive(Default)]
-struct Table<'a> {
-    tags: Vec<&'a str>,
-    row: Vec<&'a str>,
-    line: usize,
-}
-
-impl<'a> Table<'a> {
-    fn is_of(&self, wanted: &str) -> bool {
-        self.tags
-            .first()
-            .is_some_and(|tag| category(tag).eq_ignore_ascii_case(wanted))
-    }
-
-    /// Where a column is.
-    fn column(&self, name: &str) -> Option<usize> {
-        self.tags.iter().position(|tag| {
-            tag.split_once('.')
-                .is_some_and(|(_, item)| item.eq_ignore_ascii_case(name))
-        })
-    }
-
-    /// The first value of these columns that is there and not left open, or else an empty one.
-    fn value<const N: usize>(&self, columns: [Option<usize>; N]) -> &'a str {
-        let values = columns
-            .into_iter()
-            .flatten()
-            .filter_map(|column| self.row.get(column).copied());
-        values
-            .into_iter()
-            .find(|value| !value.is_empty())
-            .unwrap_or("")
-    }
 }
 
 struct Parser<'a, 'w> {
@@ -300,8 +262,6 @@ impl<'a> Parser<'a, '_> {
         }
     }
 }
-
-type Column = Option<usize>;
 
 /// The columns of a table that is read.
 enum Columns {

@@ -2,29 +2,16 @@
 //!
 //! Files state all of them, and one is drawn, so operators are read when an assembly is chosen.
 
-use super::operators::{Operator, Operators};
+use super::limit::check_size;
+use super::operators::{MOST_INSTANCES, Operator};
 use super::parsed::{Atom, Parsed};
 use crate::scene::text::{Source, Warnings};
 use crate::scene::{Placement, SceneError};
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap, HashSet};
-use std::rc::Rc;
-
-/// The most instances of an assembly.
-pub(super) const MOST_INSTANCES: u64 = 65_535;
 
 /// How many names a message lists.
 const LISTED: usize = 20;
-
-/// Chains of an assembly that have operators in common, as the file has them.
-pub(in crate::scene) struct Group<'a> {
-    /// The numbers or names of the assemblies that it belongs to.
-    pub(in crate::scene) assemblies: Rc<[&'a str]>,
-    /// Names of chains as in [`Atom::asym`]; `None` for all.
-    pub(in crate::scene) chains: Option<Vec<&'a str>>,
-    pub(in crate::scene) operators: Operators<'a>,
-    pub(in crate::scene) line: usize,
-}
 
 /// Atoms that stand together wherever they stand.
 pub(super) struct Copied {
@@ -111,7 +98,7 @@ pub(super) fn assemble(
         };
         // Many groups can name the same chains, so they are weighed before they are made.
         total += found.iter().map(|it| it.len()).sum::<usize>();
-        super::check_size(source, total, 0)?;
+        check_size(source, total, 0)?;
         let mut atoms: Vec<u32> = found.into_iter().flatten().copied().collect();
         atoms.sort_unstable();
         if !atoms.is_empty() && !chains.operators.is_empty() {

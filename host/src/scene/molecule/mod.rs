@@ -13,23 +13,22 @@ mod assembly;
 mod bonds;
 mod draw;
 mod element;
+mod limit;
 mod operators;
 mod parsed;
 mod select;
 
-pub(super) use assembly::Group;
 pub(crate) use bonds::perceive;
 pub(crate) use draw::{BoundingSphere, draw};
 pub(crate) use element::Element;
-pub(super) use operators::{Matrix, Operators};
 pub(crate) use parsed::Site;
-pub(super) use parsed::{Atom, End, Model, Parsed};
+pub(super) use parsed::{Atom, End, Group, Matrix, Model, Operators, Parsed};
 
 use super::importer::Input;
-use super::size::Size;
 use super::text::{Source, Warnings};
 use super::{Imported, Instance, Material, MoleculeStyle, Part, Scene, SceneError};
 use assembly::{Copied, assemble};
+use limit::check_size;
 use std::collections::{HashMap, HashSet};
 
 /// Makes a scene of what `parse` reads from a file.
@@ -105,10 +104,15 @@ impl Molecule<'_, '_> {
 
     /// Copies of some of it. Those that stand where they are in the file alone are objects, others parts.
     fn assembled(&self, copied: Vec<Copied>) -> Result<Scene, SceneError> {
-        let within: Vec<_> = copied.iter().map(|it| self.bonds_of(&it.atoms)).collect();
-        let atoms = copied.iter().map(|it| it.atoms.len()).sum();
-        let bonds = within.iter().map(Vec::len).sum();
-        check_size(self.source, atoms, bonds)?;
+        let mut within = Vec::with_capacity(copied.len());
+        let [mut atoms, mut bonds] = [0, 0];
+        for copied in &copied {
+            let own = self.bonds_of(&copied.atoms);
+            atoms += copied.atoms.len();
+            bonds += own.len();
+            check_size(self.source, atoms, bonds)?;
+            within.push(own);
+        }
         let mut scene = Scene::default();
         for (copied, bonds) in copied.into_iter().zip(within) {
             let atoms = copied.atoms.iter().map(|&at| at as usize);
@@ -150,10 +154,16 @@ impl Molecule<'_, '_> {
 
     /// The bonds between some atoms, by their place among these.
     fn bonds_of(&self, atoms: &[u32]) -> Vec<[u32; 2]> {
-        // Atoms rise, so a search finds them.
+        // Atoms and the first ends of bonds rise, so searches find them: there can be many groups of atoms.
         let find = |end: u32| atoms.binary_search(&end).ok().map(|at| at as u32);
-        let among = |[a, b]: &[u32; 2]| Some([find(*a)?, find(*b)?]);
-        self.bonds.iter().filter_map(among).collect()
+        let mut within = Vec::new();
+        for (&atom, near) in atoms.iter().zip(0..) {
+            let first = self.bonds.partition_point(|[end, _]| *end < atom);
+            let bonds = self.bonds[first..].iter();
+            let bonds = bonds.take_while(|[end, _]| *end == atom);
+            within.extend(bonds.filter_map(|[_, far]| Some([near, find(*far)?])));
+        }
+        within
     }
 }
 
@@ -167,22 +177,6 @@ fn shared(all: &mut Vec<Material>, more: Vec<Material>) -> Vec<usize> {
         })
     };
     more.into_iter().map(number).collect()
-}
-
-/// Rejects atoms so crowded that their bonds fit into no memory.
-fn check_size(source: &Source, atoms: usize, bonds: usize) -> Result<(), SceneError> {
-    // A name has a few words, of which each has a few letters.
-    let size = Size {
-        objects: (atoms + 2 * bonds) as u64,
-        ..Size::default()
-    };
-    match size.excess() {
-        None => Ok(()),
-        Some(excess) => Err(source.error(
-            format!("{bonds} bonds of {atoms} atoms take {excess}"),
-            "use the style space-filling, or check that the coordinates are in angstroms",
-        )),
-    }
 }
 
 /// Warns of bonds to atoms that no model of the file has.

@@ -1,10 +1,12 @@
 //! The operators of assemblies: rotations with a displacement, and expressions that combine them.
 
-use super::assembly::MOST_INSTANCES;
-use super::parsed::Parsed;
+use super::parsed::{Matrix, Operators, Parsed};
 use crate::scene::text::Source;
 use crate::scene::{Placement, SceneError};
 use glam::{DMat3, DVec3};
+
+/// The most instances of an assembly.
+pub(super) const MOST_INSTANCES: u64 = 65_535;
 
 /// How far the entries of a matrix can be from those of a rotation: files round them to six digits or fewer.
 const TOLERANCE: f64 = 1e-3;
@@ -14,23 +16,6 @@ const MOST_FACTORS: usize = 16;
 
 /// The most characters of an operator's name that are kept. Files have one to three.
 const MOST_CHARACTERS: usize = 32;
-
-/// An operator as the file writes it.
-#[derive(Clone)]
-pub(in crate::scene) struct Matrix<'a> {
-    pub(in crate::scene) name: &'a str,
-    /// Three rows of the rotation, each with its displacement behind it; empty where one is missing.
-    pub(in crate::scene) words: [[&'a str; 4]; 3],
-    pub(in crate::scene) line: usize,
-}
-
-/// The operators of a group of chains, unread.
-pub(in crate::scene) enum Operators<'a> {
-    Listed(Vec<Matrix<'a>>),
-    /// Names of operators in [`Parsed::operators`], such as `(1-60)(61,P)`. Each factor in parentheses stands
-    /// for several operators, and the rightmost applies first.
-    Expression(&'a str),
-}
 
 /// An operator.
 #[derive(Clone)]

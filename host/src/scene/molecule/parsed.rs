@@ -1,10 +1,9 @@
 //! The content of a molecule file.
 
-use super::assembly::Group;
 use super::element::Element;
-use super::operators::Matrix;
 use glam::DVec3;
 use std::collections::HashMap;
+use std::rc::Rc;
 
 /// An element at a position in angstroms.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +68,33 @@ pub(in crate::scene) struct Model<'a> {
     /// The number that the file gives it; empty where files do not number them.
     pub(in crate::scene) number: &'a str,
     pub(in crate::scene) line: usize,
+}
+
+/// Chains of an assembly that have operators in common, as the file has them.
+pub(in crate::scene) struct Group<'a> {
+    /// The numbers or names of the assemblies that it belongs to.
+    pub(in crate::scene) assemblies: Rc<[&'a str]>,
+    /// Names of chains as in [`Atom::asym`]; `None` for all.
+    pub(in crate::scene) chains: Option<Vec<&'a str>>,
+    pub(in crate::scene) operators: Operators<'a>,
+    pub(in crate::scene) line: usize,
+}
+
+/// An operator as the file writes it.
+#[derive(Clone)]
+pub(in crate::scene) struct Matrix<'a> {
+    pub(in crate::scene) name: &'a str,
+    /// Three rows of the rotation, each with its displacement behind it; empty where one is missing.
+    pub(in crate::scene) words: [[&'a str; 4]; 3],
+    pub(in crate::scene) line: usize,
+}
+
+/// The operators of a group of chains, unread.
+pub(in crate::scene) enum Operators<'a> {
+    Listed(Vec<Matrix<'a>>),
+    /// Names of operators in [`Parsed::operators`], such as `(1-60)(61,P)`. Each factor in parentheses stands
+    /// for several operators, and the rightmost applies first.
+    Expression(&'a str),
 }
 
 /// The content of a file, before one model and one set of alternate locations is chosen.

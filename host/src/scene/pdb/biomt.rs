@@ -1,6 +1,6 @@
 //! REMARK 350: the biological assemblies of a PDB file.
 
-use super::columns;
+use super::columns::columns;
 use crate::scene::molecule::{Group, Matrix, Operators};
 use std::rc::Rc;
 

@@ -1,29 +1,6 @@
-//! Parts, and the instances that place them: geometry that a scene holds once and shows many times.
+//! Where instances place parts.
 
-use super::model::Object;
-use super::source_span::SourceSpan;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-
-/// A group of objects in coordinates of its own, which instances place.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Part {
-    pub name: String,
-    /// At least one, each with a box; materials are the scene's.
-    pub objects: Vec<Object>,
-    /// Where the scene file says so, for messages.
-    pub place: SourceSpan,
-}
-
-/// A placed part.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Instance {
-    pub name: String,
-    /// Index into [`Scene::parts`](super::Scene::parts).
-    pub part: usize,
-    pub placement: Placement,
-    /// Where the scene file says so, for messages.
-    pub place: SourceSpan,
-}
 
 /// A map from a part's coordinates to the scene's: scaled by `scale` (above 0), then rotated, then moved.
 ///

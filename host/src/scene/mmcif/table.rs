@@ -1,0 +1,45 @@
+//! Tables of CIF, row by row.
+
+/// Where a column is.
+pub(super) type Column = Option<usize>;
+
+/// The category of a tag.
+pub(super) fn category(tag: &str) -> &str {
+    tag.split('.').next().unwrap_or("")
+}
+
+/// A row of a table and the names of its columns.
+#[derive(Default)]
+pub(super) struct Table<'a> {
+    pub(super) tags: Vec<&'a str>,
+    pub(super) row: Vec<&'a str>,
+    pub(super) line: usize,
+}
+
+impl<'a> Table<'a> {
+    pub(super) fn is_of(&self, wanted: &str) -> bool {
+        self.tags
+            .first()
+            .is_some_and(|tag| category(tag).eq_ignore_ascii_case(wanted))
+    }
+
+    /// Where a column is.
+    pub(super) fn column(&self, name: &str) -> Option<usize> {
+        self.tags.iter().position(|tag| {
+            tag.split_once('.')
+                .is_some_and(|(_, item)| item.eq_ignore_ascii_case(name))
+        })
+    }
+
+    /// The first value of these columns that is there and not left open, or else an empty one.
+    pub(super) fn value<const N: usize>(&self, columns: [Option<usize>; N]) -> &'a str {
+        let values = columns
+            .into_iter()
+            .flatten()
+            .filter_map(|column| self.row.get(column).copied());
+        values
+            .into_iter()
+            .find(|value| !value.is_empty())
+            .unwrap_or("")
+    }
+}
