@@ -79,10 +79,12 @@ impl Emitted<'_> {
         let is_prevalidated = others
             .into_iter()
             .all(|it| Prevalidated::STRUCTURES.contains(&it));
-        let load = if is_prevalidated {
-            LOAD_PREVALIDATED
-        } else {
-            LOAD_CHECKED
+        let parts = scene.parts().len();
+        let with_parts = LOAD_WITH_PARTS.replace("PARTS_COUNT", &parts.to_string());
+        let load = match parts {
+            0 if is_prevalidated => LOAD_PREVALIDATED,
+            0 => LOAD_CHECKED,
+            _ => &with_parts,
         };
         let features: Vec<_> = self.features().iter().map(|it| format!("{it:?}")).collect();
         format!(
@@ -190,6 +192,24 @@ const LOAD_CHECKED: &str = "\
 #[allow(dead_code)]
 pub fn load() -> Result<gridel_core::Scene<'static>, gridel_core::BlobError> {
     gridel_core::Scene::from_bytes(BLOB)
+}
+";
+
+/// Loading of a scene that places parts, which are loaded before.
+const LOAD_WITH_PARTS: &str = "\
+/// The views of the parts that instances place.
+pub type Parts = gridel_core::Parts<'static, PARTS_COUNT>;
+
+/// The parts, checked.
+#[allow(dead_code)]
+pub fn parts() -> Result<Parts, gridel_core::BlobError> {
+    Parts::from_bytes(BLOB)
+}
+
+/// The scene, checked, with its parts.
+#[allow(dead_code)]
+pub fn load(parts: &Parts) -> Result<gridel_core::Scene<'_>, gridel_core::BlobError> {
+    gridel_core::Scene::with_parts(BLOB, parts)
 }
 ";
 

@@ -2,10 +2,10 @@
 
 use glam::{DQuat, DVec3};
 use gridel_core::format::instance::Instance as Record;
-use gridel_core::{Fixed, Format, Hit, Kind, Number, Ray, Scene as Loaded, Structure};
+use gridel_core::{Fixed, Format, Hit, Number, Ray, Scene as Loaded, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
-use gridel_host::scene::{Instance, Object, Part, Placement, Scene, Shape, SourceSpan};
+use gridel_host::scene::{Instance, Part, Placement, Scene, Shape, SourceSpan};
 use gridel_tests::effort::part_of;
 use gridel_tests::every_format;
 use gridel_tests::query::{HitBits, held, through};
@@ -43,8 +43,7 @@ fn instance(part: usize, placement: Placement) -> Instance {
 /// A scene with some objects of its own, and instances of two parts.
 fn random_scene(random: &mut Random, own: usize, instances: usize) -> Scene {
     let shapes = |random: &mut Random, count: usize| -> Vec<Shape> {
-        let kinds = 0..count;
-        kinds
+        (0..count)
             .map(|_| {
                 let place = DVec3::from_array([(); 3].map(|()| random.signed()));
                 let kind = random.below(5);
@@ -127,7 +126,11 @@ fn point<N: Number>(hit: &Hit<N>) -> DVec3 {
     DVec3::from_array(hit.point.map(N::length_to_f64))
 }
 
-fn hits_lie_where_maps_place_them_in<N: Number>(scene: &Loaded<'_>, rays: &[(DVec3, DVec3)]) {
+fn hits_lie_where_maps_place_them_in<N: Number>(
+    scene: &Loaded<'_>,
+    rays: &[(DVec3, DVec3)],
+    all: &mut usize,
+) {
     let mut hits = 0;
     for &(from, way) in rays {
         let expected = scene
@@ -166,26 +169,25 @@ fn hits_lie_where_maps_place_them_in<N: Number>(scene: &Loaded<'_>, rays: &[(DVe
             hits += 1;
         }
     }
-    assert!(hits > rays.len() / 20, "{hits} of {}", rays.len());
+    *all += hits;
 }
 
 #[test]
 fn hits_lie_where_maps_place_them() {
     let random = &mut Random(1);
+    let mut hits = 0;
     for _ in 0..part_of(12, 200) {
-        let mut scene = random_scene(random, 0, 7);
-        scene.objects.clear();
+        let scene = random_scene(random, 0, 7);
         let blob = blob(&scene, &[Structure::DualSplit]);
         let loaded = blob.scene().expect("a scene");
         assert_eq!(loaded.instances().len(), 7);
         let rays: Vec<_> = (0..300).map(|_| random_ray(random, &loaded)).collect();
-        every_format!(hits_lie_where_maps_place_them_in(&loaded, &rays));
+        every_format!(hits_lie_where_maps_place_them_in(&loaded, &rays, &mut hits));
     }
+    assert!(hits > 1000, "{hits}");
 }
 
-/// The first hit by a search of every instance alone, and of the scene's own objects.
-fn structures_agree_in<N: Number>(scene: &Loaded<'_>, flat: &Loaded<'_>, rays: &[(DVec3, DVec3)]) {
-    let _ = flat;
+fn structures_agree_in<N: Number>(scene: &Loaded<'_>, rays: &[(DVec3, DVec3)]) {
     for &(from, way) in rays {
         let ray = ray::<N>(scene, from, way);
         let (expected, any) = through(Structure::List, scene, &ray);
@@ -216,7 +218,7 @@ fn structures_agree_bit_for_bit() {
         let blob = blob(&scene, &Structure::ALL);
         let loaded = blob.scene().expect("a scene");
         let rays: Vec<_> = (0..200).map(|_| random_ray(random, &loaded)).collect();
-        every_format!(structures_agree_in(&loaded, &loaded, &rays));
+        every_format!(structures_agree_in(&loaded, &rays));
     }
 }
 
@@ -368,9 +370,4 @@ fn instances_have_their_own_numbers_and_objects_of_parts_are_counted_once() {
     );
     assert_eq!(loaded.object(first.expect("a part")), 3);
     assert_eq!(loaded.object(second.expect("a part")), 9);
-    assert_eq!(
-        loaded.count(Kind::Triangle) + loaded.parts().len(),
-        loaded.count(Kind::Triangle) + 2
-    );
-    let _ = Object::clone(&scene.objects[0]);
 }

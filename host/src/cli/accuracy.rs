@@ -47,7 +47,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         cutoff: arguments.cutoff,
         geometry: GeometryOptions {
             lattice_bits: None,
-            import: arguments.import.clone(),
+            import: arguments.import.flattened()?,
         },
         ..SceneOptions::default()
     };

@@ -99,11 +99,13 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         lattice_bits: lattice_bits.unwrap_or(default.compiling.lattice_bits),
         ..default.compiling
     })?;
+    let mut scene_options = arguments.scene_options.clone();
+    scene_options.geometry = scene_options.geometry.flattened()?;
     let imported = import(
         path,
         &arguments
             .target_point
-            .with_target(&arguments.scene_options)
+            .with_target(&scene_options)
             .sized(Some(arguments.size)),
     )?;
     if let Some(folder) = &arguments.plot {

@@ -82,17 +82,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "leave the option out",
         ));
     }
+    let mut options = arguments.scene_options.clone();
+    options.geometry = options.geometry.flattened()?;
     let source = Source::to_trace(
         &arguments.input,
         &arguments
             .target_point
-            .with_target(&arguments.scene_options)
+            .with_target(&options)
             .sized(arguments.picture.size)
             .at(arguments.time),
         &arguments.with,
         Structure::DualSplit,
     )?;
     let scene = source.scene()?;
+    source.reject_instances(&scene)?;
     source.warn_of_collapsed();
     let structure = source.structure(&scene, arguments.with.accel)?;
     let settings = arguments.picture.settings(&scene);

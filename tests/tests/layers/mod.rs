@@ -19,7 +19,7 @@ const CORE: Layers = Layers {
     sources: "../core/src",
     order: &[
         "axis target simd format observe",
-        "number ray geometry accel scene query shade render tracks selftest",
+        "number ray geometry accel instances scene query shade render tracks selftest",
         "shared",
     ],
 };

@@ -82,11 +82,7 @@ impl ViewOptions {
         }
         let camera = match scene.camera {
             Some(camera) => camera,
-            None => {
-                let flat = scene.flattened();
-                let flat = flat.map_err(|error| Failure::Failed(miette::Report::new(error)))?;
-                compile::framing(&flat, self.fov)
-            }
+            None => compile::framing(scene, self.fov),
         };
         scene.camera = Some(self.moved(camera)?);
         Ok(())

@@ -139,6 +139,10 @@ impl MemoryReport {
             }
         }
         program.list_code(&mut flash);
+        if !scene.parts().is_empty() {
+            // Their size on boards is not measured.
+            ram.add("views of parts", None);
+        }
 
         let need = board_memory(scene, format, scene.view().depth);
         ram.add(
