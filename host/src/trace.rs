@@ -281,7 +281,8 @@ fn closest_of_each<N: Number, A: Accel, C: Observer>(
                     primitive: found.primitive,
                     instance: found
                         .instance()
-                        .map_or(u32::MAX, |index| scene.instance_number(index)),
+                        .and_then(|index| scene.instances().get(index as usize))
+                        .map_or(u32::MAX, |instance| instance.number),
                     normal: found.normal.map(|x| x.ratio_to_f64() as f32),
                 })
             });

@@ -110,7 +110,9 @@ fn random_ray(random: &mut Random, scene: &Loaded<'_>) -> (DVec3, DVec3) {
     let (from, mut to) = (point(3.0), point(1.0));
     if !random.one_in(4) {
         let instances = scene.instances();
-        let sides = instances[random.below(instances.len())].bounds.0;
+        let instance = &instances[random.below(instances.len())];
+        let part = &scene.parts()[usize::from(instance.part)];
+        let sides = instance.around(part.bounds()).expect("a box").0;
         to = DVec3::from_array(sides.map(|[low, high]| {
             f64::from(low) + random.unit() * (f64::from(high) - f64::from(low))
         }));
@@ -359,7 +361,7 @@ fn instances_have_their_own_numbers_and_objects_of_parts_are_counted_once() {
     let scene = random_scene(random, 3, 12);
     let blob = blob(&scene, &[Structure::DualSplit]);
     let loaded = blob.scene().expect("a scene");
-    let numbers = (0..12).map(|index| loaded.instance_number(index));
+    let numbers = (0..12).map(|index| loaded.instances()[index].number);
     let mut numbers: Vec<_> = numbers.collect();
     numbers.sort_unstable();
     assert!(numbers.iter().copied().eq(0..12));

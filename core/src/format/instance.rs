@@ -7,7 +7,6 @@
 
 use crate::format::layout::records;
 use crate::format::limits::INSTANCE_EXPONENT;
-use crate::format::record::UnitBox;
 use bytemuck::{Pod, Zeroable};
 
 /// Fraction bits of an instance's matrix.
@@ -35,7 +34,7 @@ records! {
     /// A placed part.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
     #[repr(C)]
-    #[bytes(64)]
+    #[bytes(56)]
     pub struct Instance {
         /// A rotation times a factor from 1/2 to 1, row by row, with 23 fraction bits. The squares of the rows' lengths
         /// differ by at most 2^-19, and rows are at right angles up to that.
@@ -44,12 +43,12 @@ records! {
         /// The place in the scene where the middle of the part's lattice lies, in 1/256 unit.
         #[valid(Center: -LARGEST_CENTER..=LARGEST_CENTER)]
         pub center: [i32; 3],
-        /// A box around the part's box in the scene, in units.
-        pub bounds: UnitBox,
         /// The matrix is multiplied by 2 to this power.
         #[valid(InstanceExponent: INSTANCE_EXPONENT[0]..=INSTANCE_EXPONENT[1])]
         pub exponent: i16,
         /// The part.
         pub part: u16,
+        /// The instance's number in scene-file order.
+        pub number: u32,
     }
 }

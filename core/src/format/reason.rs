@@ -195,7 +195,6 @@ texts! {
         ZeroRotation => "its rotation has length 0",
         // Parts and instances.
         NotRotation => "its matrix is not a rotation times a factor from 1/2 to 1",
-        BoxTooSmall => "its box does not hold its part",
         OtherStructures => "its structures are not those of the scene",
         UnboundedPart => "it has a shape without bounds",
         OtherPart => "the part that was given is not the one in the blob",

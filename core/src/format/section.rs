@@ -189,8 +189,6 @@ macro_rules! sections {
             Instances = 70, "instances", [instance::Instance], "instance" of "";
             /// [`Pair`](crate::format::record::Pair)s of the hierarchy above the instances, whose leaves are instances.
             InstancePairs = 71, "instance-pairs", [record::Pair], "pair" of "instances";
-            /// For each instance, its number in scene-file order. Absent where they are in that order.
-            InstanceOrder = 72, "instance-order", [u8, u16, [u8; 3], u32], "instance" of "instance-order";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

@@ -5,7 +5,7 @@ use crate::accel::cull::{Culling, PairCulling};
 use crate::format::instance::Instance;
 use crate::format::limits::MAX_INSTANCE_LEVELS;
 use crate::format::link::Node;
-use crate::format::record::Pair;
+use crate::format::record::{Pair, UnitBox};
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, NodeId};
 use crate::ray::Ray;
@@ -19,24 +19,38 @@ pub(crate) struct Top<'a> {
     pub(crate) pairs: &'a [Pair],
 }
 
-/// A node of the hierarchy as observers know it.
+/// An instance as observers know it.
 fn id(node: Node) -> NodeId {
     NodeId {
-        what: if node.is_leaf() {
-            "instance"
-        } else {
-            "pair of instances"
-        },
+        what: "instance",
         number: node.number(),
     }
 }
 
+/// The box of a pair's left (0) or right (1) child.
+pub(crate) fn child_box(pair: &Pair, child: usize) -> UnitBox {
+    UnitBox(
+        pair.planes
+            .map(|[low, high]| [low[child & 1], high[child & 1]]),
+    )
+}
+
 impl Top<'_> {
+    /// The first node.
+    #[inline(always)]
+    pub(crate) fn root(&self) -> Node {
+        if self.pairs.is_empty() {
+            Node::leaf(0)
+        } else {
+            Node::pair(0)
+        }
+    }
+
     /// Calls `visit` for every instance whose box the ray can meet, the nearer child of a pair first. `visit` returns
     /// the t beyond which nothing counts any more, or `None` to end the walk.
     ///
-    /// Nodes that wait take a word each, so their boxes are not known again: an instance's own box is tested when its
-    /// turn comes. A single instance is visited without a test, because the part's box is tested anyway.
+    /// A child that waits takes a word: its pair's number, and which of the two it is. So its box is tested again when
+    /// its turn comes. A single instance is visited without a test, because the part's box is tested anyway.
     #[inline(always)]
     pub(crate) fn walk<N: Number, C: Observer>(
         &self,
@@ -52,44 +66,42 @@ impl Top<'_> {
         let cull = N::Cull::new(ray);
         let mut limit = <N::Cull as PairCulling<N>>::limit(tmax);
         let mut waiting: Vec<u32, MAX_INSTANCE_LEVELS> = Vec::new();
-        let mut node = Node(0);
+        // The number of the pair, and which of its children are to be entered.
+        let (mut number, mut wanted) = (0, [true; 2]);
         loop {
-            if node.is_leaf() {
+            let Some(pair) = self.pairs.get(number as usize) else {
+                return;
+            };
+            let [left, right] = cull.children(pair, limit);
+            count.planes(12);
+            count.boxes(2);
+            let meets_left = wanted[0] && left.near <= left.far;
+            let meets_right = wanted[1] && right.near <= right.far;
+            let right_first = meets_right && (!meets_left || right.near < left.near);
+            let other = number << 1 | u32::from(!right_first);
+            if meets_left && meets_right && waiting.push(other).is_err() {
+                return;
+            }
+            if meets_left || meets_right {
+                let node = Node(pair.children[usize::from(right_first)]);
+                if !node.is_leaf() {
+                    (number, wanted) = (node.number(), [true; 2]);
+                    continue;
+                }
                 let Some(instance) = self.instances.get(node.number() as usize) else {
                     return;
                 };
-                count.planes(6);
-                count.boxes(1);
-                let span = cull.root(&instance.bounds, limit);
-                if span.near <= span.far {
-                    if C::ENABLED {
-                        count.event(Event::Opened(id(node)));
-                    }
-                    let Some(tmax) = visit(node.number(), instance, count) else {
-                        return;
-                    };
-                    limit = <N::Cull as PairCulling<N>>::limit(tmax);
+                if C::ENABLED {
+                    count.event(Event::Opened(id(node)));
                 }
-            } else {
-                let Some(pair) = self.pairs.get(node.number() as usize) else {
+                let Some(tmax) = visit(node.number(), instance, count) else {
                     return;
                 };
-                let [left, right] = cull.children(pair, limit);
-                count.planes(12);
-                count.boxes(2);
-                let (meets_left, meets_right) = (left.near <= left.far, right.near <= right.far);
-                let right_first = meets_right && (!meets_left || right.near < left.near);
-                let child = |right: bool| Node(pair.children[usize::from(right)]);
-                if meets_left && meets_right && waiting.push(child(!right_first).0).is_err() {
-                    return;
-                }
-                if meets_left || meets_right {
-                    node = child(right_first);
-                    continue;
-                }
+                limit = <N::Cull as PairCulling<N>>::limit(tmax);
             }
             let Some(next) = waiting.pop() else { return };
-            node = Node(next);
+            number = next >> 1;
+            wanted = [next & 1 == 0, next & 1 != 0];
         }
     }
 }

@@ -39,7 +39,7 @@ pub(super) fn nearest<N: Number, A: Accel, C: Observer, const ANY: bool>(
         return own;
     }
     let mut nearest = own;
-    // The t of the nearest hit, and the instance that it is of: none for the scene's own objects.
+    // The t of the nearest hit, and the number of its instance: none for the scene's own objects.
     let mut best: Option<(N, Option<u32>)> = own.map(|own| (own.best.t, None));
     placed.top.walk(
         ray,
@@ -67,14 +67,12 @@ pub(super) fn nearest<N: Number, A: Accel, C: Observer, const ANY: bool>(
             let t = mapped.to_scene(met.t.widen() + mapped.ray.start_t);
             let t = ray.tmax.min(ray.tmin.max(t));
             let is_nearer = best.is_none_or(|(least, holder)| {
-                t < least
-                    || t == least
-                        && holder.is_some_and(|holder| placed.number(index) < placed.number(holder))
+                t < least || t == least && holder.is_some_and(|holder| instance.number < holder)
             });
             if !is_nearer {
                 return Some(tmax);
             }
-            best = Some((t, Some(index)));
+            best = Some((t, Some(instance.number)));
             nearest = Some(PrimitiveHit {
                 t: t.widen() + ray.start_t,
                 primitive: first.wrapping_add(part.primitive_at(met.place)),

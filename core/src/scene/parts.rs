@@ -5,7 +5,7 @@ use crate::format::instance::{Instance, Part};
 use crate::format::limits::INSTANCES;
 use crate::format::range::{At, exactly};
 use crate::format::record::{ALIGNMENT, Header};
-use crate::format::{BlobError, Field, Indices, Location, Reason, SectionKind, Sections};
+use crate::format::{BlobError, Field, Location, Reason, SectionKind, Sections};
 use crate::instances::check::{check_instance, check_top};
 use crate::instances::top::Top;
 use crate::scene::{Scene, read};
@@ -16,8 +16,6 @@ use heapless::Vec;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed<'a> {
     pub(crate) top: Top<'a>,
-    /// The numbers of instances in scene-file order; empty where they are in that order.
-    order: Indices<'a>,
     pub(crate) directory: &'a [Part],
     pub(crate) parts: &'a [Scene<'a>],
 }
@@ -139,16 +137,10 @@ impl<'a> Placed<'a> {
                 instances: sections.records(SectionKind::Instances)?,
                 pairs: sections.records(SectionKind::InstancePairs)?,
             },
-            order: Indices::read(sections, SectionKind::InstanceOrder)?,
             directory,
             parts,
         };
         Ok(InstancesOnly::new(|| placed))
-    }
-
-    /// The number, in scene-file order, of an instance.
-    pub(crate) fn number(&self, index: u32) -> u32 {
-        self.order.get(index as usize).unwrap_or(index)
     }
 
     /// The part of an instance.
@@ -191,34 +183,17 @@ impl<'a> Placed<'a> {
             next.clamp(0, u32::MAX.into()) as u32,
         )?;
         let section = SectionKind::Instances;
+        let (parts, instances) = (self.parts.len() as i64, self.top.instances.len() as i64);
         for (index, instance) in self.top.instances.iter().enumerate() {
             let at = At { section, index };
-            let last = self.parts.len() as i64 - 1;
-            at.within(Field::Part, instance.part.into(), 0, last)?;
-            if let Some((part, _)) = self.part(instance) {
-                check_instance(index, instance, part.bounds())?;
-            }
+            at.within(Field::Part, instance.part.into(), 0, parts - 1)?;
+            at.within(Field::Instance, instance.number.into(), 0, instances - 1)?;
+            check_instance(index, instance)?;
         }
-        check_top(&self.top, &header.bounds)?;
-        self.check_order()
-    }
-
-    fn check_order(&self) -> Result<(), BlobError> {
-        let (found, expected) = (self.order.len(), self.top.instances.len());
-        let section = SectionKind::InstanceOrder;
-        if found != 0 && found != expected {
-            return Err(BlobError::Count {
-                section,
-                found,
-                expected,
-            });
-        }
-        for index in 0..found {
-            let at = At { section, index };
-            let number = self.order.get(index).unwrap_or(0);
-            at.within(Field::Instance, number.into(), 0, expected as i64 - 1)?;
-        }
-        Ok(())
+        check_top(&self.top, &header.bounds, |instance| {
+            let (part, _) = self.part(instance)?;
+            instance.around(part.bounds())
+        })
     }
 
     /// Number of primitives of the scene's own objects.
@@ -278,13 +253,6 @@ impl<'a> Scene<'a> {
     /// The instances, in the order of the hierarchy above them.
     pub fn instances(&self) -> &'a [Instance] {
         self.placed.get().map_or(&[], |placed| placed.top.instances)
-    }
-
-    /// The number, in scene-file order, of an instance, given by its place among the [instances](Self::instances).
-    pub fn instance_number(&self, index: u32) -> u32 {
-        self.placed
-            .get()
-            .map_or(index, |placed| placed.number(index))
     }
 
     /// The parts that instances place.

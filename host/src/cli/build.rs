@@ -285,7 +285,7 @@ impl<'r> Built<'r> {
                 .map(Structure::name)
                 .collect(),
             stack_depth: scene.stack_depth(),
-            longest_leaf: header.longest_leaf,
+            longest_leaf: super::inspect::longest_leaf(scene),
             lattice_bits: header.lattice_bits,
             step: report.step,
             largest_displacement: report.largest_displacement,

@@ -244,7 +244,7 @@ fn limits(scene: &Scene<'_>) -> Limits {
     };
     Limits {
         stack_depth: scene.stack_depth(),
-        longest_leaf: header.longest_leaf,
+        longest_leaf: longest_leaf(scene),
         lattice_bits: header.lattice_bits,
         storage_bits: header.storage_bits,
         unit,
@@ -256,6 +256,12 @@ fn limits(scene: &Scene<'_>) -> Limits {
         },
         bounds: [corner(0), corner(1)],
     }
+}
+
+/// Most primitives in a leaf, of the scene and of its parts.
+pub fn longest_leaf(scene: &Scene<'_>) -> u16 {
+    let parts = scene.parts().iter().map(|part| part.header().longest_leaf);
+    parts.fold(scene.header().longest_leaf, u16::max)
 }
 
 fn contents(scene: &Scene<'_>) -> Contents {

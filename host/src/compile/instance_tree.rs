@@ -1,6 +1,5 @@
 //! The hierarchy above instances: top down, by the surface area heuristic, with one instance per leaf.
 
-use gridel_core::format::instance::Instance;
 use gridel_core::format::limits::MAX_INSTANCE_LEVELS;
 use gridel_core::format::record::{Pair, UnitBox};
 use std::collections::VecDeque;
@@ -15,8 +14,8 @@ pub struct Tree {
     pub order: Vec<u32>,
 }
 
-/// Builds the hierarchy above instances.
-pub fn build(instances: &[Instance]) -> Tree {
+/// Builds the hierarchy above instances, whose boxes are given.
+pub fn build(instances: &[UnitBox]) -> Tree {
     let mut numbers: Vec<u32> = (0..instances.len() as u32).collect();
     let mut tree = Tree {
         pairs: Vec::new(),
@@ -56,9 +55,9 @@ pub fn build(instances: &[Instance]) -> Tree {
 
 /// Divides two or more instances in two, neither empty, by the cheapest split along any axis; in halves where the levels
 /// that are left need that. Returns how many come first.
-fn split(instances: &[Instance], numbers: &mut [u32], levels: usize) -> usize {
+fn split(instances: &[UnitBox], numbers: &mut [u32], levels: usize) -> usize {
     let count = numbers.len();
-    let bounds = |number: &u32| instances[*number as usize].bounds;
+    let bounds = |number: &u32| instances[*number as usize];
     let middle = |number: &u32, axis: usize| {
         let [low, high] = bounds(number).0[axis];
         (i32::from(low) + i32::from(high), *number)
@@ -88,10 +87,8 @@ fn split(instances: &[Instance], numbers: &mut [u32], levels: usize) -> usize {
     first
 }
 
-fn around(instances: &[Instance], numbers: &[u32]) -> UnitBox {
-    let boxes = numbers
-        .iter()
-        .map(|&number| instances[number as usize].bounds);
+fn around(instances: &[UnitBox], numbers: &[u32]) -> UnitBox {
+    let boxes = numbers.iter().map(|&number| instances[number as usize]);
     let none = UnitBox([[0; 2]; 3]);
     boxes.reduce(|a, b| a.union(&b)).unwrap_or(none)
 }

@@ -1,7 +1,7 @@
 //! Parts and instances: parts become blobs of their own, and placements become maps of integers.
 
 use super::instance_tree::{Tree, build};
-use super::section::{Section, indices, section};
+use super::section::{Section, section};
 use super::{CompileError, Compiled, OnProgress, Options, Role, compile_as};
 use crate::scene::{Instance, Material, Object, Part, Scene, Shape};
 use crate::shape::{Lattice, exp2};
@@ -29,6 +29,8 @@ pub struct Parts {
 pub struct Placed {
     records: Vec<instance::Instance>,
     tree: Tree,
+    /// The box around all.
+    bounds: Option<UnitBox>,
     /// How far maps of integers move a surface at most, in scene units.
     pub displacement: f64,
 }
@@ -94,26 +96,28 @@ impl Parts {
     /// Places all instances of a scene on its lattice; `None` where one reaches beyond it.
     pub fn place(&self, scene: &Scene, lattice: &Lattice) -> Result<Option<Placed>, CompileError> {
         let mut records = Vec::with_capacity(scene.instances.len());
+        let mut boxes = Vec::with_capacity(scene.instances.len());
         let mut displacement = 0_f64;
         for instance in &scene.instances {
             let part = &self.lattices[instance.part];
-            let mut record = self.map(instance, lattice)?;
+            let record = self.map(instance, lattice, records.len() as u32)?;
             let Some(bounds) = record.around(&self.bounds[instance.part]) else {
                 return Ok(None);
             };
-            record.bounds = bounds;
             records.push(record);
+            boxes.push(bounds);
             let reach = part.unit() * instance.placement.scale * exp2(16);
             let rounded = lattice.unit() / 256.0 + reach * exp2(2 - MATRIX_BITS as i32);
             let own = &self.compiled[instance.part].report;
             let moved = own.largest_displacement * instance.placement.scale;
             displacement = displacement.max(rounded + moved);
         }
-        let tree = build(&records);
+        let tree = build(&boxes);
         let records = tree.order.iter().map(|&number| records[number as usize]);
         Ok(Some(Placed {
             records: records.collect(),
             tree,
+            bounds: boxes.into_iter().reduce(|a, b| a.union(&b)),
             displacement,
         }))
     }
@@ -123,6 +127,7 @@ impl Parts {
         &self,
         instance: &Instance,
         lattice: &Lattice,
+        number: u32,
     ) -> Result<instance::Instance, CompileError> {
         let part = &self.lattices[instance.part];
         let placement = &instance.placement;
@@ -154,9 +159,9 @@ impl Parts {
                 row(rotation.z_axis),
             ],
             center: center.to_array().map(|x| x as i32),
-            bounds: UnitBox([[0; 2]; 3]),
             exponent: exponent as i16,
             part: instance.part as u16,
+            number,
         })
     }
 
@@ -188,20 +193,17 @@ impl Parts {
 impl Placed {
     /// The sections of instances.
     pub fn sections(&self) -> Vec<Section> {
-        let mut sections = vec![
+        vec![
             section(SectionKind::Instances, &self.records),
             section(SectionKind::InstancePairs, &self.tree.pairs),
-        ];
-        if !self.tree.order.is_sorted() {
-            sections.push(indices(SectionKind::InstanceOrder, &self.tree.order, 1));
-        }
-        sections
+        ]
     }
 
     /// The box around a box and all instances; that of the instances alone without one.
     pub fn around(&self, own: Option<UnitBox>) -> Option<UnitBox> {
-        let boxes = self.records.iter().map(|record| record.bounds);
-        own.into_iter().chain(boxes).reduce(|a, b| a.union(&b))
+        own.into_iter()
+            .chain(self.bounds)
+            .reduce(|a, b| a.union(&b))
     }
 }
 
