@@ -14,7 +14,7 @@ pub(crate) type AllStructuresOnly<T> =
     InSomeBuilds<T, { cfg!(feature = "all-structures") as usize }>;
 
 /// A value that only builds with the code for instances hold.
-pub(crate) type InstancesOnly<T> = InSomeBuilds<T, { crate::format::limits::INSTANCES as usize }>;
+pub(crate) type InstancesOnly<T> = InSomeBuilds<T, { cfg!(feature = "instances") as usize }>;
 
 /// A value that builds hold for which `COUNT` is 1; it has no size where `COUNT` is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,9 @@
 
 use glam::{DQuat, DVec3};
 use gridel_core::format::instance::Instance as Record;
-use gridel_core::{Fixed, Format, Hit, Number, Ray, Scene as Loaded, Structure};
+use gridel_core::format::record::{Header, SectionEntry};
+use gridel_core::format::{SectionKind, checksum};
+use gridel_core::{BlobError, Fixed, Format, Hit, Number, Parts, Ray, Scene as Loaded, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::{Instance, Part, Placement, Scene, Shape, SourceSpan};
@@ -11,6 +13,7 @@ use gridel_tests::every_format;
 use gridel_tests::query::{HitBits, held, through};
 use gridel_tests::random::Random;
 use gridel_tests::scenes;
+use std::mem::offset_of;
 
 /// A placement within some distance, at a size.
 fn placement(random: &mut Random, reach: f64, [least, most]: [f64; 2]) -> Placement {
@@ -372,4 +375,74 @@ fn instances_have_their_own_numbers_and_objects_of_parts_are_counted_once() {
     );
     assert_eq!(loaded.object(first.expect("a part")), 3);
     assert_eq!(loaded.object(second.expect("a part")), 9);
+}
+
+/// A blob whose bytes were changed at a place of a section, with a checksum that fits.
+fn forged(blob: &Blob, kind: SectionKind, at: usize, byte: u8) -> Blob {
+    let mut bytes = blob.bytes().to_vec();
+    let entries = bytes[size_of::<Header>()..].chunks_exact(size_of::<SectionEntry>());
+    let mut entries = entries.map(bytemuck::pod_read_unaligned::<SectionEntry>);
+    let entry = entries
+        .find(|entry| entry.kind == kind as u16)
+        .expect("the section");
+    bytes[entry.offset as usize + at] ^= byte;
+    let place = offset_of!(Header, checksum);
+    bytes[place..place + 4].fill(0);
+    let sum = checksum(&bytes);
+    bytes[place..place + 4].copy_from_slice(&sum.to_le_bytes());
+    Blob::new(&bytes)
+}
+
+#[test]
+fn forged_instances_are_rejected_or_answer_without_a_panic() {
+    let random = &mut Random(6);
+    let scene = random_scene(random, 2, 9);
+    let honest = blob(&scene, &[Structure::DualSplit]);
+    let mut loaded = 0;
+    for (kind, bytes) in [
+        (SectionKind::Parts, 2 * 16),
+        (SectionKind::Instances, 9 * size_of::<Record>()),
+        (SectionKind::InstancePairs, 8 * 32),
+        (SectionKind::PartBlobs, 96),
+    ] {
+        for at in 0..bytes {
+            let bit = 1 << random.below(8);
+            let forged = forged(&honest, kind, at, bit);
+            let Ok(scene) = forged.scene() else { continue };
+            loaded += 1;
+            for _ in 0..10 {
+                let (from, way) = random_ray(random, &scene);
+                let ray = ray::<f32>(&scene, from, way);
+                let (expected, any) = through(Structure::List, &scene, &ray);
+                let (found, found_any) = through(Structure::DualSplit, &scene, &ray);
+                assert_eq!((found, found_any), (expected, any));
+            }
+        }
+    }
+    // Maps that differ by a bit are as valid.
+    assert!(loaded > 20, "{loaded}");
+}
+
+#[test]
+fn blob_with_parts_is_rejected_without_them_and_with_others() {
+    let random = &mut Random(7);
+    let [one, other] = [3, 4].map(|count| {
+        let scene = random_scene(random, 1, count);
+        blob(&scene, &[Structure::DualSplit])
+    });
+    let error = Loaded::from_bytes(one.bytes()).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            BlobError::Parts {
+                found: 0,
+                expected: 2
+            }
+        ),
+        "{error}"
+    );
+    let parts = Parts::<2>::from_bytes(one.bytes()).expect("two parts");
+    assert!(Loaded::with_parts(one.bytes(), &parts).is_ok());
+    assert!(Loaded::with_parts(other.bytes(), &parts).is_err());
+    assert!(Parts::<1>::from_bytes(one.bytes()).is_err());
 }

@@ -85,7 +85,12 @@ impl Primitive for Cuboid {
         let (axis, is_upper) = (usize::from(part / 2), part & 1 != 0);
         let side = if is_upper { self.highest } else { self.lowest };
         let coordinate = N::from_lattice(pick(side, axis));
-        flat::face(axis, is_upper, coordinate, self.beneath_faces(point, N::ZERO))
+        flat::face(
+            axis,
+            is_upper,
+            coordinate,
+            self.beneath_faces(point, N::ZERO),
+        )
     }
 
     fn inside<N: Arithmetic>(&self, [point, _]: [[N; 3]; 2], depth: N) -> [N; 3] {

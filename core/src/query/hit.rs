@@ -2,9 +2,10 @@
 
 use crate::accel::Number;
 use crate::format::Leaf;
+use crate::format::instance::Instance;
 use crate::format::limits::UNBOUNDED;
+use crate::instances::map::{Map, PlacedSurface};
 use crate::observe::event::QueryHit;
-use crate::query::placed::{self, InInstance};
 use crate::query::search::Candidate;
 use crate::ray::Ray;
 use crate::scene::Scene;
@@ -20,6 +21,14 @@ pub struct PrimitiveHit<N: Number> {
     pub(super) best: Candidate<N>,
     /// Where it lies in the scene if it is an instance's; `best` is then counted in the part.
     pub(super) placed: InstancesOnly<Option<InInstance<N>>>,
+}
+
+/// Where a hit of an instance lies in the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct InInstance<N> {
+    pub(super) index: u32,
+    /// The t on the scene's ray, counted from its start.
+    pub(super) t: N,
 }
 
 impl<N: Number> PrimitiveHit<N> {
@@ -42,7 +51,7 @@ impl<N: Number> PrimitiveHit<N> {
         /// ```
         pub fn hit(&self, scene: &Scene<'_>, ray: &Ray<N>) -> Option<Hit<N>> {
             if let Some(Some(instance)) = self.placed.get() {
-                return placed::hit(self, instance, scene, ray);
+                return placed_hit(self, instance, scene, ray);
             }
             let best = self.best;
             let point = ray.at(best.t);
@@ -103,11 +112,11 @@ pub struct Hit<N: Number> {
     /// No other object and no extent of the scene counts.
     pub error: N,
     /// Whether `point` lies on the surface exactly.
-    pub(super) is_exact: bool,
+    is_exact: bool,
     /// The primitive by kind and slot, as a leaf's word, whichever structure found it.
-    pub(super) place: u32,
+    place: u32,
     /// The instance that it is part of.
-    pub(super) instance: InstancesOnly<u32>,
+    instance: InstancesOnly<u32>,
 }
 
 /// The instance of a hit of the scene's own objects.
@@ -154,7 +163,7 @@ impl<N: Number> Hit<N> {
     /// ```
     pub fn inside(&self, scene: &Scene<'_>) -> [N; 3] {
         if let Some(instance) = self.instance() {
-            return placed::inside(self, instance, scene);
+            return placed_inside(self, instance, scene);
         }
         let surface = [self.point, self.normal];
         match Leaf::from_word(self.place) {
@@ -230,4 +239,77 @@ impl<N: Number> Hit<N> {
             error: self.error.length_to_f64(),
         }
     }
+}
+
+/// An instance by its place, and its part.
+fn find<'s>(scene: &'s Scene<'_>, index: u32) -> Option<(&'s Instance, &'s Scene<'s>)> {
+    let placed = scene.placed.get()?;
+    let instance = placed.top.instances.get(index as usize)?;
+    Some((instance, placed.part(instance)?.0))
+}
+
+/// The whole hit of a primitive of an instance.
+#[cold]
+#[inline(never)]
+fn placed_hit<N: Number>(
+    found: &PrimitiveHit<N>,
+    placed: &InInstance<N>,
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+) -> Option<Hit<N>> {
+    let (instance, part) = find(scene, placed.index)?;
+    let (map, best) = (Map::<N>::new(instance), found.best);
+    let mapped = map.ray(part.bounds(), ray, ray.tmax)?;
+    let shapes = &part.space.shapes;
+    let near = mapped.ray.at(best.t);
+    let (surface, front) = shapes.surface(best.place, best.part, &mapped.ray, near)?;
+    let in_part = PlacedSurface {
+        point: surface.point,
+        normal: surface.normal,
+        error: surface.error,
+    };
+    let surface = map.surface(ray.at(placed.t), &in_part);
+    Some(Hit {
+        t: found.t,
+        point: surface.point,
+        normal: surface.normal,
+        front,
+        object: scene.object(found.primitive),
+        primitive: found.primitive,
+        error: surface.error,
+        is_exact: false,
+        place: Leaf {
+            kind: best.place.kind,
+            first: part.key(best.place).2,
+            count: 1,
+        }
+        .to_word(),
+        instance: InstancesOnly::new(|| placed.index),
+    })
+}
+
+/// [`Hit::inside`] of an instance: the place is found in its part, at the depth of the hit's error bound.
+#[cold]
+#[inline(never)]
+fn placed_inside<N: Number>(hit: &Hit<N>, index: u32, scene: &Scene<'_>) -> [N; 3] {
+    let found = find(scene, index).zip(Leaf::from_word(hit.place));
+    let Some(((instance, part), leaf)) = found else {
+        return hit.point;
+    };
+    let map = Map::<N>::new(instance);
+    let PlacedSurface {
+        point,
+        normal,
+        error,
+    } = map.into_part(&PlacedSurface {
+        point: hit.point,
+        normal: hit.normal,
+        error: hit.error,
+    });
+    let shapes = &part.space.shapes;
+    let beneath = shapes.inside(leaf.kind, leaf.first as usize, [point, normal], error);
+    let [x, y, z] = beneath;
+    let way = map.step([x - point[0], y - point[1], z - point[2]]);
+    let axis = |k: usize| hit.point[k] + way[k];
+    [axis(0), axis(1), axis(2)]
 }

@@ -13,7 +13,6 @@ mod unbounded;
 
 pub use hit::{Hit, PrimitiveHit};
 
-use crate::accel::cull::Culling;
 use crate::accel::stack::StackView;
 use crate::accel::{Accel, Number};
 use crate::format::limits::{INSTANCES, UNBOUNDED};
@@ -22,7 +21,7 @@ use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::target::{InstancesOnly, inline_on_hosts, inline_on_hosts_hint_on_boards};
-use search::{Candidate, Search};
+use search::{Candidate, search_structure};
 
 inline_on_hosts_hint_on_boards!(
     /// The primitive that a ray meets first in its interval, found through the structure `A`.
@@ -151,51 +150,6 @@ fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(
         placed: InstancesOnly::new(|| None),
     })
 }
-
-inline_on_hosts!(
-    /// The best hit among the primitives of a structure, and a first one that was found before.
-    fn search_structure<N: Number, A: Accel, C: Observer, const ANY: bool>(
-        scene: &Scene<'_>,
-        ray: &Ray<N>,
-        first: Option<Candidate<N>>,
-        stack: &mut StackView,
-        count: &mut C,
-        any: bool,
-    ) -> Option<Candidate<N>> {
-        let views = A::views(&scene.structures);
-        let cull = A::Cull::<N>::new(ray);
-        let mut search = Search::new(scene, ray, &cull, first);
-        if ANY {
-            A::walk_any(
-                &scene.space,
-                views,
-                ray,
-                &cull,
-                stack,
-                count,
-                |leaf, count| {
-                    search.leaf::<A, C, ANY>(leaf, count);
-                    search.best.is_some()
-                },
-            );
-        } else {
-            A::walk(
-                &scene.space,
-                views,
-                ray,
-                &cull,
-                stack,
-                count,
-                |leaf, count| {
-                    search.leaf::<A, C, ANY>(leaf, count);
-                    let found = A::ONE_COPY && any && search.best.is_some();
-                    (!found).then_some(search.tmax)
-                },
-            );
-        }
-        search.best
-    }
-);
 
 /// The first hit of a ray in its interval: [`closest_primitive`] with its surface.
 ///

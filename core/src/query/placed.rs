@@ -1,23 +1,13 @@
-//! Hits of instances: each ray is mapped into the parts that it can meet, and hits are mapped back.
+//! The search through instances: each ray is mapped into the parts that it can meet.
 
 use crate::accel::{Accel, Number, StackView};
-use crate::format::Leaf;
-use crate::format::instance::Instance;
-use crate::instances::map::{Map, PlacedSurface, beyond};
+use crate::instances::map::{Map, beyond};
 use crate::observe::count::Observer;
-use crate::query::hit::{Hit, PrimitiveHit};
-use crate::query::search_structure;
+use crate::query::hit::{InInstance, PrimitiveHit};
+use crate::query::search::search_structure;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::target::InstancesOnly;
-
-/// Where a hit of an instance lies in the scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct InInstance<N> {
-    index: u32,
-    /// The t on the scene's ray, counted from its start.
-    t: N,
-}
 
 /// The nearest hit, given that of the scene's own objects.
 ///
@@ -83,77 +73,4 @@ pub(super) fn nearest<N: Number, A: Accel, C: Observer, const ANY: bool>(
         },
     );
     nearest
-}
-
-/// An instance by its place, and its part.
-fn find<'s>(scene: &'s Scene<'_>, index: u32) -> Option<(&'s Instance, &'s Scene<'s>)> {
-    let placed = scene.placed.get()?;
-    let instance = placed.top.instances.get(index as usize)?;
-    Some((instance, placed.part(instance)?.0))
-}
-
-/// The whole hit of a primitive of an instance.
-#[cold]
-#[inline(never)]
-pub(super) fn hit<N: Number>(
-    found: &PrimitiveHit<N>,
-    placed: &InInstance<N>,
-    scene: &Scene<'_>,
-    ray: &Ray<N>,
-) -> Option<Hit<N>> {
-    let (instance, part) = find(scene, placed.index)?;
-    let (map, best) = (Map::<N>::new(instance), found.best);
-    let mapped = map.ray(part.bounds(), ray, ray.tmax)?;
-    let shapes = &part.space.shapes;
-    let near = mapped.ray.at(best.t);
-    let (surface, front) = shapes.surface(best.place, best.part, &mapped.ray, near)?;
-    let in_part = PlacedSurface {
-        point: surface.point,
-        normal: surface.normal,
-        error: surface.error,
-    };
-    let surface = map.surface(ray.at(placed.t), &in_part);
-    Some(Hit {
-        t: found.t,
-        point: surface.point,
-        normal: surface.normal,
-        front,
-        object: scene.object(found.primitive),
-        primitive: found.primitive,
-        error: surface.error,
-        is_exact: false,
-        place: Leaf {
-            kind: best.place.kind,
-            first: part.key(best.place).2,
-            count: 1,
-        }
-        .to_word(),
-        instance: InstancesOnly::new(|| placed.index),
-    })
-}
-
-/// [`Hit::inside`] of an instance: the place is found in its part, at the depth of the hit's error bound.
-#[cold]
-#[inline(never)]
-pub(super) fn inside<N: Number>(hit: &Hit<N>, index: u32, scene: &Scene<'_>) -> [N; 3] {
-    let found = find(scene, index).zip(Leaf::from_word(hit.place));
-    let Some(((instance, part), leaf)) = found else {
-        return hit.point;
-    };
-    let map = Map::<N>::new(instance);
-    let PlacedSurface {
-        point,
-        normal,
-        error,
-    } = map.into_part(&PlacedSurface {
-        point: hit.point,
-        normal: hit.normal,
-        error: hit.error,
-    });
-    let shapes = &part.space.shapes;
-    let beneath = shapes.inside(leaf.kind, leaf.first as usize, [point, normal], error);
-    let [x, y, z] = beneath;
-    let way = map.step([x - point[0], y - point[1], z - point[2]]);
-    let axis = |k: usize| hit.point[k] + way[k];
-    [axis(0), axis(1), axis(2)]
 }

@@ -33,7 +33,8 @@ pub(crate) fn check<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<()
     if let Some(placed) = scene.placed.get() {
         placed.check(scene.space.header, sections)?;
     }
-    check_structures(scene, sections)
+    check_structures(scene, sections)?;
+    check_own_primitives(scene)
 }
 
 /// The ratio 1.
@@ -151,6 +152,22 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
         for index in 0..order.len() {
             let value = order.get(index).unwrap_or(0).into();
             At { section, index }.within(Field::Primitive, value, 0, own - 1)?;
+        }
+    }
+    Ok(())
+}
+
+/// Proves that no slot of a scene with parts claims a primitive of theirs. Those of clusters have been read now.
+fn check_own_primitives(scene: &Scene<'_>) -> Result<(), BlobError> {
+    if scene.parts().is_empty() {
+        return Ok(());
+    }
+    let own = scene.own_primitives();
+    for kind in Kind::ALL {
+        for index in 0..scene.count(kind) {
+            let found = i64::from(scene.primitive(kind, index as u32));
+            let section = SectionKind::Parts;
+            At { section, index }.within(Field::Primitive, found, 0, own - 1)?;
         }
     }
     Ok(())

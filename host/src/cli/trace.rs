@@ -30,7 +30,8 @@ use std::time::Instant;
 ///
 /// Hits are a structured array with the fields t (f8, inf for a miss), object and primitive (u4,
 /// 0xffffffff for a miss, counted in the order of the scene file) and normal (3 f4 of length 1,
-/// pointing outward; 0 for a miss).
+/// pointing outward; 0 for a miss). Those of a scene with instances have a field more behind
+/// primitive: instance (u4, 0xffffffff for the scene's own objects).
 ///
 /// A ray is rejected if its direction is zero, if it has a NaN, if its origin or direction is
 /// infinite, if tmin is greater than tmax, if its origin is more than 2^37 units away (2^21

@@ -1,9 +1,8 @@
 //! The input of structures' builders.
 
-use super::Role;
 use super::candidates::target::Targets;
 use super::hierarchy::{Node, Primitive};
-use super::instances::Placed;
+use super::instances::{Placed, Role};
 use super::options::{OnProgress, Options};
 use super::pairs::Flat;
 use super::primitives::Primitives;

@@ -1,8 +1,9 @@
 //! Parts and instances: parts become blobs of their own, and placements become maps of integers.
 
+use super::error::CompileError;
 use super::instance_tree::{Tree, build};
 use super::section::{Section, section};
-use super::{CompileError, Compiled, OnProgress, Options, Role, compile_as};
+use crate::blob::Blob;
 use crate::scene::{Instance, Material, Object, Part, Scene, Shape};
 use crate::shape::{Lattice, exp2};
 use crate::table::printable;
@@ -12,10 +13,21 @@ use gridel_core::format::limits::{INSTANCE_EXPONENT, MAX_INSTANCES};
 use gridel_core::format::record::{ALIGNMENT, UnitBox};
 use gridel_core::format::{SectionKind, instance};
 
+/// What a blob is made for.
+#[derive(Clone, Copy, Debug)]
+pub enum Role<'p> {
+    /// To be loaded, with these parts in it.
+    Whole(&'p Parts),
+    /// To be a part of another, which knows its objects and materials.
+    Part,
+}
+
 /// The compiled parts of a scene.
 #[derive(Debug, Default)]
 pub struct Parts {
-    pub compiled: Vec<Compiled>,
+    blobs: Vec<Blob>,
+    /// How far the lattice moves surfaces of each at most.
+    displacements: Vec<f64>,
     lattices: Vec<Lattice>,
     bounds: Vec<UnitBox>,
     /// For each object of all parts, its first primitive, counted from that of the first part.
@@ -36,11 +48,11 @@ pub struct Placed {
 }
 
 impl Parts {
-    /// Compiles all parts of a scene, with the structures that the options name.
+    /// Compiles all parts of a scene by a function that returns a part's blob and by how much its surfaces are moved at
+    /// most, in the part's units of length.
     pub fn compile(
         scene: &Scene,
-        options: &Options,
-        on_progress: OnProgress<'_>,
+        mut compile: impl FnMut(&Scene) -> Result<(Blob, f64), CompileError>,
     ) -> Result<Self, CompileError> {
         let most = usize::from(u16::MAX);
         for (what, count, most) in [
@@ -51,24 +63,20 @@ impl Parts {
                 return Err(CompileError::TooMany { what, count, most });
             }
         }
-        let options = Options {
-            names: false,
-            max_bytes: None,
-            ..options.clone()
-        };
         let mut parts = Self::default();
         let mut primitives = 0_u32;
         parts.first_primitive.push(0);
         for part in &scene.parts {
-            let compiled = compile_as(Role::Part, &alone(part)?, &options, on_progress)?;
-            let header = compiled.blob.header();
+            let (blob, displacement) = compile(&alone(part)?)?;
+            let header = *blob.header();
             parts.lattices.push(Lattice {
                 bits: header.lattice_bits,
                 unit_exponent: header.unit_exponent,
                 origin: DVec3::from_array(header.origin),
             });
             parts.bounds.push(header.bounds);
-            parts.compiled.push(compiled);
+            parts.blobs.push(blob);
+            parts.displacements.push(displacement);
             for object in &part.objects {
                 parts.object_first.push(primitives);
                 let count = match &object.shape {
@@ -89,7 +97,7 @@ impl Parts {
 
     /// Entries of the traversal stack that the deepest part needs.
     pub fn stack_depth(&self) -> u16 {
-        let depths = self.compiled.iter().map(|it| it.blob.header().stack_depth);
+        let depths = self.blobs.iter().map(|blob| blob.header().stack_depth);
         depths.max().unwrap_or(0)
     }
 
@@ -108,8 +116,7 @@ impl Parts {
             boxes.push(bounds);
             let reach = part.unit() * instance.placement.scale * exp2(16);
             let rounded = lattice.unit() / 256.0 + reach * exp2(2 - MATRIX_BITS as i32);
-            let own = &self.compiled[instance.part].report;
-            let moved = own.largest_displacement * instance.placement.scale;
+            let moved = self.displacements[instance.part] * instance.placement.scale;
             displacement = displacement.max(rounded + moved);
         }
         let tree = build(&boxes);
@@ -168,9 +175,9 @@ impl Parts {
     /// The sections of parts, whose primitives come after so many of the scene's own.
     pub fn sections(&self, own_primitives: u32) -> Vec<Section> {
         let (mut start, mut words) = (0, Vec::new());
-        let mut directory = Vec::with_capacity(self.compiled.len());
-        for (part, first) in self.compiled.iter().zip(&self.first_primitive) {
-            words.extend_from_slice(part.blob.bytes());
+        let mut directory = Vec::with_capacity(self.blobs.len());
+        for (blob, first) in self.blobs.iter().zip(&self.first_primitive) {
+            words.extend_from_slice(blob.bytes());
             words.resize(words.len().next_multiple_of(ALIGNMENT), 0);
             let end = (words.len() / ALIGNMENT) as u32;
             directory.push(instance::Part {

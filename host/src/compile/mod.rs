@@ -60,7 +60,7 @@ use gridel_core::format::Leaf;
 use gridel_core::format::record::{Gridels, UnitBox};
 use gridel_core::{Kind, Structure};
 use hierarchy::{Node, Primitive, Splits};
-use instances::{Parts, Placed};
+use instances::{Parts, Placed, Role};
 use pairs::Flat;
 use primitives::Primitives;
 use std::time::{Duration, Instant};
@@ -168,17 +168,23 @@ pub fn compile_with_progress(
     on_progress: OnProgress<'_>,
 ) -> Result<Compiled, CompileError> {
     check(scene, options)?;
-    let parts = Parts::compile(scene, options, on_progress)?;
-    compile_as(Role::Whole(&parts), scene, options, on_progress)
-}
-
-/// What a blob is made for.
-#[derive(Clone, Copy, Debug)]
-enum Role<'p> {
-    /// To be loaded, with these parts in it.
-    Whole(&'p Parts),
-    /// To be a part of another, which knows its objects and materials.
-    Part,
+    let of_parts = Options {
+        names: false,
+        max_bytes: None,
+        ..options.clone()
+    };
+    let mut reports = Vec::new();
+    let parts = Parts::compile(scene, |part| {
+        let Compiled { blob, report } = compile_as(Role::Part, part, &of_parts, on_progress)?;
+        let moved = report.largest_displacement;
+        reports.push(report);
+        Ok((blob, moved))
+    })?;
+    let mut compiled = compile_as(Role::Whole(&parts), scene, options, on_progress)?;
+    reports
+        .iter()
+        .for_each(|part| compiled.report.add_part(part));
+    Ok(compiled)
 }
 
 fn compile_as(
@@ -270,7 +276,7 @@ fn compile_as(
     let displacements: Vec<f32> = displacements.collect();
     let largest_displacement = displacements.iter().copied().fold(0.0, f32::max);
     let largest_displacement = f64::from(largest_displacement) * lattice.step();
-    let mut report = Report {
+    let report = Report {
         step: lattice.step(),
         largest_displacement: largest_displacement.max(placed.displacement),
         displacements,
@@ -286,10 +292,6 @@ fn compile_as(
         tables,
         names,
     };
-    if let Role::Whole(parts) = role {
-        let parts = parts.compiled.iter();
-        parts.for_each(|part| report.add_part(&part.report));
-    }
     Ok(Compiled { blob, report })
 }
 

@@ -1,13 +1,14 @@
 //! Writes the sections of a blob, each in the narrowest form that its values allow.
 
+use super::CompileError;
 use super::context::BuildContext;
+use super::instances::Role;
 use super::layout::Layout;
 use super::names::{KeptNames, Names};
 use super::pairs::Flat;
 use super::primitives::Primitives;
 use super::records::in_order;
 use super::section::{Section, indices, section};
-use super::{CompileError, Role};
 use crate::blob::{Blob, Buffer};
 use crate::shape::Lattice;
 use gridel_core::accel::Entry;

@@ -50,6 +50,23 @@ fn blobs() -> Vec<Vec<u8>> {
     };
     let compiled = compile(&scene, &options).expect("compiles");
     blobs.push(compiled.blob.bytes().to_vec());
+    let placed = |x: f64| scene::Instance {
+        name: String::from("copy"),
+        part: 0,
+        placement: scene::Placement {
+            translation: DVec3::X * x,
+            ..scene::Placement::IDENTITY
+        },
+        place: scene::SourceSpan::default(),
+    };
+    scene.parts = vec![scene::Part {
+        name: String::from("part"),
+        objects: vec![scene.objects[0].clone()],
+        place: scene::SourceSpan::default(),
+    }];
+    scene.instances = vec![placed(4.0), placed(8.0)];
+    let compiled = compile(&scene, &options).expect("compiles");
+    blobs.push(compiled.blob.bytes().to_vec());
     blobs
 }
 
