@@ -4,7 +4,7 @@
 //! can meet, and traced through the part as through a scene of its own. So a part is exact and closed under every map.
 //!
 //! `map` maps rays, points and normals; `bounds` is the box of an instance; `top` finds the instances that a ray can
-//! meet; `check` proves what a blob holds of all this.
+//! meet; `placed` is both with the parts; `check` proves what a blob holds of all this.
 //!
 //! **The answer is defined without the hierarchy**, as it is for primitives: each instance's first hit, by its t on the
 //! scene's ray. Among hits at the same t the scene's own objects count first, then the instance with the lower index.
@@ -12,4 +12,5 @@
 pub(crate) mod bounds;
 pub(crate) mod check;
 pub(crate) mod map;
+pub(crate) mod placed;
 pub(crate) mod top;

@@ -4,7 +4,7 @@ use crate::accel::{Space, StructureViews};
 use crate::format::record::{Header, Light, Material, UnitBox, View};
 use crate::format::{Effects, Indices, Kind, Structure};
 use crate::geometry::{Geometry, PrimitiveId};
-use crate::scene::parts::Placed;
+use crate::instances::placed::Placed;
 use crate::simd::SimdLevel;
 use crate::target::{InstancesOnly, WideOnly, inline_on_hosts_hint_on_boards};
 
@@ -26,7 +26,7 @@ pub struct Scene<'a> {
     pub(in crate::scene) order: Indices<'a>,
     pub(in crate::scene) effects: Effects,
     /// Its instances and parts.
-    pub(crate) placed: InstancesOnly<Placed<'a>>,
+    pub(crate) placed: InstancesOnly<Placed<'a, Scene<'a>>>,
     /// Whether any primitive's test needs the norm of the ray's direction.
     pub(crate) needs_norm: bool,
     /// Whether any primitive is in no structure because it has no box.

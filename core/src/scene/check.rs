@@ -10,7 +10,7 @@ use crate::format::{
 use crate::number::Fixed;
 use crate::number::Scalar;
 use crate::scene::Scene;
-use crate::scene::parts::Placed;
+use crate::scene::parts::check_placed;
 
 /// Proves that no byte of a blob was changed since it was written.
 pub(crate) fn check_sum(blob: &[u8], header: &Header) -> Result<(), BlobError> {
@@ -31,7 +31,7 @@ pub(crate) fn check<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<()
     scene.space.shapes.validate(scene.space.header)?;
     check_objects(scene)?;
     if let Some(placed) = scene.placed.get() {
-        placed.check(scene.space.header, sections)?;
+        check_placed(placed, scene.space.header, sections)?;
     }
     check_structures(scene, sections)?;
     check_own_primitives(scene)
@@ -181,8 +181,7 @@ fn check_structures<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<()
         longest,
     )?;
     let (depth, all_proved) = scene.structures.check(&scene.space, sections)?;
-    let parts = scene.placed.get().map_or(0, Placed::stack_depth);
-    let depth = depth.max(parts);
+    let depth = depth.max(scene.stack_depth_of_parts());
     let found = scene.space.header.stack_depth;
     if all_proved || usize::from(found) < depth {
         exactly(Field::StackDepth, found.into(), depth as u32)?;

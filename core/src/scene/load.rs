@@ -3,7 +3,7 @@
 use crate::format::{BlobError, Sections};
 use crate::scene::blob::Scene;
 use crate::scene::prevalidated::Prevalidated;
-use crate::scene::read;
+use crate::scene::{check, read};
 
 impl<'a> Scene<'a> {
     /// Checks a blob and returns a view of it.
@@ -36,6 +36,26 @@ impl<'a> Scene<'a> {
     /// [`Scene::with_parts`]. Shortcomings of the scene itself (no lights, no objects) are no errors.
     pub fn from_bytes(blob: &'a [u8]) -> Result<Self, BlobError> {
         Self::with_parts(blob, &[])
+    }
+
+    /// Checks a blob that has parts and returns a view of it. The parts are loaded before: by [`Parts`](crate::Parts), or one by one
+    /// from their [blobs](crate::scene::part_blobs).
+    ///
+    /// Proves what [`Scene::from_bytes`] proves, and that every instance places a part by a rotation and a uniform
+    /// scale, that its box holds the placed part, and that the hierarchy above leads to every instance once.
+    ///
+    /// # Errors
+    /// If anything of this fails to hold, or these are not all parts of this blob in their order.
+    pub fn with_parts(blob: &'a [u8], parts: &'a [Scene<'a>]) -> Result<Self, BlobError> {
+        let header = read::header(blob)?;
+        check::check_sum(blob, header)?;
+        let sections = Sections::read(blob, header.section_count)?;
+        // Checked where it lies: boards have no stack for a copy.
+        let scene = read::scene(header, &sections, parts);
+        if let Ok(scene) = &scene {
+            check::check(scene, &sections)?;
+        }
+        scene
     }
 
     /// Returns the view of a [prevalidated](Prevalidated) blob, in constant time.

@@ -1,24 +1,13 @@
 //! Parts: blobs in a blob, loaded once and lent to the scene that places them.
 
-use crate::accel::stack::Entry;
 use crate::format::instance::{Instance, Part};
-use crate::format::limits::INSTANCES;
-use crate::format::range::{At, exactly};
+use crate::format::range::{At, at_most, exactly};
 use crate::format::record::{ALIGNMENT, Header};
 use crate::format::{BlobError, Field, Location, Reason, SectionKind, Sections};
 use crate::instances::check::{check_instance, check_top};
-use crate::instances::top::Top;
+use crate::instances::placed::Placed;
 use crate::scene::{Scene, read};
-use crate::target::InstancesOnly;
 use heapless::Vec;
-
-/// The instances of a scene and the parts that they place.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Placed<'a> {
-    pub(crate) top: Top<'a>,
-    pub(crate) directory: &'a [Part],
-    pub(crate) parts: &'a [Scene<'a>],
-}
 
 /// The parts of a blob, loaded: a view of a few hundred bytes for each, of at most `MOST`.
 ///
@@ -46,7 +35,7 @@ impl<'a, const MOST: usize> Parts<'a, MOST> {
         for part in part_blobs(blob)? {
             if parts.push(Scene::from_bytes(part)?).is_err() {
                 let found = part_blobs(blob)?.count() as u32;
-                exactly(Field::Parts, found, MOST as u32)?;
+                at_most(Field::Parts, found, MOST as u32)?;
             }
         }
         Ok(Self(parts))
@@ -117,122 +106,52 @@ fn check_directory(directory: &[Part], words: usize) -> Result<(), BlobError> {
     Ok(())
 }
 
-impl<'a> Placed<'a> {
-    /// Finds instances and parts. Proves nothing of what is in them but that the parts are the blob's.
-    pub(in crate::scene) fn read(
-        sections: &Sections<'a>,
-        parts: &'a [Scene<'a>],
-    ) -> Result<InstancesOnly<Self>, BlobError> {
-        let directory: &[Part] = sections.records(SectionKind::Parts)?;
-        if !INSTANCES && !directory.is_empty() {
-            let missing = "instances";
-            return Err(BlobError::MissingPart { missing });
-        }
-        if directory.len() != parts.len() {
-            let (found, expected) = (parts.len(), directory.len());
-            return Err(BlobError::Parts { found, expected });
-        }
-        let placed = Self {
-            top: Top {
-                instances: sections.records(SectionKind::Instances)?,
-                pairs: sections.records(SectionKind::InstancePairs)?,
-            },
-            directory,
-            parts,
-        };
-        Ok(InstancesOnly::new(|| placed))
-    }
-
-    /// The part of an instance.
-    #[inline(always)]
-    pub(crate) fn part(&self, instance: &Instance) -> Option<(&'a Scene<'a>, u32)> {
-        let number = usize::from(instance.part);
-        let part = self.parts.get(number)?;
-        Some((part, self.directory.get(number)?.first_primitive))
-    }
-
-    /// Proves parts, instances and the hierarchy above them; see [`Scene::with_parts`].
-    pub(in crate::scene) fn check(
-        &self,
-        header: &Header,
-        sections: &Sections<'a>,
-    ) -> Result<(), BlobError> {
-        let bytes = sections.get(SectionKind::PartBlobs).bytes;
-        check_directory(self.directory, bytes.len() / ALIGNMENT)?;
-        let section = SectionKind::Parts;
-        let mut next = i64::from(self.own_primitives(header.primitives));
-        for (index, (part, scene)) in self.directory.iter().zip(self.parts).enumerate() {
-            let at = At { section, index };
-            let held: *const u8 = blob_of(part, bytes).as_ptr();
-            let given: *const Header = scene.header();
-            at.ensure(core::ptr::eq(held.cast(), given), Reason::OtherPart)?;
-            at.within(
-                Field::FirstPrimitive,
-                part.first_primitive.into(),
-                next,
-                next,
-            )?;
-            next = next.saturating_add(scene.header().primitives.into());
-            let same = scene.header().structures == header.structures;
-            at.ensure(same, Reason::OtherStructures)?;
-            at.ensure(!scene.has_unbounded, Reason::UnboundedPart)?;
-        }
-        exactly(
-            Field::Primitive,
-            header.primitives,
-            next.clamp(0, u32::MAX.into()) as u32,
+/// Proves parts, instances and the hierarchy above them; see [`Scene::with_parts`].
+pub(in crate::scene) fn check_placed<'a>(
+    placed: &Placed<'a, Scene<'a>>,
+    header: &Header,
+    sections: &Sections<'a>,
+) -> Result<(), BlobError> {
+    let bytes = sections.get(SectionKind::PartBlobs).bytes;
+    check_directory(placed.directory, bytes.len() / ALIGNMENT)?;
+    let section = SectionKind::Parts;
+    let mut next = i64::from(placed.own_primitives(header.primitives));
+    for (index, (part, scene)) in placed.directory.iter().zip(placed.parts).enumerate() {
+        let at = At { section, index };
+        let held: *const u8 = blob_of(part, bytes).as_ptr();
+        let given: *const Header = scene.header();
+        at.ensure(core::ptr::eq(held.cast(), given), Reason::OtherPart)?;
+        at.within(
+            Field::FirstPrimitive,
+            part.first_primitive.into(),
+            next,
+            next,
         )?;
-        let section = SectionKind::Instances;
-        let (parts, instances) = (self.parts.len() as i64, self.top.instances.len() as i64);
-        for (index, instance) in self.top.instances.iter().enumerate() {
-            let at = At { section, index };
-            at.within(Field::Part, instance.part.into(), 0, parts - 1)?;
-            at.within(Field::Instance, instance.number.into(), 0, instances - 1)?;
-            check_instance(index, instance)?;
-        }
-        check_top(&self.top, &header.bounds, |instance| {
-            let (part, _) = self.part(instance)?;
-            instance.around(part.bounds())
-        })
+        next = next.saturating_add(scene.header().primitives.into());
+        let same = scene.header().structures == header.structures;
+        at.ensure(same, Reason::OtherStructures)?;
+        at.ensure(!scene.has_unbounded, Reason::UnboundedPart)?;
     }
-
-    /// Number of primitives of the scene's own objects.
-    fn own_primitives(&self, all: u32) -> u32 {
-        self.directory
-            .first()
-            .map_or(all, |part| part.first_primitive)
+    exactly(
+        Field::Primitive,
+        header.primitives,
+        next.clamp(0, u32::MAX.into()) as u32,
+    )?;
+    let section = SectionKind::Instances;
+    let (parts, instances) = (placed.parts.len() as i64, placed.top.instances.len() as i64);
+    for (index, instance) in placed.top.instances.iter().enumerate() {
+        let at = At { section, index };
+        at.within(Field::Part, instance.part.into(), 0, parts - 1)?;
+        at.within(Field::Instance, instance.number.into(), 0, instances - 1)?;
+        check_instance(index, instance)?;
     }
-
-    /// Entries of the traversal stack that a walk through the deepest part needs.
-    pub(in crate::scene) fn stack_depth(&self) -> usize {
-        let depths = self.parts.iter().map(Scene::stack_depth);
-        depths.max().unwrap_or(0)
-    }
+    check_top(&placed.top, &header.bounds, |instance| {
+        let (part, _) = placed.part(instance)?;
+        instance.around(part.bounds())
+    })
 }
 
-const _: () = assert!(size_of::<Entry>() == 12);
-
 impl<'a> Scene<'a> {
-    /// Checks a blob that has parts and returns a view of it. The parts are loaded before: by [`Parts`], or one by one
-    /// from their [blobs](part_blobs).
-    ///
-    /// Proves what [`Scene::from_bytes`] proves, and that every instance places a part by a rotation and a uniform
-    /// scale, that its box holds the placed part, and that the hierarchy above leads to every instance once.
-    ///
-    /// # Errors
-    /// If anything of this fails to hold, or these are not all parts of this blob in their order.
-    pub fn with_parts(blob: &'a [u8], parts: &'a [Scene<'a>]) -> Result<Self, BlobError> {
-        let header = read::header(blob)?;
-        crate::scene::check::check_sum(blob, header)?;
-        let sections = Sections::read(blob, header.section_count)?;
-        // Checked where it lies: boards have no stack for a copy.
-        let scene = read::scene(header, &sections, parts);
-        if let Ok(scene) = &scene {
-            crate::scene::check::check(scene, &sections)?;
-        }
-        scene
-    }
-
     /// Number of primitives of the scene's own objects, to which structures lead.
     pub(in crate::scene) fn own_primitives(&self) -> i64 {
         let all = self.space.header.primitives;
@@ -241,6 +160,12 @@ impl<'a> Scene<'a> {
             .get()
             .map_or(all, |placed| placed.own_primitives(all));
         own.into()
+    }
+
+    /// Entries of the traversal stack that a walk through the deepest part needs.
+    pub(in crate::scene) fn stack_depth_of_parts(&self) -> usize {
+        let depths = self.parts().iter().map(Scene::stack_depth);
+        depths.max().unwrap_or(0)
     }
 
     /// Whether the scene has objects of its own.

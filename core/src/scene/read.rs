@@ -3,17 +3,19 @@
 use crate::accel::StructureViews;
 use crate::accel::space::Space;
 use crate::accel::stack::Entry;
-use crate::format::limits::DISPLAY_VALUES;
+use crate::format::instance::Part;
+use crate::format::limits::{DISPLAY_VALUES, INSTANCES};
 use crate::format::range::{At, Ranges, exactly};
 use crate::format::record::{ALIGNMENT, ENDIANNESS, Header, MAGIC, VERSION, View};
 use crate::format::{
     BlobError, Effects, Field, Indices, Location, Reason, SectionKind, Sections, Structure,
 };
 use crate::geometry::Shapes;
+use crate::instances::placed::Placed;
+use crate::instances::top::Top;
 use crate::scene::Scene;
-use crate::scene::parts::Placed;
 use crate::simd::SimdLevel;
-use crate::target::{AllStructuresOnly, WideOnly};
+use crate::target::{AllStructuresOnly, InstancesOnly, WideOnly};
 use core::mem::size_of;
 
 /// The header of what is a blob of this version and byte order, and as long as it says.
@@ -50,6 +52,31 @@ pub(crate) fn header(blob: &[u8]) -> Result<&Header, BlobError> {
     Ok(header)
 }
 
+/// Instances and parts, of which there are as many as the blob has. Proves nothing else.
+fn placed<'a>(
+    sections: &Sections<'a>,
+    parts: &'a [Scene<'a>],
+) -> Result<InstancesOnly<Placed<'a, Scene<'a>>>, BlobError> {
+    let directory: &[Part] = sections.records(SectionKind::Parts)?;
+    if !INSTANCES && !directory.is_empty() {
+        let missing = "instances";
+        return Err(BlobError::MissingPart { missing });
+    }
+    if directory.len() != parts.len() {
+        let (found, expected) = (parts.len(), directory.len());
+        return Err(BlobError::Parts { found, expected });
+    }
+    let placed = Placed {
+        top: Top {
+            instances: sections.records(SectionKind::Instances)?,
+            pairs: sections.records(SectionKind::InstancePairs)?,
+        },
+        directory,
+        parts,
+    };
+    Ok(InstancesOnly::new(|| placed))
+}
+
 /// The header of a part, of which nothing is proved.
 pub(in crate::scene) fn header_of_part(blob: &[u8]) -> Option<&Header> {
     bytemuck::try_from_bytes(blob.get(..size_of::<Header>())?).ok()
@@ -81,7 +108,7 @@ pub(crate) fn scene<'a>(
         object_first: Indices::read(sections, SectionKind::ObjectFirst)?,
         object_material: Indices::read(sections, SectionKind::ObjectMaterial)?,
         order: Indices::read(sections, SectionKind::Order)?,
-        placed: Placed::read(sections, parts)?,
+        placed: placed(sections, parts)?,
         needs_norm: shapes.needs_norm(),
         has_unbounded: shapes.has_unbounded(),
     })

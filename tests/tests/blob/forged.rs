@@ -113,7 +113,9 @@ pub fn field(section: &SectionEntry, record: usize, offset: usize) -> usize {
 #[test]
 fn forged_sections_are_rejected() {
     let bytes = small_blob(24);
-    for kind in SectionKind::ALL {
+    // Those of parts and instances have tests of their own.
+    let kinds = SectionKind::ALL.into_iter();
+    for kind in kinds.filter(|&kind| kind < SectionKind::Parts) {
         let (place, entry) = section(&bytes, kind);
         let forgeries = [
             SectionEntry {

@@ -129,6 +129,7 @@ fn numbers(layout: &Layout) -> [i64; 2] {
         Form::Number("u8") => [0, u8::MAX.into()],
         Form::Number("u16") => [0, u16::MAX.into()],
         Form::Number("u32") => [0, u32::MAX.into()],
+        Form::Number("i16") => [i16::MIN.into(), i16::MAX.into()],
         Form::Number("i32") => [i32::MIN.into(), i32::MAX.into()],
         Form::Number("i64") => [i64::MIN, i64::MAX],
         _ => panic!("{layout:?} has no ranges"),

@@ -1,0 +1,116 @@
+//! Parts and instances.
+
+use super::{Errors, balls};
+use glam::DVec3;
+use gridel_core::format::instance::{Instance, Part};
+use gridel_core::format::{BlobError, Field, Reason, SectionKind};
+use gridel_core::{Parts, Scene as Loaded, Structure};
+use gridel_host::blob::Blob;
+use gridel_host::compile::{Options, compile};
+use gridel_host::scene::{self, Placement, Scene, Shape, SourceSpan};
+use gridel_host::shape::Plane;
+use gridel_tests::fuzz::Base;
+use gridel_tests::scenes;
+
+/// A scene that places a ball three times, and one ball of its own.
+fn placed() -> Scene {
+    let mut scene = scenes::of(balls(1));
+    scene.parts = vec![scene::Part {
+        name: String::from("ball"),
+        objects: scene.objects.clone(),
+        place: SourceSpan::default(),
+    }];
+    let instance = |x: f64| scene::Instance {
+        name: String::from("copy"),
+        part: 0,
+        placement: Placement {
+            translation: DVec3::X * x,
+            ..Placement::IDENTITY
+        },
+        place: SourceSpan::default(),
+    };
+    scene.instances = [2.0, 4.0, 6.0].map(instance).to_vec();
+    scene
+}
+
+fn blob(scene: &Scene) -> Blob {
+    let options = Options {
+        structures: vec![Structure::DualSplit],
+        ..Options::default()
+    };
+    compile(scene, &options).expect("compiles").blob
+}
+
+/// A blob with other bytes in place of its only part.
+fn with_part(base: &Base, part: &Blob) -> Base {
+    let mut base = base.clone();
+    let bytes = base.bytes(SectionKind::PartBlobs);
+    *bytes = part.bytes().to_vec();
+    bytes.resize(bytes.len().next_multiple_of(16), 0);
+    let length = bytes.len() as u32 / 16;
+    base.change(SectionKind::Parts, 0, |it: &mut Part| it.length = length);
+    base
+}
+
+pub(super) fn instances() -> Errors {
+    let honest = blob(&placed());
+    let mut errors = Errors::of(Base::of(honest.bytes()));
+    let parts: [(Field, fn(&mut Part)); 3] = [
+        (Field::Start, |it| it.start = 1),
+        (Field::Length, |it| it.length = 0),
+        (Field::FirstPrimitive, |it| it.first_primitive = 0),
+    ];
+    for (field, change) in parts {
+        errors.field("part 0", field, |it| {
+            it.change(SectionKind::Parts, 0, change)
+        });
+    }
+    let instances: [(Field, fn(&mut Instance)); 5] = [
+        (Field::MatrixEntry, |it| it.matrix[0][0] = 1 << 24),
+        (Field::Center, |it| it.center[2] = i32::MIN),
+        (Field::InstanceExponent, |it| it.exponent = 19),
+        (Field::Part, |it| it.part = 1),
+        (Field::Instance, |it| it.number = 3),
+    ];
+    for (field, change) in instances {
+        errors.field("instance 1", field, |it| {
+            it.change(SectionKind::Instances, 1, change)
+        });
+    }
+    for (matrix, entry) in [([0, 0], 0), ([1, 2], 1 << 20), ([2, 2], -(1 << 23))] {
+        errors.reason("instance 2", Reason::NotRotation, |it| {
+            it.change(SectionKind::Instances, 2, |it: &mut Instance| {
+                it.matrix[matrix[0]][matrix[1]] = entry
+            })
+        });
+    }
+    errors.reason("part 0", Reason::OtherStructures, |it| {
+        it.header().structures |= Structure::Bvh.bit()
+    });
+    let plane = Shape::Plane(Plane {
+        point: DVec3::ZERO,
+        normal: DVec3::Y,
+    });
+    let unbounded = with_part(&errors.base, &blob(&scenes::of([plane])));
+    errors.reason("part 0", Reason::UnboundedPart, |it| *it = unbounded);
+    errors.others(&honest);
+    errors
+}
+
+impl Errors {
+    /// Takes the errors of parts that are not those of a blob.
+    fn others(&mut self, honest: &Blob) {
+        let copy = Blob::new(honest.bytes());
+        let parts = Parts::<1>::from_bytes(copy.bytes()).expect("a part");
+        let error = Loaded::with_parts(honest.bytes(), &parts).unwrap_err();
+        self.take_reason(error, "part 0", Reason::OtherPart);
+        let error = Parts::<0>::from_bytes(honest.bytes()).unwrap_err();
+        self.take_field(error, "header", Field::Parts);
+        let none = Loaded::from_bytes(honest.bytes()).unwrap_err();
+        let expected = BlobError::Parts {
+            found: 0,
+            expected: 1,
+        };
+        assert_eq!(none, expected);
+    }
+}
