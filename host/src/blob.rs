@@ -99,10 +99,10 @@ impl Blob {
         // The scene's own faults come first: without a header that is read no part is.
         match self.0.borrow_dependent() {
             Ok(parts) => Ok(Scene::with_parts(self.bytes(), parts)?.with_simd(simd::level())),
-            Err(error) => {
-                Scene::from_bytes(self.bytes())?;
-                Err(*error)
-            }
+            Err(error) => match Scene::from_bytes(self.bytes()) {
+                Err(own) if !matches!(own, BlobError::Parts { .. }) => Err(own),
+                _ => Err(*error),
+            },
         }
     }
 }

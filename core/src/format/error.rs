@@ -205,8 +205,8 @@ impl fmt::Display for BlobError {
             ),
             BlobError::Parts { found, expected } => write!(
                 f,
-                "the blob has {expected} parts and was loaded with {found}: load its parts by \
-                 `Parts::from_bytes` and the scene by `Scene::with_parts`"
+                "the blob was loaded with {found} parts, and needs {expected}: load them by \
+                 `Parts::from_bytes`, and the scene by `Scene::with_parts`"
             ),
             BlobError::Stride {
                 section,

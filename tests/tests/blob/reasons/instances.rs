@@ -55,10 +55,9 @@ fn with_part(base: &Base, part: &Blob) -> Base {
 pub(super) fn instances() -> Errors {
     let honest = blob(&placed());
     let mut errors = Errors::of(Base::of(honest.bytes()));
-    let parts: [(Field, fn(&mut Part)); 3] = [
+    let parts: [(Field, fn(&mut Part)); 2] = [
         (Field::Start, |it| it.start = 1),
         (Field::Length, |it| it.length = 0),
-        (Field::FirstPrimitive, |it| it.first_primitive = 0),
     ];
     for (field, change) in parts {
         errors.field("part 0", field, |it| {
