@@ -135,7 +135,7 @@ impl<N: Arithmetic> Map<N> {
 
     /// The inverse of [`surface`](Self::surface) for a place of the scene on it: that place, the normal and a length
     /// along it, in the part.
-    pub(crate) fn into_part(&self, surface: &PlacedSurface<N>) -> PlacedSurface<N> {
+    pub(crate) fn in_part(&self, surface: &PlacedSurface<N>) -> PlacedSurface<N> {
         let point = self.point(surface.point).map(N::narrow);
         let mapped = self.rotate(surface.normal).map(N::from_wide);
         let (normal, along) = N::normalize(mapped);
@@ -167,7 +167,7 @@ pub(crate) struct PlacedSurface<N> {
 impl<N: Arithmetic> PlacedRay<N> {
     /// A t of the part, counted from the mapped start, as one of the scene's ray, counted from its start.
     #[inline(always)]
-    pub(crate) fn to_scene(&self, t: N::Wide) -> N {
+    pub(crate) fn t_in_scene(&self, t: N::Wide) -> N {
         let up = if self.exponent < 0 {
             N::far_times_power(t, self.exponent.wrapping_neg())
         } else {

@@ -301,7 +301,7 @@ fn placed_inside<N: Number>(hit: &Hit<N>, index: u32, scene: &Scene<'_>) -> [N; 
         point,
         normal,
         error,
-    } = map.into_part(&PlacedSurface {
+    } = map.in_part(&PlacedSurface {
         point: hit.point,
         normal: hit.normal,
         error: hit.error,

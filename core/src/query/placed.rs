@@ -54,7 +54,7 @@ pub(super) fn nearest<N: Number, A: Accel, C: Observer, const ANY: bool>(
             };
             let met = search_structure::<N, A, C, ANY>(part, &mapped.ray, None, stack, count, any);
             let Some(met) = met else { return Some(tmax) };
-            let t = mapped.to_scene(met.t.widen() + mapped.ray.start_t);
+            let t = mapped.t_in_scene(met.t.widen() + mapped.ray.start_t);
             let t = ray.tmax.min(ray.tmin.max(t));
             let is_nearer = best.is_none_or(|(least, holder)| {
                 t < least || t == least && holder.is_some_and(|holder| instance.number < holder)

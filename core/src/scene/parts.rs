@@ -61,7 +61,7 @@ impl<'a, const MOST: usize> core::ops::Deref for Parts<'a, MOST> {
 ///
 /// # Errors
 /// If header or section table are invalid, or a part does not lie in the section of parts.
-pub fn part_blobs<'a>(blob: &'a [u8]) -> Result<impl Iterator<Item = &'a [u8]>, BlobError> {
+pub fn part_blobs(blob: &[u8]) -> Result<impl Iterator<Item = &[u8]>, BlobError> {
     let header = read::header(blob)?;
     let sections = Sections::read(blob, header.section_count)?;
     let directory: &[Part] = sections.records(SectionKind::Parts)?;

@@ -1,6 +1,6 @@
 //! Parts and instances.
 
-use super::{Errors, balls};
+use super::{Errors, Forgery, balls};
 use glam::DVec3;
 use gridel_core::format::instance::{Instance, Part};
 use gridel_core::format::{BlobError, Field, Reason, SectionKind};
@@ -55,21 +55,21 @@ fn with_part(base: &Base, part: &Blob) -> Base {
 pub(super) fn instances() -> Errors {
     let honest = blob(&placed());
     let mut errors = Errors::of(Base::of(honest.bytes()));
-    let parts: [(Field, fn(&mut Part)); 2] = [
-        (Field::Start, |it| it.start = 1),
-        (Field::Length, |it| it.length = 0),
+    let parts: [Forgery<'_, Part>; 2] = [
+        (Field::Start, &|it| it.start = 1),
+        (Field::Length, &|it| it.length = 0),
     ];
     for (field, change) in parts {
         errors.field("part 0", field, |it| {
             it.change(SectionKind::Parts, 0, change)
         });
     }
-    let instances: [(Field, fn(&mut Instance)); 5] = [
-        (Field::MatrixEntry, |it| it.matrix[0][0] = 1 << 24),
-        (Field::Center, |it| it.center[2] = i32::MIN),
-        (Field::InstanceExponent, |it| it.exponent = 19),
-        (Field::Part, |it| it.part = 1),
-        (Field::Instance, |it| it.number = 3),
+    let instances: [Forgery<'_, Instance>; 5] = [
+        (Field::MatrixEntry, &|it| it.matrix[0][0] = 1 << 24),
+        (Field::Center, &|it| it.center[2] = i32::MIN),
+        (Field::InstanceExponent, &|it| it.exponent = 19),
+        (Field::Part, &|it| it.part = 1),
+        (Field::Instance, &|it| it.number = 3),
     ];
     for (field, change) in instances {
         errors.field("instance 1", field, |it| {
