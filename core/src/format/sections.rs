@@ -2,6 +2,7 @@
 
 use crate::format::error::{BlobError, Location};
 use crate::format::layout::Stored;
+use crate::format::limits::INSTANCES;
 use crate::format::reason::{Field, Reason};
 use crate::format::record::{ALIGNMENT, Header, SectionEntry};
 use crate::format::section::SectionKind;
@@ -65,6 +66,11 @@ impl<'a> Sections<'a> {
                 return Err(line.out_of_range(Field::End, range[0] + length, range));
             };
             end = start.saturating_add(bytes.len());
+        }
+        // Kinds ascend, so the last entry tells.
+        if !INSTANCES && last >= SectionKind::Parts as u16 {
+            let missing = "instances";
+            return Err(BlobError::MissingPart { missing });
         }
         if end != blob.len() {
             return Err(BlobError::Truncated {

@@ -89,12 +89,12 @@ impl Primitive for Cuboid {
             axis,
             is_upper,
             coordinate,
-            self.beneath_faces(point, N::ZERO),
+            self.beneath_faces(point, N::step_beside),
         )
     }
 
     fn inside<N: Arithmetic>(&self, [point, _]: [[N; 3]; 2], depth: N) -> [N; 3] {
-        self.beneath_faces(point, depth)
+        self.beneath_faces(point, |side| N::step_beside(side).max(depth))
     }
 
     fn validate(&self, scene: InScene<'_>) -> Result<(), BlobError> {
@@ -107,16 +107,14 @@ impl Primitive for Cuboid {
 }
 
 impl Cuboid {
-    /// The point beneath all faces that is nearest to a point: a step beside them or a depth, whichever is more, or
-    /// where the box is no thicker than that, halfway between them.
-    fn beneath_faces<N: Arithmetic>(&self, point: [N; 3], depth: N) -> [N; 3] {
+    /// The point beneath all faces that is nearest to a point: a step beside them, given their coordinates, or where the
+    /// box is no thicker than that, halfway between them.
+    #[inline(always)]
+    fn beneath_faces<N: Arithmetic>(&self, point: [N; 3], step: impl Fn(N) -> N) -> [N; 3] {
         let axis = |k: usize| {
             let low = N::from_lattice(self.lowest[k]);
             let high = N::from_lattice(self.highest[k]);
-            let (first, last) = (
-                low + N::step_beside(low).max(depth),
-                high - N::step_beside(high).max(depth),
-            );
+            let (first, last) = (low + step(low), high - step(high));
             if first > last {
                 low.half() + high.half()
             } else {

@@ -27,7 +27,14 @@ pub(crate) fn check_top(
 ) -> Result<(), BlobError> {
     let section = SectionKind::InstancePairs;
     let instances = top.instances.len();
-    let expected = instances.saturating_sub(1).min(MAX_INSTANCES);
+    if instances > MAX_INSTANCES {
+        return Err(BlobError::Count {
+            section: SectionKind::Instances,
+            found: instances,
+            expected: MAX_INSTANCES,
+        });
+    }
+    let expected = instances.saturating_sub(1);
     if top.pairs.len() != expected {
         return Err(BlobError::Count {
             section,

@@ -12,6 +12,16 @@ pub(crate) struct Placed<'a, S> {
 }
 
 impl<'a, S> Placed<'a, S> {
+    /// Those of a scene without instances.
+    pub(crate) const NONE: Self = Self {
+        top: Top {
+            instances: &[],
+            pairs: &[],
+        },
+        directory: &[],
+        parts: &[],
+    };
+
     /// The part of an instance, and the number of its first primitive.
     #[inline(always)]
     pub(crate) fn part(&self, instance: &Instance) -> Option<(&'a S, u32)> {

@@ -131,6 +131,8 @@ pub(in crate::scene) fn check_placed<'a>(
         let same = scene.header().structures == header.structures;
         at.ensure(same, Reason::OtherStructures)?;
         at.ensure(!scene.has_unbounded, Reason::UnboundedPart)?;
+        // A part has no parts of its own, which a ray would pass by.
+        at.ensure(scene.parts().is_empty(), Reason::OtherPart)?;
     }
     exactly(
         Field::Primitive,

@@ -91,7 +91,9 @@ impl<'a> Prevalidated<'a> {
             // What lies between is that of other structures.
             let is_other =
                 kind > SectionKind::DualNodes as u16 && kind <= SectionKind::Radii as u16;
-            if is_other || kind == SectionKind::Parts as u16 {
+            if is_other
+                || kind >= SectionKind::Parts as u16 && kind <= SectionKind::InstancePairs as u16
+            {
                 return Err(Location::Table(index).invalid(Reason::NotPrevalidated));
             }
             let levels = proved!(levels(blob, entry, kind));

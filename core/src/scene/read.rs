@@ -57,11 +57,11 @@ fn placed<'a>(
     sections: &Sections<'a>,
     parts: &'a [Scene<'a>],
 ) -> Result<InstancesOnly<Placed<'a, Scene<'a>>>, BlobError> {
-    let directory: &[Part] = sections.records(SectionKind::Parts)?;
-    if !INSTANCES && !directory.is_empty() {
-        let missing = "instances";
-        return Err(BlobError::MissingPart { missing });
+    if !INSTANCES {
+        // A table with sections of parts was rejected.
+        return Ok(InstancesOnly::new(|| Placed::NONE));
     }
+    let directory: &[Part] = sections.records(SectionKind::Parts)?;
     if directory.len() != parts.len() {
         let (found, expected) = (parts.len(), directory.len());
         return Err(BlobError::Parts { found, expected });
@@ -74,6 +74,13 @@ fn placed<'a>(
         directory,
         parts,
     };
+    if directory.is_empty() && !placed.top.is_empty() {
+        return Err(BlobError::Count {
+            section: SectionKind::Parts,
+            found: 0,
+            expected: 1,
+        });
+    }
     Ok(InstancesOnly::new(|| placed))
 }
 

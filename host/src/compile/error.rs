@@ -101,6 +101,11 @@ pub enum CompileError {
         budget: u64,
         remedy: &'static str,
     },
+    #[error(
+        "the instance {instance} names a part that the scene does not have, or is not placed by finite numbers"
+    )]
+    #[diagnostic(help("place it by a rotation of length 1, a scale above 0 and a translation"))]
+    Instance { instance: String },
     #[error("{object} has no box, so it cannot be in the part {part}, whose instances have one")]
     #[diagnostic(help("make it an object of the scene itself"))]
     UnboundedPart { object: String, part: String },

@@ -345,6 +345,13 @@ fn check(scene: &Scene, options: &Options) -> Result<(), CompileError> {
         });
     }
     let bad = |object: &&Object| !object.shape.is_finite();
+    let is_valid = |part: usize| part < scene.parts.len();
+    let mut instances = scene.instances.iter();
+    if let Some(instance) = instances.find(|it| !is_valid(it.part) || !it.placement.is_valid()) {
+        return Err(CompileError::Instance {
+            instance: printable(&instance.name),
+        });
+    }
     if let Some(object) = scene.all_objects().find(bad) {
         return Err(CompileError::NotFinite {
             object: printable(&object.name),
