@@ -295,6 +295,14 @@ impl Scale {
                 offset: DVec3::ZERO,
                 factor: exp2(24) / 360.0,
             },
+            ValueKind::Shift => Self::Linear {
+                offset: DVec3::ZERO,
+                factor: exp2(-header.coordinate_exponent()),
+            },
+            ValueKind::Scale => Self::Linear {
+                offset: DVec3::ZERO,
+                factor: exp2(24),
+            },
             ValueKind::Radiance => Self::Color {
                 factor: exp2(20),
                 most: f64::from(i32::MAX),

@@ -181,9 +181,9 @@ fn keys(fields: &Fields<'_>, target: TrackTarget) -> Result<Vec<Key>, SceneError
         let vector = match kind {
             ValueKind::Direction | ValueKind::UnitDirection => value.direction()?,
             ValueKind::FieldOfView => DVec3::X * field_of_view(value)?,
-            ValueKind::Turns => DVec3::X * value.number()?,
+            ValueKind::Turns | ValueKind::Scale => DVec3::X * value.number()?,
             ValueKind::Radiance | ValueKind::Ratios => DVec3::from_array(value.color()?),
-            ValueKind::Position | ValueKind::Rotation => value.vector()?,
+            ValueKind::Position | ValueKind::Rotation | ValueKind::Shift => value.vector()?,
         };
         *key = Key::of_vector(key.seconds, vector);
     }
