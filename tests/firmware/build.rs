@@ -1,7 +1,8 @@
 //! Puts the blob that `GRIDEL_BLOB` names into flash, what it needs into constants, and the memory
 //! of the board that `GRIDEL_BOARD` names before the linker.
 
-use gridel_core::Scene;
+use gridel_core::scene::part_blobs;
+use gridel_core::{Scene, Tracks};
 use std::path::PathBuf;
 use std::{env, fs};
 
@@ -17,8 +18,13 @@ fn main() {
     let mut aligned = vec![0_u128; bytes.len().div_ceil(size_of::<u128>())];
     let aligned: &mut [u8] = bytemuck::cast_slice_mut(&mut aligned);
     aligned[..bytes.len()].copy_from_slice(&bytes);
-    let scene = Scene::from_bytes(&aligned[..bytes.len()])
-        .unwrap_or_else(|error| panic!("{blob}: {error}"));
+    let aligned = &aligned[..bytes.len()];
+    let rejected = |error| panic!("{blob}: {error}");
+    let parts = part_blobs(aligned).unwrap_or_else(|error| rejected(error));
+    let parts: Result<Vec<_>, _> = parts.map(Scene::from_bytes).collect();
+    let parts = parts.unwrap_or_else(|error| rejected(error));
+    let scene = Scene::with_parts(aligned, &parts).unwrap_or_else(|error| rejected(error));
+    let tracks = Tracks::from_bytes(aligned).unwrap_or_else(|error| rejected(error));
     let target = env::var("TARGET").expect("cargo sets TARGET");
     // Of an nRF51, and of an STM32F100.
     let interrupts = if target.starts_with("thumbv6m") {
@@ -35,12 +41,21 @@ fn main() {
          pub const EFFECTS: u32 = {};\n\
          /// Pixels of a row.\n\
          pub const WIDTH: usize = {};\n\
+         /// Parts of the scene.\n\
+         pub const PARTS: usize = {};\n\
+         /// Instances of the scene.\n\
+         pub const INSTANCES: usize = {};\n\
+         /// Joints on which instances hang.\n\
+         pub const JOINTS: usize = {};\n\
          /// Interrupts of the board's chip.\n\
          pub const INTERRUPTS: usize = {interrupts};\n",
         scene.stack_depth(),
         scene.effects().work_depth(scene.view().depth),
         scene.effects().0,
         scene.view().width,
+        parts.len(),
+        scene.instances().len(),
+        tracks.joints().len(),
     );
     fs::write(out.join("limits.rs"), constants).expect("OUT_DIR can be written to");
     fs::write(out.join("scene.gridel"), &bytes).expect("OUT_DIR can be written to");

@@ -1,5 +1,7 @@
 //! Parts and instances: hits lie where maps place them, and a part is exact and closed under every map.
 
+mod poses;
+
 use glam::{DQuat, DVec3};
 use gridel_core::format::instance::Instance as Record;
 use gridel_core::format::record::{Header, SectionEntry};

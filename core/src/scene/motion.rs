@@ -111,6 +111,11 @@ impl Motion {
         Position(self.apply(place.0.map(fine)).map(coordinate))
     }
 
+    /// Where a direction is turned to, of the same length.
+    pub fn direction(&self, direction: [i32; 3]) -> [i32; 3] {
+        self.rotation.map(|row| product(direction, row))
+    }
+
     /// This rotation and scale about a place, which stays where it is.
     fn about(self, pivot: Position) -> Self {
         let pivot = pivot.0.map(fine);

@@ -11,6 +11,7 @@
 //! | `bare` | renders and talks to nobody: what it links is what a product would flash |
 //! | `range` | casts rays down onto the scene and prints their lengths |
 //! | `orbit` | turns a camera around the scene in 64 frames |
+//! | `arm` | bends the joints of an arm of instances, and casts rays from its hand |
 //! | `example` | the README's example |
 //!
 //! The first five run in QEMU, or in Node, and print what they measured, a line each: a name and
@@ -22,6 +23,7 @@
 //! ```
 #![no_std]
 
+pub mod arm;
 pub mod board;
 pub mod casts;
 pub mod measure;

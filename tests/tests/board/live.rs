@@ -1,11 +1,12 @@
 //! Scenes that change while a program runs: every frame is the host's, and a change costs little.
 
+use crate::arm;
 use crate::figures::Figures;
 use crate::firmware::{self, Build};
 use crate::orbit::{FRAMES, camera};
 use crate::plan::Plan;
 use crate::scenes::{self, Compiled};
-use gridel_core::{Format, Structure};
+use gridel_core::{Format, Motion, Poses, Structure, Tracks};
 use gridel_host::measure::board::Board;
 
 /// Instructions of a frame before its first ray: camera, its checks, and the renderer's set-up.
@@ -29,6 +30,92 @@ pub fn plan(plan: &mut Plan) {
             .in_full()
             .run(move || a_camera_orbits(board, format, &scenes::torus_mesh_in_few_pixels()));
     }
+    for (board, format) in [
+        ("mps2-an386", Format::F32),
+        ("mps2-an385", Format::Fixed),
+        ("sifive_e", Format::Fixed),
+    ] {
+        let board = firmware::board(board);
+        plan.test_on("an_arm_bends", board, format)
+            .in_full()
+            .run(move || an_arm_bends(board, format, &scenes::arm()));
+    }
+    for (board, format, most) in [
+        ("mps2-an386", Format::F32, 1.2),
+        ("mps2-an385", Format::Fixed, 1.25),
+    ] {
+        let board = firmware::board(board);
+        plan.test_on("an_instance_costs_little", board, format)
+            .with_scene(scenes::SUZANNE)
+            .in_full()
+            .run(move || an_instance_costs_little(board, format, most));
+    }
+    let board = firmware::board("mps2-an386");
+    plan.test_on("hierarchy_above_32_poses_is_built", board, Format::F32)
+        .in_full()
+        .run(move || {
+            let scene = scenes::thirty_two_balls();
+            let build = Build::new(board, Format::F32, Structure::DualSplit, &scene);
+            let report = build.program("arm").run();
+            let instructions = report["build-instructions"];
+            assert!(instructions <= 40_000, "{instructions} instructions");
+            let mut figures = Figures::new();
+            figures.add(&format!("arm {build}"), &report);
+            figures.check();
+        });
+}
+
+fn an_arm_bends(board: &'static Board, format: Format, compiled: &Compiled) {
+    let build = Build::new(board, format, Structure::DualSplit, compiled);
+    let program = build.program("arm");
+    let report = program.run();
+    let frames = program.file("arm.rgb");
+    let scene = compiled.blob.scene().expect("the compiler's own blob");
+    let tracks = Tracks::from_bytes(compiled.blob.bytes()).expect("the compiler's own tracks");
+    let bytes = frames.len() / arm::FRAMES as usize;
+    let mut pictures = Vec::new();
+    for (number, frame) in (0..arm::FRAMES).zip(frames.chunks(bytes)) {
+        let mut motions = vec![Motion::REST; tracks.joints().len()];
+        arm::bend(&tracks, number, &mut motions).expect("motions");
+        let mut memory = Poses::<6>::new();
+        let mut poses = memory.at_rest(&scene).expect("room for six");
+        tracks.place(&scene, &motions, &mut poses).expect("poses");
+        let posed = scene.with_poses(poses).expect("poses in the scene's box");
+        let host = scenes::picture(&posed, Structure::DualSplit, format);
+        assert!(
+            frame == host,
+            "{build}: frame {number} differs from the host's"
+        );
+        pictures.push(host);
+    }
+    pictures.dedup();
+    assert_eq!(
+        pictures.len(),
+        arm::FRAMES as usize,
+        "{build}: the arm stands still"
+    );
+    let poses = report["bend-instructions"] + report["build-instructions"];
+    let frame = report["set-up-instructions"] + report["picture-instructions"];
+    assert!(
+        100 * poses <= frame,
+        "{build}: poses take {poses} instructions of {frame}"
+    );
+    let mut figures = Figures::new();
+    figures.add(&format!("arm {build}"), &report);
+    figures.check();
+}
+
+/// Suzanne as an instance against the same triangles in the scene itself, seen alike.
+fn an_instance_costs_little(board: &'static Board, format: Format, most: f64) {
+    let [placed, flat] = scenes::suzanne_as_an_instance().map(|scene| {
+        let build = Build::new(board, format, Structure::DualSplit, &scene);
+        let features = ["instances", "triangle", "wide-lattice"];
+        let report = build.program_with("arm", &features).run();
+        report["picture-instructions"]
+    });
+    let ratio = placed as f64 / flat as f64;
+    println!("{placed} instructions with an instance, {flat} without: {ratio:.3}");
+    assert!(ratio <= most, "{ratio}");
 }
 
 fn a_camera_orbits(board: &'static Board, format: Format, compiled: &Compiled) {

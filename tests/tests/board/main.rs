@@ -7,6 +7,8 @@
 //! `fixtures/recorded/board.json` holds what was measured last: nothing may grow by more than 2 %.
 //! `GRIDEL_RECORD_BOARDS=1` records anew; read the difference before it is committed.
 
+#[path = "../../firmware/src/arm.rs"]
+mod arm;
 #[path = "../../firmware/src/casts.rs"]
 mod casts;
 mod costs;

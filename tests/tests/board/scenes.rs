@@ -1,16 +1,20 @@
 //! The scenes that go into flash, compiled small.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use gridel_core::render::Pixel;
 use gridel_core::{Format, Rgb888, Settings, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{self, Options};
 use gridel_host::render::{Job, render};
 use gridel_host::sample;
-use gridel_host::scene::{self, Camera, Light, Material, Object, Scene, Shape, SourceSpan};
+use gridel_host::scene::{
+    self, Camera, Instance, Light, Material, Object, Part, Placement, Scene, Shape, SourceSpan,
+};
+use gridel_host::shape::Sphere;
+use gridel_tests::random::Random;
 use gridel_tests::scenes::from_its_corner;
 use std::env;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 
 /// A blob, with the name of its scene.
@@ -180,6 +184,77 @@ pub fn small_suzanne() -> Compiled {
     };
     let (name, size) = ("suzanne-small", [64, 64]);
     compile_with(name, suzanne_scene(), size, options)
+}
+
+/// Suzanne turned by 30 degrees and scaled by 0.7, seen by a camera that was moved likewise, without light: as an instance
+/// of a part, and as an object.
+pub fn suzanne_as_an_instance() -> [Compiled; 2] {
+    let axis = DVec3::new(1.0, 2.0, 3.0).normalize();
+    let placement = Placement {
+        rotation: DQuat::from_axis_angle(axis, PI / 6.0),
+        translation: DVec3::ZERO,
+        scale: 0.7,
+    };
+    let mut flat = suzanne_scene();
+    (flat.ambient, flat.lights) = ([1.0; 3], Vec::new());
+    let mut placed = flat.clone();
+    if let Some(camera) = &mut placed.camera {
+        camera.eye = placement.point(camera.eye);
+        camera.target = placement.point(camera.target);
+        camera.up = placement.rotation * camera.up;
+    }
+    placed.parts = vec![Part {
+        name: String::from("suzanne"),
+        objects: std::mem::take(&mut placed.objects),
+        place: SourceSpan::default(),
+    }];
+    placed.instances = vec![Instance {
+        name: String::from("suzanne"),
+        part: 0,
+        placement,
+        place: SourceSpan::default(),
+    }];
+    [placed, flat].map(|scene| compile("suzanne-placed", scene, [64, 64]))
+}
+
+/// An arm of six instances on a chain of joints.
+pub fn arm() -> Compiled {
+    fixture("robot-arm", [64, 64])
+}
+
+/// 32 instances of one ball, here and there.
+pub fn thirty_two_balls() -> Compiled {
+    let random = &mut Random(32);
+    let mut scene = torus_mesh_scene();
+    scene.lights.clear();
+    scene.objects.clear();
+    scene.parts = vec![Part {
+        name: String::from("ball"),
+        objects: vec![Object {
+            name: String::from("ball"),
+            material: 0,
+            shape: Shape::Sphere(Sphere {
+                center: DVec3::ZERO,
+                radius: 0.1,
+            }),
+            place: SourceSpan::default(),
+        }],
+        place: SourceSpan::default(),
+    }];
+    let turned = |random: &mut Random| Placement {
+        rotation: DQuat::from_axis_angle(DVec3::from_array(random.direction()), random.signed()),
+        translation: DVec3::from_array(random.direction()) * random.unit(),
+        scale: 1.0,
+    };
+    scene.instances = (0..32)
+        .map(|number| Instance {
+            name: format!("ball {number}"),
+            part: 0,
+            placement: turned(random),
+            place: SourceSpan::default(),
+        })
+        .collect();
+    compile_with("balls", scene, [32, 32], small())
 }
 
 fn suzanne_scene() -> Scene {
