@@ -31,6 +31,8 @@ pub struct Source {
     for_pictures: Option<SceneOptions>,
     /// The names of a scene file.
     names: Option<Names>,
+    /// Whether instances were copied where they are at the time that is shown.
+    posed: bool,
     /// How a scene file was read and compiled.
     made_by: Option<(scene::ImportOptions, compile::Options)>,
 }
@@ -72,7 +74,7 @@ impl Source {
             source.changes = Some(changes);
             source.for_pictures = Some(options.clone());
         }
-        if let Some(seconds) = options.time {
+        if let Some(seconds) = options.time.filter(|_| source.moves_otherwise()) {
             let changes = {
                 let tracks = source.tracks()?;
                 let time = state::ticks(&tracks, seconds);
@@ -126,6 +128,7 @@ impl Source {
             changes: None,
             for_pictures: None,
             names: None,
+            posed: false,
             made_by: None,
         })
     }
@@ -183,7 +186,8 @@ impl Source {
             changes: None,
             for_pictures: None,
             names: Some(names),
-            made_by: Some((options.geometry.import.for_import(), compiling)),
+            posed: imported.posed,
+            made_by: Some((options.for_import(), compiling)),
         })
     }
 
@@ -228,6 +232,11 @@ impl Source {
             ),
             "give the scene file, or a blob that was built with `--instances flatten`",
         ))
+    }
+
+    /// Whether a time concerns more than instances that were copied where they are at it.
+    fn moves_otherwise(&self) -> bool {
+        !self.posed || self.tracks().is_ok()
     }
 
     /// The tracks of a scene that moves.
@@ -445,7 +454,7 @@ fn import_from(input: &Input, options: &SceneOptions) -> Result<Imported, Failur
     }
     let importing = &options.geometry.import;
     let progress = Progress::unknown("reading");
-    let imported = input.scene(&importing.for_import());
+    let imported = input.scene(&options.for_import());
     drop(progress);
     let mut imported = imported.map_err(|error| Failure::Failed(miette::Report::new(error)))?;
     if let Some(option) = importing.molecule.given().filter(|_| !imported.molecules) {
