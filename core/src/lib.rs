@@ -84,6 +84,6 @@ pub use observe::event::{Event, RayKind};
 pub use query::{Hit, PrimitiveHit, any_hit, closest_hit, closest_primitive};
 pub use ray::{Pencil, Ray, RayError};
 pub use render::{Camera, Renderer, Rgb565, Rgb888, Settings, Up, Workspace};
-pub use scene::{Names, Parts, Position, Prevalidated, Scene};
+pub use scene::{Motion, Names, Parts, Poses, PosesView, Position, Prevalidated, Scene};
 pub use simd::SimdLevel;
 pub use tracks::Tracks;

@@ -42,6 +42,9 @@ pub const MAX_INSTANCES: usize = 1 << 20;
 /// Most levels of the hierarchy above instances.
 pub const MAX_INSTANCE_LEVELS: usize = 24;
 
+/// The least and the greatest scale of a joint, with 24 fraction bits: 1/16384 and 64.
+pub const SCALES: [i32; 2] = [1 << 10, 1 << 30];
+
 /// The powers of two by which an instance scales from scene units to units of its part.
 pub const INSTANCE_EXPONENT: [i64; 2] = [-4, 18];
 

@@ -128,6 +128,8 @@ texts! {
         Direction => "direction",
         FieldOfView => "field of view",
         Rotation => "rotation",
+        Scale => "scale",
+        Joint => "joint",
         RotationAngle => "angle to the next rotation",
         // Parts and instances.
         Parts => "number of parts",
@@ -191,6 +193,7 @@ texts! {
         OutsideCell => "its primitive does not reach into its cell",
         // Tracks.
         TrackOrder => "it does not follow the track before it in the order of targets and numbers",
+        JointOrder => "it hangs on itself or on a joint behind it",
         WrongLight => "its light is of the other kind, which has no such property",
         ZeroRotation => "its rotation has length 0",
         // Parts and instances.

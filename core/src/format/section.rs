@@ -189,6 +189,10 @@ macro_rules! sections {
             Instances = 70, "instances", [instance::Instance], "instance" of "";
             /// [`Pair`](crate::format::record::Pair)s of the hierarchy above the instances, whose leaves are instances.
             InstancePairs = 71, "instance-pairs", [record::Pair], "pair" of "instances";
+            /// [`Joint`](crate::format::track::Joint)s.
+            Joints = 72, "joints", [track::Joint], "joint" of "tracks";
+            /// For each instance, the joint on which it hangs, or `u32::MAX`. Absent where there are no joints.
+            InstanceJoints = 73, "instance-joints", [u32], "instance" of "tracks";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

@@ -4,7 +4,7 @@
 //! many a key has follows from what moves and how it is interpolated: see [`Track::words`].
 
 use crate::format::layout::records;
-use crate::format::limits::FIELD_OF_VIEW;
+use crate::format::limits::{FIELD_OF_VIEW, SCALES};
 use crate::format::reason::Field;
 use bytemuck::{Pod, Zeroable};
 
@@ -32,7 +32,7 @@ records! {
         pub target: u16,
         /// How it moves from key to key: an [`Interpolation`].
         pub interpolation: u16,
-        /// The number of the light or material; 0 for the camera.
+        /// The number of the light, material or joint; 0 for the camera.
         pub index: u32,
         /// Number of keys.
         #[valid(Keys: 1..=u32::MAX as i64)]
@@ -42,6 +42,24 @@ records! {
         /// The first word of its values, counted among all words.
         pub first_word: u32,
     }
+}
+
+records! {
+    /// A joint: what instances, and further joints, hang on.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(16)]
+    pub struct Joint {
+        /// The place about which it turns and scales, at rest: a [`Position`](crate::Position).
+        pub pivot: [i32; 3],
+        /// The joint on which it hangs, one that comes before it, or [`Joint::NONE`].
+        pub parent: u32,
+    }
+}
+
+impl Joint {
+    /// In place of a joint: none.
+    pub const NONE: u32 = u32::MAX;
 }
 
 /// How a value moves from a key to the next one.
@@ -87,6 +105,10 @@ pub enum ValueKind {
     Rotation,
     /// Turns, with 24 fraction bits.
     Turns,
+    /// Three differences of scene coordinates.
+    Shift,
+    /// A scale with 24 fraction bits: see [`Motion::SCALES`](crate::Motion::SCALES).
+    Scale,
     /// Red, green and blue radiance, 20 fraction bits.
     Radiance,
     /// Red, green and blue ratios, 30 fraction bits.
@@ -97,7 +119,7 @@ impl ValueKind {
     /// Numbers that are interpolated.
     pub const fn components(self) -> usize {
         match self {
-            Self::FieldOfView | Self::Turns => 1,
+            Self::FieldOfView | Self::Turns | Self::Scale => 1,
             Self::Rotation => 4,
             _ => 3,
         }
@@ -107,9 +129,10 @@ impl ValueKind {
     pub const fn range(self) -> [i32; 2] {
         const RATIO: i32 = 1 << 30;
         match self {
-            Self::Position | Self::Direction | Self::Turns => [i32::MIN, i32::MAX],
+            Self::Position | Self::Direction | Self::Turns | Self::Shift => [i32::MIN, i32::MAX],
             Self::UnitDirection | Self::Rotation => [-RATIO, RATIO],
             Self::FieldOfView => FIELD_OF_VIEW,
+            Self::Scale => SCALES,
             Self::Radiance => [0, i32::MAX],
             Self::Ratios => [0, RATIO],
         }
@@ -128,7 +151,8 @@ impl ValueKind {
     /// What an error calls a component.
     pub(crate) const fn field(self) -> Field {
         match self {
-            Self::Position => Field::Coordinate,
+            Self::Position | Self::Shift => Field::Coordinate,
+            Self::Scale => Field::Scale,
             Self::Direction | Self::UnitDirection => Field::Direction,
             Self::FieldOfView => Field::FieldOfView,
             Self::Rotation | Self::Turns => Field::Rotation,
@@ -150,7 +174,7 @@ macro_rules! targets {
             /// All of them, by their number in the blob.
             pub const ALL: [Self; [$($number),*].len()] = [$(Self::$target),*];
 
-            /// Whose property it is, and its name; the camera is one, lights and materials have numbers.
+            /// Whose property it is, and its name; the camera is one, lights, materials and joints have numbers.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$target => $name,)*
@@ -196,6 +220,12 @@ targets! {
     MaterialMirror = 12, "material.mirror", Ratios;
     /// The weight of what a material's glass brings.
     MaterialTransmit = 13, "material.transmit", Ratios;
+    /// How a joint is turned about its pivot.
+    JointRotation = 14, "joint.rotation", Rotation;
+    /// How far a joint is shifted.
+    JointShift = 15, "joint.shift", Shift;
+    /// How much larger what hangs on a joint is than at rest.
+    JointScale = 16, "joint.scale", Scale;
 }
 
 impl TrackTarget {
@@ -206,7 +236,12 @@ impl TrackTarget {
 
     /// Whether it is a property of a material.
     pub const fn is_of_material(self) -> bool {
-        self as u16 >= Self::MaterialDiffuse as u16
+        self as u16 >= Self::MaterialDiffuse as u16 && (self as u16) < Self::JointRotation as u16
+    }
+
+    /// Whether it is a property of a joint.
+    pub const fn is_of_joint(self) -> bool {
+        self as u16 >= Self::JointRotation as u16
     }
 }
 

@@ -10,6 +10,7 @@
 //! scene's ray. Among hits at the same t the scene's own objects count first, then the instance with the lower number.
 
 pub(crate) mod bounds;
+pub(crate) mod build;
 pub(crate) mod check;
 pub(crate) mod map;
 pub(crate) mod placed;

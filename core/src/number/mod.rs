@@ -29,6 +29,7 @@ pub(crate) mod float;
 mod format;
 mod powers;
 mod products;
+pub(crate) mod rotation;
 mod scalar;
 mod vectors;
 

@@ -4,6 +4,7 @@
 //! places the scene file's camera by the same functions.
 
 use crate::format::record::{Header, View};
+use crate::number::rotation::columns;
 use crate::number::{Angle, Fixed, Products, Scalar, Vectors};
 use crate::scene::{Position, Scene};
 use core::fmt;
@@ -137,27 +138,8 @@ impl Camera {
         rotation: [i32; 4],
         field_of_view: Angle,
     ) -> Result<Self, CameraError> {
-        let [x, y, z, w] = unit_quaternion(rotation).ok_or(CameraError::NoDirection)?;
-        let one = Fixed::ONE;
-        let twice = |a: Fixed, b: Fixed| {
-            let product = a * b;
-            product + product
-        };
-        let right = [
-            one - twice(y, y) - twice(z, z),
-            twice(x, y) + twice(z, w),
-            twice(x, z) - twice(y, w),
-        ];
-        let up = [
-            twice(x, y) - twice(z, w),
-            one - twice(x, x) - twice(z, z),
-            twice(y, z) + twice(x, w),
-        ];
-        let forward = [
-            -(twice(x, z) + twice(y, w)),
-            twice(x, w) - twice(y, z),
-            twice(x, x) + twice(y, y) - one,
-        ];
+        let [right, up, back] = columns(rotation).ok_or(CameraError::NoDirection)?;
+        let forward = back.map(|x| -x);
         Self::with_axes([forward, right, up], eye, field_of_view)
     }
 
@@ -284,21 +266,6 @@ fn cross(a: [Fixed; 3], b: [Fixed; 3]) -> [<Fixed as Scalar>::Wide; 3] {
 fn unit(vector: [i64; 3]) -> Option<[Fixed; 3]> {
     let (unit, length) = Fixed::normalize(Fixed::direction(vector));
     (length > Fixed::ZERO).then_some(unit)
-}
-
-/// The quaternion at length 1, as ratios; `None` if it has no length.
-fn unit_quaternion(rotation: [i32; 4]) -> Option<[Fixed; 4]> {
-    let all = rotation.iter().fold(0, |all, x| all | x.unsigned_abs());
-    // 29 bits each, so that the length of three has no more than 30.
-    let scaled = rotation.map(|x| {
-        let up = i64::from(x).wrapping_shl(all.leading_zeros());
-        Fixed((up >> 3) as i32)
-    });
-    let [x, y, z, w] = scaled;
-    let (axis, sine) = Fixed::normalize([x, y, z]);
-    let ([sine, cosine, _], length) = Fixed::normalize([sine, w, Fixed::ZERO]);
-    let [x, y, z] = axis.map(|x| x * sine);
-    (length > Fixed::ZERO).then_some([x, y, z, cosine])
 }
 
 #[cfg(test)]

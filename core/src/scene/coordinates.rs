@@ -112,6 +112,16 @@ impl Header {
         ]
     }
 
+    /// The lattice's origin as scene coordinates are counted, in units with 13 fraction bits.
+    pub(in crate::scene) fn lattice_origin(&self) -> [i64; 3] {
+        let [x, y, z] = self.origin;
+        [
+            self.origin_on_lattice(x),
+            self.origin_on_lattice(y),
+            self.origin_on_lattice(z),
+        ]
+    }
+
     /// The nearest place in scene coordinates to one on the lattice.
     fn position(&self, q13: [i64; 3]) -> Position {
         let shift = self.coordinate_shift.min(MAX_COORDINATE_SHIFT);

@@ -9,14 +9,18 @@ mod check;
 mod coordinates;
 mod features;
 mod load;
+mod motion;
 mod names;
 pub(crate) mod parts;
+mod poses;
 mod prevalidated;
 mod read;
 
 pub use blob::Scene;
 pub use coordinates::Position;
+pub use motion::Motion;
 pub use names::Names;
 pub use parts::{Parts, part_blobs};
+pub use poses::{Poses, PosesView};
 pub use prevalidated::Prevalidated;
 pub(crate) use read::header;

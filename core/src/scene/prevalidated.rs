@@ -92,7 +92,7 @@ impl<'a> Prevalidated<'a> {
             let is_other =
                 kind > SectionKind::DualNodes as u16 && kind <= SectionKind::Radii as u16;
             if is_other
-                || kind >= SectionKind::Parts as u16 && kind <= SectionKind::InstancePairs as u16
+                || kind >= SectionKind::Parts as u16 && kind <= SectionKind::InstanceJoints as u16
             {
                 return Err(Location::Table(index).invalid(Reason::NotPrevalidated));
             }

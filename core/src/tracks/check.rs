@@ -2,7 +2,7 @@
 
 use crate::format::range::{At, Ranges};
 use crate::format::record::Light;
-use crate::format::track::{Interpolation, Track, TrackTarget, ValueKind};
+use crate::format::track::{Interpolation, Joint, Track, TrackTarget, ValueKind};
 use crate::format::{BlobError, Field, Location, Reason, SectionKind};
 use crate::number::Angle;
 use crate::tracks::records::Records;
@@ -22,7 +22,7 @@ pub(super) fn check(
     for (index, track) in records.tracks.iter().enumerate() {
         let section = SectionKind::Tracks;
         let at = At { section, index };
-        let target = check_track(at, track, lights, materials)?;
+        let target = check_track(at, track, lights, [materials, records.joints.len()])?;
         at.ensure(last < Some((target, track.index)), Reason::TrackOrder)?;
         last = Some((target, track.index));
         if target.is_of_camera() {
@@ -55,6 +55,31 @@ pub(super) fn check(
     Location::Section(SectionKind::Tracks).ensure(is_whole(camera), Reason::CameraInPart)
 }
 
+/// Proves that joints hang on joints before them, and so many instances on joints.
+pub(super) fn check_joints(records: &Records<'_>, instances: usize) -> Result<(), BlobError> {
+    let section = SectionKind::Joints;
+    for (index, joint) in records.joints.iter().enumerate() {
+        let hangs = joint.parent == Joint::NONE || (joint.parent as usize) < index;
+        At { section, index }.ensure(hangs, Reason::JointOrder)?;
+    }
+    let joints = records.joints.len();
+    let (section, found) = (SectionKind::InstanceJoints, records.instance_joints.len());
+    let expected = if joints == 0 { 0 } else { instances };
+    if found != expected {
+        return Err(BlobError::Count {
+            section,
+            found,
+            expected,
+        });
+    }
+    let last = joints as i64 - 1;
+    let hanging = records.instance_joints.iter().enumerate();
+    for (index, &joint) in hanging.filter(|(_, joint)| **joint != Joint::NONE) {
+        At { section, index }.within(Field::Joint, joint.into(), 0, last)?;
+    }
+    Ok(())
+}
+
 /// Whether tracks of the camera, a bit for each, are none or all that one needs.
 fn is_whole(camera: u32) -> bool {
     use TrackTarget::{
@@ -72,7 +97,7 @@ fn check_track(
     at: At,
     track: &Track,
     lights: &[Light],
-    materials: usize,
+    [materials, joints]: [usize; 2],
 ) -> Result<TrackTarget, BlobError> {
     let out_of_range = |field, found: u16, count: usize| {
         let range = [0, count as i64 - 1];
@@ -94,6 +119,8 @@ fn check_track(
         1
     } else if target.is_of_material() {
         materials
+    } else if target.is_of_joint() {
+        joints
     } else {
         lights.len()
     };

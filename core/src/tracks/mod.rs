@@ -1,15 +1,18 @@
-//! Tracks: how the camera, lights and materials of a blob change with time.
+//! Tracks: how the camera, lights, materials and instances of a blob change with time.
 //!
 //! A blob may hold tracks, each of which gives a property values at certain times. [`Tracks`] reads them in place, and
 //! computes the state at any time in integers: the same on every machine and in every number format. The state is
 //! borrowed by a changed scene as values of a program's own are: see [`Scene::with_view`](crate::Scene::with_view),
-//! [`with_lights`](crate::Scene::with_lights) and [`with_materials`](crate::Scene::with_materials).
+//! [`with_lights`](crate::Scene::with_lights) [`with_materials`](crate::Scene::with_materials) and
+//! [`with_poses`](crate::Scene::with_poses).
 
 mod check;
 mod interpolate;
+mod joints;
 mod records;
 mod state;
 
+use crate::format::instance::Instance;
 use crate::format::record::{Light, Material};
 use crate::format::track::{Timeline, Track};
 use crate::format::{BlobError, SectionKind, Sections};
@@ -58,8 +61,8 @@ impl<'a> Tracks<'a> {
     /// Checks the tracks of a blob and returns them. A blob without tracks has none, which is no error.
     ///
     /// Proves that tracks take all keys and words in their order, that times ascend, that every value is in its range,
-    /// that lights and materials exist, and that a moving camera has all that it needs. Costs time linear in the
-    /// number of keys.
+    /// that lights, materials and joints exist, that joints hang on those before them, and that a moving camera has all
+    /// that it needs. Costs time linear in the number of keys.
     ///
     /// # Errors
     /// If anything of this fails to hold, or the header or the section table is invalid.
@@ -81,10 +84,14 @@ impl<'a> Tracks<'a> {
             tracks,
             times: sections.records(SectionKind::TrackTimes)?,
             words: sections.records(SectionKind::TrackWords)?,
+            joints: sections.records(SectionKind::Joints)?,
+            instance_joints: sections.records(SectionKind::InstanceJoints)?,
         };
         let lights: &[Light] = sections.records(SectionKind::Lights)?;
         let materials: &[Material] = sections.records(SectionKind::Materials)?;
         check::check(&records, lights, materials.len())?;
+        let instances: &[Instance] = sections.records(SectionKind::Instances)?;
+        check::check_joints(&records, instances.len())?;
         Ok(Self(records))
     }
 

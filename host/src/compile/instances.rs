@@ -2,7 +2,6 @@
 
 use super::error::CompileError;
 use super::instance_tree::{Tree, build};
-use super::joints;
 use super::reach::Reach;
 use super::section::{Section, section};
 use crate::blob::Blob;
@@ -13,6 +12,7 @@ use glam::DVec3;
 use gridel_core::format::instance::{LARGEST_CENTER, MATRIX_BITS};
 use gridel_core::format::limits::{INSTANCE_EXPONENT, MAX_INSTANCES};
 use gridel_core::format::record::{ALIGNMENT, UnitBox};
+use gridel_core::format::track::Joint;
 use gridel_core::format::{SectionKind, instance};
 
 /// What a blob is made for.
@@ -138,7 +138,7 @@ impl Parts {
         let records = tree.order.iter().map(|&number| records[number as usize]);
         let joint = |&number: &u32| {
             let joint = scene.instances[number as usize].joint;
-            joint.map_or(joints::NONE, |joint| joint as u32)
+            joint.map_or(Joint::NONE, |joint| joint as u32)
         };
         let joints = tree.order.iter().filter(|_| !scene.joints.is_empty());
         Ok(Some(Placed {

@@ -6,11 +6,9 @@ use super::section::{Section, section};
 use crate::scene::{Joint, Key, Scene, Track, TrackTarget};
 use crate::table::printable;
 use glam::DVec3;
+use gridel_core::format::SectionKind;
 use gridel_core::format::record::Header;
-use gridel_core::format::{SectionKind, instance};
-
-/// The number of no joint.
-pub const NONE: u32 = u32::MAX;
+use gridel_core::format::track as records;
 
 /// Most joints that hang on each other, so that a chain takes little time.
 const MOST_LEVELS: usize = 1024;
@@ -97,9 +95,11 @@ pub fn sections(scene: &Scene, header: &Header) -> Result<Vec<Section>, CompileE
             name: printable(&joint.name),
             cause: String::from("has a pivot beyond the range of scene coordinates"),
         };
-        Ok(instance::Joint {
+        Ok(records::Joint {
             pivot: position(header, joint.pivot).ok_or_else(far)?.0,
-            parent: joint.parent.map_or(NONE, |parent| parent as u32),
+            parent: joint
+                .parent
+                .map_or(records::Joint::NONE, |parent| parent as u32),
         })
     };
     let records = scene.joints.iter().map(record);

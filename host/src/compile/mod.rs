@@ -214,6 +214,9 @@ fn compile_as(
     } = Hierarchies::build(scene, &snapped, &structures, options)?;
     let own = hierarchy::bounds(&order);
     let mut bounds = placed.around(own).unwrap_or(UnitBox([[0; 2]; 3]));
+    if let Role::Whole(parts) = role {
+        bounds = parts.reach.box_around(bounds, &lattice);
+    }
     if structures.contains(&Structure::Octree) {
         let boxes: Vec<_> = order.iter().map(|primitive| primitive.bounds).collect();
         bounds = octree::bounds(&bounds, &boxes);

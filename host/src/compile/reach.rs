@@ -7,7 +7,9 @@
 use crate::scene::{
     Interpolation, Joint, JointTracks, Key, LARGEST_SCALE, LEAST_SCALE, Placement, Scene, Track,
 };
+use crate::shape::Lattice;
 use glam::{DQuat, DVec3, DVec4};
+use gridel_core::format::record::UnitBox;
 
 /// How far the axes of rotations about one axis can be apart.
 const SAME_AXIS: f64 = 1e-6;
@@ -62,6 +64,18 @@ impl Reach {
     pub fn around(&self, (lowest, highest): (DVec3, DVec3)) -> (DVec3, DVec3) {
         let [low, high] = self.bounds.unwrap_or([lowest, highest]);
         (low.min(lowest), high.max(highest))
+    }
+
+    /// The box around a scene's box and this, on its lattice.
+    pub fn box_around(&self, own: UnitBox, lattice: &Lattice) -> UnitBox {
+        let Some([low, high]) = self.bounds else {
+            return own;
+        };
+        let units = |place: DVec3| (place - lattice.origin) / lattice.unit();
+        // The casts saturate.
+        let (low, high) = (units(low).floor().to_array(), units(high).ceil().to_array());
+        let side = |axis: usize| [(low[axis] as i16).max(-i16::MAX), high[axis] as i16];
+        own.union(&UnitBox([side(0), side(1), side(2)]))
     }
 }
 

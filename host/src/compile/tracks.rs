@@ -273,14 +273,6 @@ impl Scale {
                 },
                 factor: exp2(-header.coordinate_exponent()),
             },
-            ValueKind::Shift => Self::Linear {
-                offset: DVec3::ZERO,
-                factor: exp2(-header.coordinate_exponent()),
-            },
-            ValueKind::Scale => Self::Linear {
-                offset: DVec3::ZERO,
-                factor: exp2(24),
-            },
             ValueKind::Direction => {
                 let largest = track
                     .keys
@@ -298,6 +290,14 @@ impl Scale {
             ValueKind::Turns => Self::Linear {
                 offset: DVec3::ZERO,
                 factor: exp2(24) / 360.0,
+            },
+            ValueKind::Shift => Self::Linear {
+                offset: DVec3::ZERO,
+                factor: exp2(-header.coordinate_exponent()),
+            },
+            ValueKind::Scale => Self::Linear {
+                offset: DVec3::ZERO,
+                factor: exp2(24),
             },
             ValueKind::Radiance => Self::Color {
                 factor: exp2(20),

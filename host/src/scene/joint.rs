@@ -4,12 +4,16 @@ use super::placement::Placement;
 use super::track::{Track, TrackTarget};
 use super::{Instance, Scene};
 use glam::{DQuat, DVec3};
+use gridel_core::format::limits::SCALES;
 
 /// The least scale of a joint.
-pub const LEAST_SCALE: f64 = 1.0 / 16384.0;
+pub const LEAST_SCALE: f64 = SCALES[0] as f64 / SCALE;
 
 /// The largest scale of a joint.
-pub const LARGEST_SCALE: f64 = 64.0;
+pub const LARGEST_SCALE: f64 = SCALES[1] as f64 / SCALE;
+
+/// A scale of 1 in a blob.
+const SCALE: f64 = (1 << 24) as f64;
 
 /// The tracks of a joint.
 #[derive(Clone, Copy, Debug, Default)]

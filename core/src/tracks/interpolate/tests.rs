@@ -23,6 +23,8 @@ fn value<const N: usize>(
         first_word: 0,
     }];
     let all = Tracks(Records {
+        joints: &[],
+        instance_joints: &[],
         timeline: Timeline {
             ticks_per_second: 1,
             first: 0,

@@ -10,7 +10,10 @@ struct Random(u64);
 impl Random {
     /// From -1 to 1, and exact in single precision.
     fn number(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
         f64::from((self.0 >> 40) as f32 / (1_u32 << 23) as f32 - 1.0)
     }
 
@@ -82,12 +85,20 @@ fn animate(document: &mut Value, channels: &[Channel]) {
         let components = channel.values[0].len();
         for (count, kind, numbers) in [
             (channel.times.len(), "SCALAR", channel.times.clone()),
-            (channel.values.len(), ["", "SCALAR", "", "VEC3", "VEC4"][components], channel.values.concat()),
+            (
+                channel.values.len(),
+                ["", "SCALAR", "", "VEC3", "VEC4"][components],
+                channel.values.concat(),
+            ),
         ] {
             let view = document["bufferViews"].as_array().unwrap().len();
-            document["bufferViews"].as_array_mut().unwrap().push(json!({"buffer": buffer,
+            document["bufferViews"]
+                .as_array_mut()
+                .unwrap()
+                .push(json!({"buffer": buffer,
                 "byteOffset": bytes.len(), "byteLength": 4 * numbers.len()}));
-            let mut accessor = json!({"bufferView": view, "componentType": 5126, "count": count, "type": kind});
+            let mut accessor =
+                json!({"bufferView": view, "componentType": 5126, "count": count, "type": kind});
             if kind == "SCALAR" {
                 accessor["min"] = json!([numbers[0]]);
                 accessor["max"] = json!([numbers[numbers.len() - 1]]);
@@ -101,7 +112,10 @@ fn animate(document: &mut Value, channels: &[Channel]) {
             "interpolation": channel.interpolation}));
     }
     let data = STANDARD.encode(&bytes);
-    document["buffers"].as_array_mut().unwrap().push(json!({"byteLength": bytes.len(),
+    document["buffers"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({"byteLength": bytes.len(),
         "uri": format!("data:application/octet-stream;base64,{data}")}));
     document["animations"] = json!([{"channels": listed, "samplers": samplers}]);
 }
@@ -161,7 +175,8 @@ fn chain(random: &mut Random, uneven: bool) -> (Value, Vec<Rest>, Vec<Channel>) 
                 channels.push(channel(random, node, path, &scale));
             }
         }
-        let mut json = json!({"translation": rest[0], "rotation": rest[1], "scale": rest[2], "name": "link"});
+        let mut json =
+            json!({"translation": rest[0], "rotation": rest[1], "scale": rest[2], "name": "link"});
         match is_last {
             true => json["mesh"] = json!(0),
             false => json["children"] = json!([node + 1]),
@@ -181,7 +196,9 @@ fn chain(random: &mut Random, uneven: bool) -> (Value, Vec<Rest>, Vec<Channel>) 
 fn world(rests: &[Rest], channels: &[Channel], seconds: Option<f64>) -> DMat4 {
     let locals = rests.iter().enumerate().map(|(node, rest)| {
         let value = |index: usize, path: &str| {
-            let mut of_node = channels.iter().filter(|it| it.node == node && it.path == path);
+            let mut of_node = channels
+                .iter()
+                .filter(|it| it.node == node && it.path == path);
             let moved = seconds.and_then(|seconds| Some(of_node.next()?.at(seconds)));
             moved.unwrap_or_else(|| {
                 let mut all = [0.0; 4];
@@ -229,7 +246,10 @@ fn random_chains_move_as_their_nodes_do() {
             for (vertex, corner) in vertices.iter().zip(corners) {
                 let (found, expected) = (placement.point(*vertex), world.transform_point3(corner));
                 let error = found.distance(expected);
-                assert!(error < 1e-6 * (1.0 + expected.length()), "{number}, {seconds:?}: {error:e}\n{document}");
+                assert!(
+                    error < 1e-6 * (1.0 + expected.length()),
+                    "{number}, {seconds:?}: {error:e}\n{document}"
+                );
             }
         }
     }
@@ -259,16 +279,37 @@ fn two_keys(node: usize, path: &'static str, values: [&[f64]; 2]) -> Channel {
 
 const QUARTER: [&[f64]; 2] = [
     &[0.0, 0.0, 0.0, 1.0],
-    &[0.0, 0.0, std::f64::consts::FRAC_1_SQRT_2, std::f64::consts::FRAC_1_SQRT_2],
+    &[
+        0.0,
+        0.0,
+        std::f64::consts::FRAC_1_SQRT_2,
+        std::f64::consts::FRAC_1_SQRT_2,
+    ],
 ];
 
 #[test]
 fn what_would_bend_or_shear_stays_and_is_named() {
     for (outer, channel, words) in [
-        (json!({"scale": [1, 2, 1]}), two_keys(1, "rotation", QUARTER), "node 1 \"tile\" turns below a node"),
-        (json!({}), two_keys(1, "scale", [&[1.0, 1.0, 1.0], &[1.0, 2.0, 1.0]]), "grows unevenly"),
-        (json!({}), two_keys(1, "scale", [&[1.0, 1.0, 1.0], &[100.0, 100.0, 100.0]]), "64 times"),
-        (json!({}), two_keys(1, "scale", [&[1.0, 1.0, 1.0], &[-1.0, -1.0, -1.0]]), "grows unevenly"),
+        (
+            json!({"scale": [1, 2, 1]}),
+            two_keys(1, "rotation", QUARTER),
+            "node 1 \"tile\" turns below a node",
+        ),
+        (
+            json!({}),
+            two_keys(1, "scale", [&[1.0, 1.0, 1.0], &[1.0, 2.0, 1.0]]),
+            "grows unevenly",
+        ),
+        (
+            json!({}),
+            two_keys(1, "scale", [&[1.0, 1.0, 1.0], &[100.0, 100.0, 100.0]]),
+            "64 times",
+        ),
+        (
+            json!({}),
+            two_keys(1, "scale", [&[1.0, 1.0, 1.0], &[-1.0, -1.0, -1.0]]),
+            "grows unevenly",
+        ),
     ] {
         let imported = below(outer, &[channel]);
         let [warning] = &imported.warnings[..] else {
@@ -276,7 +317,10 @@ fn what_would_bend_or_shear_stays_and_is_named() {
         };
         assert!(warning.contains(words), "{warning}");
         assert!(imported.scene.joints.is_empty() && imported.scene.tracks.is_empty());
-        assert_eq!((imported.scene.objects.len(), imported.scene.instances.len()), (2, 0));
+        assert_eq!(
+            (imported.scene.objects.len(), imported.scene.instances.len()),
+            (2, 0)
+        );
     }
     // A scale that is uneven at rest alone bends nothing, and neither does a shift below it.
     let turned = below(json!({}), &[two_keys(0, "rotation", QUARTER)]);
@@ -284,7 +328,10 @@ fn what_would_bend_or_shear_stays_and_is_named() {
     let shifted = below(json!({"scale": [1, 2, 1]}), &[shifted]);
     for imported in [&turned, &shifted] {
         assert_eq!(imported.warnings, Vec::<String>::new());
-        assert_eq!((imported.scene.objects.len(), imported.scene.instances.len()), (1, 1));
+        assert_eq!(
+            (imported.scene.objects.len(), imported.scene.instances.len()),
+            (1, 1)
+        );
     }
     let key = shifted.scene.tracks[0].keys[1];
     assert_eq!(key.vector(), DVec3::new(0.0, 2.0, 0.0));
@@ -293,17 +340,28 @@ fn what_would_bend_or_shear_stays_and_is_named() {
 #[test]
 fn what_shrinks_to_nothing_keeps_a_little() {
     let imported = below(json!({}), &[two_keys(0, "scale", [&[1.0; 3], &[0.0; 3]])]);
-    assert!(imported.warnings[0].contains("1/256"), "{:?}", imported.warnings);
+    assert!(
+        imported.warnings[0].contains("1/256"),
+        "{:?}",
+        imported.warnings
+    );
     assert_eq!(imported.scene.tracks[0].keys[1].value[0], 1.0 / 256.0);
 }
 
 #[test]
 fn nodes_that_stay_at_rest_make_no_joint() {
     let still = two_keys(1, "translation", [&[0.0; 3], &[0.0; 3]]);
-    let back = two_keys(0, "rotation", [&[0.0, 0.0, 0.0, 1.0], &[0.0, 0.0, 0.0, -1.0]]);
+    let back = two_keys(
+        0,
+        "rotation",
+        [&[0.0, 0.0, 0.0, 1.0], &[0.0, 0.0, 0.0, -1.0]],
+    );
     let imported = below(json!({}), &[still, back]);
     assert_eq!(imported.warnings, Vec::<String>::new());
-    assert_eq!((imported.scene.objects.len(), imported.scene.joints.len()), (2, 0));
+    assert_eq!(
+        (imported.scene.objects.len(), imported.scene.joints.len()),
+        (2, 0)
+    );
 }
 
 #[test]
@@ -317,8 +375,20 @@ fn a_mesh_of_several_moving_nodes_is_one_part() {
     animate(&mut document, &channels);
     let scene = read(document.to_string().as_bytes()).unwrap().scene;
     assert_eq!((scene.parts.len(), scene.instances.len()), (1, 2));
-    let joints: Vec<_> = scene.joints.iter().map(|it| (it.name.as_str(), it.parent)).collect();
+    let joints: Vec<_> = scene
+        .joints
+        .iter()
+        .map(|it| (it.name.as_str(), it.parent))
+        .collect();
     assert_eq!(joints, [("arm", None), ("node 2", Some(0))]);
-    assert_eq!([0, 1].map(|it| scene.instances[it].joint), [Some(0), Some(1)]);
-    assert!(scene.tracks.iter().all(|track| track.target == TrackTarget::JointShift));
+    assert_eq!(
+        [0, 1].map(|it| scene.instances[it].joint),
+        [Some(0), Some(1)]
+    );
+    assert!(
+        scene
+            .tracks
+            .iter()
+            .all(|track| track.target == TrackTarget::JointShift)
+    );
 }

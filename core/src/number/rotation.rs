@@ -1,0 +1,58 @@
+//! Rotations in integers.
+
+use crate::number::{Angle, Fixed, Scalar, Vectors};
+
+/// The matrix of a quaternion of any length, x, y, z and w: its columns are where the axes are turned to, as ratios.
+/// `None` if it has no length.
+pub(crate) fn columns(rotation: [i32; 4]) -> Option<[[Fixed; 3]; 3]> {
+    let [x, y, z, w] = unit_quaternion(rotation)?;
+    let one = Fixed::ONE;
+    let twice = |a: Fixed, b: Fixed| {
+        let product = a * b;
+        product + product
+    };
+    Some([
+        [
+            one - twice(y, y) - twice(z, z),
+            twice(x, y) + twice(z, w),
+            twice(x, z) - twice(y, w),
+        ],
+        [
+            twice(x, y) - twice(z, w),
+            one - twice(x, x) - twice(z, z),
+            twice(y, z) + twice(x, w),
+        ],
+        [
+            twice(x, z) + twice(y, w),
+            twice(y, z) - twice(x, w),
+            one - twice(x, x) - twice(y, y),
+        ],
+    ])
+}
+
+/// The quaternion that turns about an axis of any length, counterclockwise as seen from its tip; `None` if the axis has
+/// no length.
+pub(crate) fn about(axis: [i32; 3], angle: Angle) -> Option<[i32; 4]> {
+    let (axis, length) = Fixed::normalize(Fixed::direction(axis.map(i64::from)));
+    if length == Fixed::ZERO {
+        return None;
+    }
+    let [sine, cosine] = Angle(angle.0 >> 1).sin_cos().map(Fixed);
+    let [x, y, z] = axis.map(|x| (x * sine).0);
+    Some([x, y, z, cosine.0])
+}
+
+/// The quaternion at length 1, as ratios; `None` if it has no length.
+fn unit_quaternion(rotation: [i32; 4]) -> Option<[Fixed; 4]> {
+    let all = rotation.iter().fold(0, |all, x| all | x.unsigned_abs());
+    // 29 bits each, so that the length of three has no more than 30.
+    let scaled = rotation.map(|x| {
+        let up = i64::from(x).wrapping_shl(all.leading_zeros());
+        Fixed((up >> 3) as i32)
+    });
+    let [x, y, z, w] = scaled;
+    let (axis, sine) = Fixed::normalize([x, y, z]);
+    let ([sine, cosine, _], length) = Fixed::normalize([sine, w, Fixed::ZERO]);
+    let [x, y, z] = axis.map(|x| x * sine);
+    (length > Fixed::ZERO).then_some([x, y, z, cosine])
+}

@@ -1,0 +1,202 @@
+//! Instances in RAM: where a program places them.
+
+use crate::format::instance::Instance;
+use crate::format::range::Ranges;
+use crate::format::record::Pair;
+use crate::format::{BlobError, Location, SectionKind};
+use crate::instances::build::build;
+use crate::instances::placed::Placed;
+use crate::instances::top::Top;
+use crate::scene::{Motion, Scene};
+use crate::target::InstancesOnly;
+
+/// Room for the instances of a scene, of at most `MOST`, where a program moves them: 92 bytes each.
+///
+/// ```
+/// # static BLOB: &[u8] =
+/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+/// use gridel_core::{Angle, BlobError, Motion, Parts, Poses, Position, Scene};
+///
+/// /// Turns the first instance of a scene about the origin.
+/// fn turned(blob: &[u8]) -> Result<(), BlobError> {
+///     let parts = Parts::<4>::from_bytes(blob)?;
+///     let scene = Scene::with_parts(blob, &parts)?;
+///     let mut memory = Poses::<6>::new();
+///     for dial in 0..24 {
+///         let mut poses = memory.at_rest(&scene)?;
+///         let turn = Motion::turn(Position([0; 3]), [0, 1, 0], Angle::of_turn(dial, 24));
+///         if let Some(turn) = turn {
+///             poses.place(&scene, 0, &turn)?;
+///         }
+///         let posed = scene.with_poses(poses)?;
+///         assert_eq!(posed.instances().len(), scene.instances().len());
+///     }
+///     Ok(())
+/// }
+/// # // A blob without instances has none to be turned.
+/// # assert!(turned(BLOB).is_err());
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Poses<const MOST: usize> {
+    instances: [Instance; MOST],
+    pairs: [Pair; MOST],
+    order: [u32; MOST],
+}
+
+impl<const MOST: usize> Poses<MOST> {
+    /// Room that holds nothing yet.
+    pub const fn new() -> Self {
+        const INSTANCE: Instance = Instance {
+            matrix: [[0; 3]; 3],
+            center: [0; 3],
+            exponent: 0,
+            part: 0,
+            number: 0,
+        };
+        const PAIR: Pair = Pair {
+            planes: [[[0; 2]; 2]; 3],
+            children: [0; 2],
+        };
+        Self {
+            instances: [INSTANCE; MOST],
+            pairs: [PAIR; MOST],
+            order: [0; MOST],
+        }
+    }
+
+    /// The instances of a scene where it places them.
+    ///
+    /// # Errors
+    /// If the scene has more than `MOST`.
+    pub fn at_rest(&mut self, scene: &Scene<'_>) -> Result<PosesView<'_>, BlobError> {
+        PosesView::at_rest(scene, &mut self.instances, &mut self.pairs, &mut self.order)
+    }
+}
+
+impl<const MOST: usize> Default for Poses<MOST> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The instances of a scene while a program moves them, in memory of the program's: see [`Poses`].
+///
+/// From slices directly where the number of instances is not known to the compiler.
+#[derive(Debug)]
+pub struct PosesView<'p> {
+    instances: &'p mut [Instance],
+    pairs: &'p mut [Pair],
+    order: &'p mut [u32],
+}
+
+impl<'p> PosesView<'p> {
+    /// The instances of a scene where it places them, in slices of at least as many records.
+    ///
+    /// # Errors
+    /// If a slice is too short.
+    pub fn at_rest(
+        scene: &Scene<'_>,
+        instances: &'p mut [Instance],
+        pairs: &'p mut [Pair],
+        order: &'p mut [u32],
+    ) -> Result<Self, BlobError> {
+        let rest = scene.instances();
+        let expected = rest.len();
+        let found = instances.len().min(pairs.len()).min(order.len());
+        let too_few = BlobError::Count {
+            section: SectionKind::Instances,
+            found,
+            expected,
+        };
+        let instances = instances.get_mut(..expected).ok_or(too_few)?;
+        let pairs = pairs.get_mut(..expected.saturating_sub(1));
+        let order = order.get_mut(..expected);
+        for (to, from) in instances.iter_mut().zip(rest) {
+            *to = *from;
+        }
+        Ok(Self {
+            instances,
+            pairs: pairs.ok_or(too_few)?,
+            order: order.ok_or(too_few)?,
+        })
+    }
+
+    /// Places an instance, given by its number in scene-file order: a motion leads it away from where the scene, as it was
+    /// loaded, places it. Looks for the number among all instances.
+    ///
+    /// # Errors
+    /// If there is no such instance, or it is too far away, too large or too small for the scene's lattice.
+    pub fn place(
+        &mut self,
+        scene: &Scene<'_>,
+        number: u32,
+        motion: &Motion,
+    ) -> Result<(), BlobError> {
+        let numbered = |it: &Instance| it.number == number;
+        let index = self.instances.iter().position(numbered);
+        self.place_at(scene, index.unwrap_or(usize::MAX), motion)
+    }
+
+    /// Places an instance as [`place`](Self::place) does, given by its index among [`Scene::instances`]: in constant
+    /// time.
+    ///
+    /// # Errors
+    /// As [`place`](Self::place).
+    pub fn place_at(
+        &mut self,
+        scene: &Scene<'_>,
+        index: usize,
+        motion: &Motion,
+    ) -> Result<(), BlobError> {
+        let section = SectionKind::Instances;
+        let rest = scene.instances();
+        let (Some(rest), Some(pose)) = (rest.get(index), self.instances.get_mut(index)) else {
+            return Err(BlobError::Count {
+                section,
+                found: rest.len(),
+                expected: index.saturating_add(1),
+            });
+        };
+        let placed = motion.place(scene.header(), rest);
+        placed.check_ranges(Location::Record(section, index))?;
+        *pose = placed;
+        Ok(())
+    }
+}
+
+impl<'a> Scene<'a> {
+    /// The scene with its instances where a program places them; builds the hierarchy above them, in place.
+    ///
+    /// For `n` instances it takes at most `24 n` steps on each of `log2 n` levels. The blob's box is the room for
+    /// motion: a scene file's `room` widens it.
+    ///
+    /// # Errors
+    /// If these are not as many instances as the scene has, or one leaves the scene's box.
+    pub fn with_poses(&self, poses: PosesView<'a>) -> Result<Self, BlobError> {
+        let PosesView {
+            instances,
+            pairs,
+            order,
+        } = poses;
+        let (found, expected) = (instances.len(), self.instances().len());
+        let Some(placed) = self.placed.get().filter(|_| found == expected) else {
+            return Err(BlobError::Count {
+                section: SectionKind::Instances,
+                found,
+                expected,
+            });
+        };
+        build(instances, order, pairs, self.bounds(), |instance| {
+            let (part, _) = placed.part(instance)?;
+            instance.around(part.bounds())
+        })?;
+        let placed = Placed {
+            top: Top { instances, pairs },
+            ..*placed
+        };
+        Ok(Self {
+            placed: InstancesOnly::new(|| placed),
+            ..*self
+        })
+    }
+}
