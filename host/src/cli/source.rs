@@ -1,6 +1,8 @@
 //! The input of a command: a scene blob, or a scene file that is compiled on the spot.
 //! The first bytes distinguish them.
 
+mod warnings;
+
 use super::arguments::{LightChange, SceneOptions, TraceOptions, check_quality};
 use super::changes::{Changes, fault};
 use super::failure::Failure;
@@ -16,6 +18,7 @@ use gridel_host::scene::{self, Imported, Track};
 use gridel_host::state::{self, State, StateError};
 use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::Path;
+use warnings::{far_moved, names_changed};
 
 /// A blob, from wherever it came.
 pub struct Source {
@@ -251,6 +254,11 @@ impl Source {
         })
     }
 
+    /// Joints on which instances of the blob hang.
+    pub fn joints(&self) -> usize {
+        Tracks::from_bytes(self.blob.bytes()).map_or(0, |tracks| tracks.joints().len())
+    }
+
     /// What of a scene is otherwise at a time of its tracks; options that were given come before the tracks.
     pub fn changes_at(
         &self,
@@ -273,11 +281,13 @@ impl Source {
                 view: state.view,
                 lights: state.lights.clone(),
                 materials: None,
+                poses: None,
                 time: None,
             },
         };
         Ok(Changes {
             materials: Some(state.materials),
+            poses: state.poses,
             time: Some(time),
             ..changes
         })
@@ -400,42 +410,6 @@ impl Source {
         }
         found
     }
-}
-
-/// Names the primitives that the lattice moves far.
-fn far_moved(report: &compile::Report, lattice_bits: u8) -> Option<String> {
-    const NAMED: usize = 3;
-    if report.far_moved.count() == 0 {
-        return None;
-    }
-    let remedy = if lattice_bits < *compile::LATTICE_BITS.end() {
-        "use more `--lattice-bits`"
-    } else {
-        "make them thicker or larger"
-    };
-    Some(format!(
-        "the lattice moves the surfaces of some solids by several steps, {}; {remedy}",
-        report.far_moved.names(NAMED).join(", ")
-    ))
-}
-
-/// Says which names the blob lacks or has in part.
-fn names_changed(report: &compile::Report) -> Option<String> {
-    let names = report.names?;
-    if names.left_out {
-        return Some(String::from(
-            "the names are left out, because the blob would exceed `--max-bytes`; raise it to keep them",
-        ));
-    }
-    (names.shortened > 0).then(|| {
-        format!(
-            "{} cut to 255 bytes in the blob; give shorter names",
-            match names.shortened {
-                1 => String::from("1 name is"),
-                many => format!("{} names are", grouped(many)),
-            }
-        )
-    })
 }
 
 /// Reads a scene file, warns of what its importer passed over, and changes what was asked for.

@@ -24,6 +24,8 @@ mod polygon;
 mod size;
 mod source_span;
 #[cfg(test)]
+pub(crate) mod test_chains;
+#[cfg(test)]
 mod test_scenes;
 mod text;
 mod track;

@@ -12,7 +12,7 @@ pub const TICKS_PER_SECOND: u32 = 48_000;
 /// The values of one property at some times.
 ///
 /// Positions and shifts are in scene units, angles in degrees. The direction of a light is the way the light travels.
-/// Rotations are quaternions, of any length but 0.
+/// Rotations are quaternions, of about length 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
     pub target: TrackTarget,

@@ -1,108 +1,14 @@
 use super::*;
-use crate::scene::{Instance, Part, SourceSpan, TrackTarget};
-
-/// Random numbers, the same in each run.
-struct Random(u64);
-
-impl Random {
-    /// From -1 to 1.
-    fn number(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.number(), self.number(), self.number())
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        ((self.number() * 0.5 + 0.5) * count as f64) as usize % count
-    }
-}
-
-fn track(random: &mut Random, target: TrackTarget, index: usize, hinge: bool) -> Track {
-    let interpolation = Interpolation::ALL[random.below(3)];
-    let axis = random.vector();
-    let keys = (0..2 + random.below(3)).map(|number| {
-        let mut value = |size: f64| match target {
-            TrackTarget::JointRotation if hinge => {
-                (axis * random.number()).extend(random.number()) * size
-            }
-            TrackTarget::JointRotation => random.vector().extend(random.number()) * size,
-            TrackTarget::JointShift => random.vector().extend(0.0) * size,
-            _ => DVec4::X * (0.9 * random.number() * size),
-        };
-        let rest = match target {
-            TrackTarget::JointScale => DVec4::X,
-            _ => DVec4::ZERO,
-        };
-        Key {
-            seconds: number as f64 * 0.5,
-            value: (rest + value(1.0)).to_array(),
-            entering: value(2.0).to_array(),
-            leaving: value(2.0).to_array(),
-        }
-    });
-    Track {
-        target,
-        index,
-        interpolation,
-        keys: keys.collect(),
-        place: SourceSpan::default(),
-    }
-}
-
-/// A scene of a chain of joints with an instance at its end, and the box of its part.
-fn chain(random: &mut Random) -> (Scene, [DVec3; 2]) {
-    let joints = 1 + random.below(5);
-    let mut scene = Scene::default();
-    for number in 0..joints {
-        scene.joints.push(Joint {
-            name: String::new(),
-            parent: number.checked_sub(1),
-            pivot: random.vector() * 3.0,
-            place: SourceSpan::default(),
-        });
-        for target in [
-            TrackTarget::JointRotation,
-            TrackTarget::JointShift,
-            TrackTarget::JointScale,
-        ] {
-            if random.number() > 0.0 {
-                let hinge = random.number() > 0.0;
-                scene.tracks.push(track(random, target, number, hinge));
-            }
-        }
-    }
-    let [one, other] = [random.vector(), random.vector()];
-    scene.parts.push(Part {
-        name: String::new(),
-        objects: Vec::new(),
-        place: SourceSpan::default(),
-    });
-    scene.instances.push(Instance {
-        name: String::new(),
-        part: 0,
-        placement: Placement {
-            rotation: DQuat::from_vec4(random.vector().extend(0.5)).normalize(),
-            translation: random.vector() * 4.0,
-            scale: 1.5,
-        },
-        joint: Some(joints - 1),
-        place: SourceSpan::default(),
-    });
-    (scene, [one.min(other), one.max(other)])
-}
+use crate::scene::test_chains::{Random, chain};
+use crate::scene::{SourceSpan, TrackTarget};
 
 #[test]
 fn reach_holds_random_chains_at_all_times() {
     let mut random = Random(7);
     let mut smallest = f64::INFINITY;
     for _ in 0..500 {
-        let (scene, part) = chain(&mut random);
+        let scene = chain(&mut random, true);
+        let part = [DVec3::new(-1.0, -2.0, 0.5), DVec3::new(3.0, 0.0, 1.0)];
         let reach = Reach::of(&scene, &[part]);
         let [low, high] = reach.bounds.unwrap();
         let rest = scene.instances[0].placement;
@@ -137,7 +43,7 @@ fn reach_holds_random_chains_at_all_times() {
 
 /// The reach of a box from 1 to 2 along x, half as high and deep, on one joint.
 fn of_tracks(tracks: Vec<(TrackTarget, Vec<[f64; 4]>)>) -> [DVec3; 2] {
-    let mut scene = chain(&mut Random(1)).0;
+    let mut scene = chain(&mut Random(1), true);
     scene.joints.truncate(1);
     scene.joints[0].pivot = DVec3::ZERO;
     scene.instances[0].joint = Some(0);

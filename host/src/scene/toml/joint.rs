@@ -7,6 +7,8 @@ use crate::scene::SceneError;
 use glam::{DAffine3, DVec3};
 use std::collections::{HashMap, HashSet};
 
+const KEYS: &[&str] = &["name", "parent", "pivot"];
+
 /// The joints of a file.
 #[derive(Default)]
 pub(super) struct Joints {
@@ -18,11 +20,13 @@ pub(super) struct Joints {
 pub(super) fn read(list: Value<'_>) -> Result<Joints, SceneError> {
     let mut joints = Joints::default();
     let example = "`[[joint]]` above its keys";
-    let tables = list.items(example)?;
-    let names = tables.map(|table| table.member("joint", "name")?.filled());
-    let names: HashSet<&str> = names.collect::<Result<_, _>>()?;
+    let mut names = HashSet::new();
     for table in list.items(example)? {
-        let fields = table.fields("joint", &[&["name", "parent", "pivot"]])?;
+        let fields = table.fields("joint", &[KEYS])?;
+        names.insert(fields.require("name")?.filled()?);
+    }
+    for table in list.items(example)? {
+        let fields = table.fields("joint", &[KEYS])?;
         let name = fields.require("name")?.name()?;
         let parent = fields.or("parent", None, |value| {
             let text = value.filled()?;

@@ -235,6 +235,12 @@ fn keys(fields: &Fields<'_>, target: TrackTarget) -> Result<Vec<Key>, SceneError
     check_count(values, values_of.len(), keys.len())?;
     for (key, value) in keys.iter_mut().zip(values_of) {
         if kind == ValueKind::Rotation && !hinge {
+            if !value.is_array() && !value.is_table() {
+                return Err(value.error(
+                    "`values` holds a number, and a rotation without an `axis` has three angles",
+                    "write `[0, 90, 0]`, or add the axis: `axis = [0, 1, 0]`",
+                ));
+            }
             let turn = DQuat::from_mat3(&transform::rotation(value)?).normalize();
             key.value = turn.to_array();
             continue;

@@ -240,3 +240,15 @@ fn targets_of_joints_are_found_by_name() {
         assert_eq!((tracks[0].target, tracks[0].index), (expected, index));
     }
 }
+
+#[test]
+fn documented_door_swings() {
+    let document = include_str!("../../../../docs/SCENE.md");
+    let (_, section) = document.split_once("\n## Joints\n").unwrap();
+    let (_, example) = section.split_once("```toml\n").unwrap();
+    let imported = load(example.split_once("```").unwrap().0).unwrap();
+    assert_eq!(imported.warnings, Vec::<String>::new());
+    let open = imported.scene.instances_at(2.0);
+    assert_near(open[0].placement.point(DVec3::X), DVec3::Z);
+    assert_eq!(open[1].joint, Some(1));
+}
