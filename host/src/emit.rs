@@ -31,6 +31,8 @@ pub struct Emitted<'s> {
     pub scene: &'s Scene<'s>,
     pub structure: Structure,
     pub format: Format,
+    /// Joints on which instances hang.
+    pub joints: usize,
     /// Bytes that the blob may take, and the board whose they are.
     pub budget: Option<(u64, &'static Board)>,
 }
@@ -57,6 +59,7 @@ impl Emitted<'_> {
     ///     scene: &scene,
     ///     structure: Structure::DualSplit,
     ///     format: Format::Fixed,
+    ///     joints: 0,
     ///     budget: None,
     /// };
     /// assert!(emitted.features().contains(&"sphere"));
@@ -80,7 +83,10 @@ impl Emitted<'_> {
             .into_iter()
             .all(|it| Prevalidated::STRUCTURES.contains(&it));
         let parts = scene.parts().len();
-        let with_parts = LOAD_WITH_PARTS.replace("PARTS_COUNT", &parts.to_string());
+        let with_parts = LOAD_WITH_PARTS
+            .replace("PARTS_COUNT", &parts.to_string())
+            .replace("INSTANCES_COUNT", &scene.instances().len().to_string())
+            .replace("JOINTS_COUNT", &self.joints.to_string());
         let load = match parts {
             0 if is_prevalidated => LOAD_PREVALIDATED,
             0 => LOAD_CHECKED,
@@ -197,6 +203,16 @@ pub fn load() -> Result<gridel_core::Scene<'static>, gridel_core::BlobError> {
 
 /// Loading of a scene that places parts, which are loaded before.
 const LOAD_WITH_PARTS: &str = "\
+/// Instances of the scene.
+#[allow(dead_code)]
+pub const INSTANCES: usize = INSTANCES_COUNT;
+/// Joints on which they hang.
+#[allow(dead_code)]
+pub const JOINTS: usize = JOINTS_COUNT;
+/// Room for the instances where they move.
+#[allow(dead_code)]
+pub type Poses = gridel_core::Poses<INSTANCES>;
+
 /// The views of the parts that instances place.
 pub type Parts = gridel_core::Parts<'static, PARTS_COUNT>;
 

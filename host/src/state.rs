@@ -1,8 +1,10 @@
-//! Camera, lights and materials of a blob at a time, as its tracks say.
+//! Camera, lights, materials and instances of a blob at a time, as its tracks say.
 
-use gridel_core::format::record::{Light, Material, View};
+use bytemuck::Zeroable;
+use gridel_core::format::instance::Instance;
+use gridel_core::format::record::{Light, Material, Pair, View};
 use gridel_core::render::CameraError;
-use gridel_core::{BlobError, Scene, Tracks};
+use gridel_core::{BlobError, Motion, PosesView, Scene, Tracks};
 
 /// What of a scene changes with time, at some time.
 ///
@@ -28,6 +30,52 @@ pub struct State {
     pub view: View,
     pub lights: Vec<Light>,
     pub materials: Vec<Material>,
+    /// `None` where no instance hangs on a joint.
+    pub poses: Option<Poses>,
+}
+
+/// Instances where joints have moved them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Poses {
+    instances: Vec<Instance>,
+    /// The hierarchy above them.
+    pairs: Vec<Pair>,
+}
+
+impl Poses {
+    /// The instances of a scene, as it was loaded, at a time in ticks; `None` where none hangs on a joint.
+    ///
+    /// # Errors
+    /// If an instance leaves the scene's box, which those of a compiled scene do not, or the tracks are not those of the
+    /// scene's blob.
+    pub fn at(
+        scene: &Scene<'_>,
+        tracks: &Tracks<'_>,
+        time: i32,
+    ) -> Result<Option<Self>, BlobError> {
+        let count = scene.instances().len();
+        if count == 0 || tracks.joints().is_empty() {
+            return Ok(None);
+        }
+        let mut motions = vec![Motion::REST; tracks.joints().len()];
+        tracks.motions_at(time, &mut motions)?;
+        let mut instances = scene.instances().to_vec();
+        let mut pairs = vec![Pair::zeroed(); count];
+        let mut order = vec![0; count];
+        let mut poses = PosesView::at_rest(scene, &mut instances, &mut pairs, &mut order)?;
+        tracks.place(scene, &motions, &mut poses)?;
+        scene.with_poses(poses)?;
+        pairs.truncate(count - 1);
+        Ok(Some(Self { instances, pairs }))
+    }
+
+    /// The scene with its instances here.
+    ///
+    /// # Errors
+    /// If they are those of another scene.
+    pub fn apply<'a>(&'a self, scene: &Scene<'a>) -> Result<Scene<'a>, BlobError> {
+        scene.with_instances(&self.instances, &self.pairs)
+    }
 }
 
 /// Why a scene has no state at a time.
@@ -36,6 +84,9 @@ pub enum StateError {
     /// The camera is none at this time, in seconds.
     #[error("at {seconds} s there is no picture: {source}")]
     Camera { seconds: f64, source: CameraError },
+    /// An instance cannot be where it is led at this time, in seconds.
+    #[error("at {seconds} s an instance cannot be placed: {source}")]
+    Instances { seconds: f64, source: BlobError },
     /// The tracks are of another blob.
     #[error(transparent)]
     Blob(#[from] BlobError),
@@ -45,24 +96,25 @@ impl State {
     /// The state of a scene at a time, in ticks of its tracks.
     ///
     /// # Errors
-    /// If the camera comes to look nowhere or along the direction that points up, or the tracks are not those of the
-    /// scene's blob.
+    /// If the camera comes to look nowhere or along the direction that points up, an instance leaves the scene's box, or
+    /// the tracks are not those of the scene's blob.
     pub fn at(scene: &Scene<'_>, tracks: &Tracks<'_>, time: i32) -> Result<Self, StateError> {
+        let seconds = f64::from(time) / f64::from(tracks.ticks_per_second());
         let camera = tracks
             .camera_at(time)
-            .map_err(|source| StateError::Camera {
-                seconds: f64::from(time) / f64::from(tracks.ticks_per_second()),
-                source,
-            })?;
+            .map_err(|source| StateError::Camera { seconds, source })?;
         let view = camera.map_or(*scene.view(), |camera| camera.view(scene));
         let mut lights = scene.lights().to_vec();
         tracks.lights_at(scene, time, &mut lights)?;
         let mut materials = scene.materials().to_vec();
         tracks.materials_at(scene, time, &mut materials)?;
+        let poses = Poses::at(scene, tracks, time)
+            .map_err(|source| StateError::Instances { seconds, source })?;
         Ok(Self {
             view,
             lights,
             materials,
+            poses,
         })
     }
 
@@ -72,7 +124,11 @@ impl State {
     /// If a value is out of its range, which that of a track never is.
     pub fn apply<'a>(&'a self, scene: &Scene<'a>) -> Result<Scene<'a>, BlobError> {
         let scene = scene.with_view(&self.view)?.with_lights(&self.lights)?;
-        scene.with_materials(&self.materials)
+        let scene = scene.with_materials(&self.materials)?;
+        match &self.poses {
+            Some(poses) => poses.apply(&scene),
+            None => Ok(scene),
+        }
     }
 }
 
@@ -81,3 +137,6 @@ pub fn ticks(tracks: &Tracks<'_>, seconds: f64) -> i32 {
     // The cast saturates.
     (seconds * f64::from(tracks.ticks_per_second())).round() as i32
 }
+
+#[cfg(test)]
+mod tests;

@@ -41,6 +41,7 @@ fn instance(part: usize, placement: Placement) -> Instance {
         name: String::from("copy"),
         part,
         placement,
+        joint: None,
         place: SourceSpan::default(),
     }
 }

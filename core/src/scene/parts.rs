@@ -2,7 +2,7 @@
 
 use crate::format::instance::{Instance, Part};
 use crate::format::range::{At, at_most, exactly};
-use crate::format::record::{ALIGNMENT, Header};
+use crate::format::record::{ALIGNMENT, Header, UnitBox};
 use crate::format::{BlobError, Field, Location, Reason, SectionKind, Sections};
 use crate::instances::check::{check_instance, check_top};
 use crate::instances::placed::Placed;
@@ -139,6 +139,14 @@ pub(in crate::scene) fn check_placed<'a>(
         header.primitives,
         next.clamp(0, u32::MAX.into()) as u32,
     )?;
+    check_instances(placed, &header.bounds)
+}
+
+/// Proves instances and the hierarchy above them, in a scene of this box.
+pub(in crate::scene) fn check_instances(
+    placed: &Placed<'_, Scene<'_>>,
+    bounds: &UnitBox,
+) -> Result<(), BlobError> {
     let section = SectionKind::Instances;
     let (parts, instances) = (placed.parts.len() as i64, placed.top.instances.len() as i64);
     for (index, instance) in placed.top.instances.iter().enumerate() {
@@ -147,7 +155,7 @@ pub(in crate::scene) fn check_placed<'a>(
         at.within(Field::Instance, instance.number.into(), 0, instances - 1)?;
         check_instance(index, instance)?;
     }
-    check_top(&placed.top, &header.bounds, |instance| {
+    check_top(&placed.top, bounds, |instance| {
         let (part, _) = placed.part(instance)?;
         instance.around(part.bounds())
     })

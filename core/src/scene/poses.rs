@@ -7,6 +7,7 @@ use crate::format::{BlobError, Location, SectionKind};
 use crate::instances::build::build;
 use crate::instances::placed::Placed;
 use crate::instances::top::Top;
+use crate::scene::parts::check_instances;
 use crate::scene::{Motion, Scene};
 use crate::target::InstancesOnly;
 
@@ -194,6 +195,37 @@ impl<'a> Scene<'a> {
             top: Top { instances, pairs },
             ..*placed
         };
+        Ok(Self {
+            placed: InstancesOnly::new(|| placed),
+            ..*self
+        })
+    }
+
+    /// The scene with instances and the hierarchy above them that [`with_poses`](Self::with_poses) built before, in
+    /// memory that is only read by now.
+    ///
+    /// Proves all that loading proves of instances, in time linear in their number.
+    ///
+    /// # Errors
+    /// If they are not as many as the scene has, or not in its box, or the hierarchy does not lead to all of them.
+    pub fn with_instances(
+        &self,
+        instances: &'a [Instance],
+        pairs: &'a [Pair],
+    ) -> Result<Self, BlobError> {
+        let (found, expected) = (instances.len(), self.instances().len());
+        let Some(placed) = self.placed.get().filter(|_| found == expected) else {
+            return Err(BlobError::Count {
+                section: SectionKind::Instances,
+                found,
+                expected,
+            });
+        };
+        let placed = Placed {
+            top: Top { instances, pairs },
+            ..*placed
+        };
+        check_instances(&placed, self.bounds())?;
         Ok(Self {
             placed: InstancesOnly::new(|| placed),
             ..*self

@@ -206,6 +206,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             scene: &scene,
             structure: source.structure(&scene, None)?,
             format,
+            joints: source.joints(),
             budget: room,
         };
         let is_new = !folder.exists();

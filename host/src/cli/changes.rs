@@ -6,12 +6,15 @@ use gridel_core::format::record::{self, View};
 use gridel_core::{BlobError, Scene};
 use gridel_host::compile;
 use gridel_host::scene::Light;
+use gridel_host::state::Poses;
 
 /// What is to be otherwise than in a blob.
 pub struct Changes {
     pub view: View,
     pub lights: Vec<record::Light>,
     pub materials: Option<Vec<record::Material>>,
+    /// Instances that joints have moved.
+    pub poses: Option<Poses>,
     /// In ticks.
     pub time: Option<i32>,
 }
@@ -30,8 +33,12 @@ impl Changes {
     /// The scene with these changes, or why they do not fit it.
     pub fn of_scene<'a>(&'a self, scene: &Scene<'a>) -> Result<Scene<'a>, BlobError> {
         let changed = scene.with_view(&self.view)?.with_lights(&self.lights)?;
-        match &self.materials {
-            Some(materials) => changed.with_materials(materials),
+        let changed = match &self.materials {
+            Some(materials) => changed.with_materials(materials)?,
+            None => changed,
+        };
+        match &self.poses {
+            Some(poses) => poses.apply(&changed),
             None => Ok(changed),
         }
     }
@@ -59,6 +66,7 @@ impl Changes {
         let lights = records.collect::<Result<_, _>>();
         Ok(Self {
             materials: None,
+            poses: None,
             time: None,
             view,
             lights: lights.map_err(|error| Failure::Usage(miette::Report::new(error)))?,

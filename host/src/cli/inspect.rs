@@ -1,5 +1,7 @@
 //! `gridel inspect`: what is in a blob, and what it takes to work with it.
 
+mod joints;
+
 use super::arguments::{SceneOptions, TargetOptions};
 use super::effects::CalledFor;
 use super::failure::Failure;
@@ -13,6 +15,7 @@ use gridel_host::compile::{self, Names};
 use gridel_host::measure::board::{Account, MemoryReport};
 use gridel_host::measure::{MemoryMap, WorkingMemory, working_memory};
 use gridel_host::table::{Align, Table, counted, grouped, power_of_two, printable};
+use joints::JointLine;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -49,6 +52,9 @@ struct Inspection {
     /// Where something moves.
     #[serde(skip_serializing_if = "Option::is_none")]
     tracks: Option<TrackList>,
+    /// What instances hang on.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    joints: Vec<JointLine>,
     /// Empty where the blob has none.
     names: NameLists,
     working_memory: Vec<WorkingMemory>,
@@ -92,7 +98,7 @@ struct TrackList {
 #[derive(Serialize)]
 struct TrackLine {
     target: &'static str,
-    /// The number of the light or material; 0 for the camera.
+    /// The number of the light, material or joint; 0 for the camera.
     index: u32,
     interpolation: &'static str,
     keys: u32,
@@ -137,7 +143,7 @@ impl TrackLine {
         } = self;
         let keys = counted(*keys as usize, "key");
         match target.split_once('.') {
-            Some((owner @ ("light" | "material"), property)) => {
+            Some((owner @ ("light" | "material" | "joint"), property)) => {
                 format!("{owner} {index}, {property}: {keys}, {interpolation}")
             }
             _ => format!("{target}: {keys}, {interpolation}"),
@@ -214,6 +220,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         limits: limits(&scene),
         contents: contents(&scene),
         tracks: TrackList::of(source.blob.bytes()),
+        joints: JointLine::all(&scene, source.blob.bytes()),
         names: Names::of_blob(&scene, source.blob.bytes())
             .unwrap_or_default()
             .into(),
@@ -383,6 +390,9 @@ impl Inspection {
             if names.iter().any(|name| !name.is_empty()) {
                 line(what, first_names(names));
             }
+        }
+        for (number, joint) in self.joints.iter().enumerate() {
+            line("joint", joint.text(number));
         }
         if let Some(moves) = &self.tracks {
             line(

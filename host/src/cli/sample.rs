@@ -103,6 +103,10 @@ static SAMPLES: &[Sample] = &[
         text: || Ok(sample::obj(&sample::icosphere(5))),
     },
     fixture!("turntable", "a scene that moves: an orbit, a lamp, a color"),
+    fixture!(
+        "robot-arm",
+        "instances that move: an arm on a chain of joints"
+    ),
     fixture!("stress-triangle", "hard cases of triangles"),
     fixture!("stress-sphere", "hard cases of spheres"),
     fixture!("stress-box", "hard cases of boxes"),

@@ -1,6 +1,8 @@
 //! The input of a command: a scene blob, or a scene file that is compiled on the spot.
 //! The first bytes distinguish them.
 
+mod warnings;
+
 use super::arguments::{LightChange, SceneOptions, TraceOptions, check_quality};
 use super::changes::{Changes, fault};
 use super::failure::Failure;
@@ -16,6 +18,7 @@ use gridel_host::scene::{self, Imported, Track};
 use gridel_host::state::{self, State, StateError};
 use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::Path;
+use warnings::{far_moved, names_changed};
 
 /// A blob, from wherever it came.
 pub struct Source {
@@ -31,6 +34,8 @@ pub struct Source {
     for_pictures: Option<SceneOptions>,
     /// The names of a scene file.
     names: Option<Names>,
+    /// Whether instances were copied where they are at the time that is shown.
+    posed: bool,
     /// How a scene file was read and compiled.
     made_by: Option<(scene::ImportOptions, compile::Options)>,
 }
@@ -72,7 +77,7 @@ impl Source {
             source.changes = Some(changes);
             source.for_pictures = Some(options.clone());
         }
-        if let Some(seconds) = options.time {
+        if let Some(seconds) = options.time.filter(|_| source.moves_otherwise()) {
             let changes = {
                 let tracks = source.tracks()?;
                 let time = state::ticks(&tracks, seconds);
@@ -126,6 +131,7 @@ impl Source {
             changes: None,
             for_pictures: None,
             names: None,
+            posed: false,
             made_by: None,
         })
     }
@@ -183,7 +189,8 @@ impl Source {
             changes: None,
             for_pictures: None,
             names: Some(names),
-            made_by: Some((options.geometry.import.for_import(), compiling)),
+            posed: imported.posed,
+            made_by: Some((options.for_import(), compiling)),
         })
     }
 
@@ -230,6 +237,11 @@ impl Source {
         ))
     }
 
+    /// Whether a time concerns more than instances that were copied where they are at it.
+    fn moves_otherwise(&self) -> bool {
+        !self.posed || self.tracks().is_ok()
+    }
+
     /// The tracks of a scene that moves.
     pub fn tracks(&self) -> Result<Tracks<'_>, Failure> {
         // They were checked with the scene.
@@ -240,6 +252,11 @@ impl Source {
                 "leave the time out, or add a `[[track]]` to the scene file: see `gridel help scene`",
             )
         })
+    }
+
+    /// Joints on which instances of the blob hang.
+    pub fn joints(&self) -> usize {
+        Tracks::from_bytes(self.blob.bytes()).map_or(0, |tracks| tracks.joints().len())
     }
 
     /// What of a scene is otherwise at a time of its tracks; options that were given come before the tracks.
@@ -264,11 +281,13 @@ impl Source {
                 view: state.view,
                 lights: state.lights.clone(),
                 materials: None,
+                poses: None,
                 time: None,
             },
         };
         Ok(Changes {
             materials: Some(state.materials),
+            poses: state.poses,
             time: Some(time),
             ..changes
         })
@@ -393,42 +412,6 @@ impl Source {
     }
 }
 
-/// Names the primitives that the lattice moves far.
-fn far_moved(report: &compile::Report, lattice_bits: u8) -> Option<String> {
-    const NAMED: usize = 3;
-    if report.far_moved.count() == 0 {
-        return None;
-    }
-    let remedy = if lattice_bits < *compile::LATTICE_BITS.end() {
-        "use more `--lattice-bits`"
-    } else {
-        "make them thicker or larger"
-    };
-    Some(format!(
-        "the lattice moves the surfaces of some solids by several steps, {}; {remedy}",
-        report.far_moved.names(NAMED).join(", ")
-    ))
-}
-
-/// Says which names the blob lacks or has in part.
-fn names_changed(report: &compile::Report) -> Option<String> {
-    let names = report.names?;
-    if names.left_out {
-        return Some(String::from(
-            "the names are left out, because the blob would exceed `--max-bytes`; raise it to keep them",
-        ));
-    }
-    (names.shortened > 0).then(|| {
-        format!(
-            "{} cut to 255 bytes in the blob; give shorter names",
-            match names.shortened {
-                1 => String::from("1 name is"),
-                many => format!("{} names are", grouped(many)),
-            }
-        )
-    })
-}
-
 /// Reads a scene file, warns of what its importer passed over, and changes what was asked for.
 pub fn import(path: &Path, options: &SceneOptions) -> Result<Imported, Failure> {
     import_from(&Input::open(path)?, options)
@@ -445,7 +428,7 @@ fn import_from(input: &Input, options: &SceneOptions) -> Result<Imported, Failur
     }
     let importing = &options.geometry.import;
     let progress = Progress::unknown("reading");
-    let imported = input.scene(&importing.for_import());
+    let imported = input.scene(&options.for_import());
     drop(progress);
     let mut imported = imported.map_err(|error| Failure::Failed(miette::Report::new(error)))?;
     if let Some(option) = importing.molecule.given().filter(|_| !imported.molecules) {

@@ -1,6 +1,6 @@
 //! `gridel view`: a scene, live in a window or a terminal.
 
-use super::arguments::{PictureOptions, SceneOptions, TargetPoint, TraceOptions};
+use super::arguments::{PictureOptions, SceneOptions, TargetPoint, TraceOptions, seconds};
 use super::failure::Failure;
 use super::output::print;
 use super::source::Source;
@@ -30,6 +30,10 @@ pub struct Arguments {
     /// output is not a terminal [default: open a window]
     #[arg(long)]
     terminal: bool,
+
+    /// Show a scene that moves at this time, in seconds [default: as its file states it, without tracks]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
+    time: Option<f64>,
 
     #[command(flatten)]
     with: TraceOptions,
@@ -74,7 +78,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         &arguments
             .target_point
             .with_target(&arguments.scene_options)
-            .sized(arguments.picture.size),
+            .sized(arguments.picture.size)
+            .at(arguments.time),
         &arguments.with,
         &STRUCTURES,
     )?;

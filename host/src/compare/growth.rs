@@ -129,6 +129,7 @@ fn part(scene: &Scene, primitives: &[Part]) -> Scene {
         tracks: Vec::new(),
         parts: Vec::new(),
         instances: Vec::new(),
+        joints: Vec::new(),
         ..*scene
     }
 }

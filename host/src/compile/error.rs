@@ -102,10 +102,14 @@ pub enum CompileError {
         remedy: &'static str,
     },
     #[error(
-        "the instance {instance} names a part that the scene does not have, or is not placed by finite numbers"
+        "the instance {instance} names a part or a joint that the scene does not have, or is not placed by finite \
+         numbers"
     )]
     #[diagnostic(help("place it by a rotation of length 1, a scale above 0 and a translation"))]
     Instance { instance: String },
+    #[error("the joint {name} {cause}")]
+    #[diagnostic(help("hang joints on joints before them, with pivots near the scene"))]
+    Joint { name: String, cause: String },
     #[error("{object} has no box, so it cannot be in the part {part}, whose instances have one")]
     #[diagnostic(help("make it an object of the scene itself"))]
     UnboundedPart { object: String, part: String },

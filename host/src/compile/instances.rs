@@ -2,6 +2,7 @@
 
 use super::error::CompileError;
 use super::instance_tree::{Tree, build};
+use super::reach::Reach;
 use super::section::{Section, section};
 use crate::blob::Blob;
 use crate::scene::{Instance, Material, Object, Part, Scene, Shape};
@@ -11,6 +12,7 @@ use glam::DVec3;
 use gridel_core::format::instance::{LARGEST_CENTER, MATRIX_BITS};
 use gridel_core::format::limits::{INSTANCE_EXPONENT, MAX_INSTANCES};
 use gridel_core::format::record::{ALIGNMENT, UnitBox};
+use gridel_core::format::track::Joint;
 use gridel_core::format::{SectionKind, instance};
 
 /// What a blob is made for.
@@ -30,6 +32,8 @@ pub struct Parts {
     displacements: Vec<f64>,
     lattices: Vec<Lattice>,
     bounds: Vec<UnitBox>,
+    /// How far the instances move.
+    pub reach: Reach,
     /// For each object of all parts, its first primitive, counted from that of the first part.
     pub object_first: Vec<u32>,
     /// For each part, its first primitive, counted likewise; then how many there are.
@@ -40,6 +44,8 @@ pub struct Parts {
 #[derive(Debug, Default)]
 pub struct Placed {
     records: Vec<instance::Instance>,
+    /// The joint of each; empty where the scene has none.
+    joints: Vec<u32>,
     tree: Tree,
     /// The box around all.
     bounds: Option<UnitBox>,
@@ -87,6 +93,15 @@ impl Parts {
             }
             parts.first_primitive.push(primitives);
         }
+        let boxes = parts.lattices.iter().zip(&parts.bounds);
+        let boxes = boxes.map(|(lattice, bounds)| {
+            let corner = |side: usize| {
+                let units = bounds.0.map(|axis| f64::from(axis[side]));
+                lattice.origin + lattice.unit() * DVec3::from_array(units)
+            };
+            [corner(0), corner(1)]
+        });
+        parts.reach = Reach::of(scene, &boxes.collect::<Vec<_>>());
         Ok(parts)
     }
 
@@ -121,8 +136,14 @@ impl Parts {
         }
         let tree = build(&boxes);
         let records = tree.order.iter().map(|&number| records[number as usize]);
+        let joint = |&number: &u32| {
+            let joint = scene.instances[number as usize].joint;
+            joint.map_or(Joint::NONE, |joint| joint as u32)
+        };
+        let joints = tree.order.iter().filter(|_| !scene.joints.is_empty());
         Ok(Some(Placed {
             records: records.collect(),
+            joints: joints.map(joint).collect(),
             tree,
             bounds: boxes.into_iter().reduce(|a, b| a.union(&b)),
             displacement,
@@ -141,7 +162,10 @@ impl Parts {
         let stretch = lattice.unit() / (placement.scale * part.unit());
         let exponent = libm::ceil(libm::log2(stretch)) as i64;
         let [least, most] = INSTANCE_EXPONENT;
-        if !(least..=most).contains(&exponent) {
+        let scales = self.reach.scales.get(number as usize).copied();
+        let [smallest, largest] = scales.unwrap_or([1.0; 2]).map(libm::log2);
+        let [lowest, highest] = [exponent as f64 - largest, exponent as f64 - smallest];
+        if lowest < least as f64 || highest > most as f64 {
             return Err(CompileError::InstanceSize {
                 instance: instance_name(instance),
                 least: exp2(-(most as i32)),
@@ -203,6 +227,7 @@ impl Placed {
         vec![
             section(SectionKind::Instances, &self.records),
             section(SectionKind::InstancePairs, &self.tree.pairs),
+            section(SectionKind::InstanceJoints, &self.joints),
         ]
     }
 

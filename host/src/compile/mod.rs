@@ -17,6 +17,7 @@ mod framing;
 mod hierarchy;
 mod instance_tree;
 mod instances;
+mod joints;
 mod lattice;
 mod layout;
 mod names;
@@ -24,6 +25,7 @@ mod octree;
 mod options;
 mod pairs;
 mod primitives;
+mod reach;
 mod records;
 mod section;
 mod shading_data;
@@ -46,8 +48,9 @@ pub use primitives::LeftOut;
 pub(crate) use shading_data::light_record;
 pub use shading_data::radiance;
 pub use structures::{takes_hierarchy, usual_budget};
-pub use tracks::TICKS_PER_SECOND;
 pub use wide::Quality;
+
+pub use crate::scene::TICKS_PER_SECOND;
 
 use crate::scene::{Object, Scene};
 use crate::shape::Lattice;
@@ -193,7 +196,10 @@ fn compile_as(
     options: &Options,
     on_progress: OnProgress<'_>,
 ) -> Result<Compiled, CompileError> {
-    let extent = extent::extent(scene);
+    let mut extent = extent::extent(scene);
+    if let Role::Whole(parts) = role {
+        extent = parts.reach.around(extent);
+    }
     let (lattice, snapped, placed) = snap(role, scene, extent, options.lattice_bits)?;
     let structures = held(&options.structures);
     let shading_data = shading_data::ShadingData::of(scene, &lattice, extent)?;
@@ -208,6 +214,9 @@ fn compile_as(
     } = Hierarchies::build(scene, &snapped, &structures, options)?;
     let own = hierarchy::bounds(&order);
     let mut bounds = placed.around(own).unwrap_or(UnitBox([[0; 2]; 3]));
+    if let Role::Whole(parts) = role {
+        bounds = parts.reach.box_around(bounds, &lattice);
+    }
     if structures.contains(&Structure::Octree) {
         let boxes: Vec<_> = order.iter().map(|primitive| primitive.bounds).collect();
         bounds = octree::bounds(&bounds, &boxes);
@@ -352,6 +361,7 @@ fn check(scene: &Scene, options: &Options) -> Result<(), CompileError> {
             instance: printable(&instance.name),
         });
     }
+    joints::check(scene)?;
     if let Some(object) = scene.all_objects().find(bad) {
         return Err(CompileError::NotFinite {
             object: printable(&object.name),

@@ -5,6 +5,7 @@ use super::camera::place;
 use super::coordinates::Coordinates;
 use super::extent::shapes;
 use super::framing::{BACKGROUND, framing};
+use super::joints;
 use super::section::Section;
 use super::tracks;
 use crate::scene::{Camera, Color, Diffuse, Light, Material, RenderSettings, Scene};
@@ -34,7 +35,7 @@ pub struct ShadingData {
     pub required_by: Vec<(String, Vec<String>)>,
     /// Parts that the scene lacks and the compiler supplied.
     pub supplied: Vec<String>,
-    /// What moves.
+    /// What moves, and joints.
     pub tracks: Vec<Section>,
 }
 
@@ -131,7 +132,8 @@ impl ShadingData {
             .collect();
 
         far(String::from("camera"), camera.eye)?;
-        let ways = tracks::places(&scene.tracks, &camera);
+        let mut ways = tracks::places(&scene.tracks, &camera);
+        ways.extend(joints::places(scene));
         let coordinates =
             Coordinates::choose(lattice, [lowest, highest], camera.eye, &scene.lights, &ways);
         let view = View {
@@ -140,7 +142,9 @@ impl ShadingData {
             ..view_record(&scene.render, scene.display_values)
         };
         let placed = place(&camera, &coordinates.header)?;
-        let tracks = tracks::sections(&scene.tracks, &camera, &numbers, &coordinates.header)?;
+        let tracks = joints::kept_tracks(scene);
+        let mut tracks = tracks::sections(tracks, &camera, &numbers, &coordinates.header)?;
+        tracks.extend(joints::sections(scene, &coordinates.header)?);
         Ok(Self {
             view: placed.replace_in(&view, &coordinates.header),
             coordinates,

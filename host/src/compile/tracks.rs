@@ -3,7 +3,7 @@
 use super::CompileError;
 use super::camera::angle;
 use super::section::{Section, section};
-use crate::scene::{Camera, Key, Track};
+use crate::scene::{Camera, Key, TICKS_PER_SECOND, Track};
 use crate::shape::{exp2, unit};
 use glam::{DQuat, DVec3};
 use gridel_core::format::SectionKind;
@@ -12,19 +12,15 @@ use gridel_core::format::track::{
     self as records, Interpolation, Timeline, TrackTarget, ValueKind,
 };
 
-/// Ticks per second of all blobs with tracks: whole numbers of them are frames at 24, 25, 30, 50, 60, 100 and 120 per
-/// second, and milliseconds.
-pub const TICKS_PER_SECOND: u32 = 48_000;
-
 /// The sections of a scene's tracks; none where nothing moves. `camera` stands for what its tracks leave out, and
 /// `materials` has the number in the blob of each material that an object has.
 pub fn sections(
-    tracks: &[Track],
+    tracks: Vec<Track>,
     camera: &Camera,
     materials: &[Option<u32>],
     header: &Header,
 ) -> Result<Vec<Section>, CompileError> {
-    let mut all: Vec<Track> = tracks.to_vec();
+    let mut all = tracks;
     check_camera(&all)?;
     complete(&mut all, camera);
     let mut numbered: Vec<(TrackTarget, u32, &Track)> = Vec::new();

@@ -10,7 +10,8 @@ const KEEP: &str = "keep the instances with `--instances keep`, or place fewer o
 
 impl Scene {
     /// Returns the scene with objects in place of parts and instances: those of each instance follow the
-    /// scene's own, and are named `INSTANCE/OBJECT`.
+    /// scene's own, and are named `INSTANCE/OBJECT`. They stand where the instances are at rest, and joints and their
+    /// tracks are left out.
     ///
     /// # Errors
     /// If the scene would have more than 16,777,216 primitives or take too much memory, or a placement
@@ -39,6 +40,7 @@ impl Scene {
             instances: Vec::new(),
             ..self.clone()
         };
+        flat.without_joints();
         flat.place_all(&self.parts, &self.instances)?;
         Ok(Cow::Owned(flat))
     }
@@ -50,8 +52,14 @@ impl Scene {
         }
         let parts = std::mem::take(&mut self.parts);
         let instances = std::mem::take(&mut self.instances);
+        self.without_joints();
         self.place_all(&parts, &instances)?;
         Ok(self)
+    }
+
+    fn without_joints(&mut self) {
+        self.joints.clear();
+        self.tracks.retain(|track| !track.target.is_of_joint());
     }
 
     fn place_all(&mut self, parts: &[Part], instances: &[Instance]) -> Result<(), SceneError> {

@@ -15,6 +15,7 @@ mod error;
 mod flatten;
 mod gzip;
 mod importer;
+mod joint;
 mod model;
 pub(crate) mod molecule;
 mod options;
@@ -22,6 +23,8 @@ mod placement;
 mod polygon;
 mod size;
 mod source_span;
+#[cfg(test)]
+pub(crate) mod test_chains;
 #[cfg(test)]
 mod test_scenes;
 mod text;
@@ -31,14 +34,16 @@ mod words;
 pub use crate::shape::Shape;
 pub use error::SceneError;
 pub use importer::Importer;
+pub(crate) use joint::JointTracks;
+pub use joint::{LARGEST_SCALE, LEAST_SCALE};
 pub use model::{
-    Camera, Color, Diffuse, Instance, Light, Material, Object, Part, RenderSettings, Scene,
+    Camera, Color, Diffuse, Instance, Joint, Light, Material, Object, Part, RenderSettings, Scene,
 };
 pub use options::{Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle};
 pub use placement::Placement;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
-pub use track::{Interpolation, Key, Track, TrackTarget};
+pub use track::{Interpolation, Key, TICKS_PER_SECOND, Track, TrackTarget};
 
 use access::Access;
 use importer::{Choices, Importers};
@@ -119,6 +124,19 @@ pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, Scene
 /// Flattens what was read, if that is asked for.
 fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, SceneError> {
     if options.instances == Instances::Flatten {
+        let scene = &mut imported.scene;
+        let moving = scene.instances.iter().find(|it| it.joint.is_some());
+        match (moving, options.at) {
+            (None, _) => {}
+            (Some(_), Some(seconds)) => {
+                scene.instances = scene.instances_at(seconds);
+                imported.posed = true;
+            }
+            (Some(instance), None) => imported.warnings.push(format!(
+                "{}: instances are copied where they are at rest, and do not move",
+                instance.place
+            )),
+        }
         imported.scene = imported.scene.into_flattened()?;
     }
     Ok(imported)

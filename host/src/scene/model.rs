@@ -38,7 +38,11 @@ pub struct Scene {
     pub parts: Vec<Part>,
     /// Placed parts. Checkerboards lie in the scene's coordinates on them too.
     pub instances: Vec<Instance>,
-    /// How camera, lights and materials change with time, at most one track for each property.
+    /// What moves instances.
+    pub joints: Vec<Joint>,
+    /// A box that the lattice takes in beside the scene and its motion, for instances that programs place.
+    pub room: Option<[DVec3; 2]>,
+    /// How camera, lights, materials and joints change with time, at most one track for each property.
     pub tracks: Vec<Track>,
     /// Defaults for rendering that the scene file states.
     pub render: RenderSettings,
@@ -149,7 +153,26 @@ pub struct Instance {
     pub name: String,
     /// Index into [`Scene::parts`].
     pub part: usize,
+    /// Where it is at rest.
     pub placement: Placement,
+    /// Index into [`Scene::joints`]; `None` for one that stands still.
+    pub joint: Option<usize>,
+    /// Where the scene file says so, for messages.
+    pub place: SourceSpan,
+}
+
+/// What moves the instances and joints that hang on it.
+///
+/// A joint turns and scales about its pivot, and shifts: its own motion takes a place `p` to `pivot + shift +
+/// scale * rotation * (p - pivot)`, in the scene's coordinates at rest. Tracks give the three; without one they are 0,
+/// 1 and none. What hangs on a joint follows the joint's own motion, then that of the joint's parent, and so on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    pub name: String,
+    /// Index into [`Scene::joints`], less than that of this joint; `None` for one that hangs on nothing.
+    pub parent: Option<usize>,
+    /// The place about which it turns, at rest.
+    pub pivot: DVec3,
     /// Where the scene file says so, for messages.
     pub place: SourceSpan,
 }
@@ -221,6 +244,8 @@ impl Default for Scene {
             objects: Vec::new(),
             parts: Vec::new(),
             instances: Vec::new(),
+            joints: Vec::new(),
+            room: None,
             tracks: Vec::new(),
             render: RenderSettings::default(),
             unnamed: false,

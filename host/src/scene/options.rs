@@ -42,6 +42,8 @@ pub struct Imported {
     pub choices: bool,
     /// Whether a file that can hold assemblies was read, which [`ImportOptions::assembly`] is for.
     pub assemblies: bool,
+    /// Whether instances that move were copied where they are at [a time](ImportOptions::at).
+    pub posed: bool,
 }
 
 /// Which of a glTF file's cameras and animations is read.
@@ -75,6 +77,8 @@ pub struct ImportOptions {
     pub choice: Choice,
     /// Whether instances are kept.
     pub instances: Instances,
+    /// The time in seconds at which instances are copied where they move; without one they are copied at rest.
+    pub at: Option<f64>,
     /// Whether the file may name files outside of its folder: imports, materials, buffers. A scene
     /// from elsewhere could read any file of the user's so.
     pub allow_outside: bool,

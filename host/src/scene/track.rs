@@ -1,16 +1,22 @@
-//! Tracks: how the camera, lights and materials of a scene change with time.
+//! Tracks: how the camera, lights, materials and joints of a scene change with time.
 
 use super::source_span::SourceSpan;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
+use gridel_core::format::track::ValueKind;
 pub use gridel_core::format::track::{Interpolation, TrackTarget};
+
+/// Ticks per second of all blobs with tracks: whole numbers of them are frames at 24, 25, 30, 50, 60, 100 and 120 per
+/// second, and milliseconds.
+pub const TICKS_PER_SECOND: u32 = 48_000;
 
 /// The values of one property at some times.
 ///
-/// Positions are in scene units, angles in degrees. The direction of a light is the way the light travels.
+/// Positions and shifts are in scene units, angles in degrees. The direction of a light is the way the light travels.
+/// Rotations are quaternions, of about length 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
     pub target: TrackTarget,
-    /// The number of the light or material; 0 for the camera.
+    /// The number of the light, material or joint; 0 for the camera.
     pub index: usize,
     pub interpolation: Interpolation,
     /// At least one, by rising times.
@@ -46,4 +52,45 @@ impl Key {
         let [x, y, z, _] = self.value;
         DVec3::new(x, y, z)
     }
+}
+
+impl Track {
+    /// The value at a time, in the precision of `f64`. Rotations are of any length but 0.
+    pub(crate) fn at(&self, seconds: f64) -> [f64; 4] {
+        let turns = self.target.kind() == ValueKind::Rotation;
+        interpolate(self.interpolation, &self.keys, turns, seconds)
+    }
+}
+
+/// The value between keys at a time; `turns` says that they are rotations.
+pub(super) fn interpolate(
+    interpolation: Interpolation,
+    keys: &[Key],
+    turns: bool,
+    seconds: f64,
+) -> [f64; 4] {
+    let after = keys.partition_point(|key| key.seconds <= seconds);
+    let one = &keys[after.saturating_sub(1)];
+    let Some(other) = keys.get(after).filter(|_| after > 0) else {
+        return one.value;
+    };
+    let duration = other.seconds - one.seconds;
+    let part = (seconds - one.seconds) / duration;
+    if turns && interpolation == Interpolation::Linear {
+        let [one, other] = [one, other].map(|key| DQuat::from_array(key.value).normalize());
+        return one.slerp(other, part).to_array();
+    }
+    std::array::from_fn(|component| match interpolation {
+        Interpolation::Step => one.value[component],
+        Interpolation::Linear => {
+            one.value[component] + part * (other.value[component] - one.value[component])
+        }
+        Interpolation::Cubic => {
+            let (square, cube) = (part * part, part * part * part);
+            (2.0 * cube - 3.0 * square + 1.0) * one.value[component]
+                + (cube - 2.0 * square + part) * duration * one.leaving[component]
+                + (3.0 * square - 2.0 * cube) * other.value[component]
+                + (cube - square) * duration * other.entering[component]
+        }
+    })
 }

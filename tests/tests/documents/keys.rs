@@ -78,6 +78,7 @@ fn scene_page_lists_exactly_the_keys_of_tables() {
         ("Groups", "[group.a]\nunknown = 1"),
         ("Parts", "[[part]]\nunknown = 1"),
         ("Instances", "[[instance]]\nunknown = 1"),
+        ("Joints", "[[joint]]\nunknown = 1"),
         (
             "Rotations",
             "[[object]]\nkind = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n\

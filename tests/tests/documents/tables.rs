@@ -57,6 +57,7 @@ fn blobs() -> Vec<Vec<u8>> {
             translation: DVec3::X * x,
             ..scene::Placement::IDENTITY
         },
+        joint: None,
         place: scene::SourceSpan::default(),
     };
     scene.parts = vec![scene::Part {

@@ -77,7 +77,7 @@ pub struct ImportOptions {
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
 
-    /// Animation of a glTF file, by its name or its number from 0; moves cameras and lights [default: the first]
+    /// Animation of a glTF file, by its name or its number from 0; moves objects, cameras and lights [default: the first]
     #[arg(long, value_name = "NAME")]
     animation: Option<String>,
 
@@ -153,6 +153,14 @@ impl GeometryOptions {
 }
 
 impl SceneOptions {
+    /// The options for importers.
+    pub fn for_import(&self) -> scene::ImportOptions {
+        scene::ImportOptions {
+            at: self.time,
+            ..self.geometry.import.for_import()
+        }
+    }
+
     /// Sets the size of the picture, if one is given.
     pub fn sized(mut self, size: Option<[u16; 2]>) -> Self {
         self.view.size = size;
@@ -230,8 +238,9 @@ impl ImportOptions {
     }
 
     /// The options for importers.
-    pub fn for_import(&self) -> scene::ImportOptions {
+    fn for_import(&self) -> scene::ImportOptions {
         scene::ImportOptions {
+            at: None,
             molecule: self.molecule.for_import(),
             assembly: self.assembly.clone(),
             instances: match self.flattens {

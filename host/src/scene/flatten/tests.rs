@@ -33,6 +33,7 @@ fn scene(objects: Vec<Object>, placements: &[Placement]) -> Scene {
         name: format!("copy {number}"),
         part: 0,
         placement,
+        joint: None,
         place: place.clone(),
     };
     Scene {

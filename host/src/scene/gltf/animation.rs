@@ -5,9 +5,10 @@
 
 use super::buffers::Buffers;
 use super::place::transform;
+use crate::scene::track::interpolate;
 use crate::scene::{Choice, Interpolation, Key, SceneError, SourceSpan, Track, TrackTarget};
 use crate::table::printable;
-use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3, DVec4};
 use gltf::animation::Property;
 use gltf::{Animation, Document};
 use std::collections::HashMap;
@@ -21,9 +22,9 @@ const MOST_SAMPLES: f64 = 65_536.0;
 
 /// How a property of a node moves.
 #[derive(Clone, Debug)]
-struct Way {
-    interpolation: Interpolation,
-    keys: Vec<Key>,
+pub(super) struct Way {
+    pub(super) interpolation: Interpolation,
+    pub(super) keys: Vec<Key>,
 }
 
 /// What of a node moves.
@@ -152,14 +153,28 @@ impl Motion {
         self.chain(node).any(|it| self.moves_itself(it))
     }
 
-    fn moves_itself(&self, node: usize) -> bool {
+    pub(super) fn moves_itself(&self, node: usize) -> bool {
         let moves = self.nodes.get(&node);
-        moves.is_some_and(|it| it.translation.is_some() || it.rotation.is_some() || it.scale.is_some())
+        moves.is_some_and(|it| {
+            it.translation.is_some() || it.rotation.is_some() || it.scale.is_some()
+        })
     }
 
     /// A node and those above it, from below.
     fn chain(&self, node: usize) -> impl Iterator<Item = usize> {
         std::iter::successors(Some(node), |&node| self.parents[node])
+    }
+
+    /// The translation, rotation and scale of a node that moves.
+    pub(super) fn ways(&self, node: usize) -> Option<[Option<&Way>; 3]> {
+        let moves = self.nodes.get(&node)?;
+        let all = [&moves.translation, &moves.rotation, &moves.scale];
+        Some(all.map(Option::as_ref))
+    }
+
+    /// The node above a node.
+    pub(super) fn parent(&self, node: usize) -> Option<usize> {
+        self.parents[node]
     }
 
     /// Where a node stands in the one above it.
@@ -350,7 +365,7 @@ fn rotation_of(matrix: DMat3) -> Option<DQuat> {
 
 impl Way {
     /// The way with each value, and each change of it, mapped linearly.
-    fn map(&self, map: impl Fn([f64; 4]) -> [f64; 4]) -> Self {
+    pub(super) fn map(&self, map: impl Fn([f64; 4]) -> [f64; 4]) -> Self {
         let key = |key: &Key| Key {
             seconds: key.seconds,
             value: map(key.value),
@@ -361,6 +376,20 @@ impl Way {
             interpolation: self.interpolation,
             keys: self.keys.iter().map(key).collect(),
         }
+    }
+
+    /// The way from a place at rest, seen from the scene, whose changes are mapped by `linear`.
+    pub(super) fn from_rest(&self, rest: DVec4, linear: DMat3) -> Self {
+        let vector = |[x, y, z, _]: [f64; 4]| {
+            let [x, y, z] = (linear * DVec3::new(x, y, z)).to_array();
+            [x, y, z, 0.0]
+        };
+        let mut way = self.clone();
+        for key in &mut way.keys {
+            key.value = vector((DVec4::from_array(key.value) - rest).to_array());
+            (key.entering, key.leaving) = (vector(key.entering), vector(key.leaving));
+        }
+        way
     }
 
     /// The way of places, seen from the scene.
@@ -389,7 +418,10 @@ impl Way {
         if !numbers.into_iter().all(f64::is_finite) {
             return Err("a number is not finite");
         }
-        if !self.keys.is_sorted_by(|one, other| one.seconds < other.seconds) {
+        if !self
+            .keys
+            .is_sorted_by(|one, other| one.seconds < other.seconds)
+        {
             return Err("its times do not ascend");
         }
         let turns = |key: &Key| key.value != [0.0; 4];
@@ -401,45 +433,27 @@ impl Way {
 
     /// The value at a time, as glTF defines it.
     fn at(&self, seconds: f64) -> [f64; 4] {
-        let after = self.keys.partition_point(|key| key.seconds <= seconds);
-        let one = &self.keys[after.saturating_sub(1)];
-        let Some(other) = self.keys.get(after).filter(|_| after > 0) else {
-            return one.value;
-        };
-        let duration = other.seconds - one.seconds;
-        let part = (seconds - one.seconds) / duration;
-        let mix = |component: usize| match self.interpolation {
-            Interpolation::Step => one.value[component],
-            Interpolation::Linear => {
-                one.value[component] + part * (other.value[component] - one.value[component])
-            }
-            Interpolation::Cubic => {
-                let (square, cube) = (part * part, part * part * part);
-                (2.0 * cube - 3.0 * square + 1.0) * one.value[component]
-                    + (cube - 2.0 * square + part) * duration * one.leaving[component]
-                    + (3.0 * square - 2.0 * cube) * other.value[component]
-                    + (cube - square) * duration * other.entering[component]
-            }
-        };
         // Of four components are rotations alone.
-        let is_rotation = self.keys.iter().any(|key| key.value[3] != 0.0);
-        if is_rotation && self.interpolation == Interpolation::Linear {
-            let [one, other] = [one, other].map(|key| DQuat::from_array(key.value).normalize());
-            return one.slerp(other, part).to_array();
-        }
-        std::array::from_fn(mix)
+        let turns = self.keys.iter().any(|key| key.value[3] != 0.0);
+        interpolate(self.interpolation, &self.keys, turns, seconds)
     }
 }
 
 /// Reads the keys of a channel; none if its counts do not fit.
-fn way_of(channel: &gltf::animation::Channel<'_>, buffers: &Buffers<'_>) -> Result<Way, SceneError> {
+fn way_of(
+    channel: &gltf::animation::Channel<'_>,
+    buffers: &Buffers<'_>,
+) -> Result<Way, SceneError> {
     let sampler = channel.sampler();
     let times = buffers.numbers::<1>(&sampler.input())?;
     let values: Vec<[f64; 4]> = match channel.target().property() {
         Property::Rotation => buffers.numbers::<4>(&sampler.output())?,
         _ => {
             let vectors = buffers.numbers::<3>(&sampler.output())?;
-            vectors.into_iter().map(|[x, y, z]| [x, y, z, 0.0]).collect()
+            vectors
+                .into_iter()
+                .map(|[x, y, z]| [x, y, z, 0.0])
+                .collect()
         }
     };
     let interpolation = match sampler.interpolation() {
@@ -465,7 +479,11 @@ fn way_of(channel: &gltf::animation::Channel<'_>, buffers: &Buffers<'_>) -> Resu
                 ..Key::default()
             },
         };
-        times.iter().zip(values.chunks_exact(each)).map(key).collect()
+        times
+            .iter()
+            .zip(values.chunks_exact(each))
+            .map(key)
+            .collect()
     } else {
         Vec::new()
     };

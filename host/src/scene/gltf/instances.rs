@@ -4,39 +4,26 @@ use super::place::mesh_name;
 use super::shared::{Placed, triangle_count};
 use super::{Importer, Named};
 use crate::scene::size::Size;
-use crate::scene::{Instance, Part, SceneError};
+use crate::scene::{Instance, Part, Placement, SceneError};
 use glam::DMat4;
 use gltf::mesh::Mode;
-use gltf::{Node, Semantic};
+use gltf::{Mesh, Node, Semantic};
 use std::collections::HashMap;
 
 impl Importer<'_> {
     /// Places the mesh of a node as an instance, if it is a part. Returns whether it is.
-    pub(super) fn instance(&mut self, node: &Node<'_>) -> Result<bool, SceneError> {
+    pub(super) fn instance(&mut self, node: &Node<'_>, world: &DMat4) -> Result<bool, SceneError> {
         let placement = self.shared.placements.get(&node.index()).copied();
-        let (Some(placement), Some(mesh)) = (placement, node.mesh()) else {
+        let Some(mesh) = node.mesh() else {
             return Ok(false);
         };
-        let part = match self.shared.parts.get(&mesh.index()) {
-            Some(&part) => part,
-            None => {
-                let name = mesh_name(&mesh);
-                let named = Named {
-                    mesh: &mesh,
-                    name: &name,
-                };
-                let objects = self.objects(&named, &DMat4::IDENTITY)?;
-                let part = (!objects.is_empty()).then_some(self.scene.parts.len());
-                if part.is_some() {
-                    self.scene.parts.push(Part {
-                        name,
-                        objects,
-                        place: self.place.clone(),
-                    });
-                }
-                self.shared.parts.insert(mesh.index(), part);
-                part
-            }
+        let joint = self.joint_of.get(&node.index()).copied();
+        let joint = joint.filter(|_| node.skin().is_none());
+        let part = match (placement, joint) {
+            (Some(_), _) => self.shared_part(&mesh)?,
+            // Mirrored or scaled unevenly: a part that stands where it is.
+            (None, Some(_)) => self.part(&mesh, world)?,
+            (None, None) => return Ok(false),
         };
         if let Some(part) = part {
             let name = node.name().or(mesh.name());
@@ -44,11 +31,38 @@ impl Importer<'_> {
             self.scene.instances.push(Instance {
                 name,
                 part,
-                placement,
+                placement: placement.unwrap_or(Placement::IDENTITY),
+                joint,
                 place: self.place.clone(),
             });
         }
         Ok(true)
+    }
+
+    /// The part of a mesh that several nodes can place; `None` for a mesh without triangles.
+    fn shared_part(&mut self, mesh: &Mesh<'_>) -> Result<Option<usize>, SceneError> {
+        if let Some(&part) = self.shared.parts.get(&mesh.index()) {
+            return Ok(part);
+        }
+        let part = self.part(mesh, &DMat4::IDENTITY)?;
+        self.shared.parts.insert(mesh.index(), part);
+        Ok(part)
+    }
+
+    /// Makes a part of a mesh.
+    fn part(&mut self, mesh: &Mesh<'_>, world: &DMat4) -> Result<Option<usize>, SceneError> {
+        let name = mesh_name(mesh);
+        let named = Named { mesh, name: &name };
+        let objects = self.objects(&named, world)?;
+        let part = (!objects.is_empty()).then_some(self.scene.parts.len());
+        if part.is_some() {
+            self.scene.parts.push(Part {
+                name,
+                objects,
+                place: self.place.clone(),
+            });
+        }
+        Ok(part)
     }
 
     /// Proves that nodes fit into memory, before anything is made of them.

@@ -12,6 +12,7 @@ mod check;
 mod container;
 mod document;
 mod instances;
+mod joints;
 mod material;
 mod place;
 mod shared;
@@ -19,18 +20,18 @@ mod view;
 
 use super::importer::{Choices, Importer as Entry, Input};
 use super::text::Warnings;
-use super::{Choice, Imported, Object, SourceSpan, Scene, SceneError, Shape};
+use super::{Choice, Imported, Object, Scene, SceneError, Shape, SourceSpan};
 use animation::Motion;
 use buffers::{Buffers, MOST};
 use glam::{DMat4, DVec3};
-use gridel_core::Up;
 use gltf::mesh::Mode;
 use gltf::scene::Transform;
 use gltf::{Document, Node, Primitive, Semantic};
-use std::collections::HashMap;
-use std::path::Path;
+use gridel_core::Up;
 use place::transform;
 use shared::Shared;
+use std::collections::HashMap;
+use std::path::Path;
 use view::View;
 
 pub(super) const IMPORTER: Entry = Entry {
@@ -84,6 +85,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         vertices: 0,
         triangles: 0,
         shared: Shared::default(),
+        joint_of: HashMap::new(),
         warnings,
     };
     importer.check(&document)?;
@@ -103,7 +105,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         mut warnings,
         ..
     } = importer;
-    scene.tracks = view.tracks(&mut motion, &place);
+    scene.tracks.extend(view.tracks(&mut motion, &place));
     if motion.sampled {
         warnings.add_times(
             place.clone(),
@@ -120,6 +122,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         molecules: false,
         choices: true,
         assemblies: false,
+        posed: false,
     })
 }
 
@@ -142,6 +145,8 @@ struct Importer<'a> {
     vertices: usize,
     triangles: usize,
     shared: Shared,
+    /// The joint that moves a node.
+    joint_of: HashMap<usize, usize>,
     warnings: Warnings,
 }
 
@@ -219,31 +224,29 @@ impl Importer<'_> {
             let mut joints = joints.map(|joint| joint.index());
             self.motion.has_weights(node.index()) || joints.any(|joint| self.motion.moves(joint))
         };
-        let bent = document.nodes().filter(|node| node.mesh().is_some() && bends(node));
+        let bent = document
+            .nodes()
+            .filter(|node| node.mesh().is_some() && bends(node));
         let bent: Vec<_> = bent.collect();
         if let Some(node) = bent.first().filter(|_| chosen.by_name) {
-            let name = node.name().map_or(String::new(), |name| format!(" {name:?}"));
+            let name = node
+                .name()
+                .map_or(String::new(), |name| format!(" {name:?}"));
             let by = match self.motion.has_weights(node.index()) {
                 true => "morph targets",
                 false => "a skin",
             };
             return Err(self.error(
-                format!("the animation bends node {}{name} by {by}, which is not supported", node.index()),
+                format!(
+                    "the animation bends node {}{name} by {by}, which is not supported",
+                    node.index()
+                ),
                 "choose another `--animation`, or bake the mesh without it",
             ));
         }
         self.warn_of(
             bent.len(),
-            "a mesh that the animation bends stands as it is at rest; skins and morph targets do not move",
-        );
-        let carried = |node: &Node<'_>| {
-            let moves = node.mesh().is_some() && self.motion.moves(node.index());
-            moves && !bent.iter().any(|it| it.index() == node.index())
-        };
-        let carried = document.nodes().filter(carried).count();
-        self.warn_of(
-            carried,
-            "an object that the animation moves stands as it is at rest; only cameras and lights move",
+            "a mesh that the animation bends keeps its shape at rest; skins and morph targets do not move",
         );
         Ok(())
     }
@@ -286,7 +289,8 @@ impl Importer<'_> {
             open[from..].reverse();
             placed.push((node, world));
         }
-        self.shared = Shared::of(&placed, |node| self.motion.moves(node.index()));
+        self.joints(&placed);
+        self.shared = Shared::of(&placed, |node| self.joint_of.contains_key(&node.index()));
         self.weigh(&placed)?;
         placed
             .iter()
@@ -326,7 +330,7 @@ impl Importer<'_> {
         let Some(mesh) = node.mesh() else {
             return Ok(());
         };
-        if self.instance(node)? {
+        if self.instance(node, world)? {
             return Ok(());
         }
         let name = node.name().or(mesh.name());

@@ -1,8 +1,8 @@
 //! Where nodes stand.
 
-use glam::{DMat4, DQuat, DVec3};
-use gltf::{Mesh, Node};
+use glam::{DMat4, DQuat, DVec3, DVec4};
 use gltf::scene::Transform;
+use gltf::{Mesh, Node};
 
 /// Where a node stands in its parent, computed in double precision.
 pub(super) fn transform(node: &Node<'_>) -> DMat4 {
@@ -20,6 +20,33 @@ pub(super) fn transform(node: &Node<'_>) -> DMat4 {
             DVec3::from_array(translation.map(f64::from)),
         ),
     }
+}
+
+/// Translation, rotation and scale of a node; `None` for a matrix that is sheared or flat.
+pub(super) fn parts(node: &Node<'_>) -> Option<[DVec4; 3]> {
+    /// Relative to the largest entry.
+    const TOLERANCE: f64 = 1e-5;
+    if let Transform::Decomposed {
+        translation,
+        rotation,
+        scale,
+    } = node.transform()
+    {
+        let [translation, scale] =
+            [translation, scale].map(|it| DVec3::from_array(it.map(f64::from)).extend(0.0));
+        let rotation = DQuat::from_array(rotation.map(f64::from)).normalize();
+        return Some([translation, rotation.into(), scale]);
+    }
+    let matrix = transform(node);
+    let (scale, rotation, translation) = matrix.to_scale_rotation_translation();
+    let again = DMat4::from_scale_rotation_translation(scale, rotation, translation);
+    let largest = scale.abs().max_element();
+    let near = |one: DVec4, other: DVec4| one.abs_diff_eq(other, TOLERANCE * largest);
+    let sound = near(matrix.x_axis, again.x_axis)
+        && near(matrix.y_axis, again.y_axis)
+        && near(matrix.z_axis, again.z_axis);
+    (sound && scale.recip().is_finite())
+        .then(|| [translation.extend(0.0), rotation.into(), scale.extend(0.0)])
 }
 
 /// The name of a mesh, or one made of its number.

@@ -22,16 +22,14 @@ pub(super) struct Shared {
 }
 
 impl Shared {
-    /// Chooses the meshes that at least two nodes place by a rotation, a translation and one scale. Nodes
-    /// that `moves` are left as they are.
+    /// Chooses the meshes that at least two nodes place by a rotation, a translation and one scale, and those of nodes
+    /// that `moves`.
     pub(super) fn of(placed: &[Placed<'_>], moves: impl Fn(&Node<'_>) -> bool) -> Self {
         let mut uses: HashMap<usize, Vec<(usize, Placement)>> = HashMap::new();
         let mut saved: HashMap<usize, u64> = HashMap::new();
+        let mut moving = Vec::new();
         for (node, world) in placed {
-            let Some(mesh) = node
-                .mesh()
-                .filter(|_| node.skin().is_none() && !moves(node))
-            else {
+            let Some(mesh) = node.mesh().filter(|_| node.skin().is_none()) else {
                 continue;
             };
             let matrix = DMat3::from_mat4(*world);
@@ -39,6 +37,10 @@ impl Shared {
             let Some(placement) = placement else {
                 continue;
             };
+            if moves(node) {
+                moving.push((node.index(), placement));
+                continue;
+            }
             let uses = uses.entry(mesh.index()).or_default();
             if !uses.is_empty() {
                 let triangles: u64 = mesh.primitives().map(|it| triangle_count(&it)).sum();
@@ -50,7 +52,7 @@ impl Shared {
         uses.retain(|mesh, _| saved.get(mesh).is_some_and(|it| *it >= LEAST_SAVED));
         Self {
             parts: HashMap::new(),
-            placements: uses.into_values().flatten().collect(),
+            placements: uses.into_values().flatten().chain(moving).collect(),
         }
     }
 }

@@ -4,7 +4,7 @@
 //! the scene, and all are scaled alike so that the strongest is 1, as a photographer would expose.
 
 use super::animation::Motion;
-use crate::scene::{Camera, Color, Light, RenderSettings, Scene, Shape, SourceSpan, Track};
+use crate::scene::{Camera, Color, Light, Object, RenderSettings, Scene, Shape, SourceSpan, Track};
 use crate::table::printable;
 use glam::{DMat4, DVec3};
 use gltf::Node;
@@ -205,12 +205,22 @@ impl View {
 
 /// The middle of the box around all meshes.
 fn middle(scene: &Scene) -> DVec3 {
-    let vertices = scene.objects.iter().flat_map(|object| match &object.shape {
-        Shape::Mesh { vertices, .. } => vertices.as_slice(),
-        _ => &[],
+    fn vertices(object: &Object) -> &[DVec3] {
+        match &object.shape {
+            Shape::Mesh { vertices, .. } => vertices,
+            _ => &[],
+        }
+    }
+    let own = scene.objects.iter().flat_map(vertices).copied();
+    let placed = scene.instances.iter().flat_map(|instance| {
+        let affine = instance.placement.affine();
+        let objects = scene.parts[instance.part].objects.iter();
+        let vertices = objects.flat_map(vertices);
+        vertices.map(move |vertex| affine.transform_point3(*vertex))
     });
-    let (low, high) = vertices.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), v| {
-        (low.min(*v), high.max(*v))
+    let nowhere = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (low, high) = own.chain(placed).fold(nowhere, |(low, high), vertex| {
+        (low.min(vertex), high.max(vertex))
     });
     (low + high) * 0.5
 }

@@ -79,6 +79,7 @@ pub(super) fn import(
         molecules: true,
         choices: false,
         assemblies: true,
+        posed: false,
     })
 }
 
@@ -131,6 +132,7 @@ impl Molecule<'_, '_> {
                     name,
                     part: scene.parts.len(),
                     placement,
+                    joint: None,
                     place: place.clone(),
                 });
             }

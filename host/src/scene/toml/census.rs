@@ -233,10 +233,13 @@ fn imported_size(scene: &Scene) -> Size {
     objects.chain(instances).fold(Size::default(), Size::plus)
 }
 
-/// The primitives of an import; instances weigh as much, so that they do not multiply for free.
+/// The primitives of an import; instances, joints and keys weigh as much, so that they do not multiply for free.
 fn imported(scene: &Scene) -> u64 {
     let objects = objects_of(scene).map(|object| primitives(&object.shape));
-    objects.sum::<u64>() + scene.instances.len() as u64
+    let tracks = scene.tracks.iter().filter(|it| it.target.is_of_joint());
+    let keys = tracks.map(|it| it.keys.len());
+    let others = scene.instances.len() + scene.joints.len() + keys.sum::<usize>();
+    objects.sum::<u64>() + others as u64
 }
 
 /// A scene's own objects and those of its parts.

@@ -2,13 +2,14 @@
 
 use super::census::Census;
 use super::import::Imports;
+use super::imported_track::{ImportPlace, lost, with_imported};
 use super::item::{Content, Item};
+use super::joint::{self, Joints};
 use super::material::Palette;
 use super::object::Reader;
 use super::part;
 use super::place::Placer;
 use super::source::Source;
-use super::imported_track::{ImportPlace, lost, with_imported};
 use super::track::{self, Targets};
 use super::value::Fields;
 use super::view;
@@ -29,6 +30,8 @@ const KEYS: &[&str] = &[
     "group",
     "part",
     "instance",
+    "joint",
+    "room",
     "track",
 ];
 
@@ -63,13 +66,23 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     let groups = root.or("group", BTreeMap::new(), |tables| reader.groups(tables))?;
     let items = root.or("object", Vec::new(), |list| reader.items(list))?;
     let parts = root.or("part", Vec::new(), |list| reader.parts(list))?;
-    let instances = root.or("instance", Vec::new(), |list| part::instances(list, &parts))?;
+    let joints = root.or("joint", Joints::default(), joint::read)?;
+    let instances = root.or("instance", Vec::new(), |list| {
+        part::instances(list, &parts, &joints)
+    })?;
+    let room = root.or("room", None, |value| joint::room(value).map(Some))?;
 
     let taken = Census::new(&source, &groups, &palette).take(&items, &parts)?;
     imports.warnings.extend(taken.warnings);
-    imports.warnings.extend(part::unplaced(&source, &parts, &instances));
+    imports
+        .warnings
+        .extend(part::unplaced(&source, &parts, &instances));
+    imports
+        .warnings
+        .extend(joint::unused(&source, &joints, &instances));
     let placer = Placer::new(&source, &groups, &mut palette, taken.objects);
-    let placed = placer.place(&items, &parts, &instances)?;
+    let placed = placer.place(&items, &parts, &instances, &joints.items)?;
+    imports.warnings.extend(placed.warnings);
 
     let mut scene = Scene {
         camera,
@@ -80,6 +93,8 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         objects: placed.objects,
         parts: placed.parts,
         instances: placed.instances,
+        joints: placed.joints,
+        room,
         render: render.unwrap_or_default(),
         ..Scene::default()
     };
@@ -113,6 +128,10 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
             }
         }
         scene.background = scene.background.or(import.background);
+        if let Some(room) = import.room {
+            let room = joint::moved_room(room, &item.transform);
+            scene.room = Some(scene.room.map_or(room, |own| joint::around(own, room)));
+        }
         if ambient.is_none() && scene.ambient == BLACK {
             scene.ambient = import.ambient;
         }
@@ -122,7 +141,9 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         lights: &scene.lights,
         light_names: &scene.light_names,
         palette: &palette,
+        joints: &joints,
     };
+    imported_tracks.extend(placed.tracks);
     scene.tracks = with_imported(targets.resolve(tracks)?, imported_tracks);
     scene.materials = palette.into_materials();
     let of_parts = scene.parts.iter().flat_map(|part| &part.objects);

@@ -2,9 +2,10 @@
 
 use super::item::Item;
 use super::source::Source;
-use crate::scene::{Scene, SceneError, Track, TrackTarget};
+use crate::scene::{Placement, Scene, SceneError, Track, TrackTarget};
 use glam::{DAffine3, DQuat, DVec3};
 use gridel_core::format::track::ValueKind;
+use std::collections::HashSet;
 
 /// What of an import is taken over.
 pub(super) struct ImportPlace<'p> {
@@ -24,7 +25,8 @@ impl ImportPlace<'_> {
         import: &Scene,
     ) -> Result<Vec<Track>, SceneError> {
         let mut tracks = Vec::new();
-        for track in &import.tracks {
+        // Those of joints come along with the instances.
+        for track in import.tracks.iter().filter(|it| !it.target.is_of_joint()) {
             let (index, what) = if track.target.is_of_camera() {
                 (self.camera.then_some(0), "camera")
             } else if track.target.is_of_material() {
@@ -50,10 +52,10 @@ pub(super) fn with_imported(mut own: Vec<Track>, imported: Vec<Track>) -> Vec<Tr
             || target == TrackTarget::CameraUp
             || target == TrackTarget::CameraOrbit
     });
+    let mut moved: HashSet<_> = own.iter().map(|it| (it.target, it.index)).collect();
     for track in imported {
-        let same = |it: &Track| (it.target, it.index) == (track.target, track.index);
         let instead = aims && track.target == TrackTarget::CameraRotation;
-        if !instead && !own.iter().any(same) {
+        if !instead && moved.insert((track.target, track.index)) {
             own.push(track);
         }
     }
@@ -61,9 +63,14 @@ pub(super) fn with_imported(mut own: Vec<Track>, imported: Vec<Track>) -> Vec<Tr
 }
 
 /// A track after a transform; `None` where it cannot follow.
-fn moved(track: &Track, by: &DAffine3) -> Option<Track> {
+pub(super) fn moved(track: &Track, by: &DAffine3) -> Option<Track> {
     let mut moved = track.clone();
+    let of_joint = track.target.is_of_joint();
     let rotation = match track.target.kind() {
+        ValueKind::Rotation if of_joint => {
+            let placement = Placement::from_affine(by.matrix3, by.translation);
+            Some(placement?.rotation)
+        }
         ValueKind::Rotation => Some(rotation_of(by)?),
         _ => None,
     };
@@ -77,8 +84,16 @@ fn moved(track: &Track, by: &DAffine3) -> Option<Track> {
         let place = by.transform_point3(key.vector());
         for value in [&mut key.value, &mut key.entering, &mut key.leaving] {
             *value = match (track.target.kind(), rotation) {
-                (ValueKind::Position | ValueKind::Direction | ValueKind::UnitDirection, _) => {
-                    vector(*value)
+                (
+                    ValueKind::Position
+                    | ValueKind::Direction
+                    | ValueKind::UnitDirection
+                    | ValueKind::Shift,
+                    _,
+                ) => vector(*value),
+                // It turns in the scene's coordinates, not from a rest of its own.
+                (ValueKind::Rotation, Some(by)) if of_joint => {
+                    (by * DQuat::from_array(*value) * by.inverse()).to_array()
                 }
                 (ValueKind::Rotation, Some(by)) => (by * DQuat::from_array(*value)).to_array(),
                 (ValueKind::Turns, _) => value.map(|it| it * turns),

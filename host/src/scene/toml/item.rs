@@ -2,7 +2,7 @@
 
 use super::source::{Name, Span};
 use crate::scene::{Placement, Scene, Shape};
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use std::rc::Rc;
 
 /// An object as the file states it.
@@ -47,5 +47,16 @@ pub(super) struct InstanceItem {
     /// Which part of the list.
     pub(super) part: usize,
     pub(super) placement: Placement,
+    /// Which joint of the list.
+    pub(super) joint: Option<usize>,
+    pub(super) span: Span,
+}
+
+/// A `[[joint]]`.
+pub(super) struct JointItem {
+    pub(super) name: Name,
+    /// Which joint of the list, before this one.
+    pub(super) parent: Option<usize>,
+    pub(super) pivot: DVec3,
     pub(super) span: Span,
 }

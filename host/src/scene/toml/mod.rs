@@ -2,9 +2,11 @@
 
 mod census;
 mod document;
+mod hinge;
 mod import;
 mod imported_track;
 mod item;
+mod joint;
 mod material;
 mod object;
 mod part;
@@ -65,5 +67,6 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         molecules: imports.molecules,
         choices: imports.choices,
         assemblies: imports.assemblies,
+        posed: false,
     })
 }

@@ -8,7 +8,7 @@ use super::source::Source;
 use super::value::{Fields, Value};
 use super::{shape, transform};
 use crate::scene::importer::stem;
-use crate::scene::{MoleculeOptions, MoleculeStyle, Scene, SceneError, Shape};
+use crate::scene::{MoleculeOptions, MoleculeStyle, Scene, SceneError, Shape, Track};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::rc::Rc;
@@ -50,7 +50,11 @@ impl Reader<'_> {
 
     /// The objects of a group or part, of which there must be some: groups of nothing could be nested
     /// without end at no cost in primitives.
-    pub(super) fn members(&mut self, fields: &Fields<'_>, what: &str) -> Result<Vec<Item>, SceneError> {
+    pub(super) fn members(
+        &mut self,
+        fields: &Fields<'_>,
+        what: &str,
+    ) -> Result<Vec<Item>, SceneError> {
         let list = fields.require("object")?;
         self.imports.nesting += 1;
         if self.imports.nesting > MAX_NESTING {
@@ -98,10 +102,12 @@ impl Reader<'_> {
             "instance" => Content::Instance(fields.require("group")?.name()?),
             "import" => {
                 let scene = self.import(&fields)?;
-                if self.imports.nesting > 0 && !scene.tracks.is_empty() {
+                let seen = |track: &Track| !track.target.is_of_joint();
+                if self.imports.nesting > 0 && scene.tracks.iter().any(seen) {
                     let place = self.source.place(&fields.span);
                     self.imports.warnings.push(format!(
-                        "{place}: the tracks of an import inside of a group or part move nothing"
+                        "{place}: the tracks of camera, lights and materials of an import inside of a group or \
+                         part move nothing"
                     ));
                 }
                 // Objects that all get another material do not need their own.

@@ -1,6 +1,7 @@
 //! The `[[part]]` and `[[instance]]` tables.
 
 use super::item::{InstanceItem, PartItem};
+use super::joint::Joints;
 use super::object::Reader;
 use super::source::{Source, nearest};
 use super::transform;
@@ -33,10 +34,11 @@ impl Reader<'_> {
     }
 }
 
-/// Reads the instances of these parts.
+/// Reads the instances of these parts, which hang on these joints.
 pub(super) fn instances(
     list: Value<'_>,
     parts: &[PartItem],
+    joints: &Joints,
 ) -> Result<Vec<InstanceItem>, SceneError> {
     let numbers = parts.iter().enumerate();
     let numbers: HashMap<&str, usize> = numbers
@@ -45,7 +47,7 @@ pub(super) fn instances(
     let mut names = HashSet::new();
     let mut instances = Vec::new();
     for table in list.items("`[[instance]]` above its keys")? {
-        let fields = table.fields("instance", &[&["part", "name"], transform::KEYS])?;
+        let fields = table.fields("instance", &[&["part", "name", "joint"], transform::KEYS])?;
         let part = fields.require("part")?;
         let text = part.filled()?;
         let number = numbers.get(text).copied().ok_or_else(|| {
@@ -72,6 +74,7 @@ pub(super) fn instances(
             name,
             part: number,
             placement: transform::placement(&fields)?,
+            joint: fields.or("joint", None, |value| joints.find(value).map(Some))?,
             span: fields.span,
         });
     }

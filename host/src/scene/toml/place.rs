@@ -1,11 +1,12 @@
 //! Places the objects of groups, instances and imports in the world, or in parts.
 
 use super::census;
-use super::item::{Content, Group, InstanceItem, Item, PartItem};
+use super::imported_track::{lost, moved};
+use super::item::{Content, Group, InstanceItem, Item, JointItem, PartItem};
 use super::material::Palette;
 use super::source::Source;
 use crate::scene::size::{MOST_PRIMITIVES, Size, primitives};
-use crate::scene::{Instance, Object, Part, Placement, Scene, SceneError, Shape};
+use crate::scene::{Instance, Joint, Object, Part, Placement, Scene, SceneError, Shape, Track};
 use crate::shape::transform::OUT_OF_RANGE;
 use glam::DAffine3;
 use std::collections::{BTreeMap, HashMap};
@@ -31,6 +32,11 @@ pub(super) struct Placed {
     pub(super) objects: Vec<Object>,
     pub(super) parts: Vec<Part>,
     pub(super) instances: Vec<Instance>,
+    /// The file's own, then those of imports.
+    pub(super) joints: Vec<Joint>,
+    /// Those of the joints of imports.
+    pub(super) tracks: Vec<Track>,
+    pub(super) warnings: Vec<String>,
 }
 
 /// Where the objects of a list go.
@@ -78,7 +84,15 @@ impl<'p> Placer<'p> {
         items: &[Item],
         parts: &[PartItem],
         instances: &[InstanceItem],
+        joints: &[JointItem],
     ) -> Result<Placed, SceneError> {
+        let joint = |joint: &JointItem| Joint {
+            name: joint.name.text.clone(),
+            parent: joint.parent,
+            pivot: joint.pivot,
+            place: self.source.place(&joint.span),
+        };
+        self.placed.joints = joints.iter().map(joint).collect();
         self.items(items, WORLD)?;
         let own = std::mem::take(&mut self.placed.objects);
         self.in_part = true;
@@ -113,6 +127,7 @@ impl<'p> Placer<'p> {
                 name: instance.name.clone(),
                 part,
                 placement: instance.placement,
+                joint: instance.joint,
                 place: self.source.place(&instance.span),
             });
         }
@@ -221,6 +236,8 @@ impl<'p> Placer<'p> {
                 first
             }
         };
+        let first_joint = self.placed.joints.len();
+        self.joints(item, site, scene)?;
         for instance in &scene.instances {
             let placement = instance.placement.within(&outer);
             if !placement.is_valid() {
@@ -231,7 +248,35 @@ impl<'p> Placer<'p> {
                 name: format!("{}{}", site.path, instance.name),
                 part: first + instance.part,
                 placement,
+                joint: instance.joint.map(|joint| first_joint + joint),
                 place: instance.place.clone(),
+            });
+        }
+        Ok(())
+    }
+
+    /// Takes over the joints of an import, and their tracks.
+    fn joints(&mut self, item: &Item, site: Site<'_>, scene: &Scene) -> Result<(), SceneError> {
+        let first = self.placed.joints.len();
+        for joint in &scene.joints {
+            let pivot = site.transform.transform_point3(joint.pivot);
+            if !pivot.is_finite() {
+                let cause = format!("the joint {:?} {}", joint.name, OUT_OF_RANGE.cause);
+                return Err(self.source.error(&item.span, cause, OUT_OF_RANGE.remedy));
+            }
+            self.placed.joints.push(Joint {
+                name: format!("{}{}", site.path, joint.name),
+                parent: joint.parent.map(|parent| first + parent),
+                pivot,
+                place: joint.place.clone(),
+            });
+        }
+        for track in scene.tracks.iter().filter(|it| it.target.is_of_joint()) {
+            let moved = moved(track, &site.transform);
+            let moved = moved.ok_or_else(|| lost(self.source, item, "joint"))?;
+            self.placed.tracks.push(Track {
+                index: first + track.index,
+                ..moved
             });
         }
         Ok(())
@@ -244,6 +289,17 @@ impl<'p> Placer<'p> {
         scene: &Scene,
         materials: &[usize],
     ) -> Result<(), SceneError> {
+        if scene.instances.iter().any(|it| it.joint.is_some()) {
+            let place = self.source.place(&item.span);
+            let warning = format!(
+                "{place}: the moving instances of this import are copied as they are at rest, because it is in a part, \
+                 mirrored or scaled unevenly"
+            );
+            // Once for an import that stands often.
+            if !self.placed.warnings.contains(&warning) {
+                self.placed.warnings.push(warning);
+            }
+        }
         for instance in &scene.instances {
             let path = format!("{}{}/", site.path, instance.name);
             let inside = Site {

@@ -1,15 +1,28 @@
-//! The `[[track]]` tables: values of the camera, of lights and of materials at some times.
+//! The `[[track]]` tables: values of the camera, of lights, materials and joints at some times.
 
+use super::hinge;
+use super::joint::Joints;
 use super::material::Palette;
 use super::source::{Name, Source, Span, nearest};
+use super::transform;
 use super::value::{Fields, Value};
 use super::view::field_of_view;
-use crate::scene::{Diffuse, Interpolation, Key, Light, SceneError, Track, TrackTarget};
+use crate::scene::{
+    Diffuse, Interpolation, Key, LARGEST_SCALE, LEAST_SCALE, Light, SceneError, Track, TrackTarget,
+};
 use crate::table::counted;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use gridel_core::format::track::ValueKind;
+use std::collections::HashMap;
 
-const KEYS: &[&str] = &["target", "times", "values", "interpolation", "tangents"];
+const KEYS: &[&str] = &[
+    "target",
+    "times",
+    "values",
+    "interpolation",
+    "tangents",
+    "axis",
+];
 
 const CAMERA: [(&str, TrackTarget); 5] = [
     ("eye", TrackTarget::CameraEye),
@@ -35,7 +48,13 @@ const MATERIAL: [(&str, TrackTarget); 6] = [
     ("transmit", TrackTarget::MaterialTransmit),
 ];
 
-/// A track whose light or material is not looked up yet.
+const JOINT: [(&str, TrackTarget); 3] = [
+    ("rotation", TrackTarget::JointRotation),
+    ("shift", TrackTarget::JointShift),
+    ("scale", TrackTarget::JointScale),
+];
+
+/// A track whose light, material or joint is not looked up yet.
 pub(super) struct Unresolved {
     owner: Owner,
     /// The target's text and place.
@@ -48,6 +67,7 @@ enum Owner {
     Camera,
     Light(String),
     Material(String),
+    Joint(String),
 }
 
 /// Reads the tables.
@@ -69,8 +89,25 @@ fn track(table: Value<'_>) -> Result<Unresolved, SceneError> {
             .find(|it| it.name() == word)
             .unwrap_or(Interpolation::Linear))
     })?;
+    let axis = fields.get("axis");
+    if let Some(axis) = axis.filter(|_| moved != TrackTarget::JointRotation) {
+        return Err(axis.error(
+            "a track has an `axis` only where its target is the rotation of a joint",
+            "remove the key",
+        ));
+    }
     let mut keys = keys(&fields, moved)?;
     let tangents = fields.get("tangents");
+    let rotations = moved.kind() == ValueKind::Rotation && axis.is_none();
+    if let Some(tangents) = tangents.filter(|_| rotations) {
+        return Err(tangents.error(
+            "rotations without an `axis` have no `tangents`",
+            "remove the key, or give the track an `axis` and angles",
+        ));
+    }
+    if rotations {
+        hinge::on_one_side(&mut keys);
+    }
     if interpolation == Interpolation::Cubic {
         match tangents {
             Some(tangents) => given_tangents(tangents, &mut keys)?,
@@ -84,6 +121,11 @@ fn track(table: Value<'_>) -> Result<Unresolved, SceneError> {
             ),
             "remove the key, or write `interpolation = \"cubic\"`",
         ));
+    }
+    if let Some(axis) = axis {
+        let axis = axis.direction()?;
+        keys = hinge::rotations(axis, interpolation, &keys)
+            .map_err(|(cause, remedy)| fields_error(&fields, cause, remedy))?;
     }
     Ok(Unresolved {
         owner,
@@ -99,10 +141,18 @@ fn track(table: Value<'_>) -> Result<Unresolved, SceneError> {
     })
 }
 
+/// The error of the values of a track.
+fn fields_error(fields: &Fields<'_>, cause: String, remedy: &str) -> SceneError {
+    match fields.get("values") {
+        Some(values) => values.error(cause, remedy),
+        None => fields.source.error(&fields.span, cause, remedy),
+    }
+}
+
 /// Whose property a target is, its name, and what it is.
 fn parse(target: Value<'_>) -> Result<(Owner, &'static str, TrackTarget), SceneError> {
-    const EXAMPLES: &str = "write a property of the camera, a light or a material, such as \"camera.eye\", \"light.0.color\" or \
-         \"material.glass.transmit\"";
+    const EXAMPLES: &str = "write a property of the camera, a light, a material or a joint, such as \"camera.eye\", \
+         \"light.0.color\", \"material.glass.transmit\" or \"joint.elbow.rotation\"";
     let text = target.filled()?;
     let Some((owner, rest)) = text.split_once('.') else {
         return Err(target.error(
@@ -140,6 +190,7 @@ fn parse(target: Value<'_>) -> Result<(Owner, &'static str, TrackTarget), SceneE
         "material" => {
             named(&MATERIAL).map(|(owner, name, moved)| (Owner::Material(owner), name, moved))
         }
+        "joint" => named(&JOINT).map(|(owner, name, moved)| (Owner::Joint(owner), name, moved)),
         _ => Err(target.error(
             format!("`target` is {text:?}, and nothing called {owner:?} moves"),
             EXAMPLES,
@@ -171,23 +222,56 @@ fn keys(fields: &Fields<'_>, target: TrackTarget) -> Result<Vec<Key>, SceneError
         return Err(times.error("`times` is empty", "write at least one time, in seconds"));
     }
     let kind = target.kind();
-    let example = match kind.components() {
-        1 => "`values = [0, 360]`, one for each time",
+    let hinge = fields.get("axis").is_some();
+    let example = match (kind, kind.components()) {
+        (ValueKind::Rotation, _) if !hinge => {
+            "`values = [[0, 0, 0], [0, 90, 0]]`, one for each time"
+        }
+        (ValueKind::Scale, _) => "`values = [1, 1.5]`, one for each time",
+        (ValueKind::Rotation, _) | (_, 1) => "`values = [0, 360]`, one for each time",
         _ => "`values = [[0, 3, 8], [4, 3, 4]]`, one for each time",
     };
     let values_of = values.items(example)?;
     check_count(values, values_of.len(), keys.len())?;
     for (key, value) in keys.iter_mut().zip(values_of) {
+        if kind == ValueKind::Rotation && !hinge {
+            if !value.is_array() && !value.is_table() {
+                return Err(value.error(
+                    "`values` holds a number, and a rotation without an `axis` has three angles",
+                    "write `[0, 90, 0]`, or add the axis: `axis = [0, 1, 0]`",
+                ));
+            }
+            let turn = DQuat::from_mat3(&transform::rotation(value)?).normalize();
+            key.value = turn.to_array();
+            continue;
+        }
         let vector = match kind {
             ValueKind::Direction | ValueKind::UnitDirection => value.direction()?,
             ValueKind::FieldOfView => DVec3::X * field_of_view(value)?,
-            ValueKind::Turns | ValueKind::Scale => DVec3::X * value.number()?,
+            ValueKind::Turns | ValueKind::Rotation => DVec3::X * value.number()?,
+            ValueKind::Scale => DVec3::X * scale(value)?,
             ValueKind::Radiance | ValueKind::Ratios => DVec3::from_array(value.color()?),
-            ValueKind::Position | ValueKind::Rotation | ValueKind::Shift => value.vector()?,
+            ValueKind::Position | ValueKind::Shift => value.vector()?,
         };
         *key = Key::of_vector(key.seconds, vector);
     }
     Ok(keys)
+}
+
+fn scale(value: Value<'_>) -> Result<f64, SceneError> {
+    let scale = value.positive()?;
+    if scale > LARGEST_SCALE {
+        return Err(value.error(
+            format!(
+                "`{}` is {scale}; it must be at most {LARGEST_SCALE}",
+                value.key
+            ),
+            format!(
+                "write a scale above 0 and at most {LARGEST_SCALE}, or place the instance larger"
+            ),
+        ));
+    }
+    Ok(scale.max(LEAST_SCALE))
 }
 
 fn check_count(values: Value<'_>, found: usize, times: usize) -> Result<(), SceneError> {
@@ -233,26 +317,28 @@ fn smooth_tangents(keys: &mut [Key]) {
     }
 }
 
-/// The lights and materials of a scene, to look tracks' targets up.
+/// The lights, materials and joints of a scene, to look tracks' targets up.
 pub(super) struct Targets<'t> {
     pub(super) source: &'t Source,
     pub(super) lights: &'t [Light],
     pub(super) light_names: &'t [String],
     pub(super) palette: &'t Palette,
+    pub(super) joints: &'t Joints,
 }
 
 impl Targets<'_> {
-    /// Looks up lights and materials.
+    /// Looks up lights, materials and joints.
     pub(super) fn resolve(&self, tracks: Vec<Unresolved>) -> Result<Vec<Track>, SceneError> {
         let mut resolved: Vec<Track> = Vec::new();
+        let mut known = HashMap::new();
         for unresolved in tracks {
             let index = self.index(&unresolved)?;
             let Unresolved {
                 target, mut track, ..
             } = unresolved;
             track.index = index;
-            let same = |it: &&Track| (it.target, it.index) == (track.target, index);
-            if let Some(first) = resolved.iter().find(same) {
+            if let Some(first) = known.insert((track.target, index), resolved.len()) {
+                let first = &resolved[first];
                 return Err(self.source.error(
                     &target.span,
                     format!(
@@ -289,6 +375,10 @@ impl Targets<'_> {
                     format!("move its `{instead}`, or change the light's `kind`"),
                 ))
             }
+            Owner::Joint(name) => self.joints.number(name).map_err(|remedy| {
+                let cause = format!("there is no joint {name:?}");
+                self.source.error(&target.span, cause, remedy)
+            }),
             Owner::Material(name) => {
                 let name = Name {
                     text: name.clone(),

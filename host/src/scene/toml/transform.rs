@@ -54,7 +54,7 @@ fn scale(value: Value<'_>) -> Result<DVec3, SceneError> {
 }
 
 /// `[x, y, z]`: degrees about these axes, in this order; or `{ axis, degrees }`.
-fn rotation(value: Value<'_>) -> Result<DMat3, SceneError> {
+pub(super) fn rotation(value: Value<'_>) -> Result<DMat3, SceneError> {
     if value.is_table() {
         let fields = value.fields("rotation", &[&["axis", "degrees"]])?;
         let axis = fields.require("axis")?.direction()?;

@@ -27,6 +27,7 @@ fn placed() -> Scene {
             translation: DVec3::X * x,
             ..Placement::IDENTITY
         },
+        joint: None,
         place: SourceSpan::default(),
     };
     scene.instances = [2.0, 4.0, 6.0].map(instance).to_vec();

@@ -145,9 +145,9 @@ fn cameras_and_animations_are_chosen_by_name() {
         animation: animation.map(str::to_owned),
     };
     let first = chosen(&document, Choice::default()).unwrap();
-    assert!(first.scene.tracks.is_empty());
+    assert_eq!((first.scene.tracks.len(), first.scene.joints.len()), (1, 1));
     let warned = |words: &str| first.warnings.iter().any(|it| it.contains(words));
-    assert!(warned("several animations") && warned("only cameras and lights move"));
+    assert!(warned("several animations"));
     for name in ["dolly", "1"] {
         let dolly = chosen(&document, choice(None, Some(name))).unwrap();
         assert_eq!(dolly.scene.tracks.len(), 3);

@@ -134,8 +134,8 @@ fn flattened_instances_stand_where_copies_do() {
 }
 
 #[test]
-fn nodes_that_move_are_copied() {
-    let mut document = shared(1024, json!([{"mesh": 0}, {"mesh": 0}]));
+fn node_that_moves_is_an_instance_whatever_it_saves() {
+    let mut document = shared(4, json!([{"mesh": 0}, {"mesh": 0, "translation": [1, 0, 0]}]));
     let views = document["bufferViews"].as_array_mut().unwrap();
     views.push(json!({"buffer": 0, "byteLength": 4}));
     views.push(json!({"buffer": 0, "byteLength": 12}));
@@ -150,5 +150,5 @@ fn nodes_that_move_are_copied() {
         "channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}}],
     }]);
     let scene = scene(&document);
-    assert_eq!((scene.objects.len(), scene.instances.len()), (2, 0));
+    assert_eq!((scene.objects.len(), scene.instances.len()), (1, 1));
 }

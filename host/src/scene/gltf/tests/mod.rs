@@ -4,6 +4,7 @@ mod files;
 mod geometry;
 mod instances;
 mod invalid;
+mod joints;
 
 use super::*;
 use crate::scene::test_scenes::{self, load, load_allowing_outside, mesh};

@@ -100,3 +100,19 @@ fn each_stress_scene_holds_one_shape_and_nothing_that_reflects() {
         assert!(scene.materials.iter().all(dull));
     }
 }
+
+#[test]
+fn the_arm_has_six_instances_on_a_chain_of_joints() {
+    let scene = fixture("robot-arm.toml");
+    let names: Vec<_> = scene.joints.iter().map(|it| it.name.as_str()).collect();
+    assert_eq!(names, ["turret", "shoulder", "elbow", "wrist", "left", "right"]);
+    assert_eq!((scene.parts.len(), scene.instances.len()), (4, 6));
+    // It comes back, and the hand is down at the ball on its way.
+    let [start, there, end] = [0.0, 2.0, 4.0].map(|seconds| scene.instances_at(seconds));
+    for (one, other) in start.iter().zip(&end) {
+        let [one, other] = [one, other].map(|it| it.placement.point(glam::DVec3::Y));
+        assert!(one.distance(other) < 1e-9, "{one} {other}");
+    }
+    let hand = there[3].placement.translation;
+    assert!(hand.y < 1.3 && hand.x > 1.0, "{hand}");
+}

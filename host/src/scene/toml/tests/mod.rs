@@ -4,6 +4,7 @@ mod errors;
 mod fixtures;
 mod hostile;
 mod imports;
+mod joints;
 mod objects;
 mod parts;
 mod tracks;

@@ -1,0 +1,58 @@
+//! The joints of a blob, and what hangs on them.
+
+use glam::DVec3;
+use gridel_core::format::track::Joint;
+use gridel_core::{Scene, Tracks};
+use gridel_host::table::counted;
+use serde::Serialize;
+
+/// A joint of a blob.
+#[derive(Serialize)]
+pub struct JointLine {
+    /// The number of the joint that it hangs on.
+    parent: Option<u32>,
+    /// In scene units.
+    pivot: [f64; 3],
+    /// How many instances hang on it and on no joint below it.
+    instances: usize,
+}
+
+impl JointLine {
+    /// The joints of a blob, in their order.
+    pub fn all(scene: &Scene<'_>, blob: &[u8]) -> Vec<Self> {
+        // They were checked with the scene.
+        let Ok(tracks) = Tracks::from_bytes(blob) else {
+            return Vec::new();
+        };
+        let mut instances = vec![0; tracks.joints().len()];
+        for instance in 0..scene.instances().len() {
+            if let Some(joint) = tracks.joint_of(instance) {
+                instances[joint] += 1;
+            }
+        }
+        let header = scene.header();
+        let origin = match header.coordinate_origin {
+            0 => DVec3::from_array(header.origin),
+            _ => DVec3::ZERO,
+        };
+        let step = f64::powi(2.0, header.coordinate_exponent());
+        let joints = tracks.joints().iter().zip(instances);
+        let line = |(joint, instances): (&Joint, usize)| Self {
+            parent: Some(joint.parent).filter(|parent| *parent != Joint::NONE),
+            pivot: (origin + step * DVec3::from_array(joint.pivot.map(f64::from))).to_array(),
+            instances,
+        };
+        joints.map(line).collect()
+    }
+
+    /// What the text says of it.
+    pub fn text(&self, number: usize) -> String {
+        let [x, y, z] = self.pivot;
+        let parent = self.parent.map(|parent| format!(" on joint {parent}"));
+        let instances = counted(self.instances, "instance");
+        format!(
+            "{number}{}: {instances}, pivot ({x}, {y}, {z})",
+            parent.unwrap_or_default()
+        )
+    }
+}

@@ -1,0 +1,108 @@
+//! Joints as records of a blob.
+
+use super::coordinates::position;
+use super::error::CompileError;
+use super::section::{Section, section};
+use crate::scene::{Joint, Key, Scene, Track, TrackTarget};
+use crate::table::printable;
+use glam::DVec3;
+use gridel_core::format::SectionKind;
+use gridel_core::format::record::Header;
+use gridel_core::format::track as records;
+
+/// Most joints that hang on each other, so that a chain takes little time.
+const MOST_LEVELS: usize = 1024;
+
+/// Proves that joints hang on joints before them, not too many on each other, and that instances and tracks name joints
+/// that there are.
+pub fn check(scene: &Scene) -> Result<(), CompileError> {
+    let mut levels: Vec<usize> = Vec::with_capacity(scene.joints.len());
+    let error = |name: &str, cause: String| CompileError::Joint {
+        name: printable(name),
+        cause,
+    };
+    for joint in &scene.joints {
+        let Joint {
+            name,
+            parent,
+            pivot,
+            ..
+        } = joint;
+        let level = match parent.map(|parent| levels.get(parent)) {
+            None => 1,
+            Some(Some(level)) => level + 1,
+            Some(None) => {
+                let cause = String::from("hangs on a joint that is not before it");
+                return Err(error(name, cause));
+            }
+        };
+        if level > MOST_LEVELS {
+            let cause = format!("has more than {MOST_LEVELS} joints above it");
+            return Err(error(name, cause));
+        }
+        if !pivot.is_finite() {
+            let cause = String::from("has a pivot that is infinite or not a number");
+            return Err(error(name, cause));
+        }
+        levels.push(level);
+    }
+    let is_valid = |joint: usize| joint < levels.len();
+    let mut instances = scene.instances.iter();
+    if let Some(lost) = instances.find(|it| it.joint.is_some_and(|joint| !is_valid(joint))) {
+        return Err(CompileError::Instance {
+            instance: printable(&lost.name),
+        });
+    }
+    let mut tracks = scene.tracks.iter();
+    match tracks.find(|track| track.target.is_of_joint() && !is_valid(track.index)) {
+        None => Ok(()),
+        Some(track) => Err(CompileError::Track {
+            place: track.place.clone(),
+            target: track.target.name(),
+            cause: format!("there is no joint {}", track.index),
+            remedy: "use the number of a joint of the scene",
+        }),
+    }
+}
+
+/// The tracks of a scene that a blob holds: those of joints only if instances can follow them.
+pub fn kept_tracks(scene: &Scene) -> Vec<Track> {
+    let has_instances = !scene.instances.is_empty();
+    let kept = |track: &&Track| has_instances || !track.target.is_of_joint();
+    scene.tracks.iter().filter(kept).cloned().collect()
+}
+
+/// The places that joints lead to, for the choice of coordinates.
+pub fn places(scene: &Scene) -> impl Iterator<Item = DVec3> {
+    let shifts = scene
+        .tracks
+        .iter()
+        .filter(|track| track.target == TrackTarget::JointShift);
+    let shifted = shifts.flat_map(|track| {
+        let pivot = scene.joints[track.index].pivot;
+        track.keys.iter().map(Key::vector).map(move |it| pivot + it)
+    });
+    scene.joints.iter().map(|joint| joint.pivot).chain(shifted)
+}
+
+/// The section of joints; none where there is nothing to move.
+pub fn sections(scene: &Scene, header: &Header) -> Result<Vec<Section>, CompileError> {
+    if scene.instances.is_empty() || scene.joints.is_empty() {
+        return Ok(Vec::new());
+    }
+    let record = |joint: &Joint| {
+        let far = || CompileError::Joint {
+            name: printable(&joint.name),
+            cause: String::from("has a pivot beyond the range of scene coordinates"),
+        };
+        Ok(records::Joint {
+            pivot: position(header, joint.pivot).ok_or_else(far)?.0,
+            parent: joint
+                .parent
+                .map_or(records::Joint::NONE, |parent| parent as u32),
+        })
+    };
+    let records = scene.joints.iter().map(record);
+    let records: Vec<_> = records.collect::<Result<_, CompileError>>()?;
+    Ok(vec![section(SectionKind::Joints, &records)])
+}

@@ -1,0 +1,106 @@
+use super::*;
+use crate::scene::test_chains::{Random, chain};
+use crate::scene::{SourceSpan, TrackTarget};
+
+#[test]
+fn reach_holds_random_chains_at_all_times() {
+    let mut random = Random(7);
+    let mut smallest = f64::INFINITY;
+    for _ in 0..500 {
+        let scene = chain(&mut random, true);
+        let part = [DVec3::new(-1.0, -2.0, 0.5), DVec3::new(3.0, 0.0, 1.0)];
+        let reach = Reach::of(&scene, &[part]);
+        let [low, high] = reach.bounds.unwrap();
+        let rest = scene.instances[0].placement;
+        let mut taken = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        for step in -1..=100 {
+            let placement = match step {
+                -1 => rest,
+                _ => scene.instances_at(f64::from(step) * 0.02)[0].placement,
+            };
+            for corner in 0..8 {
+                let side = |axis: usize| part[corner >> axis & 1];
+                let corner = placement.point(DVec3::new(side(0).x, side(1).y, side(2).z));
+                assert!(
+                    corner.cmpge(low).all() && corner.cmple(high).all(),
+                    "{corner} is not in {low} to {high} at step {step}: {scene:?}"
+                );
+                taken = [taken[0].min(corner), taken[1].max(corner)];
+            }
+            let scale = placement.scale / rest.scale;
+            let [least, greatest] = reach.scales[0];
+            let limit = |scale: f64| scale.clamp(LEAST_SCALE, LARGEST_SCALE);
+            assert!(
+                (least - 1e-12..=greatest + 1e-12).contains(&limit(scale)),
+                "{scale}"
+            );
+        }
+        smallest = smallest.min((taken[1] - taken[0]).max_element() / (high - low).max_element());
+    }
+    // It is not much larger than what is taken, but for scales in a row.
+    assert!(smallest > 0.01, "{smallest}");
+}
+
+/// The reach of a box from 1 to 2 along x, half as high and deep, on one joint.
+fn of_tracks(tracks: Vec<(TrackTarget, Vec<[f64; 4]>)>) -> [DVec3; 2] {
+    let mut scene = chain(&mut Random(1), true);
+    scene.joints.truncate(1);
+    scene.joints[0].pivot = DVec3::ZERO;
+    scene.instances[0].joint = Some(0);
+    scene.instances[0].placement = Placement::IDENTITY;
+    let key = |(number, &value): (usize, &[f64; 4])| Key {
+        seconds: number as f64,
+        value,
+        ..Key::default()
+    };
+    let track = |(target, values): (TrackTarget, Vec<[f64; 4]>)| Track {
+        target,
+        index: 0,
+        interpolation: Interpolation::Linear,
+        keys: values.iter().enumerate().map(key).collect(),
+        place: SourceSpan::default(),
+    };
+    scene.tracks = tracks.into_iter().map(track).collect();
+    let part = [DVec3::new(1.0, -0.25, -0.25), DVec3::new(2.0, 0.25, 0.25)];
+    Reach::of(&scene, &[part]).bounds.unwrap()
+}
+
+#[test]
+fn reach_of_shifts_and_hinges_is_tight() {
+    let near = |found: [DVec3; 2], low: [f64; 3], high: [f64; 3]| {
+        let error =
+            (found[0] - DVec3::from_array(low)).abs() + (found[1] - DVec3::from_array(high)).abs();
+        assert!(error.max_element() < 0.01, "{found:?}");
+    };
+    let rest = [0.0, 0.0, 0.0, 1.0];
+    near(
+        of_tracks(Vec::new()),
+        [1.0, -0.25, -0.25],
+        [2.0, 0.25, 0.25],
+    );
+    let lift = vec![(
+        TrackTarget::JointShift,
+        vec![[0.0; 4], [0.0, 4.0, 0.0, 0.0]],
+    )];
+    near(of_tracks(lift), [1.0, -0.25, -0.25], [2.0, 4.25, 0.25]);
+    let hinge = vec![(TrackTarget::JointRotation, vec![rest, [0.0, 0.0, 1.0, 0.0]])];
+    let round = 2.0_f64.hypot(0.25);
+    near(
+        of_tracks(hinge),
+        [-round, -round, -0.25],
+        [round, round, 0.25],
+    );
+    let axle = vec![(TrackTarget::JointRotation, vec![rest, [1.0, 0.0, 0.0, 0.0]])];
+    let round = 0.25_f64.hypot(0.25);
+    near(of_tracks(axle), [1.0, -round, -round], [2.0, round, round]);
+}
+
+#[test]
+fn room_widens_a_scene_without_joints() {
+    let scene = Scene {
+        room: Some([DVec3::ZERO, DVec3::splat(8.0)]),
+        ..Scene::default()
+    };
+    let (low, high) = Reach::of(&scene, &[]).around((DVec3::splat(-1.0), DVec3::ONE));
+    assert!(low == DVec3::splat(-1.0) && high.min_element() >= 8.0 && high.max_element() < 8.01);
+}

@@ -1,0 +1,209 @@
+//! Nodes that an animation moves, as joints of the meshes below them.
+//!
+//! A node whose own transform is `T R S` (at rest `T0 R0 S0`), in a node that stands at `W` at rest, moves what is below
+//! it by `W (T R S) (T0 R0 S0)^-1 W^-1`. This is a rotation `W R R0^-1 W^-1` and a scale `S / S0` about the pivot
+//! `W T0`, and a shift by `W (T - T0)`. All three are linear in the keys, so these are kept, whatever lies between them.
+
+use super::Importer;
+use super::animation::{Motion, Way};
+use super::place::{parts, transform};
+use super::shared::Placed;
+use crate::scene::{Joint, LARGEST_SCALE, Placement, Track, TrackTarget};
+use crate::table::printable;
+use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
+use gltf::Node;
+use std::collections::HashMap;
+
+/// How far a matrix can be from a rotation times a scale, and a change of size from an even one.
+const TOLERANCE: f64 = 1e-5;
+
+/// The scale of what shrinks to nothing.
+const NOTHING: f64 = 1.0 / 256.0;
+
+impl Importer<'_> {
+    /// Makes joints of the nodes that move meshes. `placed` has all nodes, each behind the one above it.
+    pub(super) fn joints(&mut self, placed: &[Placed<'_>]) {
+        // Whether a node, or one below it, has a mesh that can move.
+        let mut carries = HashMap::new();
+        for (node, _) in placed.iter().rev() {
+            let below = node
+                .children()
+                .any(|child| carries.get(&child.index()) == Some(&true));
+            let own = node.mesh().is_some() && node.skin().is_none();
+            carries.insert(node.index(), own || below);
+        }
+        let worlds: HashMap<usize, &DMat4> = placed
+            .iter()
+            .map(|(node, world)| (node.index(), world))
+            .collect();
+        for (node, world) in placed {
+            let number = node.index();
+            let above = self.motion.parent(number);
+            let mut joint = above.and_then(|above| self.joint_of.get(&above).copied());
+            if carries.get(&number) == Some(&true) && self.motion.moves_itself(number) {
+                let above = above.and_then(|above| worlds.get(&above).copied());
+                let above = above.copied().unwrap_or(DMat4::IDENTITY);
+                joint = self.joint(node, &above, world, joint).or(joint);
+            }
+            if let Some(joint) = joint {
+                self.joint_of.insert(number, joint);
+            }
+        }
+    }
+
+    /// Makes a joint of a node, if its animation moves what is below. `above` and `world` say where the node above it
+    /// and it itself stand at rest.
+    fn joint(
+        &mut self,
+        node: &Node<'_>,
+        above: &DMat4,
+        world: &DMat4,
+        parent: Option<usize>,
+    ) -> Option<usize> {
+        let number = node.index();
+        let name = node.name();
+        let own = Own::of(node, &self.motion, above);
+        let called = name.map_or_else(String::new, |name| format!(" {:?}", printable(name)));
+        for warning in own.warnings {
+            self.warn(format!("node {number}{called} {warning}"));
+        }
+        if own.ways.is_empty() {
+            return None;
+        }
+        let joint = self.scene.joints.len();
+        self.scene.joints.push(Joint {
+            name: name.map_or_else(|| format!("node {number}"), str::to_owned),
+            parent,
+            pivot: world.w_axis.truncate(),
+            place: self.place.clone(),
+        });
+        let place = &self.place;
+        let tracks = own.ways.into_iter().map(|(target, way)| Track {
+            target,
+            index: joint,
+            interpolation: way.interpolation,
+            keys: way.keys,
+            place: place.clone(),
+        });
+        self.scene.tracks.extend(tracks);
+        Some(joint)
+    }
+}
+
+/// The own motion of a node.
+#[derive(Default)]
+struct Own {
+    ways: Vec<(TrackTarget, Way)>,
+    /// What of it cannot be shown, and what happens instead.
+    warnings: Vec<&'static str>,
+}
+
+impl Own {
+    /// The motion of a node in nodes that stand at `above` at rest.
+    fn of(node: &Node<'_>, motion: &Motion, above: &DMat4) -> Self {
+        let mut own = Self::default();
+        let Some([translation, rotation, scale]) = motion.ways(node.index()) else {
+            return own;
+        };
+        let linear = DMat3::from_mat4(*above);
+        let parts = parts(node);
+        if let Some(way) = translation {
+            let rest = transform(node).w_axis.truncate();
+            own.add(
+                TrackTarget::JointShift,
+                way.from_rest(rest.extend(0.0), linear),
+                DVec4::ZERO,
+            );
+        }
+        let turned = Placement::near(
+            linear * linear.determinant().signum(),
+            DVec3::ZERO,
+            TOLERANCE,
+        );
+        match (rotation, &turned, parts) {
+            (None, ..) => {}
+            (Some(way), Some(above), Some([_, rest, _])) => {
+                let [outer, inner] = [above.rotation, DQuat::from_vec4(rest).inverse() * above.rotation.inverse()];
+                let mapped = way.map(|value| (outer * DQuat::from_array(value) * inner).to_array());
+                own.add(TrackTarget::JointRotation, mapped, DVec4::W);
+            }
+            _ => own.warnings.push(
+                "turns below a node that is scaled unevenly or sheared, which would bend it; it does not turn",
+            ),
+        }
+        match (scale, parts) {
+            (None, _) => {}
+            (Some(way), Some([_, _, rest])) => match even(way, rest.truncate()) {
+                Some((mapped, vanishes)) => {
+                    if vanishes {
+                        own.warnings.push("shrinks to nothing; it keeps 1/256 of its size");
+                    }
+                    own.add(TrackTarget::JointScale, mapped, DVec4::X);
+                }
+                None => own.warnings.push(
+                    "grows unevenly, from nothing or beyond 64 times its size; it keeps its size at rest",
+                ),
+            },
+            (Some(_), None) => own
+                .warnings
+                .push("has a sheared matrix; it keeps its size at rest"),
+        }
+        own
+    }
+
+    /// Adds a way, unless it stays at rest.
+    fn add(&mut self, target: TrackTarget, way: Way, rest: DVec4) {
+        let is_rest = |value: [f64; 4]| {
+            let value = DVec4::from_array(value);
+            // Of the two quaternions of no rotation either is.
+            let other = match target {
+                TrackTarget::JointRotation => -rest * value.length(),
+                _ => rest,
+            };
+            let own = match target {
+                TrackTarget::JointRotation => rest * value.length(),
+                _ => rest,
+            };
+            value.abs_diff_eq(own, 1e-9) || value.abs_diff_eq(other, 1e-9)
+        };
+        let mut keys = way.keys.iter();
+        let stays = keys
+            .all(|key| is_rest(key.value) && key.entering == [0.0; 4] && key.leaving == [0.0; 4]);
+        if !stays {
+            self.ways.push((target, way));
+        }
+    }
+}
+
+/// The even scale of a way of scales, relative to that at rest, and whether it was 0 at some key; `None` if it is none.
+fn even(way: &Way, rest: DVec3) -> Option<(Way, bool)> {
+    let inverse = rest.recip();
+    if !inverse.is_finite() {
+        return None;
+    }
+    let ratios = way.map(|[x, y, z, _]| {
+        let [x, y, z] = (DVec3::new(x, y, z) * inverse).to_array();
+        [x, y, z, 0.0]
+    });
+    let mut vanishes = false;
+    let values = ratios.keys.iter().map(|key| key.value[0].abs());
+    let largest = values.fold(0.0, f64::max);
+    for key in &ratios.keys {
+        let [x, ..] = key.value;
+        vanishes |= x < NOTHING;
+        let is_even = [key.value, key.entering, key.leaving]
+            .iter()
+            .all(|[x, y, z, _]| {
+                let tolerance = TOLERANCE * x.abs().max(largest);
+                (x - y).abs() <= tolerance && (x - z).abs() <= tolerance
+            });
+        if !is_even || !(0.0..=LARGEST_SCALE).contains(&x) {
+            return None;
+        }
+    }
+    let mut mapped = ratios.map(|[x, ..]| [x, 0.0, 0.0, 0.0]);
+    for key in &mut mapped.keys {
+        key.value[0] = key.value[0].max(NOTHING);
+    }
+    Some((mapped, vanishes))
+}

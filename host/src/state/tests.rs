@@ -1,0 +1,93 @@
+//! Instances at a time, against the interpolation of their joints in double precision.
+
+use super::*;
+use crate::compile::{Options, compile};
+use crate::scene::test_chains::{Random, chain};
+use crate::scene::{Instance, Scene as SceneFile, TICKS_PER_SECOND};
+use crate::shape::exp2;
+use glam::{DMat3, DVec3};
+use gridel_core::format::instance::MATRIX_BITS;
+
+/// How far the map of a posed instance is from its place: of a place near the part, in scene units.
+fn error(posed: &Scene<'_>, expected: &Instance) -> f64 {
+    let header = posed.header();
+    let unit = exp2(header.unit_exponent.into());
+    let part = posed.parts()[0].header();
+    let part_unit = exp2(part.unit_exponent.into());
+    let record = posed.instances()[0];
+    let rows = record
+        .matrix
+        .map(|row| DVec3::from_array(row.map(f64::from)));
+    let matrix = DMat3::from_cols_array_2d(&rows.map(|row| row.to_array())).transpose();
+    let into_part = matrix * exp2(i32::from(record.exponent) - MATRIX_BITS as i32);
+    let center = DVec3::from_array(record.center.map(f64::from)) / 256.0;
+    let from_part = into_part.inverse();
+    let corners = (0..8).map(|corner| {
+        let side = |axis: usize| f64::from(part.bounds.0[axis][corner >> axis & 1]);
+        let place = DVec3::new(side(0), side(1), side(2));
+        let found = DVec3::from_array(header.origin) + unit * (center + from_part * place);
+        let place = DVec3::from_array(part.origin) + part_unit * place;
+        found.distance(expected.placement.point(place))
+    });
+    corners.fold(0.0, f64::max)
+}
+
+/// The largest distance of posed instances from their places, in units of the scene.
+fn largest_error(scene: &SceneFile, until: f64) -> f64 {
+    let options = Options {
+        names: false,
+        ..Options::default()
+    };
+    let blob = compile(scene, &options).expect("compiles").blob;
+    let loaded = blob.scene().expect("valid");
+    let tracks = Tracks::from_bytes(blob.bytes()).expect("valid");
+    let unit = exp2(loaded.header().unit_exponent.into());
+    let mut largest = 0_f64;
+    for step in 0..=100 {
+        let seconds = f64::from(step) * until / 100.0;
+        let time = ticks(&tracks, seconds);
+        let state =
+            State::at(&loaded, &tracks, time).unwrap_or_else(|error| panic!("{error}: {scene:?}"));
+        let posed = state.apply(&loaded).expect("in range");
+        let seconds = f64::from(time) / f64::from(TICKS_PER_SECOND);
+        largest = largest.max(error(&posed, &scene.instances_at(seconds)[0]) / unit);
+    }
+    largest
+}
+
+#[test]
+fn random_chains_are_where_their_tracks_lead() {
+    let mut random = Random(11);
+    let mut largest = 0_f64;
+    for _ in 0..60 {
+        largest = largest.max(largest_error(&chain(&mut random, false), 2.0));
+    }
+    // A lattice has 65,534 units.
+    assert!(largest < 0.25, "{largest} units");
+}
+
+#[test]
+fn scene_without_joints_has_no_poses() {
+    let mut scene = chain(&mut Random(1), false);
+    scene.tracks.clear();
+    scene.joints.clear();
+    scene.instances[0].joint = None;
+    let blob = compile(&scene, &Options::default()).expect("compiles").blob;
+    let loaded = blob.scene().expect("valid");
+    let tracks = Tracks::from_bytes(blob.bytes()).expect("valid");
+    assert!(tracks.joints().is_empty());
+    assert_eq!(State::at(&loaded, &tracks, 0).expect("a state").poses, None);
+}
+
+#[test]
+fn poses_of_another_scene_are_rejected() {
+    let mut random = Random(5);
+    let [one, mut other] = [(); 2].map(|()| chain(&mut random, false));
+    other.instances.push(other.instances[0].clone());
+    let [one, other] =
+        [one, other].map(|it| compile(&it, &Options::default()).expect("compiles").blob);
+    let tracks = Tracks::from_bytes(other.bytes()).expect("valid");
+    let state = State::at(&other.scene().expect("valid"), &tracks, 0).expect("a state");
+    let poses = state.poses.expect("two instances");
+    assert!(poses.apply(&one.scene().expect("valid")).is_err());
+}
