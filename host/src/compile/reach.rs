@@ -198,7 +198,7 @@ impl Region {
             corners: [low, high],
             center,
             radius,
-        } = self.from(pivot).turned(turn);
+        } = self.seen_from(pivot).turned(turn);
         let scaled = Self {
             corners: [
                 (low * least).min(low * greatest),
@@ -217,7 +217,7 @@ impl Region {
     }
 
     /// As seen from a place.
-    fn from(&self, place: DVec3) -> Self {
+    fn seen_from(&self, place: DVec3) -> Self {
         Self {
             corners: self.corners.map(|corner| corner - place),
             center: self.center - place,

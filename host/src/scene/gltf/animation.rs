@@ -378,8 +378,8 @@ impl Way {
         }
     }
 
-    /// The way from a place at rest, seen from the scene, whose changes are mapped by `linear`.
-    pub(super) fn from_rest(&self, rest: DVec4, linear: DMat3) -> Self {
+    /// The way as seen from a place at rest, whose values and changes are mapped by `linear`.
+    pub(super) fn beside(&self, rest: DVec4, linear: DMat3) -> Self {
         let vector = |[x, y, z, _]: [f64; 4]| {
             let [x, y, z] = (linear * DVec3::new(x, y, z)).to_array();
             [x, y, z, 0.0]

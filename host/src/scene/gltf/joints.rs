@@ -111,7 +111,7 @@ impl Own {
             let rest = transform(node).w_axis.truncate();
             own.add(
                 TrackTarget::JointShift,
-                way.from_rest(rest.extend(0.0), linear),
+                way.beside(rest.extend(0.0), linear),
                 DVec4::ZERO,
             );
         }
