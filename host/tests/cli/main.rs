@@ -11,6 +11,7 @@ mod frames;
 mod help;
 mod import;
 mod inspect;
+mod joints;
 mod live;
 mod merge;
 mod names;
