@@ -42,12 +42,24 @@ pub(crate) fn check_rotation(matrix: &[[i32; 3]; 3]) -> Result<(), Reason> {
     }
 }
 
+/// 2^60 over a number from 2^28 to 2^30, within 2^-30 of itself. Boards have no division of 64 bits.
+fn reciprocal(number: u32) -> Option<i64> {
+    // Within 2^-13, and twice as many bits with each step of Newton's method.
+    let first = (1_u32 << 31).checked_div(number >> 15)?;
+    let mut inverse = i64::from(first) << 14;
+    for _ in 0..2 {
+        let left = (1_i64 << 60).wrapping_sub(i64::from(number).wrapping_mul(inverse));
+        inverse = inverse.wrapping_add((inverse >> 4).wrapping_mul(left >> 28) >> 28);
+    }
+    Some(inverse)
+}
+
 /// The box in the scene around the box of a part; `None` where it would leave the scene's lattice. The matrix is a
 /// [rotation](check_rotation).
 pub(crate) fn around(instance: &Instance, part: &UnitBox) -> Option<UnitBox> {
     let [x, y, z] = instance.matrix;
     // The inverse is the matrix turned over, divided by the square: from 2^28 to 2^30, so over 2^60 up to 2^32.
-    let inverse = (1_i64 << 60).checked_div(dot(x, x) >> 16)?;
+    let inverse = reciprocal((dot(x, x) >> 16) as u32)?;
     // In 1/256 unit, from half units: sums have up to 43 bits, of which 13 are far below that.
     let shift = (33 + i32::from(instance.exponent)).unsigned_abs() & 63;
     let back = |sum: i64, rounded: i64| {
@@ -86,5 +98,25 @@ impl Instance {
     pub fn around(&self, part: &UnitBox) -> Option<UnitBox> {
         check_rotation(&self.matrix).ok()?;
         around(self, part)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reciprocals_are_within_their_bound() {
+        let ends = [1 << 28, (1 << 28) + 1, 3 << 27, (1 << 30) - 1, 1 << 30];
+        let between = (0..10_000).map(|k| (1_u32 << 28) + k * 80_521);
+        for number in ends.into_iter().chain(between) {
+            let exact = f64::powi(2.0, 60) / f64::from(number);
+            let found = reciprocal(number).expect("a number");
+            assert!(
+                (found as f64 / exact - 1.0).abs() < f64::powi(2.0, -30),
+                "{number}"
+            );
+        }
+        assert_eq!(reciprocal(0), None);
     }
 }

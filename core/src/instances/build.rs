@@ -83,7 +83,9 @@ fn divide(instances: &[Instance], order: &mut [u32], pairs: &mut [Pair]) {
             break;
         };
         let middle = range.len() / 2;
-        halve(instances, range, middle);
+        if range.len() > 2 {
+            halve(instances, range, middle);
+        }
         let middle = first.wrapping_add(middle as u32);
         let halves = [[first, middle], [middle, end]];
         let children = halves.map(|[first, end]| {

@@ -4,6 +4,7 @@ use crate::format::instance::Instance;
 use crate::format::range::Ranges;
 use crate::format::record::Pair;
 use crate::format::{BlobError, Location, SectionKind};
+use crate::instances::bounds::{around, check_rotation};
 use crate::instances::build::build;
 use crate::instances::placed::Placed;
 use crate::instances::top::Top;
@@ -159,7 +160,9 @@ impl<'p> PosesView<'p> {
             });
         };
         let placed = motion.place(scene.header(), rest);
-        placed.check_ranges(Location::Record(section, index))?;
+        let location = Location::Record(section, index);
+        placed.check_ranges(location)?;
+        check_rotation(&placed.matrix).map_err(|reason| location.invalid(reason))?;
         *pose = placed;
         Ok(())
     }
@@ -189,7 +192,7 @@ impl<'a> Scene<'a> {
         };
         build(instances, order, pairs, self.bounds(), |instance| {
             let (part, _) = placed.part(instance)?;
-            instance.around(part.bounds())
+            around(instance, part.bounds())
         })?;
         let placed = Placed {
             top: Top { instances, pairs },

@@ -5,30 +5,30 @@ use gridel_core::{Angle, BlobError, Motion, Position, Tracks};
 /// Frames of the arm's way.
 pub const FRAMES: u32 = 8;
 
-/// Writes the motions of all joints in a frame: the first turns about the axis that points up, the others bend.
+/// The joint on which the hand hangs; its fingers hang on joints behind it.
+const WRIST: usize = 3;
+
+/// Writes the motions of all joints in a frame: the first turns about the axis that points up, the others up to the wrist
+/// bend.
 pub fn bend(tracks: &Tracks<'_>, frame: u32, motions: &mut [Motion]) -> Result<(), BlobError> {
-    let joints = tracks.joints().iter().zip(motions.iter_mut());
-    for ((joint, motion), number) in joints.zip(0_i32..) {
+    for ((number, joint), motion) in (0..).zip(tracks.joints()).zip(motions.iter_mut()) {
         let axis = if number == 0 { [0, 1, 0] } else { [0, 0, 1] };
-        let degrees = (frame as i32).wrapping_mul(5 + number);
-        let turn = Motion::turn(Position(joint.pivot), axis, Angle::degrees(degrees));
-        *motion = turn.unwrap_or(Motion::REST);
+        let degrees = if number <= WRIST { 5 } else { 0 };
+        let angle = Angle::degrees((frame as i32).wrapping_mul(degrees));
+        *motion = Motion::turn(Position(joint.pivot), axis, angle).unwrap_or(Motion::REST);
     }
     tracks.chain(motions)
 }
 
-/// Where the range finder in the hand is, and where it points: along the last link, away from the joint before it.
+/// Where the range finder in the hand is, and where it points: on from the elbow through the wrist.
 pub fn hand(tracks: &Tracks<'_>, motions: &[Motion]) -> Option<(Position, [i32; 3])> {
-    let [.., before, last] = tracks.joints() else {
-        return None;
-    };
-    let motion = motions.last()?;
-    let [from, to] = [before.pivot, last.pivot];
-    let way = |axis: usize| {
-        let way = i64::from(*to.get(axis)?) - i64::from(*from.get(axis)?);
-        // Half of it has 31 bits, and a sign.
-        Some((way >> 2) as i32)
-    };
+    let [elbow, wrist] = [WRIST - 1, WRIST].map(|number| tracks.joints().get(number));
+    let [from, to] = [elbow?.pivot, wrist?.pivot];
+    let way = |axis: usize| to.get(axis)?.checked_sub(*from.get(axis)?);
     let direction = [way(0)?, way(1)?, way(2)?];
-    Some((motion.position(Position(to)), motion.direction(direction)))
+    let motion = motions.get(WRIST)?;
+    // Beyond the hand and its fingers.
+    let tip = |axis: usize| to.get(axis)?.checked_add(way(axis)? / 2);
+    let tip = Position([tip(0)?, tip(1)?, tip(2)?]);
+    Some((motion.position(tip), motion.direction(direction)))
 }

@@ -6,8 +6,13 @@ use crate::firmware::{self, Build};
 use crate::orbit::{FRAMES, camera};
 use crate::plan::Plan;
 use crate::scenes::{self, Compiled};
-use gridel_core::{Format, Motion, Poses, Structure, Tracks};
+use gridel_core::format::limits::MAX_STACK_DEPTH;
+use gridel_core::{
+    DualSplit, Fixed, Format, Motion, NoCount, Number, Poses, Position, Scene, Stack, Structure,
+    Tracks, closest_hit,
+};
 use gridel_host::measure::board::Board;
+use std::collections::BTreeMap;
 
 /// Instructions of a frame before its first ray: camera, its checks, and the renderer's set-up.
 const FRAME: u64 = 3_000;
@@ -68,7 +73,11 @@ pub fn plan(plan: &mut Plan) {
 fn an_arm_bends(board: &'static Board, format: Format, compiled: &Compiled) {
     let build = Build::new(board, format, Structure::DualSplit, compiled);
     let program = build.program("arm");
-    let report = program.run();
+    let lines = program.lines();
+    let ranges = lines.iter().filter(|(name, _)| name == "range");
+    let ranges: Vec<u64> = ranges.map(|(_, q13)| *q13).collect();
+    let figures = lines.iter().filter(|(name, _)| name != "range");
+    let report: BTreeMap<String, u64> = figures.cloned().collect();
     let frames = program.file("arm.rgb");
     let scene = compiled.blob.scene().expect("the compiler's own blob");
     let tracks = Tracks::from_bytes(compiled.blob.bytes()).expect("the compiler's own tracks");
@@ -87,7 +96,18 @@ fn an_arm_bends(board: &'static Board, format: Format, compiled: &Compiled) {
             "{build}: frame {number} differs from the host's"
         );
         pictures.push(host);
+        let (place, direction) = arm::hand(&tracks, &motions).expect("a hand");
+        let range = match format {
+            Format::Fixed => range::<Fixed>(&posed, place, direction),
+            Format::F32 => range::<f32>(&posed, place, direction),
+            Format::F64 => range::<f64>(&posed, place, direction),
+        };
+        assert_eq!(ranges[number as usize], range, "{build}: frame {number}");
     }
+    assert!(
+        ranges.iter().any(|&q13| q13 > 0),
+        "{build}: the hand sees nothing"
+    );
     pictures.dedup();
     assert_eq!(
         pictures.len(),
@@ -103,6 +123,14 @@ fn an_arm_bends(board: &'static Board, format: Format, compiled: &Compiled) {
     let mut figures = Figures::new();
     figures.add(&format!("arm {build}"), &report);
     figures.check();
+}
+
+/// How far a ray goes, in units with 13 fraction bits; 0 if it meets nothing.
+fn range<N: Number>(scene: &Scene<'_>, place: Position, direction: [i32; 3]) -> u64 {
+    let ray = scene.ray_from::<N>(place, direction).expect("a direction");
+    let mut stack = Stack::<MAX_STACK_DEPTH>::new();
+    let hit = closest_hit::<N, DualSplit, _>(scene, &ray, stack.as_view(), &mut NoCount);
+    hit.map_or(0, |hit| N::narrow(hit.t).to_q13() as u64)
 }
 
 /// Suzanne as an instance against the same triangles in the scene itself, seen alike.

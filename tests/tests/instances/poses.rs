@@ -211,8 +211,9 @@ fn closed_part_is_closed_under_every_motion() {
         let (motion, moved) = random_motion(random, step);
         let mut memory = Poses::<1>::new();
         let mut poses = memory.at_rest(&loaded).expect("room for one");
-        poses.place(&loaded, 0, &motion).expect("a pose");
-        let Ok(posed) = loaded.with_poses(poses) else {
+        // Some leave the room.
+        let placed = poses.place(&loaded, 0, &motion);
+        let Ok(posed) = placed.and_then(|()| loaded.with_poses(poses)) else {
             continue;
         };
         tested += 1;
@@ -252,7 +253,7 @@ fn poses_that_do_not_fit_are_rejected() {
     let error = Poses::<2>::new().at_rest(&loaded).expect_err("no room");
     assert_eq!(
         error.to_string(),
-        "section instances has 2 records; it must have 3"
+        "section instances: it has 2 records; it must have 3"
     );
     let mut memory = Poses::<3>::new();
     let mut poses = memory.at_rest(&loaded).expect("room");

@@ -4,13 +4,17 @@
 #![no_main]
 
 use gridel_core::number::{Convert, Products};
-use gridel_core::{Motion, NoCount, Parts, Poses, Rgb888, Scene, Settings, Tracks};
+use gridel_core::{
+    Motion, NoCount, Parts, Poses, Rgb888, Scene, Settings, Stack, Tracks, closest_hit,
+};
 use gridel_firmware::arm::{FRAMES, bend, hand};
 use gridel_firmware::board::File;
 use gridel_firmware::measure::{Cost, Meter};
 use gridel_firmware::program;
 use gridel_firmware::report::{cost, fail, line};
-use gridel_firmware::scene::{BLOB, INSTANCES, JOINTS, Number, PARTS, SceneRenderer, Space, WIDTH};
+use gridel_firmware::scene::{
+    Accel, BLOB, INSTANCES, JOINTS, Number, PARTS, STACK_DEPTH, SceneRenderer, Space, WIDTH,
+};
 
 /// Pixels that are measured together.
 const PART: usize = 16;
@@ -97,8 +101,10 @@ fn run(memory: &'static mut Memory) {
         }
         let ray = hand(&tracks, motions)
             .and_then(|(place, direction)| posed.ray_from::<Number>(place, direction).ok());
-        let mut stack = gridel_core::Stack::<{ gridel_firmware::scene::STACK_DEPTH }>::new();
-        let hit = ray.and_then(|ray| posed.closest_hit(&ray, stack.as_view()));
+        let mut stack = Stack::<STACK_DEPTH>::new();
+        let hit = ray.and_then(|ray| {
+            closest_hit::<Number, Accel, _>(posed, &ray, stack.as_view(), &mut NoCount)
+        });
         let q13 = hit.map(|hit| Number::narrow(hit.t).to_q13() as u64);
         line("range", q13.unwrap_or(0));
     }
