@@ -66,7 +66,27 @@ impl Poses {
         tracks.place(scene, &motions, &mut poses)?;
         scene.with_poses(poses)?;
         pairs.truncate(count - 1);
-        Ok(Some(Self { instances, pairs }))
+        Ok(Some(Self::in_order(instances, pairs)))
+    }
+
+    /// Brings instances into the order of their leaves, as in a blob.
+    fn in_order(instances: Vec<Instance>, mut pairs: Vec<Pair>) -> Self {
+        /// The bit that makes a child a leaf.
+        const LEAF: u32 = 1 << 31;
+        if pairs.is_empty() {
+            return Self { instances, pairs };
+        }
+        let mut ordered = Vec::with_capacity(instances.len());
+        let children = pairs.iter_mut().flat_map(|pair| &mut pair.children);
+        for child in children.filter(|child| **child & LEAF != 0) {
+            let leaf = ordered.len() as u32;
+            ordered.push(instances[(*child & !LEAF) as usize]);
+            *child = LEAF | leaf;
+        }
+        Self {
+            instances: ordered,
+            pairs,
+        }
     }
 
     /// The scene with its instances here.

@@ -204,8 +204,8 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// The scene with instances and the hierarchy above them that [`with_poses`](Self::with_poses) built before, in
-    /// memory that is only read by now.
+    /// The scene with these instances and the hierarchy above them, which lie as in a blob: instances in the order of
+    /// their leaves. For poses that are built once and shared; see [`with_poses`](Self::with_poses) for others.
     ///
     /// Proves all that loading proves of instances, in time linear in their number.
     ///

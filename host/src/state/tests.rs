@@ -1,6 +1,6 @@
 //! Instances at a time, against the interpolation of their joints in double precision.
 
-use super::*;
+use super::{Instance as Record, *};
 use crate::compile::{Options, compile};
 use crate::scene::test_chains::{Random, chain};
 use crate::scene::{Instance, Scene as SceneFile, TICKS_PER_SECOND};
@@ -9,12 +9,11 @@ use glam::{DMat3, DVec3};
 use gridel_core::format::instance::MATRIX_BITS;
 
 /// How far the map of a posed instance is from its place: of a place near the part, in scene units.
-fn error(posed: &Scene<'_>, expected: &Instance) -> f64 {
+fn error(posed: &Scene<'_>, record: &Record, expected: &Instance) -> f64 {
     let header = posed.header();
     let unit = exp2(header.unit_exponent.into());
     let part = posed.parts()[0].header();
     let part_unit = exp2(part.unit_exponent.into());
-    let record = posed.instances()[0];
     let rows = record
         .matrix
         .map(|row| DVec3::from_array(row.map(f64::from)));
@@ -50,7 +49,11 @@ fn largest_error(scene: &SceneFile, until: f64) -> f64 {
             State::at(&loaded, &tracks, time).unwrap_or_else(|error| panic!("{error}: {scene:?}"));
         let posed = state.apply(&loaded).expect("in range");
         let seconds = f64::from(time) / f64::from(TICKS_PER_SECOND);
-        largest = largest.max(error(&posed, &scene.instances_at(seconds)[0]) / unit);
+        let expected = scene.instances_at(seconds);
+        for record in posed.instances() {
+            let expected = &expected[record.number as usize];
+            largest = largest.max(error(&posed, record, expected) / unit);
+        }
     }
     largest
 }
@@ -64,6 +67,23 @@ fn random_chains_are_where_their_tracks_lead() {
     }
     // A lattice has 65,534 units.
     assert!(largest < 0.25, "{largest} units");
+}
+
+#[test]
+fn many_instances_are_where_their_joints_lead_whatever_their_order() {
+    let mut random = Random(2);
+    let mut scene = chain(&mut random, false);
+    let first = scene.instances[0].clone();
+    for number in 0..100 {
+        let mut placement = first.placement;
+        placement.translation = random.vector() * 4.0;
+        scene.instances.push(Instance {
+            placement,
+            joint: (number % 3 > 0).then_some(random.below(scene.joints.len())),
+            ..first.clone()
+        });
+    }
+    assert!(largest_error(&scene, 2.0) < 0.25);
 }
 
 #[test]
