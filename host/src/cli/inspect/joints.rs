@@ -3,7 +3,7 @@
 use glam::DVec3;
 use gridel_core::format::track::Joint;
 use gridel_core::{Scene, Tracks};
-use gridel_host::table::counted;
+use gridel_host::table::{counted, significant};
 use serde::Serialize;
 
 /// A joint of a blob.
@@ -47,7 +47,7 @@ impl JointLine {
 
     /// What the text says of it.
     pub fn text(&self, number: usize) -> String {
-        let [x, y, z] = self.pivot;
+        let [x, y, z] = self.pivot.map(significant);
         let parent = self.parent.map(|parent| format!(" on joint {parent}"));
         let instances = counted(self.instances, "instance");
         format!(
