@@ -25,6 +25,7 @@ mod options;
 mod pairs;
 mod primitives;
 mod records;
+mod room;
 mod section;
 mod shading_data;
 mod structures;
@@ -193,7 +194,7 @@ fn compile_as(
     options: &Options,
     on_progress: OnProgress<'_>,
 ) -> Result<Compiled, CompileError> {
-    let extent = extent::extent(scene);
+    let extent = room::widened(extent::extent(scene), options.room);
     let (lattice, snapped, placed) = snap(role, scene, extent, options.lattice_bits)?;
     let structures = held(&options.structures);
     let shading_data = shading_data::ShadingData::of(scene, &lattice, extent)?;
@@ -206,7 +207,7 @@ fn compile_as(
         flat,
         wide,
     } = Hierarchies::build(scene, &snapped, &structures, options)?;
-    let own = hierarchy::bounds(&order);
+    let own = room::around(&order, options.room / lattice.unit());
     let mut bounds = placed.around(own).unwrap_or(UnitBox([[0; 2]; 3]));
     if structures.contains(&Structure::Octree) {
         let boxes: Vec<_> = order.iter().map(|primitive| primitive.bounds).collect();
@@ -343,6 +344,10 @@ fn check(scene: &Scene, options: &Options) -> Result<(), CompileError> {
         return Err(CompileError::LatticeBits {
             bits: options.lattice_bits,
         });
+    }
+    let room = options.room;
+    if !(room.is_finite() && room >= 0.0) {
+        return Err(CompileError::Room { room });
     }
     let bad = |object: &&Object| !object.shape.is_finite();
     let is_valid = |part: usize| part < scene.parts.len();
