@@ -1,7 +1,7 @@
 //! Puts the blob that `GRIDEL_BLOB` names into flash, what it needs into constants, and the memory
 //! of the board that `GRIDEL_BOARD` names before the linker.
 
-use gridel_core::Scene;
+use gridel_core::{Requirements, Scene};
 use std::path::PathBuf;
 use std::{env, fs};
 
@@ -19,6 +19,7 @@ fn main() {
     aligned[..bytes.len()].copy_from_slice(&bytes);
     let scene = Scene::from_bytes(&aligned[..bytes.len()])
         .unwrap_or_else(|error| panic!("{blob}: {error}"));
+    let requirements = Requirements::of(&bytes).expect("it was checked");
     let target = env::var("TARGET").expect("cargo sets TARGET");
     // Of an nRF51, and of an STM32F100.
     let interrupts = if target.starts_with("thumbv6m") {
@@ -35,12 +36,18 @@ fn main() {
          pub const EFFECTS: u32 = {};\n\
          /// Pixels of a row.\n\
          pub const WIDTH: usize = {};\n\
+         /// Vertices of all meshes.\n\
+         pub const VERTICES: usize = {};\n\
+         /// Pairs of the hierarchy of boxes.\n\
+         pub const PAIRS: usize = {};\n\
          /// Interrupts of the board's chip.\n\
          pub const INTERRUPTS: usize = {interrupts};\n",
         scene.stack_depth(),
         scene.effects().work_depth(scene.view().depth),
         scene.effects().0,
         scene.view().width,
+        requirements.vertices,
+        requirements.pairs,
     );
     fs::write(out.join("limits.rs"), constants).expect("OUT_DIR can be written to");
     fs::write(out.join("scene.gridel"), &bytes).expect("OUT_DIR can be written to");

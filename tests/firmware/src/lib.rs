@@ -11,6 +11,7 @@
 //! | `bare` | renders and talks to nobody: what it links is what a product would flash |
 //! | `range` | casts rays down onto the scene and prints their lengths |
 //! | `orbit` | turns a camera around the scene in 64 frames |
+//! | `deform` | moves the vertices of a mesh, refits its boxes and casts rays, and counts what that costs |
 //! | `example` | the README's example |
 //!
 //! The first five run in QEMU, or in Node, and print what they measured, a line each: a name and
@@ -29,6 +30,7 @@ pub mod orbit;
 pub mod rays;
 pub mod report;
 pub mod scene;
+pub mod waves;
 
 #[cfg(target_arch = "arm")]
 pub use cortex_m_rt as rt;
