@@ -57,6 +57,8 @@ pub mod boards {}
 
 pub mod accel;
 mod axis;
+#[cfg(all(feature = "bvh", feature = "triangle"))]
+pub mod deform;
 pub mod format;
 pub mod geometry;
 mod instances;
@@ -77,6 +79,8 @@ pub mod tracks;
 
 pub use accel::types::*;
 pub use accel::{Accel, Number, Stack, StackView, StructureVisitor};
+#[cfg(all(feature = "bvh", feature = "triangle"))]
+pub use deform::{DeformError, Deformation};
 pub use format::{Aligned, BlobError, Effects, Kind, Requirements, Structure};
 pub use number::{Angle, Fixed, Format};
 pub use observe::count::{Counters, NoCount, Observer};

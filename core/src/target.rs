@@ -30,6 +30,10 @@ impl<T, const COUNT: usize> InSomeBuilds<T, COUNT> {
     pub(crate) fn get(&self) -> Option<&T> {
         self.0.first()
     }
+
+    pub(crate) fn get_mut(&mut self) -> Option<&mut T> {
+        self.0.first_mut()
+    }
 }
 
 /// Whether this core multiplies 32 bits to 32 and no more: the Cortex-M0, the one family of Arm's

@@ -1,6 +1,7 @@
 //! Writes a scene as Rust: a module with the aligned blob, its limits as constants, and the types
 //! that have exactly the memory that it needs.
 
+use crate::measure::Deforming;
 use crate::measure::board::Board;
 use gridel_core::{Format, Prevalidated, Scene, Structure};
 use std::fs::File;
@@ -140,6 +141,7 @@ impl Emitted<'_> {
              #[allow(dead_code)]\n\
              pub type Picture<'s> = gridel_core::Renderer<'s, 's, Number, Accel, EFFECTS>;\n\
              \n\
+             {mesh}\
              {load}\
              \n\
              const BYTES: &[u8] = include_bytes!(\"{BLOB}\");\n\
@@ -163,6 +165,7 @@ impl Emitted<'_> {
              {budget}\
              }};\n",
             features = features.join(", "),
+            mesh = self.mesh(),
             stack = scene.stack_depth(),
             exponent = scene.coordinate_exponent(),
             origin = match scene.header() {
@@ -174,6 +177,26 @@ impl Emitted<'_> {
             bits = scene.effects().0,
             width = view.width,
             height = view.height,
+        )
+    }
+}
+
+impl Emitted<'_> {
+    /// The type of the scene's own deforming mesh; nothing where vertices have no room to move.
+    fn mesh(&self) -> String {
+        let Some(mesh) = Deforming::of_scene(self.scene) else {
+            return String::new();
+        };
+        let vertex = match self.scene.header().storage_bits {
+            16 => "Vertex16",
+            _ => "Vertex24",
+        };
+        format!(
+            "/// Vertices and boxes of the mesh in RAM, exactly large enough: {} bytes.\n\
+             #[allow(dead_code)]\n\
+             pub type Mesh = gridel_core::Deformation<\n    \
+             gridel_core::format::record::{vertex},\n    {},\n    {},\n>;\n\n",
+            mesh.bytes, mesh.vertices, mesh.pairs
         )
     }
 }

@@ -2,7 +2,7 @@
 //! of the board that `GRIDEL_BOARD` names before the linker.
 
 use gridel_core::scene::part_blobs;
-use gridel_core::{BlobError, Scene, Tracks};
+use gridel_core::{BlobError, Requirements, Scene, Tracks};
 use std::path::PathBuf;
 use std::{env, fs};
 
@@ -61,6 +61,7 @@ fn constants(blob: &[u8], interrupts: u32) -> Result<String, BlobError> {
         .collect::<Result<_, _>>()?;
     let scene = Scene::with_parts(blob, &parts)?;
     let tracks = Tracks::from_bytes(blob)?;
+    let requirements = Requirements::of(blob)?;
     Ok(format!(
         "/// Entries of the traversal stack.\n\
          pub const STACK_DEPTH: usize = {};\n\
@@ -70,6 +71,10 @@ fn constants(blob: &[u8], interrupts: u32) -> Result<String, BlobError> {
          pub const EFFECTS: u32 = {};\n\
          /// Pixels of a row.\n\
          pub const WIDTH: usize = {};\n\
+         /// Vertices of all meshes.\n\
+         pub const VERTICES: usize = {};\n\
+         /// Pairs of the hierarchy of boxes.\n\
+         pub const PAIRS: usize = {};\n\
          /// Parts of the scene.\n\
          pub const PARTS: usize = {};\n\
          /// Instances of the scene.\n\
@@ -82,6 +87,8 @@ fn constants(blob: &[u8], interrupts: u32) -> Result<String, BlobError> {
         scene.effects().work_depth(scene.view().depth),
         scene.effects().0,
         scene.view().width,
+        requirements.vertices,
+        requirements.pairs,
         parts.len(),
         scene.instances().len(),
         tracks.joints().len(),

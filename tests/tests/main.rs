@@ -8,6 +8,7 @@ mod apex;
 mod blob;
 mod boxes;
 mod cylinder_cube;
+mod deform;
 #[path = "documents/main.rs"]
 mod documents;
 mod explain;

@@ -3,6 +3,8 @@
 use crate::accel::records::Records;
 use crate::accel::space::Space;
 use crate::accel::traverse::Traverse;
+#[cfg(all(feature = "bvh", feature = "triangle"))]
+use crate::format::record::Pair;
 use crate::format::structure::structures;
 use crate::format::{BlobError, Sections, Structure};
 
@@ -101,6 +103,19 @@ macro_rules! registry {
 }
 
 structures!(registry);
+
+#[cfg(all(feature = "bvh", feature = "triangle"))]
+impl<'a> StructureViews<'a> {
+    /// The pairs of [`Bvh`](super::Bvh).
+    pub(crate) fn pairs(&self) -> &'a [Pair] {
+        self.bvh.0
+    }
+
+    /// Puts other pairs of [`Bvh`](super::Bvh) in their place.
+    pub(crate) fn replace_pairs(&mut self, pairs: &'a [Pair]) {
+        self.bvh.0 = pairs;
+    }
+}
 
 /// Proves one structure, or that the blob has no sections of it.
 fn check_one<'a, R: Records<'a>>(

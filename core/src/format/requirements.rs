@@ -36,6 +36,10 @@ pub struct Requirements {
     pub width: usize,
     /// Its rows.
     pub height: usize,
+    /// Vertices of all meshes, for a [`Deformation`](crate::deform::Deformation).
+    pub vertices: usize,
+    /// Pairs of the structure [`Bvh`](crate::accel), for a [`Deformation`](crate::deform::Deformation).
+    pub pairs: usize,
     structures: u32,
     /// A bit for each [`SectionKind`] of which there are records.
     sections: u128,
@@ -57,6 +61,8 @@ impl Requirements {
             effects: Effects(proved!(word(blob, offset_of!(Header, effects)))),
             width: 0,
             height: 0,
+            vertices: 0,
+            pairs: 0,
             structures: proved!(word(blob, offset_of!(Header, structures))),
             sections: 0,
             wide_lattice: lattice_bits > 16,
@@ -82,6 +88,10 @@ impl Requirements {
                 // The last byte of the word that begins with the depth.
                 demand.display_values = rays >> 24 != 0;
                 demand.work_depth = demand.effects.work_depth((rays >> 16) as u8);
+            } else if kind == SectionKind::Vertices as u16 {
+                demand.vertices = count as usize;
+            } else if kind == SectionKind::Pairs as u16 {
+                demand.pairs = count as usize;
             } else if kind == SectionKind::Triangles as u16 {
                 demand.wide_indices = stride > size_of::<[u16; 3]>();
             }

@@ -12,6 +12,8 @@ pub trait Vertex: Pod {
     const STEP_BITS: u32;
     /// A coordinate in steps.
     fn steps(&self, axis: usize) -> i32;
+    /// The vertex at coordinates in steps, which its storage can hold.
+    fn from_steps(steps: [i32; 3]) -> Self;
     /// All three coordinates in 1/256 unit.
     #[inline(always)]
     fn position(&self) -> [i32; 3] {
@@ -31,6 +33,10 @@ impl Vertex for Vertex16 {
     fn steps(&self, axis: usize) -> i32 {
         pick(self.0, axis) as i32
     }
+
+    fn from_steps(steps: [i32; 3]) -> Self {
+        Self(steps.map(|step| step as i16))
+    }
 }
 
 impl Vertex for Vertex24 {
@@ -44,6 +50,10 @@ impl Vertex for Vertex24 {
     #[inline(always)]
     fn steps(&self, axis: usize) -> i32 {
         self.lattice(axis)
+    }
+
+    fn from_steps(steps: [i32; 3]) -> Self {
+        Self(steps)
     }
 }
 

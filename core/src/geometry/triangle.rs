@@ -63,6 +63,31 @@ impl<'a> Vertices<'a> {
         }
     }
 
+    /// All of them as they are stored; `None` if they have another type.
+    pub(crate) fn stored<V: Vertex>(&self) -> Option<&'a [V]> {
+        match self {
+            Vertices::V16(vertices) if V::STEP_BITS == Vertex16::STEP_BITS => {
+                bytemuck::try_cast_slice(vertices).ok()
+            }
+            Vertices::V24(vertices) if V::STEP_BITS == Vertex24::STEP_BITS => {
+                bytemuck::try_cast_slice(vertices).ok()
+            }
+            _ => None,
+        }
+    }
+
+    /// Puts others in their place that have the same type.
+    pub(crate) fn replace<V: Vertex>(&mut self, others: &'a [V]) {
+        match self {
+            Vertices::V16(vertices) => {
+                *vertices = bytemuck::try_cast_slice(others).unwrap_or_default();
+            }
+            Vertices::V24(vertices) => {
+                *vertices = bytemuck::try_cast_slice(others).unwrap_or_default();
+            }
+        }
+    }
+
     /// A vertex in 1/256 unit.
     pub(crate) fn position(&self, index: usize) -> Option<[i32; 3]> {
         match self {

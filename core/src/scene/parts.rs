@@ -40,6 +40,22 @@ impl<'a, const MOST: usize> Parts<'a, MOST> {
         }
         Ok(Self(parts))
     }
+
+    /// Returns the parts with a changed one in the place of that with its number, such as one that
+    /// [deforms](Scene::with_deformation). [`Scene::with_changed_parts`] takes them.
+    ///
+    /// # Errors
+    /// If it is not a view of the same part's blob.
+    pub fn with_part(&self, number: usize, part: Scene<'a>) -> Result<Self, BlobError> {
+        let mut parts = self.clone();
+        let held = parts.0.get_mut(number);
+        let Some(held) = held.filter(|held| held.is_same_blob(&part)) else {
+            let section = SectionKind::Parts;
+            return Err(Location::Record(section, number).invalid(Reason::OtherPart));
+        };
+        *held = part;
+        Ok(parts)
+    }
 }
 
 impl<'a, const MOST: usize> core::ops::Deref for Parts<'a, MOST> {
@@ -183,6 +199,32 @@ impl<'a> Scene<'a> {
     pub(crate) fn has_own(&self) -> bool {
         let parts = self.placed.get().map_or(&[][..], |placed| placed.directory);
         parts.first().is_none_or(|part| part.first_primitive > 0)
+    }
+
+    /// Whether two scenes are views of one blob.
+    fn is_same_blob(&self, other: &Scene<'_>) -> bool {
+        core::ptr::eq(self.header(), other.header())
+    }
+
+    /// Returns the scene with changed views of its parts, such as ones that [deform](Scene::with_deformation).
+    ///
+    /// # Errors
+    /// If they are not views of the blobs of all parts, in their order.
+    pub fn with_changed_parts(&self, parts: &'a [Scene<'a>]) -> Result<Self, BlobError> {
+        let (found, expected) = (parts.len(), self.parts().len());
+        if found != expected {
+            return Err(BlobError::Parts { found, expected });
+        }
+        let mut pairs = self.parts().iter().zip(parts);
+        if let Some(index) = pairs.position(|(part, other)| !part.is_same_blob(other)) {
+            let section = SectionKind::Parts;
+            return Err(Location::Record(section, index).invalid(Reason::OtherPart));
+        }
+        let mut placed = self.placed;
+        if let Some(placed) = placed.get_mut() {
+            placed.parts = parts;
+        }
+        Ok(Self { placed, ..*self })
     }
 
     /// The instances, in the order of the hierarchy above them.

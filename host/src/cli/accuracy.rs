@@ -47,6 +47,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         cutoff: arguments.cutoff,
         geometry: GeometryOptions {
             lattice_bits: None,
+            room: None,
             import: arguments.import.flattened()?,
         },
         ..SceneOptions::default()

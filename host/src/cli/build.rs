@@ -16,6 +16,7 @@ use gridel_core::{Format, Scene, Structure};
 use gridel_host::blob::is_blob;
 use gridel_host::compile::{self, Builder, Figures, KeptNames, LeftOut, Report, TableStats};
 use gridel_host::emit::{self, Emitted};
+use gridel_host::measure::Deforming;
 use gridel_host::measure::board::Board;
 use gridel_host::measure::board::{Account, MemoryReport};
 use gridel_host::resolution::Unresolved;
@@ -160,6 +161,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let accel = &arguments.accel;
     check_hierarchy("--leaf-size", arguments.leaf_size.is_some(), accel)?;
     check_hierarchy("--builder", arguments.builder.is_some(), accel)?;
+    let room = arguments.scene_options.geometry.room.unwrap_or(0.0);
+    if room > 0.0 && accel.iter().any(|it| !Deforming::STRUCTURES.contains(it)) {
+        return Err(Failure::usage(
+            "--room is for meshes that deform, and of all structures only bvh can be refitted",
+            "build with --accel bvh alone",
+        ));
+    }
     let compiling = arguments.structure_options.apply(compile::Options {
         structures: accel.clone(),
         leaf_size: arguments.leaf_size.map_or(0, usize::from),

@@ -97,6 +97,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
     let compiling = arguments.structure_options.apply(compile::Options {
         structures: structures.clone(),
         lattice_bits: lattice_bits.unwrap_or(default.compiling.lattice_bits),
+        room: arguments.scene_options.geometry.room.unwrap_or(0.0),
         ..default.compiling
     })?;
     let mut scene_options = arguments.scene_options.clone();

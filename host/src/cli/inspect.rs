@@ -13,7 +13,7 @@ use gridel_core::format::track::{self as record, Timeline};
 use gridel_core::{Format, Kind, Scene, Structure, Tracks};
 use gridel_host::compile::{self, Names};
 use gridel_host::measure::board::{Account, MemoryReport};
-use gridel_host::measure::{MemoryMap, WorkingMemory, working_memory};
+use gridel_host::measure::{Deforming, MemoryMap, WorkingMemory, working_memory};
 use gridel_host::table::{Align, Table, counted, grouped, power_of_two, printable};
 use joints::JointLine;
 use serde::Serialize;
@@ -55,6 +55,9 @@ struct Inspection {
     /// What instances hang on.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     joints: Vec<JointLine>,
+    /// Where vertices have room to move.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    deforming: Vec<Deforming>,
     /// Empty where the blob has none.
     names: NameLists,
     working_memory: Vec<WorkingMemory>,
@@ -221,6 +224,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         contents: contents(&scene),
         tracks: TrackList::of(source.blob.bytes()),
         joints: JointLine::all(&scene, source.blob.bytes()),
+        deforming: Deforming::all(&scene),
         names: Names::of_blob(&scene, source.blob.bytes())
             .unwrap_or_default()
             .into(),
@@ -408,6 +412,9 @@ impl Inspection {
             for track in &moves.tracks {
                 line("track", track.text());
             }
+        }
+        for mesh in &self.deforming {
+            line("deforming mesh", mesh.to_string());
         }
         line("stack depth", limits.stack_depth.to_string());
         line("longest leaf", limits.longest_leaf.to_string());

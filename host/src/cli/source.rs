@@ -154,6 +154,9 @@ impl Source {
         if let Some(bits) = options.geometry.lattice_bits {
             compiling.lattice_bits = bits;
         }
+        if let Some(room) = options.geometry.room {
+            compiling.room = room;
+        }
         let progress = Progress::unknown("compiling");
         let on_progress = |structure: Structure, done: u64, of: u64| {
             let share = 100 * done / of.max(1);

@@ -174,11 +174,13 @@ fn text(arguments: &Arguments, report: &Report) -> String {
 fn explain(arguments: &Arguments, ray: &str, format: &str, structure: &str) -> String {
     let GeometryOptions {
         lattice_bits,
+        room,
         import,
     } = &arguments.geometry;
     let bits = lattice_bits.map_or(String::new(), |bits| format!(" --lattice-bits {bits}"));
+    let room = room.map_or(String::new(), |room| format!(" --room {room}"));
     format!(
-        "gridel explain {}{}{bits} --ray={ray} --format {format} --accel {structure}",
+        "gridel explain {}{}{bits}{room} --ray={ray} --format {format} --accel {structure}",
         quoted(&arguments.input.to_string_lossy()),
         import.written()
     )

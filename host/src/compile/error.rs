@@ -70,6 +70,9 @@ pub enum CompileError {
     #[error("{bits} lattice bits are not possible")]
     #[diagnostic(help("use 10 to 24"))]
     LatticeBits { bits: u8 },
+    #[error("a room of {room} scene units is not possible")]
+    #[diagnostic(help("use a number of at least 0 for how far vertices can move"))]
+    Room { room: f64 },
     #[error("the scene has {count} {what}, more than the {most} that a blob can hold")]
     #[diagnostic(help("split the scene into several blobs"))]
     TooMany {

@@ -27,6 +27,7 @@ mod pairs;
 mod primitives;
 mod reach;
 mod records;
+mod room;
 mod section;
 mod shading_data;
 mod structures;
@@ -196,7 +197,7 @@ fn compile_as(
     options: &Options,
     on_progress: OnProgress<'_>,
 ) -> Result<Compiled, CompileError> {
-    let mut extent = extent::extent(scene);
+    let mut extent = room::widened(extent::extent(scene), options.room);
     if let Role::Whole(parts) = role {
         extent = parts.reach.around(extent);
     }
@@ -212,7 +213,7 @@ fn compile_as(
         flat,
         wide,
     } = Hierarchies::build(scene, &snapped, &structures, options)?;
-    let own = hierarchy::bounds(&order);
+    let own = room::around(&order, options.room / lattice.unit());
     let mut bounds = placed.around(own).unwrap_or(UnitBox([[0; 2]; 3]));
     if let Role::Whole(parts) = role {
         bounds = parts.reach.box_around(bounds, &lattice);
@@ -352,6 +353,10 @@ fn check(scene: &Scene, options: &Options) -> Result<(), CompileError> {
         return Err(CompileError::LatticeBits {
             bits: options.lattice_bits,
         });
+    }
+    let room = options.room;
+    if !(room.is_finite() && room >= 0.0) {
+        return Err(CompileError::Room { room });
     }
     let bad = |object: &&Object| !object.shape.is_finite();
     let is_valid = |part: usize| part < scene.parts.len();

@@ -28,6 +28,10 @@ pub struct Options {
     pub structures: Vec<Structure>,
     /// Bits that coordinates are snapped to: see [`LATTICE_BITS`](crate::compile::LATTICE_BITS).
     pub lattice_bits: u8,
+    /// The scene units by which vertices of meshes can move along each axis, for a
+    /// [`Deformation`](gridel_core::Deformation): the box of a scene, and of each part, is wider by as much. Only the
+    /// structure [`Bvh`](gridel_core::Bvh) can be refitted.
+    pub room: f64,
     /// Primitives that make a leaf of a hierarchy whatever rays pay for it, at most
     /// [`LARGEST_LEAF`]: fewer nodes and more tests. With 0 the costs alone decide.
     pub leaf_size: usize,
@@ -56,6 +60,7 @@ impl Default for Options {
         Self {
             structures: vec![Structure::DualSplit],
             lattice_bits: 24,
+            room: 0.0,
             leaf_size: 0,
             quality: Quality::default(),
             builder: Builder::default(),

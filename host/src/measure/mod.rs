@@ -7,12 +7,14 @@
 //! | `rays.rs` | structures on the same rays: counts and times |
 //! | `time.rs` | the median and the spread of repeats |
 //! | `bytes.rs` | the parts of a blob, and working memory |
+//! | `deforming.rs` | the memory of deforming meshes |
 //! | `errors.rs` | pictures and first hits against a reference; `flip.rs` and `ssim.rs` compare as eyes do |
 //! | `first_hits.rs` | what the rays through the middles of pixels hit |
 //! | `board/` | boards, as data: memory, code, call stack, instructions per ray |
 
 pub mod board;
 mod bytes;
+mod deforming;
 mod errors;
 mod first_hits;
 mod flip;
@@ -22,6 +24,7 @@ mod ssim;
 pub mod time;
 
 pub use bytes::{MemoryMap, Part, WorkingMemory, board_memory, working_memory};
+pub use deforming::Deforming;
 pub use errors::{Errors, difference_picture};
 pub use first_hits::{FirstHit, first_hits};
 pub use picture::Rendered;

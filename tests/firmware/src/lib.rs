@@ -12,6 +12,7 @@
 //! | `range` | casts rays down onto the scene and prints their lengths |
 //! | `orbit` | turns a camera around the scene in 64 frames |
 //! | `arm` | bends the joints of an arm of instances, and casts rays from its hand |
+//! | `deform` | moves the vertices of a mesh, refits its boxes and casts rays, and counts what that costs |
 //! | `example` | the README's example |
 //!
 //! The first five run in QEMU, or in Node, and print what they measured, a line each: a name and
@@ -31,6 +32,7 @@ pub mod orbit;
 pub mod rays;
 pub mod report;
 pub mod scene;
+pub mod waves;
 
 #[cfg(target_arch = "arm")]
 pub use cortex_m_rt as rt;

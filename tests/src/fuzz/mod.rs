@@ -131,7 +131,7 @@ pub fn moves(scene: &Scene<'_>, blob: &[u8]) -> bool {
     ] {
         match State::at(scene, &tracks, time) {
             Ok(state) => drop(state.apply(scene).expect("a state in range")),
-            Err(StateError::Camera { .. }) => {}
+            Err(StateError::Camera { .. } | StateError::Instances { .. }) => {}
             Err(StateError::Blob(error)) => panic!("{error}"),
         }
     }

@@ -12,6 +12,7 @@ mod arm;
 #[path = "../../firmware/src/casts.rs"]
 mod casts;
 mod costs;
+mod deform;
 mod elf;
 mod emitted;
 mod figures;
@@ -26,6 +27,8 @@ mod rays;
 mod scenes;
 mod stack;
 mod structures;
+#[path = "../../firmware/src/waves.rs"]
+mod waves;
 
 use figures::Figures;
 use firmware::{AARCH64, Build, Program, S390X, WASM, board};
@@ -53,6 +56,7 @@ fn main() {
     emitted::plan(&mut plan);
     rays::plan(&mut plan);
     live::plan(&mut plan);
+    deform::plan(&mut plan);
     structures::plan(&mut plan);
     plan.test("memory_maps_are_the_boards")
         .run(memory_maps_are_the_boards);

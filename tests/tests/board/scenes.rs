@@ -107,33 +107,55 @@ pub fn protein() -> Compiled {
 
 /// A torus of 2,048 triangles, lit from the side on which it is seen.
 pub fn torus_mesh() -> Compiled {
-    compile_with("torus-mesh", torus_mesh_scene(), [64, 64], small())
+    compile_with("torus-mesh", torus_mesh_scene([32; 2]), [64, 64], small())
 }
 
 /// The torus in a picture that is rendered often.
 pub fn torus_mesh_in_few_pixels() -> Compiled {
-    compile_with("torus-mesh-24", torus_mesh_scene(), [24, 18], small())
+    compile_with(
+        "torus-mesh-24",
+        torus_mesh_scene([32; 2]),
+        [24, 18],
+        small(),
+    )
 }
 
-fn torus_mesh_scene() -> Scene {
-    const AROUND: u32 = 32;
-    let angle = |step: u32| f64::from(step) * TAU / f64::from(AROUND);
+/// A torus of 2 times these numbers of triangles, whose vertices have room to move.
+pub fn deforming_torus(rings: u32, around: u32, lattice_bits: u8) -> Compiled {
+    let options = Options {
+        structures: vec![Structure::Bvh],
+        lattice_bits,
+        room: 0.25,
+        ..Options::default()
+    };
+    let name = if lattice_bits > 16 {
+        "torus-24"
+    } else {
+        "torus-16"
+    };
+    compile_with(name, torus_mesh_scene([rings, around]), [64, 64], options)
+}
+
+/// A torus of so many rings, and so many vertices around each of them.
+fn torus_mesh_scene([rings, around]: [u32; 2]) -> Scene {
+    let part = |step: u32, of: u32| f64::from(step) * TAU / f64::from(of);
     let vertex = |ring: u32, step: u32| {
-        let radius = 1.0 + 0.4 * libm::cos(angle(step));
+        let (along, across) = (part(ring, rings), part(step, around));
+        let radius = 1.0 + 0.4 * libm::cos(across);
         DVec3::new(
-            radius * libm::cos(angle(ring)),
-            radius * libm::sin(angle(ring)),
-            0.4 * libm::sin(angle(step)),
+            radius * libm::cos(along),
+            radius * libm::sin(along),
+            0.4 * libm::sin(across),
         )
     };
-    let number = |ring: u32, step: u32| ring % AROUND * AROUND + step % AROUND;
+    let number = |ring: u32, step: u32| ring % rings * around + step % around;
     let faces = |ring, step| {
         let [a, b] = [number(ring, step), number(ring + 1, step)];
         let [c, d] = [number(ring + 1, step + 1), number(ring, step + 1)];
         [[a, b, c], [a, c, d]]
     };
-    let cells = |ring| (0..AROUND).map(move |step| (ring, step));
-    let cells = (0..AROUND).flat_map(cells);
+    let cells = |ring| (0..around).map(move |step| (ring, step));
+    let cells = (0..rings).flat_map(cells);
     Scene {
         camera: Some(Camera {
             eye: DVec3::new(0.6, -3.2, 2.4),

@@ -19,7 +19,7 @@ const CORE: Layers = Layers {
     sources: "../core/src",
     order: &[
         "axis target simd format observe",
-        "number ray geometry accel instances scene query shade render tracks selftest",
+        "number ray geometry accel instances scene deform query shade render tracks selftest",
         "shared",
     ],
 };
@@ -27,7 +27,7 @@ const CORE: Layers = Layers {
 const HOST: Layers = Layers {
     sources: "../host/src",
     order: &[
-        "output simd table blob picture_rays shape",
+        "output simd table blob picture_rays shape deformation",
         "scene sample compile",
         "live state render trace npy picture animation merge resolution report",
         "measure emit",

@@ -25,5 +25,7 @@ pub mod flagged_slabs;
 pub(crate) mod order;
 pub(in crate::accel) mod pairs;
 pub(crate) mod reach;
+#[cfg(all(feature = "bvh", feature = "triangle"))]
+pub(crate) mod refit;
 pub mod slabs;
 pub mod spheres;

@@ -52,7 +52,7 @@ records! {
         /// Scene coordinates of the lattice's origin, a multiple of its step. They are finite.
         pub origin: [f64; 3],
         /// The scene's box: smallest and largest unit on each axis. No side is inverted, and no lower side is -32768.
-        /// The box is larger than the scene where an octree divides a thin one.
+        /// The box is larger than the scene where an octree divides a thin one, and where vertices have room to move.
         pub bounds: UnitBox,
         /// Bytes of the traversal stack: 12 times `stack_depth`.
         pub stack_bytes: u32,

@@ -61,6 +61,11 @@ pub struct GeometryOptions {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(10..=24))]
     pub lattice_bits: Option<u8>,
 
+    /// Scene units by which vertices can move along each axis, for meshes that a program deforms;
+    /// needs `--accel bvh` alone [default: 0]
+    #[arg(long, value_name = "UNITS", value_parser = super::values::room)]
+    pub room: Option<f64>,
+
     #[command(flatten)]
     pub import: ImportOptions,
 }
@@ -143,6 +148,7 @@ impl GeometryOptions {
     pub fn given(&self) -> Option<&'static str> {
         first_given([
             (self.lattice_bits.is_some(), "--lattice-bits"),
+            (self.room.is_some(), "--room"),
             (self.import.allow_outside, "--allow-outside"),
             (self.import.instances.is_some(), "--instances"),
             (self.import.assembly.is_some(), "--assembly"),

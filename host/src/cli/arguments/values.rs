@@ -123,6 +123,14 @@ pub fn size(text: &str) -> Result<[u16; 2], String> {
     Ok([width, height])
 }
 
+/// Reads how far vertices can move.
+pub fn room(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok();
+    value
+        .filter(|it| it.is_finite() && *it >= 0.0)
+        .ok_or_else(|| String::from("write a length in scene units, such as 0.25"))
+}
+
 /// Reads a time in seconds.
 pub fn seconds(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok().filter(|it| it.is_finite());

@@ -17,6 +17,7 @@ use super::estimate::{PROFILES, ProgramEstimate};
 use super::programs::{Known, Profile, Programs};
 use crate::blob::best_structures;
 use crate::measure::bytes::{MemoryMap, board_memory};
+use crate::measure::deforming::Deforming;
 use crate::table::grouped;
 use gridel_core::{Format, Prevalidated, Rgb565, Scene, Structure};
 use serde::Serialize;
@@ -144,6 +145,15 @@ impl MemoryReport {
             ram.add("views of parts", None);
         }
 
+        for mesh in Deforming::all(scene) {
+            ram.add(
+                format!(
+                    "deforming mesh, {} vertices and {} pairs",
+                    mesh.vertices, mesh.pairs
+                ),
+                Some(mesh.bytes as u64),
+            );
+        }
         let need = board_memory(scene, format, scene.view().depth);
         ram.add(
             format!("traversal stack, {} entries", scene.stack_depth()),

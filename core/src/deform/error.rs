@@ -1,0 +1,84 @@
+//! Why a mesh cannot deform.
+
+use core::fmt;
+
+/// Why a mesh cannot deform, or a pose of it is rejected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DeformError {
+    /// The blob holds a structure that cannot be refitted.
+    Structures,
+    /// The vertices of the blob have another type.
+    Storage,
+    /// The blob has more vertices than there is room for.
+    Vertices {
+        /// Vertices of the blob.
+        found: usize,
+        /// Vertices that there is room for.
+        most: usize,
+    },
+    /// The blob has more pairs than there is room for.
+    Pairs {
+        /// Pairs of the blob.
+        found: usize,
+        /// Pairs that there is room for.
+        most: usize,
+    },
+    /// The deformation was made of another scene.
+    OtherScene,
+    /// There is no vertex of this number.
+    NoVertex {
+        /// The number.
+        vertex: usize,
+    },
+    /// A vertex lies beyond the room of the scene.
+    OutsideRoom {
+        /// Its number.
+        vertex: usize,
+    },
+    /// The corners of a triangle are three places on a line: rays could slip past the one in the middle.
+    Collapsed {
+        /// Its number in the order of the scene file.
+        primitive: u32,
+    },
+    /// Vertices moved since the boxes were computed.
+    NotRefitted,
+}
+
+impl fmt::Display for DeformError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Structures => f.write_str(
+                "the blob holds a structure that cannot be refitted: build it with `--accel bvh` alone",
+            ),
+            Self::Storage => f.write_str(
+                "the blob's vertices have another type: use `Vertex16` up to 16 lattice bits, and \
+                 `Vertex24` beyond",
+            ),
+            Self::Vertices { found, most } => write!(
+                f,
+                "the blob has {found} vertices, and the deformation has room for {most}"
+            ),
+            Self::Pairs { found, most } => write!(
+                f,
+                "the blob has {found} pairs, and the deformation has room for {most}"
+            ),
+            Self::OtherScene => {
+                f.write_str("the deformation was made of another scene: reset it for this one")
+            }
+            Self::NoVertex { vertex } => write!(f, "there is no vertex {vertex}"),
+            Self::OutsideRoom { vertex } => write!(
+                f,
+                "vertex {vertex} lies outside of the scene's box: build the blob with a larger `--room`"
+            ),
+            Self::Collapsed { primitive } => write!(
+                f,
+                "the corners of triangle {primitive} lie on a line: move one of them aside"
+            ),
+            Self::NotRefitted => {
+                f.write_str("vertices moved since the boxes were computed: call `refit`")
+            }
+        }
+    }
+}
+
+impl core::error::Error for DeformError {}

@@ -1,0 +1,280 @@
+//! Deforming meshes: vertices and boxes in RAM, everything else in the blob.
+//!
+//! A [`Deformation`] copies what changes when a mesh moves: the vertices, and the pairs of the structure
+//! [`Bvh`](crate::Bvh). The program moves vertices, and [`refit`](Deformation::refit) computes the boxes again.
+//! [`Scene::with_deformation`] gives a scene whose queries read RAM in place of the blob. Hits are those of a blob that
+//! is compiled with the moved vertices, bit for bit: an answer is defined without the hierarchy.
+//!
+//! What a pose must keep, and `refit` proves:
+//!
+//! - Vertices lie in the scene's box, the *room*. The compiler widens it by `--room`.
+//! - No triangle is a *needle*: three places on a line. A ray never meets a triangle without an area. Where two corners
+//!   are one place, the neighbors share the other edge, and the mesh stays closed. The corner in the middle of a needle
+//!   is rounded aside on its own, so a ray could slip between the needle's neighbors.
+//!
+//! Nothing else in a blob depends on vertices: normals, hit bounds and offsets come from the corners when a ray hits.
+//! Other structures would not fit the moved mesh, so blobs that hold any are rejected. Instances keep their boxes,
+//! because those hold the whole room of a part.
+
+mod error;
+mod fit;
+
+pub use error::DeformError;
+
+use crate::format::Structure;
+use crate::format::record::Pair;
+use crate::format::width::Vertex;
+use crate::scene::{Position, Scene};
+use core::marker::PhantomData;
+use core::ops::DerefMut;
+use heapless::Vec;
+
+/// The vertices and the boxes of a deforming mesh, in RAM.
+///
+/// `V` is [`Vertex16`](crate::format::record::Vertex16) for a blob of at most 16 lattice bits, and
+/// [`Vertex24`](crate::format::record::Vertex24) for others. [`Requirements`](crate::Requirements) states `VERTICES` and
+/// `PAIRS` of a blob, so the size is known when the program is compiled: 6 or 12 bytes per vertex, 32 bytes per pair, and
+/// a few words.
+///
+/// ```
+/// use gridel_core::format::record::Vertex24;
+/// use gridel_core::{Deformation, Requirements, Scene, Stack};
+///
+/// # static BLOB: &[u8] =
+/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/bvh.gridel"));
+/// const NEEDS: Requirements = match Requirements::of(BLOB) {
+///     Ok(needs) => needs,
+///     Err(_) => panic!("the blob was damaged"),
+/// };
+/// type Mesh = Deformation<Vertex24, { NEEDS.vertices }, { NEEDS.pairs }>;
+///
+/// let scene = Scene::from_bytes(BLOB)?;
+/// let mut mesh = Mesh::of(&scene)?;
+/// // A unit to the right, in 1/256 unit.
+/// for vertex in mesh.vertices_mut() {
+///     vertex.0[0] += 256;
+/// }
+/// mesh.refit(&scene)?;
+/// let moved = scene.with_deformation(&mesh)?;
+/// let corner = |scene: &Scene<'_>| scene.triangle(0).map(|[[x, _, _], _, _]| x);
+/// assert_eq!(corner(&moved), corner(&scene).map(|x| x + 256));
+/// // Queries and pictures of `moved` see the mesh there.
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub type Deformation<V, const VERTICES: usize, const PAIRS: usize> =
+    DeformationIn<V, Vec<V, VERTICES>, Vec<Pair, PAIRS>>;
+
+/// A [`Deformation`] in memory of any sort: on hosts, as much as a scene takes.
+#[derive(Clone, Debug)]
+pub struct DeformationIn<V, A, B> {
+    vertices: A,
+    pairs: B,
+    /// The checksum of the blob that it was made of.
+    blob: u32,
+    /// Whether the boxes are those of the vertices.
+    refitted: bool,
+    vertex: PhantomData<V>,
+}
+
+impl<V, A: Default, B: Default> Default for DeformationIn<V, A, B> {
+    fn default() -> Self {
+        Self {
+            vertices: A::default(),
+            pairs: B::default(),
+            blob: 0,
+            refitted: false,
+            vertex: PhantomData,
+        }
+    }
+}
+
+/// Memory for the records of a deformation.
+pub trait Memory<T>: DerefMut<Target = [T]> {
+    /// Puts copies of these in place of all that there are. Returns whether there is room.
+    fn copy_from(&mut self, records: &[T]) -> bool;
+
+    /// Number of records that there is room for.
+    fn room(&self) -> usize;
+}
+
+impl<T: Copy, const MOST: usize> Memory<T> for Vec<T, MOST> {
+    fn copy_from(&mut self, records: &[T]) -> bool {
+        self.clear();
+        self.extend_from_slice(records).is_ok()
+    }
+
+    fn room(&self) -> usize {
+        MOST
+    }
+}
+
+impl<V, const VERTICES: usize, const PAIRS: usize> Deformation<V, VERTICES, PAIRS> {
+    /// A deformation of no scene yet, for a `static`: [`reset`](DeformationIn::reset) makes it one of a scene.
+    pub const fn new() -> Self {
+        Self {
+            vertices: Vec::new(),
+            pairs: Vec::new(),
+            blob: 0,
+            refitted: false,
+            vertex: PhantomData,
+        }
+    }
+
+    /// A deformation of a scene, at rest.
+    ///
+    /// # Errors
+    /// As [`reset`](DeformationIn::reset).
+    pub fn of(scene: &Scene<'_>) -> Result<Self, DeformError>
+    where
+        V: Vertex,
+    {
+        let mut deformation = Self::new();
+        deformation.reset(scene)?;
+        Ok(deformation)
+    }
+}
+
+/// The structures that a deforming scene can hold.
+pub const STRUCTURES: [Structure; 2] = [Structure::List, Structure::Bvh];
+
+impl<V: Vertex, A: Memory<V>, B: Memory<Pair>> DeformationIn<V, A, B> {
+    /// Copies vertices and boxes of a scene, or of a part of one, in place of all there is.
+    ///
+    /// # Errors
+    /// If the blob holds other structures than [`STRUCTURES`], its vertices have another type, or there
+    /// is not enough room.
+    pub fn reset(&mut self, scene: &Scene<'_>) -> Result<(), DeformError> {
+        self.refitted = false;
+        let held = STRUCTURES.iter();
+        let can = held.fold(0, |bits, structure| bits | structure.bit());
+        if scene.header().structures & !can != 0 {
+            return Err(DeformError::Structures);
+        }
+        let vertices: &[V] = scene.stored_vertices().ok_or(DeformError::Storage)?;
+        let pairs = scene.structures.pairs();
+        if !self.vertices.copy_from(vertices) {
+            return Err(DeformError::Vertices {
+                found: vertices.len(),
+                most: self.vertices.room(),
+            });
+        }
+        if !self.pairs.copy_from(pairs) {
+            return Err(DeformError::Pairs {
+                found: pairs.len(),
+                most: self.pairs.room(),
+            });
+        }
+        self.blob = scene.header().checksum;
+        self.refitted = true;
+        Ok(())
+    }
+
+    /// The vertices.
+    pub fn vertices(&self) -> &[V] {
+        &self.vertices
+    }
+
+    /// The vertices, to be moved: coordinates of [`Vertex16`](crate::format::record::Vertex16) are units, and those of
+    /// [`Vertex24`](crate::format::record::Vertex24) 1/256 unit. They are in the blob's own order, and where they are at
+    /// rest [`Scene::stored_vertices`] tells. Call [`refit`](Self::refit) afterwards.
+    pub fn vertices_mut(&mut self) -> &mut [V] {
+        self.refitted = false;
+        &mut self.vertices
+    }
+
+    /// The pairs of the hierarchy, with the boxes of the pose that was refitted last.
+    pub fn pairs(&self) -> &[Pair] {
+        &self.pairs
+    }
+
+    /// Moves a vertex to the place of the lattice that is nearest to a place in scene coordinates. Call
+    /// [`refit`](Self::refit) afterwards.
+    ///
+    /// # Errors
+    /// If there is no such vertex, or the place lies outside of the scene's box. Then the vertex stays.
+    pub fn place(
+        &mut self,
+        scene: &Scene<'_>,
+        vertex: usize,
+        position: Position,
+    ) -> Result<(), DeformError> {
+        // Of units with 13 fraction bits.
+        let drop = 13_u32.saturating_sub(V::STEP_BITS);
+        let half = (1_i64 << drop) >> 1;
+        let place = scene.on_lattice(position);
+        // At most 2^51.
+        let steps = place.map(|x| x.wrapping_add(half).wrapping_shr(drop));
+        let steps = steps.map(|x| x.clamp(i32::MIN.into(), i32::MAX.into()) as i32);
+        if !fit::Room::<V>::of(scene.bounds()).holds(steps) {
+            return Err(DeformError::OutsideRoom { vertex });
+        }
+        let Some(held) = self.vertices.get_mut(vertex) else {
+            return Err(DeformError::NoVertex { vertex });
+        };
+        *held = V::from_steps(steps);
+        self.refitted = false;
+        Ok(())
+    }
+
+    /// Proves that the pose is valid, and computes the boxes again: one pass from the last pair to the first, without
+    /// a stack.
+    ///
+    /// Costs on a Cortex-M4F about 190 instructions per triangle, and is linear in vertices, triangles and pairs.
+    ///
+    /// # Errors
+    /// If the deformation was made of another scene, a vertex lies outside of the scene's box, or the corners of a
+    /// triangle are three places on a line. Then the vertices are as they were moved, and
+    /// [`Scene::with_deformation`] rejects them.
+    pub fn refit(&mut self, scene: &Scene<'_>) -> Result<(), DeformError> {
+        self.refitted = false;
+        self.check_scene(scene)?;
+        fit::check_room(scene, &self.vertices)?;
+        fit::refit(scene, &self.vertices, &mut self.pairs)?;
+        self.refitted = true;
+        Ok(())
+    }
+
+    /// Proves that this was made of a scene.
+    fn check_scene(&self, scene: &Scene<'_>) -> Result<(), DeformError> {
+        let same = scene.header().checksum == self.blob
+            && scene.vertices() == self.vertices.len()
+            && scene.structures.pairs().len() == self.pairs.len();
+        if same {
+            Ok(())
+        } else {
+            Err(DeformError::OtherScene)
+        }
+    }
+}
+
+impl<'a> Scene<'a> {
+    /// The vertices as they lie in the blob; `None` if they have another type.
+    pub fn stored_vertices<V: Vertex>(&self) -> Option<&'a [V]> {
+        self.space.shapes.vertices.stored()
+    }
+
+    /// Number of pairs of the structure [`Bvh`](crate::Bvh).
+    pub fn pairs(&self) -> usize {
+        self.structures.pairs().len()
+    }
+
+    /// Returns the scene with the vertices and boxes of a deformation in place of the blob's own. Costs nothing per ray.
+    ///
+    /// A part is deformed likewise: [`Parts::with_part`](crate::Parts::with_part) puts it in its place.
+    ///
+    /// # Errors
+    /// If the deformation was made of another scene, or vertices moved since it was refitted.
+    pub fn with_deformation<V: Vertex, A: Memory<V>, B: Memory<Pair>>(
+        &self,
+        deformation: &'a DeformationIn<V, A, B>,
+    ) -> Result<Self, DeformError> {
+        deformation.check_scene(self)?;
+        if !deformation.refitted {
+            return Err(DeformError::NotRefitted);
+        }
+        let mut scene = *self;
+        scene.space.shapes.vertices.replace(&deformation.vertices);
+        scene.structures.replace_pairs(&deformation.pairs);
+        Ok(scene)
+    }
+}

@@ -1,0 +1,107 @@
+//! Meshes that deform on boards: boxes and hits are the host's, and a refit costs little.
+
+use crate::casts::Casts;
+use crate::figures::Figures;
+use crate::firmware::{Build, board};
+use crate::plan::Plan;
+use crate::scenes::{self, Compiled};
+use crate::waves::{POSES, pose, sum};
+use gridel_core::format::record::{Vertex16, Vertex24};
+use gridel_core::format::width::Vertex;
+use gridel_core::{Bvh, Deformation, Fixed, Format, Stack, Structure};
+use gridel_host::measure::Deforming;
+use gridel_host::measure::board::Board;
+use std::collections::BTreeMap;
+
+/// Instructions of a refit of 1,000 triangles at most, on a Cortex-M4F.
+const REFIT: u64 = 200_000;
+
+/// Bytes of stack at most while boxes are computed again, the scene's views included.
+const STACK: u64 = 1024;
+
+pub fn plan(plan: &mut Plan) {
+    for (name, format, lattice_bits) in [
+        ("mps2-an386", Format::F32, 24),
+        ("mps2-an386", Format::F32, 16),
+        ("mps2-an386", Format::Fixed, 24),
+        ("mps2-an385", Format::Fixed, 16),
+        ("microbit", Format::Fixed, 16),
+        ("sifive_e", Format::Fixed, 16),
+    ] {
+        let board = board(name);
+        // The RAM of a microbit holds fewer.
+        let [rings, around] = match name {
+            "microbit" => [10, 10],
+            "sifive_e" => [8, 8],
+            _ => [20, 25],
+        };
+        let test = format!("a_mesh_deforms::{lattice_bits}_bits");
+        plan.test_on(&test, board, format).in_full().run(move || {
+            let scene = scenes::deforming_torus(rings, around, lattice_bits);
+            a_mesh_deforms(board, format, &scene, 2 * u64::from(rings * around));
+        });
+    }
+}
+
+fn a_mesh_deforms(board: &'static Board, format: Format, compiled: &Compiled, triangles: u64) {
+    let build = Build::new(board, format, Structure::Bvh, compiled);
+    let program = build.program("deform");
+    let (mut found, mut report) = (Vec::new(), BTreeMap::new());
+    for (name, value) in program.lines() {
+        if ["hits", "sum", "boxes"].contains(&&*name) {
+            found.push(value);
+        } else {
+            report.insert(name, value);
+        }
+    }
+    let scene = compiled.blob.scene().expect("the compiler's own blob");
+    let hosts = match scene.header().storage_bits {
+        16 => on_the_host::<Vertex16>(compiled, format),
+        _ => on_the_host::<Vertex24>(compiled, format),
+    };
+    assert_eq!(found, hosts, "{build}");
+    let [told] = Deforming::all(&scene)[..] else {
+        panic!("{build}: the scene has no room")
+    };
+    assert_eq!(report["deformation-bytes"], told.bytes as u64, "{build}");
+    let elf = program.elf();
+    let panicking = elf.functions(crate::elf::panics);
+    assert!(panicking.is_empty(), "{build} can panic: {panicking:#?}");
+    let stack = report["refit-stack-bytes"];
+    assert!(stack <= STACK, "{build}: {stack} bytes of stack");
+    let instructions = report["refit-instructions"];
+    println!(
+        "{build}: {} instructions a triangle",
+        instructions / triangles
+    );
+    if board.core == "Cortex-M4F" {
+        let most = REFIT * triangles / 1000;
+        assert!(instructions <= most, "{build}: {instructions} instructions");
+    }
+    let mut figures = Figures::new();
+    figures.add(&format!("deform {build}"), &report);
+    figures.check();
+}
+
+/// Hits, their sum and that of the boxes at each pose.
+fn on_the_host<V: Vertex>(compiled: &Compiled, format: Format) -> Vec<u64> {
+    let scene = compiled.blob.scene().expect("the compiler's own blob");
+    let mut mesh: Box<Deformation<V, 512, 1024>> =
+        Box::new(Deformation::of(&scene).expect("a deformation"));
+    let rest: &[V] = scene.stored_vertices().expect("vertices of this type");
+    let (mut found, mut stack) = (Vec::new(), Stack::<48>::new());
+    for number in 0..POSES {
+        pose(rest, mesh.vertices_mut(), number);
+        mesh.refit(&scene).expect("a pose");
+        let moved = scene.with_deformation(&mesh).expect("a scene");
+        let mut casts = Casts::default();
+        match format {
+            Format::F32 => casts.run::<f32, Bvh>(&moved, stack.as_view()),
+            Format::F64 => casts.run::<f64, Bvh>(&moved, stack.as_view()),
+            Format::Fixed => casts.run::<Fixed, Bvh>(&moved, stack.as_view()),
+        }
+        let boxes = sum(mesh.pairs());
+        found.extend([casts.hits, casts.sum, boxes].map(u64::from));
+    }
+    found
+}
