@@ -79,12 +79,11 @@ impl Emitted<'_> {
         let is_prevalidated = others
             .into_iter()
             .all(|it| Prevalidated::STRUCTURES.contains(&it));
-        let parts = scene.parts().len();
-        let with_parts = LOAD_WITH_PARTS.replace("PARTS_COUNT", &parts.to_string());
+        let (parts, effects) = (scene.parts().len(), scene.effects_with_parts());
         let load = match parts {
             0 if is_prevalidated => LOAD_PREVALIDATED,
             0 => LOAD_CHECKED,
-            _ => &with_parts,
+            _ => LOAD_WITH_PARTS,
         };
         let features: Vec<_> = self.features().iter().map(|it| format!("{it:?}")).collect();
         format!(
@@ -109,6 +108,8 @@ impl Emitted<'_> {
              pub const STACK_DEPTH: usize = {stack};\n\
              /// Places for rays that wait.\n\
              pub const WORK_DEPTH: usize = {waiting};\n\
+             /// Parts that instances place.\n\
+             pub const PARTS: usize = {parts};\n\
              /// The effects that the scene requires: {effects}.\n\
              pub const EFFECTS: u32 = {bits};\n\
              /// Pixels of a row.\n\
@@ -139,6 +140,7 @@ impl Emitted<'_> {
              const BYTES: &[u8] = include_bytes!(\"{BLOB}\");\n\
              \n\
              // A blob that asks for more than this was written for does not compile.\n\
+             #[allow(long_running_const_eval)]\n\
              const _: () = {{\n    \
              let Ok(demand) = gridel_core::Requirements::of(BYTES) else {{\n        \
              panic!(\"the blob was cut off: write it and this module again\")\n    }};\n    \
@@ -148,6 +150,8 @@ impl Emitted<'_> {
              \"the blob outgrew STACK_DEPTH: write this module again\"\n    );\n    \
              assert!(\n        demand.work_depth <= WORK_DEPTH,\n        \
              \"the blob outgrew WORK_DEPTH: write this module again\"\n    );\n    \
+             assert!(\n        demand.parts <= PARTS,\n        \
+             \"the blob outgrew PARTS: write this module again\"\n    );\n    \
              assert!(\n        demand.width == WIDTH && demand.height == HEIGHT,\n        \
              \"the blob's picture has another size: write this module again\"\n    );\n    \
              assert!(\n        demand.holds(gridel_core::Structure::{structure}),\n        \
@@ -164,8 +168,8 @@ impl Emitted<'_> {
                 _ => String::from("the scene's origin"),
             },
             waiting = scene.effects().work_depth(view.depth),
-            effects = scene.effects(),
-            bits = scene.effects().0,
+            effects = effects,
+            bits = effects.0,
             width = view.width,
             height = view.height,
         )
@@ -198,7 +202,7 @@ pub fn load() -> Result<gridel_core::Scene<'static>, gridel_core::BlobError> {
 /// Loading of a scene that places parts, which are loaded before.
 const LOAD_WITH_PARTS: &str = "\
 /// The views of the parts that instances place.
-pub type Parts = gridel_core::Parts<'static, PARTS_COUNT>;
+pub type Parts = gridel_core::Parts<'static, PARTS>;
 
 /// The parts, checked.
 #[allow(dead_code)]
