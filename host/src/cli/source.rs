@@ -216,20 +216,6 @@ impl Source {
         }
     }
 
-    /// Rejects a blob with instances, for commands that do not follow rays into them.
-    pub fn reject_instances(&self, scene: &Scene<'_>) -> Result<(), Failure> {
-        if scene.instances().is_empty() {
-            return Ok(());
-        }
-        Err(Failure::usage(
-            format!(
-                "{} has instances, into which this command does not follow rays",
-                self.input.path().display()
-            ),
-            "give the scene file, or a blob that was built with `--instances flatten`",
-        ))
-    }
-
     /// The tracks of a scene that moves.
     pub fn tracks(&self) -> Result<Tracks<'_>, Failure> {
         // They were checked with the scene.
