@@ -83,9 +83,8 @@ impl Emitted<'_> {
         let is_prevalidated = others
             .into_iter()
             .all(|it| Prevalidated::STRUCTURES.contains(&it));
-        let parts = scene.parts().len();
+        let (parts, effects) = (scene.parts().len(), scene.effects_with_parts());
         let with_parts = LOAD_WITH_PARTS
-            .replace("PARTS_COUNT", &parts.to_string())
             .replace("INSTANCES_COUNT", &scene.instances().len().to_string())
             .replace("JOINTS_COUNT", &self.joints.to_string());
         let load = match parts {
@@ -116,6 +115,8 @@ impl Emitted<'_> {
              pub const STACK_DEPTH: usize = {stack};\n\
              /// Places for rays that wait.\n\
              pub const WORK_DEPTH: usize = {waiting};\n\
+             /// Parts that instances place.\n\
+             pub const PARTS: usize = {parts};\n\
              /// The effects that the scene requires: {effects}.\n\
              pub const EFFECTS: u32 = {bits};\n\
              /// Pixels of a row.\n\
@@ -147,6 +148,7 @@ impl Emitted<'_> {
              const BYTES: &[u8] = include_bytes!(\"{BLOB}\");\n\
              \n\
              // A blob that asks for more than this was written for does not compile.\n\
+             #[allow(long_running_const_eval)]\n\
              const _: () = {{\n    \
              let Ok(demand) = gridel_core::Requirements::of(BYTES) else {{\n        \
              panic!(\"the blob was cut off: write it and this module again\")\n    }};\n    \
@@ -156,6 +158,8 @@ impl Emitted<'_> {
              \"the blob outgrew STACK_DEPTH: write this module again\"\n    );\n    \
              assert!(\n        demand.work_depth <= WORK_DEPTH,\n        \
              \"the blob outgrew WORK_DEPTH: write this module again\"\n    );\n    \
+             assert!(\n        demand.parts <= PARTS,\n        \
+             \"the blob outgrew PARTS: write this module again\"\n    );\n    \
              assert!(\n        demand.width == WIDTH && demand.height == HEIGHT,\n        \
              \"the blob's picture has another size: write this module again\"\n    );\n    \
              assert!(\n        demand.holds(gridel_core::Structure::{structure}),\n        \
@@ -173,8 +177,8 @@ impl Emitted<'_> {
                 _ => String::from("the scene's origin"),
             },
             waiting = scene.effects().work_depth(view.depth),
-            effects = scene.effects(),
-            bits = scene.effects().0,
+            effects = effects,
+            bits = effects.0,
             width = view.width,
             height = view.height,
         )
@@ -237,7 +241,7 @@ pub const JOINTS: usize = JOINTS_COUNT;
 pub type Poses = gridel_core::Poses<INSTANCES>;
 
 /// The views of the parts that instances place.
-pub type Parts = gridel_core::Parts<'static, PARTS_COUNT>;
+pub type Parts = gridel_core::Parts<'static, PARTS>;
 
 /// The parts, checked.
 #[allow(dead_code)]

@@ -10,7 +10,7 @@ use gridel_host::scene::Shape;
 use gridel_host::shape::Solid;
 use gridel_host::shape::random::Random;
 use gridel_host::shape::{Cone, Cuboid};
-use gridel_host::verify::judge::{Answer, GRAZING, Judge, RoundedRay, STEPS};
+use gridel_host::verify::judge::{Answer, GRAZING, HitId, Judge, RoundedRay, STEPS};
 use gridel_host::verify::{
     ClosedMesh, Property, RAYS, StructureAnswer, Targets, UnitRay, ask, ask_all, check, leave,
     sealed, verify,
@@ -155,7 +155,7 @@ fn surfaces_that_a_ray_leaves_are_judged_as_those_it_enters() {
         let mut random = Random(31);
         let (mut shared, mut caught) = (0, 0);
         // The middle of the first box, in units.
-        let bounds = judge.solid(0).cloned();
+        let bounds = judge.solid(HitId::own(0)).map(|it| it.solid.clone());
         let Some(Solid::Box(Cuboid {
             min: lowest,
             max: highest,
@@ -188,7 +188,7 @@ fn surfaces_that_a_ray_leaves_are_judged_as_those_it_enters() {
             };
             let last = Answer {
                 t: outer(0).min(outer(1)).min(outer(2)),
-                primitive: 1,
+                hit: HitId::own(1),
             };
             let wrong = judge.check(N::FORMAT, &rounded, Some(last));
             let is_later = last.t > N::far_to_f64(hit.t) + 1.0;
@@ -361,12 +361,12 @@ fn a_broken_structure_is_caught() {
         panic!("one closed mesh");
     };
     let mut leaks = [0; 2];
-    for corners in &closed.triangles {
+    for index in 0..closed.count() {
+        let corners = closed.triangle(index);
         let middle = [0, 1, 2].map(|k| (corners[0][k] + corners[1][k] + corners[2][k]) / 3.0);
         let from = [0.0; 3];
-        let object = closed.object;
-        let whole = sealed::<f32, Flagged>(&scene, &judge, object, from, middle);
-        let holed = sealed::<f32, Forgetful>(&scene, &judge, object, from, middle);
+        let whole = sealed::<f32, Flagged>(&scene, &judge, closed, from, middle);
+        let holed = sealed::<f32, Forgetful>(&scene, &judge, closed, from, middle);
         leaks[0] += usize::from(whole.is_some());
         leaks[1] += usize::from(holed.is_some());
     }

@@ -1,13 +1,14 @@
 //! The memory and features that a program must provide for its own blob, read at compile time.
 
 use crate::format::effects::enable;
+use crate::format::instance::Part;
 use crate::format::kind::shapes;
-use crate::format::record::{Header, SectionEntry, View};
+use crate::format::record::{ALIGNMENT, Header, SectionEntry, View};
 use crate::format::word::{half, proved, word};
 use crate::format::{BlobError, Effects, SectionKind, Structure};
 use core::mem::offset_of;
 
-/// The requirements of a blob on the program that it is compiled into.
+/// The requirements of a blob on the program that it is compiled into, those of its parts among them.
 ///
 /// [`Requirements::of`] is a `const fn`. A program that compares it with what it provides, as the modules of
 /// `gridel build --emit-rust` do, does not compile with a blob that requires more.
@@ -32,6 +33,8 @@ pub struct Requirements {
     pub work_depth: usize,
     /// The effects that the scene requires.
     pub effects: Effects,
+    /// Parts that instances place; [`Parts`](crate::Parts) has room for them.
+    pub parts: usize,
     /// Pixels of a row of the scene's own picture.
     pub width: usize,
     /// Its rows.
@@ -43,33 +46,78 @@ pub struct Requirements {
     structures: u32,
     /// A bit for each [`SectionKind`] of which there are records.
     sections: u128,
+    /// Whether triangles or spheres lie in clusters alone.
+    clusters_alone: bool,
     wide_lattice: bool,
     wide_indices: bool,
     display_values: bool,
 }
 
 impl Requirements {
-    /// Reads it. A few operations a section.
+    /// Reads the requirements: a few operations per section and part.
     ///
     /// # Errors
     /// If the blob is cut off. Nothing else is proved: that is for [`Prevalidated`](crate::scene::Prevalidated).
     pub const fn of(blob: &[u8]) -> Result<Self, BlobError> {
+        let (mut demand, [directory, blobs]) = proved!(Self::without_parts(blob));
+        let mut part = 0;
+        while part < demand.parts {
+            let entry = directory.saturating_add(part * size_of::<Part>());
+            let start = proved!(word(blob, entry.saturating_add(offset_of!(Part, start))));
+            let start = blobs.saturating_add((start as usize).saturating_mul(ALIGNMENT));
+            let Some((_, blob_of_part)) = blob.split_at_checked(start) else {
+                return Err(BlobError::Truncated {
+                    needed: start,
+                    found: blob.len(),
+                });
+            };
+            let (of_part, _) = proved!(Self::without_parts(blob_of_part));
+            demand = demand.with_part(&of_part);
+            part += 1;
+        }
+        Ok(demand)
+    }
+
+    /// The requirements of a blob and of a part in it. A part's picture is not rendered.
+    const fn with_part(self, part: &Self) -> Self {
+        Self {
+            stack_depth: if part.stack_depth > self.stack_depth {
+                part.stack_depth
+            } else {
+                self.stack_depth
+            },
+            effects: self.effects.with(part.effects),
+            structures: self.structures & part.structures,
+            sections: self.sections | part.sections,
+            clusters_alone: self.clusters_alone || part.clusters_alone,
+            wide_lattice: self.wide_lattice || part.wide_lattice,
+            wide_indices: self.wide_indices || part.wide_indices,
+            display_values: self.display_values || part.display_values,
+            ..self
+        }
+    }
+
+    /// The requirements of a blob apart from its parts, and where its sections of parts begin: directory and blobs.
+    const fn without_parts(blob: &[u8]) -> Result<(Self, [usize; 2]), BlobError> {
         let lattice_bits = proved!(half(blob, offset_of!(Header, lattice_bits))) & 0xff;
         let mut demand = Self {
             stack_depth: proved!(half(blob, offset_of!(Header, stack_depth))) as usize,
             work_depth: 0,
             effects: Effects(proved!(word(blob, offset_of!(Header, effects)))),
+            parts: 0,
             width: 0,
             height: 0,
             vertices: 0,
             pairs: 0,
             structures: proved!(word(blob, offset_of!(Header, structures))),
             sections: 0,
+            clusters_alone: false,
             wide_lattice: lattice_bits > 16,
             wide_indices: false,
             display_values: false,
         };
         let sections = proved!(half(blob, offset_of!(Header, section_count))) as usize;
+        let mut places = [0; 2];
         let mut index = 0;
         while index < sections {
             let entry = size_of::<Header>() + index * size_of::<SectionEntry>();
@@ -94,10 +142,17 @@ impl Requirements {
                 demand.pairs = count as usize;
             } else if kind == SectionKind::Triangles as u16 {
                 demand.wide_indices = stride > size_of::<[u16; 3]>();
+            } else if kind == SectionKind::Parts as u16 {
+                (demand.parts, places[0]) = (count as usize, start);
+            } else if kind == SectionKind::PartBlobs as u16 {
+                places[1] = start;
             }
             index += 1;
         }
-        Ok(demand)
+        use SectionKind::{Packs, Spheres, Strips, Triangles};
+        demand.clusters_alone = demand.has(Strips) && !demand.has(Triangles)
+            || demand.has(Packs) && !demand.has(Spheres);
+        Ok((demand, places))
     }
 
     const fn has(&self, kind: SectionKind) -> bool {
@@ -120,9 +175,7 @@ impl Requirements {
                 ),)*]
             };
         }
-        use SectionKind::{Packs, Spheres, Strips, Triangles};
-        let clusters_alone =
-            self.has(Strips) && !self.has(Triangles) || self.has(Packs) && !self.has(Spheres);
+        use SectionKind::{Spheres, Triangles};
         macro_rules! all {
             (
                 forms { $($form:tt)* }
@@ -137,8 +190,8 @@ impl Requirements {
             self.wide_lattice => "wide-lattice",
             self.wide_indices => "wide-indices",
             self.display_values => "display-values",
-            clusters_alone => "wide",
-            self.has(SectionKind::Instances) => "instances",
+            self.clusters_alone => "wide",
+            self.has(SectionKind::Instances) || self.has(SectionKind::Parts) => "instances",
             } };
         }
         let parts = shapes!(all);

@@ -8,8 +8,9 @@ use crate::format::record::UnitBox;
 /// fraction bits of an entry.
 const TOLERANCE: i64 = 1 << (2 * MATRIX_BITS - 20);
 
-/// Units by which a box is widened: for what a matrix' tolerance and rounding move, less than a unit each, and for a
-/// hit that lies beside its part's box.
+/// Units by which a box is widened. The tolerance of the matrix costs up to 1.2: the transposed matrix is the inverse but
+/// for 2.8 * 2^-18 of the way from the center, which is at most 2^16 * 3^(1/2) units long. Rounding costs less than one.
+/// The rest is for a hit that lies beside its part's box.
 const MARGIN: i64 = 3;
 
 /// The square of a row's length, with twice the fraction bits of an entry. Entries are within their range.
@@ -58,7 +59,7 @@ fn reciprocal(number: u32) -> Option<i64> {
 /// [rotation](check_rotation).
 pub(crate) fn around(instance: &Instance, part: &UnitBox) -> Option<UnitBox> {
     let [x, y, z] = instance.matrix;
-    // The inverse is the matrix turned over, divided by the square: from 2^28 to 2^30, so over 2^60 up to 2^32.
+    // The inverse is the transposed matrix, divided by the square: from 2^28 to 2^30, so over 2^60 up to 2^32.
     let inverse = reciprocal((dot(x, x) >> 16) as u32)?;
     // In 1/256 unit, from half units: sums have up to 43 bits, of which 13 are far below that.
     let shift = (33 + i32::from(instance.exponent)).unsigned_abs() & 63;
@@ -95,9 +96,32 @@ impl Instance {
     /// Returns a box around the placed box of a part, in units of the scene; `None` where it would leave the scene's
     /// lattice, or the matrix is not a rotation times a factor from 1/2 to 1. Loading proves that an instance's own box
     /// holds this one.
+    ///
+    /// ```
+    /// use gridel_core::format::instance::{Instance, MATRIX_BITS};
+    /// use gridel_core::format::record::UnitBox;
+    ///
+    /// let one = 1 << MATRIX_BITS;
+    /// let instance = Instance {
+    ///     matrix: [[one, 0, 0], [0, one, 0], [0, 0, one]],
+    ///     center: [256_000, 0, 0],
+    ///     exponent: 0,
+    ///     part: 0,
+    ///     number: 0,
+    /// };
+    /// let bounds = instance.around(&UnitBox([[-10, 10]; 3]));
+    /// let [low, high] = bounds.ok_or("no room")?.0[0];
+    /// assert!(low < 990 && high > 1010);
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn around(&self, part: &UnitBox) -> Option<UnitBox> {
         check_rotation(&self.matrix).ok()?;
         around(self, part)
+    }
+
+    /// Returns whether the matrix is a rotation times a factor from 1/2 to 1, as loading proves.
+    pub fn is_rotation(&self) -> bool {
+        check_rotation(&self.matrix).is_ok()
     }
 }
 

@@ -6,6 +6,7 @@
 use crate::format::instance::{Instance, MATRIX_BITS};
 use crate::format::record::UnitBox;
 use crate::number::{Arithmetic, extent};
+use crate::observe::event::Event;
 use crate::ray::Ray;
 
 /// The map of an instance, in a number format.
@@ -147,7 +148,8 @@ impl<N: Arithmetic> Map<N> {
         }
     }
 
-    /// A way of the part in the scene: less than a few error bounds long, so that the matrix turned over is its inverse.
+    /// A way of the part in the scene: less than a few error bounds long, so that the transposed matrix serves as
+    /// its inverse.
     pub(crate) fn step(&self, way: [N; 3]) -> [N; 3] {
         let (direction, length) = N::normalize(way);
         let (direction, along) = self.normal(direction);
@@ -165,6 +167,23 @@ pub(crate) struct PlacedSurface<N> {
 }
 
 impl<N: Arithmetic> PlacedRay<N> {
+    /// The event that a ray enters an instance, whose part's first primitive is given.
+    pub(crate) fn entered(&self, index: u32, first_primitive: u32) -> Event {
+        let ray = &self.ray;
+        let stretch = N::from_wide(self.stretch).ratio_to_f64();
+        // 2 to a power far from the ends of the range.
+        let power = (1023 - i64::from(self.exponent)).cast_unsigned() << 52;
+        Event::InstanceEntered {
+            index,
+            first_primitive,
+            origin: ray.origin.map(N::length_to_f64),
+            slope: ray.slope.map(N::ratio_to_f64),
+            interval: [ray.tmin, ray.tmax].map(N::length_to_f64),
+            start_t: N::far_to_f64(ray.start_t),
+            scale: f64::from_bits(power) / stretch,
+        }
+    }
+
     /// A t of the part, counted from the mapped start, as one of the scene's ray, counted from its start.
     #[inline(always)]
     pub(crate) fn t_in_scene(&self, t: N::Wide) -> N {
@@ -182,7 +201,8 @@ impl<N: Arithmetic> PlacedRay<N> {
     }
 }
 
-/// A t that no hit of an instance exceeds whose t in the scene is at most this one: what the ways there and back round.
+/// The end of the search in a part for hits with a t of at most this one in the scene: beyond it by more than what
+/// mapping a t to the part and back rounds.
 #[inline(always)]
 pub(crate) fn beyond<N: Arithmetic>(t: N) -> N {
     let rounded = N::wide_over(t.widen(), 1 << 16) + N::far(4);

@@ -7,7 +7,8 @@
 //! meet; `placed` is both with the parts; `check` proves what a blob holds of all this.
 //!
 //! **The answer is defined without the hierarchy**, as it is for primitives: each instance's first hit, by its t on the
-//! scene's ray. Among hits at the same t the scene's own objects count first, then the instance with the lower number.
+//! scene's ray. Among hits at the same t the scene's own objects count first, then the instance with the lower number, then
+//! the one that comes first in the blob: a forged blob may give two the same number.
 
 pub(crate) mod bounds;
 pub(crate) mod build;

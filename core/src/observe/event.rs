@@ -72,11 +72,34 @@ pub enum Event {
     },
     /// The ray goes into a node, a leaf or a cell.
     Opened(NodeId),
+    /// The ray goes into an instance. Until [`InstanceLeft`](Event::InstanceLeft) events are those of its part: nodes
+    /// and primitives are numbered in the part, and lengths and t are in the part's units.
+    InstanceEntered {
+        /// Its place among the scene's [instances](crate::Scene::instances).
+        index: u32,
+        /// The number of the part's first primitive among all of the scene.
+        first_primitive: u32,
+        /// Where the mapped ray starts inside of the kernels.
+        origin: [f64; 3],
+        /// Its direction; the largest component is 1 or -1.
+        slope: [f64; 3],
+        /// The interval that counts, from `origin`.
+        interval: [f64; 2],
+        /// The t of `origin`, counted from the query's origin, in the part's units.
+        start_t: f64,
+        /// What t in the part is multiplied with for t in the scene.
+        scale: f64,
+    },
+    /// The ray leaves the instance that it entered last.
+    InstanceLeft {
+        /// True if the nearest hit so far is in the instance.
+        nearest: bool,
+    },
     /// A primitive is tested.
     Candidate {
         /// Its kind.
         kind: Kind,
-        /// Its number in scene-file order.
+        /// Its number in scene-file order; in an instance, among the primitives of its part.
         primitive: u32,
         /// Where the line of the ray enters and leaves it, from the query's origin; `None` if it
         /// does not meet it, or was seen to meet it behind the origin before that was computed.
@@ -187,6 +210,8 @@ pub struct QueryHit {
     pub object: u32,
     /// The primitive.
     pub primitive: u32,
+    /// The place of its instance among the scene's [instances](crate::Scene::instances).
+    pub instance: Option<u32>,
     /// The surface lies within this length of the point, along the normal.
     pub error: f64,
 }

@@ -108,6 +108,7 @@ pub struct Hit<N: Number> {
     /// | sphere of radius `r` | `20 u r + 4 u sum(abs(n p))` | 8 sub-steps |
     /// | cylinder, cone, frustum | `16 u` of the largest coordinate of the solid, the point and the ray's start | 8 sub-steps |
     /// | torus | `16 u` of the largest coordinate of the solid; on the axis, where `r` is at least `R`, the way along it to where the surface is that far away | likewise, of 8 sub-steps |
+    /// | any of an instance | the part's own bound in the scene's units; `32 u` of the largest coordinate of `p` less the instance's center; `4 u` of the largest coordinate of `p` | the part's own bound and 8 sub-steps of the part, in the scene's units; 20 sub-steps |
     ///
     /// No other object and no extent of the scene counts.
     pub error: N,
@@ -236,6 +237,7 @@ impl<N: Number> Hit<N> {
             front: self.front,
             object: self.object,
             primitive: self.primitive,
+            instance: self.instance(),
             error: self.error.length_to_f64(),
         }
     }

@@ -3,6 +3,7 @@
 use crate::accel::{Accel, Number, StackView};
 use crate::instances::map::{Map, beyond};
 use crate::observe::count::Observer;
+use crate::observe::event::Event;
 use crate::query::hit::{InInstance, PrimitiveHit};
 use crate::query::search::search_structure;
 use crate::ray::Ray;
@@ -29,8 +30,8 @@ pub(super) fn nearest<N: Number, A: Accel, C: Observer, const ANY: bool>(
         return own;
     }
     let mut nearest = own;
-    // The t of the nearest hit, and the number of its instance: none for the scene's own objects.
-    let mut best: Option<(N, Option<u32>)> = own.map(|own| (own.best.t, None));
+    // The t of the nearest hit, and number and place of its instance: none for the scene's own objects.
+    let mut best: Option<(N, Option<[u32; 2]>)> = own.map(|own| (own.best.t, None));
     placed.top.walk(
         ray,
         best.map_or(ray.tmax, |best| best.0),
@@ -52,17 +53,29 @@ pub(super) fn nearest<N: Number, A: Accel, C: Observer, const ANY: bool>(
             let Some(mapped) = Map::new(instance).ray(part.bounds(), ray, end) else {
                 return Some(tmax);
             };
+            if C::ENABLED {
+                count.event(mapped.entered(index, first));
+            }
             let met = search_structure::<N, A, C, ANY>(part, &mapped.ray, None, stack, count, any);
-            let Some(met) = met else { return Some(tmax) };
+            let Some(met) = met else {
+                if C::ENABLED {
+                    count.event(Event::InstanceLeft { nearest: false });
+                }
+                return Some(tmax);
+            };
             let t = mapped.t_in_scene(met.t.widen() + mapped.ray.start_t);
             let t = ray.tmax.min(ray.tmin.max(t));
+            let number = [instance.number, index];
             let is_nearer = best.is_none_or(|(least, holder)| {
-                t < least || t == least && holder.is_some_and(|holder| instance.number < holder)
+                t < least || t == least && holder.is_some_and(|holder| number < holder)
             });
+            if C::ENABLED {
+                count.event(Event::InstanceLeft { nearest: is_nearer });
+            }
             if !is_nearer {
                 return Some(tmax);
             }
-            best = Some((t, Some(instance.number)));
+            best = Some((t, Some(number)));
             nearest = Some(PrimitiveHit {
                 t: t.widen() + ray.start_t,
                 primitive: first.wrapping_add(part.primitive_at(met.place)),

@@ -1,12 +1,13 @@
 //! Which Cargo features of this crate a scene requires.
 
-use crate::format::Kind;
+use crate::format::{Effects, Kind};
 use crate::geometry::triangle::Triangles;
 use crate::scene::Scene;
 
 impl Scene<'_> {
     /// The Cargo features of this crate that the scene requires, beside that of its structure:
-    /// the kinds of its primitives, how they are stored, whether its colors are display values, and its effects.
+    /// the kinds of its primitives, how they are stored, whether its colors are display values, and its effects; those of
+    /// its parts among them.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -27,10 +28,19 @@ impl Scene<'_> {
             (any(wide_lattice, Kind::Triangle), "wide-lattice"),
             (any(wide_indices, Kind::Triangle), "wide-indices"),
             (!self.parts().is_empty(), "instances"),
-            (self.view.display_values != 0, "display-values"),
+            (
+                any(|it, _| it.view.display_values != 0, Kind::Triangle),
+                "display-values",
+            ),
         ];
         let required = kinds.into_iter().chain(others);
         let names = required.filter_map(|(required, name)| required.then_some(name));
-        names.chain(self.effects().names())
+        names.chain(self.effects_with_parts().names())
+    }
+
+    /// The effects that the scene requires, and those that its parts require to be loaded.
+    pub fn effects_with_parts(&self) -> Effects {
+        let parts = self.parts().iter();
+        parts.fold(self.effects(), |all, part| all.with(part.effects()))
     }
 }

@@ -82,20 +82,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "leave the option out",
         ));
     }
-    let mut options = arguments.scene_options.clone();
-    options.geometry = options.geometry.flattened()?;
     let source = Source::to_trace(
         &arguments.input,
         &arguments
             .target_point
-            .with_target(&options)
+            .with_target(&arguments.scene_options)
             .sized(arguments.picture.size)
             .at(arguments.time),
         &arguments.with,
         Structure::DualSplit,
     )?;
     let scene = source.scene()?;
-    source.reject_instances(&scene)?;
     source.warn_of_collapsed();
     let structure = source.structure(&scene, arguments.with.accel)?;
     let settings = arguments.picture.settings(&scene);
@@ -121,9 +118,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let names = source.names(&scene);
     if arguments.json {
         let objects = named(&explanation, &names);
+        let instances = named_instances(&explanation, &names);
         let explanation = Named {
             explanation,
             objects,
+            instances,
         };
         return print_json_warned(&explanation, &source.warnings);
     }
@@ -142,6 +141,9 @@ struct Named {
     /// By number; those without a name are missing.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     objects: BTreeMap<u32, ObjectNames>,
+    /// Names of instances by number; those without a name are missing.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    instances: BTreeMap<u32, String>,
 }
 
 #[derive(Serialize)]
@@ -167,6 +169,19 @@ fn named(explanation: &Explanation, names: &Names) -> BTreeMap<u32, ObjectNames>
     named
         .filter(|(_, it)| it.name.is_some() || it.material.is_some())
         .collect()
+}
+
+fn named_instances(explanation: &Explanation, names: &Names) -> BTreeMap<u32, String> {
+    let rays = explanation.samples.iter().flat_map(|sample| &sample.rays);
+    let instances = rays.flat_map(|ray| {
+        let blocking = ray.lights.iter().filter_map(|light| match light.outcome {
+            LightOutcome::Blocked { instance, .. } => instance,
+            _ => None,
+        });
+        blocking.chain(ray.hit.as_ref().and_then(|hit| hit.instance))
+    });
+    let named = instances.filter_map(|it| Some((it, names.instance(it)?.to_owned())));
+    named.collect()
 }
 
 fn failure(error: &ExplainError) -> Failure {

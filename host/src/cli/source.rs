@@ -226,20 +226,6 @@ impl Source {
         }
     }
 
-    /// Rejects a blob with instances, for commands that do not follow rays into them.
-    pub fn reject_instances(&self, scene: &Scene<'_>) -> Result<(), Failure> {
-        if scene.instances().is_empty() {
-            return Ok(());
-        }
-        Err(Failure::usage(
-            format!(
-                "{} has instances, into which this command does not follow rays",
-                self.input.path().display()
-            ),
-            "give the scene file, or a blob that was built with `--instances flatten`",
-        ))
-    }
-
     /// Whether a time concerns more than instances that were copied where they are at it.
     fn moves_otherwise(&self) -> bool {
         !self.posed || self.tracks().is_ok()

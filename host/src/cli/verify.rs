@@ -73,10 +73,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     check_quality(arguments.quality, &compiling.structures)?;
     let accel = (!arguments.accel.is_empty()).then_some("--accel");
     let other = accel.or(arguments.quality.map(|_| "--quality"));
-    let options = arguments.geometry.flattened()?.into();
+    let options = arguments.geometry.clone().into();
     let source = Source::open(input, &options, other, compiling)?;
     let scene = source.scene()?;
-    source.reject_instances(&scene)?;
     source.warn_of_collapsed();
     let progress = Progress::steps("verifying", steps(arguments.rays));
     let report = verify(&scene, arguments.rays, &|| progress.step());

@@ -8,32 +8,62 @@ use crate::blob::Blob;
 use crate::table::grouped;
 use gridel_core::{Prevalidated, Structure};
 
-/// The bytes of a structure in a blob.
-pub struct Size {
+/// The bytes of structures in a blob, and in its parts.
+#[derive(Clone, Debug, Default)]
+pub struct Sizes {
+    structures: Vec<Size>,
+    /// Bytes of the leaves that hierarchies share.
+    leaves: usize,
+}
+
+/// The bytes of a structure.
+#[derive(Clone, Copy, Debug)]
+struct Size {
     structure: Structure,
     /// Bytes of its own sections.
     bytes: usize,
     uses_leaves: bool,
 }
 
-impl Size {
-    pub fn of(layout: &Layout) -> Self {
-        let sections = layout.sections.iter();
+impl Sizes {
+    /// The bytes of structures, and of leaves.
+    pub fn of(layouts: &[Layout], leaves: usize) -> Self {
+        let size = |layout: &Layout| {
+            let sections = layout.sections.iter();
+            Size {
+                structure: layout.structure,
+                bytes: sections.map(|section| taken(section.bytes.len())).sum(),
+                uses_leaves: layout.uses_leaves,
+            }
+        };
         Self {
-            structure: layout.structure,
-            bytes: sections.map(|section| taken(section.bytes.len())).sum(),
-            uses_leaves: layout.uses_leaves,
+            structures: layouts.iter().map(size).collect(),
+            leaves: taken(leaves),
+        }
+    }
+
+    /// Adds the bytes of a part, which has the same structures.
+    pub fn add(&mut self, part: &Self) {
+        self.leaves += part.leaves;
+        for size in &part.structures {
+            let mut sizes = self.structures.iter_mut();
+            match sizes.find(|it| it.structure == size.structure) {
+                Some(own) => {
+                    own.bytes += size.bytes;
+                    own.uses_leaves |= size.uses_leaves;
+                }
+                None => self.structures.push(*size),
+            }
         }
     }
 }
 
-/// Returns advice that makes a blob smaller, from its figures and the bytes of the leaves that hierarchies share.
+/// Returns advice that makes a blob smaller, from its figures.
 /// `bytes_with` compiles the scene with other options, and returns the size of the blob.
 pub fn advice(
     options: &Options,
     blob: &Blob,
-    leaves: usize,
-    sizes: &[Size],
+    sizes: &Sizes,
     bytes_with: &dyn Fn(&Options) -> Option<usize>,
 ) -> String {
     let mut asked = options.structures.clone();
@@ -89,11 +119,12 @@ pub fn advice(
             .flatten()
             .collect();
         let (stay, go): (Vec<&Size>, Vec<&Size>) = sizes
+            .structures
             .iter()
             .partition(|size| kept.contains(&size.structure));
         let mut saved: usize = go.iter().map(|size| size.bytes).sum();
         if !stay.iter().any(|size| size.uses_leaves) {
-            saved += leaves;
+            saved += sizes.leaves;
         }
         steps.push(format!(
             "leaving out `--accel {}` saves {} bytes",

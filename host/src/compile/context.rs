@@ -41,6 +41,22 @@ impl<'g> BuildContext<'g> {
         Some(Tree::new(root, self.flat, self.order, self.primitives))
     }
 
+    /// The share of a table's bytes that is for this blob: scene and parts share them by their primitives.
+    pub fn share(&self, bytes: u64) -> u64 {
+        /// Enough for the table of a part of few primitives.
+        const LEAST: u64 = 4096;
+        let own = u64::from(self.primitives.total);
+        let all = match self.role {
+            Role::Whole(parts) => own + u64::from(parts.primitives()),
+            Role::Part { all } => all,
+        };
+        if own >= all {
+            return bytes;
+        }
+        let share = u128::from(bytes) * u128::from(own) / u128::from(all);
+        (share as u64).max(LEAST.min(bytes))
+    }
+
     pub fn targets(&self) -> Targets<'g> {
         Targets::new(self.primitives, self.flat, self.bounds)
     }

@@ -2,6 +2,7 @@
 
 use crate::scene::{SceneError, SourceSpan};
 use glam::DVec3;
+use gridel_core::BlobError;
 use gridel_core::render::CameraError;
 
 /// Why a scene cannot be compiled.
@@ -124,6 +125,9 @@ pub enum CompileError {
          `--instances flatten`"
     ))]
     InstanceSize { instance: String, least: f64 },
+    #[error("the compiled blob is invalid: {0}")]
+    #[diagnostic(help("this is a fault of gridel: report it with the scene file"))]
+    Blob(#[from] BlobError),
     #[error("the blob would have {bytes} bytes, {over} more than --max-bytes allows")]
     #[diagnostic(help("{advice}"))]
     TooLarge {

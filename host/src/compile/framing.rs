@@ -1,6 +1,6 @@
 //! The camera and the background of a scene that states none.
 
-use super::extent::in_extent;
+use super::extent::Shapes;
 use crate::scene::{Camera, Color, Scene};
 use glam::DVec3;
 
@@ -36,11 +36,15 @@ const NEAREST: f64 = 1.0 / 16.0;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn framing(scene: &Scene, fov_degrees: Option<f64>) -> Camera {
+    framing_of(&Shapes::of(scene), fov_degrees)
+}
+
+/// [`framing`] of a scene whose shapes are prepared.
+pub(super) fn framing_of(shapes: &Shapes<'_>, fov_degrees: Option<f64>) -> Camera {
+    let scene = shapes.scene();
     let fov_degrees = fov_degrees.unwrap_or(FOV_DEGREES);
-    let shapes = in_extent(scene);
     let support = |direction: DVec3| {
-        let supports = shapes.clone().map(|shape| shape.support(direction));
-        let largest = supports.fold(f64::NEG_INFINITY, f64::max);
+        let largest = shapes.support(direction);
         if largest.is_finite() { largest } else { 0.0 }
     };
     let highest = DVec3::from_array(DVec3::AXES.map(support));
@@ -55,8 +59,8 @@ pub fn framing(scene: &Scene, fov_degrees: Option<f64>) -> Camera {
     let (forward, up) = match (is_flat(up), is_flat(right)) {
         (true, _) => (-up, forward),
         (false, true) => (-right, up),
-        _ if !is_seen_from_edge(scene, forward) => (forward, up),
-        _ if is_seen_from_edge(scene, up) => (-right, up),
+        _ if !is_seen_from_edge(shapes, forward) => (forward, up),
+        _ if is_seen_from_edge(shapes, up) => (-right, up),
         _ => (-up, forward),
     };
     let right = forward.cross(up);
@@ -92,25 +96,21 @@ pub fn framing(scene: &Scene, fov_degrees: Option<f64>) -> Camera {
 const LEAST_SHOWN: f64 = 1e-3;
 
 /// Returns whether a scene has flat faces and nothing else, and a view shows next to nothing of them.
-fn is_seen_from_edge(scene: &Scene, forward: DVec3) -> bool {
-    let (mut area, mut shown) = (0.0, 0.0);
-    for shape in in_extent(scene).filter(|shape| shape.is_bounded()) {
-        let faces = shape.faces();
-        if faces.is_empty() {
-            return false;
-        }
-        for face in faces {
-            area += face.length();
-            shown += face.dot(forward).abs();
-        }
+fn is_seen_from_edge(shapes: &Shapes<'_>, forward: DVec3) -> bool {
+    if !shapes.are_flat() {
+        return false;
     }
+    let (mut area, mut shown) = (0.0, 0.0);
+    shapes.each_face(|face| {
+        area += face.length();
+        shown += face.dot(forward).abs();
+    });
     shown < LEAST_SHOWN * area
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compile::extent::extent;
     use crate::scene::{Material, Object, Shape, SourceSpan};
     use crate::shape::Cuboid;
     use gridel_core::Up;
@@ -134,7 +134,7 @@ mod tests {
     /// The picture's part that the projected corners of the scene's box take, across and along, and
     /// how far their middle is from the picture's.
     fn share(scene: &Scene, camera: &Camera) -> ([f64; 2], [f64; 2]) {
-        let (lowest, highest) = extent(scene);
+        let (lowest, highest) = Shapes::of(scene).extent();
         let forward = (camera.target - camera.eye).normalize();
         let right = forward.cross(camera.up).normalize();
         let up = right.cross(forward);

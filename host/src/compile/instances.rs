@@ -1,11 +1,12 @@
 //! Parts and instances: parts become blobs of their own, and placements become maps of integers.
 
+use super::advice::Sizes;
 use super::error::CompileError;
 use super::instance_tree::{Tree, build};
 use super::reach::Reach;
 use super::section::{Section, section};
 use crate::blob::Blob;
-use crate::scene::{Instance, Material, Object, Part, Scene, Shape};
+use crate::scene::{Instance, Material, Object, Part, Scene};
 use crate::shape::{Lattice, exp2};
 use crate::table::printable;
 use glam::DVec3;
@@ -21,7 +22,10 @@ pub enum Role<'p> {
     /// To be loaded, with these parts in it.
     Whole(&'p Parts),
     /// To be a part of another, which knows its objects and materials.
-    Part,
+    Part {
+        /// Primitives of the scene and of all its parts.
+        all: u64,
+    },
 }
 
 /// The compiled parts of a scene.
@@ -38,6 +42,8 @@ pub struct Parts {
     pub object_first: Vec<u32>,
     /// For each part, its first primitive, counted likewise; then how many there are.
     first_primitive: Vec<u32>,
+    /// The bytes of their structures.
+    pub sizes: Sizes,
 }
 
 /// Placed parts as a blob holds them.
@@ -85,11 +91,7 @@ impl Parts {
             parts.displacements.push(displacement);
             for object in &part.objects {
                 parts.object_first.push(primitives);
-                let count = match &object.shape {
-                    Shape::Mesh { triangles, .. } => triangles.len() as u32,
-                    _ => 1,
-                };
-                primitives = primitives.saturating_add(count);
+                primitives = primitives.saturating_add(object.shape.primitives() as u32);
             }
             parts.first_primitive.push(primitives);
         }
@@ -116,14 +118,20 @@ impl Parts {
         depths.max().unwrap_or(0)
     }
 
-    /// Places all instances of a scene on its lattice; `None` where one reaches beyond it.
+    /// Places all instances of a scene on its lattice; `None` where one reaches beyond it. Those of parts without
+    /// primitives are left out: there is nothing of them.
     pub fn place(&self, scene: &Scene, lattice: &Lattice) -> Result<Option<Placed>, CompileError> {
         let mut records = Vec::with_capacity(scene.instances.len());
         let mut boxes = Vec::with_capacity(scene.instances.len());
         let mut displacement = 0_f64;
-        for instance in &scene.instances {
+        for instance in scene.instances.iter().filter(|it| scene.is_placed(it)) {
             let part = &self.lattices[instance.part];
             let record = self.map(instance, lattice, records.len() as u32)?;
+            if !record.is_rotation() {
+                return Err(CompileError::Instance {
+                    instance: instance_name(instance),
+                });
+            }
             let Some(bounds) = record.around(&self.bounds[instance.part]) else {
                 return Ok(None);
             };
@@ -173,7 +181,7 @@ impl Parts {
         }
         let factor = stretch * exp2(MATRIX_BITS as i32 - exponent as i32);
         // The columns of a rotation are the rows of its inverse.
-        let rotation = glam::DMat3::from_quat(placement.rotation);
+        let rotation = glam::DMat3::from_quat(placement.rotation.normalize());
         let row = |column: DVec3| (column * factor).round().to_array().map(|x| x as i32);
         let middle = placement.point(part.origin);
         let center = (lattice.in_fine(middle)).round();

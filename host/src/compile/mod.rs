@@ -27,10 +27,12 @@ mod pairs;
 mod primitives;
 mod reach;
 mod records;
+mod report;
 mod room;
 mod section;
 mod shading_data;
 mod structures;
+mod support;
 mod tracks;
 mod volumes;
 mod wide;
@@ -46,6 +48,7 @@ pub use lattice::BITS as LATTICE_BITS;
 pub use names::{KeptNames, Names};
 pub use options::{LARGEST_LEAF, OnProgress, Options};
 pub use primitives::LeftOut;
+pub use report::{Report, TableStats};
 pub(crate) use shading_data::light_record;
 pub use shading_data::radiance;
 pub use structures::{takes_hierarchy, usual_budget};
@@ -56,9 +59,10 @@ pub use crate::scene::TICKS_PER_SECOND;
 use crate::scene::{Object, Scene};
 use crate::shape::Lattice;
 use crate::table::printable;
-use advice::{Size, advice};
+use advice::{Sizes, advice};
 use candidates::target::Targets;
 use context::BuildContext;
+use extent::Shapes;
 use glam::DVec3;
 use gridel_core::format::Leaf;
 use gridel_core::format::record::{Gridels, UnitBox};
@@ -75,52 +79,6 @@ use wide::Wide;
 pub struct Compiled {
     pub blob: crate::blob::Blob,
     pub report: Report,
-}
-
-/// The compiler's report.
-#[derive(Clone, Debug, serde::Serialize)]
-pub struct Report {
-    /// Scene units of a lattice step.
-    pub step: f64,
-    /// The farthest that snapping moved a surface, in scene units: no point of the given surface of
-    /// any primitive is farther from its snapped one, and the other way round.
-    pub largest_displacement: f64,
-    /// The displacement of each primitive in scene-file order, in steps of the lattice; 0 for those that are
-    /// left out.
-    #[serde(skip)]
-    pub displacements: Vec<f32>,
-    /// Primitives whose surface was moved by more than four steps of the lattice.
-    pub far_moved: LeftOut,
-    /// Primitives that the lattice leaves nothing of; they keep their numbers.
-    pub collapsed: LeftOut,
-    /// Triangles that have no area in the scene file already; they keep their numbers, too.
-    pub without_area: LeftOut,
-    /// Cost of the hierarchy that structures share by the surface area heuristic, the root's area
-    /// being 1; `None` where none is built.
-    pub sah_cost: Option<f64>,
-    /// Length of the blob.
-    pub bytes: usize,
-    /// Primitives of the longest list that a ray can be led to.
-    pub longest_list: usize,
-    /// Effects and the names of what requires each.
-    pub effects: Vec<(String, Vec<String>)>,
-    /// Parts that the compiler supplied because the scene has none.
-    pub supplied: Vec<String>,
-    /// The time that the structures took to build, from primitives on the lattice to records.
-    #[serde(skip)]
-    pub setup: Duration,
-    /// Structures with tables of candidate lists.
-    pub tables: Vec<TableStats>,
-    /// The names in the blob; `None` if they are not asked for, or there are none.
-    pub names: Option<KeptNames>,
-}
-
-/// A structure with tables of candidate lists, and what they came to.
-#[derive(Clone, Copy, Debug, serde::Serialize)]
-pub struct TableStats {
-    pub structure: &'static str,
-    #[serde(flatten)]
-    pub figures: Figures,
 }
 
 /// Compiles a scene.
@@ -172,23 +130,41 @@ pub fn compile_with_progress(
     on_progress: OnProgress<'_>,
 ) -> Result<Compiled, CompileError> {
     check(scene, options)?;
+    let (parts, reports) = compile_parts(scene, options, on_progress)?;
+    let (mut compiled, _) = compile_as(Role::Whole(&parts), scene, options, on_progress)?;
+    reports
+        .iter()
+        .for_each(|part| compiled.report.add_part(part));
+    Ok(compiled)
+}
+
+/// Compiles the parts of a scene.
+fn compile_parts(
+    scene: &Scene,
+    options: &Options,
+    on_progress: OnProgress<'_>,
+) -> Result<(Parts, Vec<Report>), CompileError> {
     let of_parts = Options {
         names: false,
         max_bytes: None,
         ..options.clone()
     };
     let mut reports = Vec::new();
-    let parts = Parts::compile(scene, |part| {
-        let Compiled { blob, report } = compile_as(Role::Part, part, &of_parts, on_progress)?;
+    let all = scene.all_objects().map(|it| it.shape.primitives());
+    let role = Role::Part {
+        all: all.sum::<usize>() as u64,
+    };
+    let mut sizes = Sizes::default();
+    let mut parts = Parts::compile(scene, |part| {
+        let (compiled, of_part) = compile_as(role, part, &of_parts, on_progress)?;
+        let Compiled { blob, report } = compiled;
         let moved = report.largest_displacement;
         reports.push(report);
+        sizes.add(&of_part);
         Ok((blob, moved))
     })?;
-    let mut compiled = compile_as(Role::Whole(&parts), scene, options, on_progress)?;
-    reports
-        .iter()
-        .for_each(|part| compiled.report.add_part(part));
-    Ok(compiled)
+    parts.sizes = sizes;
+    Ok((parts, reports))
 }
 
 fn compile_as(
@@ -196,14 +172,15 @@ fn compile_as(
     scene: &Scene,
     options: &Options,
     on_progress: OnProgress<'_>,
-) -> Result<Compiled, CompileError> {
-    let mut extent = room::widened(extent::extent(scene), options.room);
+) -> Result<(Compiled, Sizes), CompileError> {
+    let shapes = Shapes::of(scene);
+    let mut extent = room::widened(shapes.extent(), options.room);
     if let Role::Whole(parts) = role {
         extent = parts.reach.around(extent);
     }
     let (lattice, snapped, placed) = snap(role, scene, extent, options.lattice_bits)?;
     let structures = held(&options.structures);
-    let shading_data = shading_data::ShadingData::of(scene, &lattice, extent)?;
+    let shading_data = shading_data::ShadingData::of(&shapes, &lattice, extent)?;
     // WebAssembly without a system has no clock, and asking for the time would panic.
     let has_clock = !cfg!(all(target_family = "wasm", target_os = "unknown"));
     let started = has_clock.then(Instant::now);
@@ -254,7 +231,10 @@ fn compile_as(
         .collect();
     let longest_lists = layouts.iter().map(|layout| layout.longest_list);
     let longest_list = longest_lists.max().unwrap_or(0);
-    let sizes: Vec<Size> = layouts.iter().map(Size::of).collect();
+    let mut sizes = Sizes::of(&layouts, flat.leaves.len() * size_of::<Leaf>());
+    if let Role::Whole(parts) = role {
+        sizes.add(&parts.sizes);
+    }
     let mut parts = writer::parts(&context, layouts);
     let names = if options.names && !scene.unnamed {
         parts.add_names(&names::Names::of_scene(scene), options.max_bytes)
@@ -266,7 +246,6 @@ fn compile_as(
     let blob = writer::write(parts)?;
     let bytes = blob.bytes().len();
     if let Some(most) = options.max_bytes.filter(|&most| bytes as u64 > most) {
-        let leaves = section::taken(flat.leaves.len() * size_of::<Leaf>());
         let bytes_with = |other: &Options| {
             let unnamed = Options {
                 names: false,
@@ -274,7 +253,7 @@ fn compile_as(
             };
             Some(compile(scene, &unnamed).ok()?.report.bytes)
         };
-        let advice = advice(options, &blob, leaves, &sizes, &bytes_with);
+        let advice = advice(options, &blob, &sizes, &bytes_with);
         return Err(CompileError::TooLarge {
             bytes: bytes as u64,
             over: bytes as u64 - most,
@@ -302,26 +281,7 @@ fn compile_as(
         tables,
         names,
     };
-    Ok(Compiled { blob, report })
-}
-
-impl Report {
-    /// Adds what a part has to report, whose primitives come after those before it.
-    fn add_part(&mut self, part: &Report) {
-        let steps = (part.step / self.step) as f32;
-        let displacements = part.displacements.iter().map(|it| it * steps);
-        self.displacements.extend(displacements);
-        for (all, of_part) in [
-            (&mut self.far_moved, &part.far_moved),
-            (&mut self.collapsed, &part.collapsed),
-            (&mut self.without_area, &part.without_area),
-        ] {
-            all.add_all(of_part);
-        }
-        self.longest_list = self.longest_list.max(part.longest_list);
-        self.setup += part.setup;
-        self.tables.extend(part.tables.iter().copied());
-    }
+    Ok((Compiled { blob, report }, sizes))
 }
 
 /// Snaps a scene of some extent to the finest lattice that holds it once it is snapped.
@@ -336,7 +296,7 @@ fn snap(
         let lattice = Lattice::around([lowest, highest], bits, coarser)?;
         let primitives = Primitives::snap(scene, &lattice)?;
         let placed = match role {
-            Role::Part => Some(Placed::default()),
+            Role::Part { .. } => Some(Placed::default()),
             Role::Whole(parts) => parts.place(scene, &lattice)?,
         };
         if let Some(placed) = placed.filter(|_| !primitives.needs_room) {
@@ -452,11 +412,11 @@ impl Hierarchies {
     }
 }
 
-/// Counts what the cylinder cube of a scene takes, with a number of gridels per side (1 to 64). Builds
-/// nothing, so it takes time and no memory.
+/// Counts what the cylinder cube of a scene takes, with a number of gridels per side (1 to 64); instances are
+/// flattened. Builds nothing, so it takes time and no memory.
 ///
 /// # Errors
-/// If the scene does not fit a lattice.
+/// If the scene does not fit a lattice, or its instances are too many to be flattened.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};
@@ -467,8 +427,14 @@ impl Hierarchies {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn cube_census(scene: &Scene, gridels: u32) -> Result<CubeCensus, CompileError> {
+    let scene = &*scene.flattened()?;
     let bits = Options::default().lattice_bits;
-    let (_, snapped, _) = snap(Role::Part, scene, extent::extent(scene), bits)?;
+    let (_, snapped, _) = snap(
+        Role::Part { all: 0 },
+        scene,
+        Shapes::of(scene).extent(),
+        bits,
+    )?;
     let mut order: Vec<Primitive> = snapped.boxes();
     let root = hierarchy::build(&mut order, Splits::Swept, Options::default().leaf_size);
     let flat = root.as_ref().map(|root| pairs::flatten(root, &order));

@@ -30,6 +30,8 @@ pub struct Names {
     pub objects: Vec<String>,
     pub materials: Vec<String>,
     pub lights: Vec<String>,
+    /// Names of a scene file's instances, by their numbers; a blob has none.
+    pub instances: Vec<String>,
     /// For each object, its number among the materials.
     pub object_material: Vec<u32>,
     /// Names of the scene that are longer than 255 bytes, and were cut.
@@ -71,6 +73,8 @@ impl Names {
         names.objects = scene.all_objects().map(|it| cut(&it.name)).collect();
         names.lights = scene.light_names.iter().map(|it| cut(it)).collect();
         names.shortened = shortened;
+        let placed = scene.instances.iter().filter(|it| scene.is_placed(it));
+        names.instances = placed.map(|it| it.name.clone()).collect();
         names
     }
 
@@ -95,6 +99,7 @@ impl Names {
             objects: objects.map(|it| names.object(it).to_owned()).collect(),
             materials: materials.map(|it| names.material(it).to_owned()).collect(),
             lights: lights.map(|it| names.light(it).to_owned()).collect(),
+            instances: Vec::new(),
             object_material,
             shortened: 0,
         })
@@ -114,6 +119,11 @@ impl Names {
     /// The name of a light.
     pub fn light(&self, light: u32) -> Option<&str> {
         given(&self.lights, light)
+    }
+
+    /// The name of an instance.
+    pub fn instance(&self, number: u32) -> Option<&str> {
+        given(&self.instances, number)
     }
 
     /// The sections of a blob with so many lights, and what is in them. No section where nothing has a

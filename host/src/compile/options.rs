@@ -51,7 +51,8 @@ pub struct Options {
     /// holds.
     pub gridels: Option<u32>,
     /// Most bytes of each table of candidate lists, and in the apexes' of each point or direction;
-    /// otherwise what [`usual_budget`](crate::compile::usual_budget) says.
+    /// otherwise what [`usual_budget`](crate::compile::usual_budget) says. A scene and its parts share them by their
+    /// numbers of primitives.
     pub budget: Option<u64>,
 }
 

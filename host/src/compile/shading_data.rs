@@ -3,12 +3,12 @@
 use super::CompileError;
 use super::camera::place;
 use super::coordinates::Coordinates;
-use super::extent::shapes;
-use super::framing::{BACKGROUND, framing};
+use super::extent::Shapes;
+use super::framing::{BACKGROUND, framing_of};
 use super::joints;
 use super::section::Section;
 use super::tracks;
-use crate::scene::{Camera, Color, Diffuse, Light, Material, RenderSettings, Scene};
+use crate::scene::{Camera, Color, Diffuse, Light, Material, RenderSettings};
 use crate::shape::{Lattice, unit};
 use crate::table::printable;
 use bytemuck::Zeroable;
@@ -41,14 +41,15 @@ pub struct ShadingData {
 
 impl ShadingData {
     pub fn of(
-        scene: &Scene,
+        shapes: &Shapes<'_>,
         lattice: &Lattice,
         (lowest, highest): (DVec3, DVec3),
     ) -> Result<Self, CompileError> {
+        let scene = shapes.scene();
         let mut supplied = Vec::new();
         let camera = scene.camera.unwrap_or_else(|| {
             supplied.push(String::from("a camera that shows the whole scene"));
-            framing(scene, None)
+            framing_of(shapes, None)
         });
         let background = scene.background.unwrap_or(match scene.camera {
             Some(_) => [0.0; 3],
@@ -56,7 +57,7 @@ impl ShadingData {
         });
         let (mut lights, mut ambient) = (scene.lights.clone(), scene.ambient);
         if lights.is_empty() && ambient == [0.0; 3] {
-            let (direction, shoulder) = over_a_shoulder(scene, &camera);
+            let (direction, shoulder) = over_a_shoulder(shapes, &camera);
             supplied.push(format!(
                 "a directional light from above the camera's {shoulder} shoulder, and some light from \
                  everywhere"
@@ -161,7 +162,7 @@ impl ShadingData {
 
 /// The way of a light from above the camera's left shoulder, or from above its right one where what is
 /// flat and faces the camera would be dark: the shoulder's name, too.
-fn over_a_shoulder(scene: &Scene, camera: &Camera) -> (DVec3, &'static str) {
+fn over_a_shoulder(shapes: &Shapes<'_>, camera: &Camera) -> (DVec3, &'static str) {
     /// By how many times more the right one must light.
     const CLEARLY: f64 = 2.0;
     let view = unit(camera.target - camera.eye);
@@ -169,12 +170,10 @@ fn over_a_shoulder(scene: &Scene, camera: &Camera) -> (DVec3, &'static str) {
     let aside = 0.5 * unit(view.cross(up));
     let [left, right] = [aside, -aside].map(|aside| view + aside - 0.7 * up);
     let lit = |direction: DVec3| -> f64 {
-        let faces = shapes(scene).flat_map(|shape| shape.faces());
         let towards = |normal: DVec3| normal * -normal.dot(view).signum();
-        faces
-            .map(|normal| -towards(normal).dot(direction))
-            .map(|light| light.max(0.0))
-            .sum()
+        let mut sum = 0.0;
+        shapes.each_face(|normal| sum += (-towards(normal).dot(direction)).max(0.0));
+        sum
     };
     if lit(right) > CLEARLY * lit(left) {
         (right, "right")

@@ -6,8 +6,10 @@ use super::candidates::entry::EntryNodes;
 use super::candidates::own_rays::own_rays;
 use super::candidates::{apex, ray_classes};
 use super::cells::{self, Cells, slot_boxes};
+use super::compile_parts;
 use super::context::BuildContext;
 use super::error::CompileError;
+use super::instances::Role;
 use super::layout::Layout;
 use super::octree;
 use super::options::Options;
@@ -25,7 +27,7 @@ use gridel_core::shared::ClassPoint;
 pub fn lay_out(structure: Structure, context: &BuildContext<'_>) -> Result<Layout, CompileError> {
     let flat = context.flat;
     let on_progress = |done, of| (context.on_progress)(structure, done, of);
-    let budget = budget(context.options, structure, &on_progress);
+    let budget = budget(context, structure, &on_progress);
     Ok(match structure {
         Structure::List => Layout::apart(
             structure,
@@ -109,22 +111,36 @@ pub fn lay_out(structure: Structure, context: &BuildContext<'_>) -> Result<Layou
 /// The rays of the scene's own picture, through a blob with nothing but the hierarchy.
 fn picture_rays(context: &BuildContext<'_>) -> Result<Vec<ClassPoint>, CompileError> {
     let hierarchy = lay_out(Structure::Flagged, context)?;
-    let blob = writer::write(writer::parts(context, vec![hierarchy]))?;
-    // What the writer writes, the core reads: the tests hold them to it.
-    Ok(blob
-        .scene()
-        .map_or_else(|_| Vec::new(), |scene| own_rays(&scene)))
+    let options = Options {
+        structures: vec![Structure::Flagged],
+        ..context.options.clone()
+    };
+    // Parts have the structures of what holds them.
+    let parts = match context.role {
+        Role::Whole(parts) if parts.primitives() > 0 => {
+            Some(compile_parts(context.scene, &options, &|_, _, _| ())?.0)
+        }
+        _ => None,
+    };
+    let role = match &parts {
+        Some(parts) => Role::Whole(parts),
+        None => context.role,
+    };
+    let context = BuildContext { role, ..*context };
+    let blob = writer::write(writer::parts(&context, vec![hierarchy]))?;
+    Ok(own_rays(&blob.scene()?))
 }
 
 /// The budget of a structure's table.
 fn budget<'t>(
-    options: &Options,
+    context: &BuildContext<'_>,
     structure: Structure,
     on_progress: budget::OnProgress<'t>,
 ) -> Budget<'t> {
+    let options = context.options;
     Budget {
         gridels: options.gridels,
-        bytes: options.budget.unwrap_or(usual_budget(structure)),
+        bytes: context.share(options.budget.unwrap_or(usual_budget(structure))),
         on_progress,
     }
 }

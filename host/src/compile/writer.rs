@@ -90,11 +90,11 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
     let mut total = own;
     match context.role {
         // The scene that places a part knows its objects.
-        Role::Part if objects != total => {
+        Role::Part { .. } if objects != total => {
             objects = objects.min(1);
             object_first.clear();
         }
-        Role::Part => (),
+        Role::Part { .. } => (),
         Role::Whole(parts) => {
             total = own.saturating_add(parts.primitives());
             object_first.extend(

@@ -85,6 +85,8 @@ pub struct Hit {
     pub front: bool,
     pub object: u32,
     pub primitive: u32,
+    /// The instance in scene-file order; `None` for the scene's own objects.
+    pub instance: Option<u32>,
     /// The surface lies within this distance of the point.
     pub error: f64,
 }
@@ -117,6 +119,7 @@ pub enum LightOutcome {
         kind: &'static str,
         primitive: u32,
         object: u32,
+        instance: Option<u32>,
     },
     /// Glass in between leaves too little of it.
     Faded,
@@ -274,7 +277,9 @@ impl Ray {
             }
             Event::Nearest(met) if !*light => {
                 let walk = self.walk.as_ref();
-                self.hit = met.zip(walk).map(|(met, walk)| Hit::of(frame, walk, &met));
+                self.hit = met
+                    .zip(walk)
+                    .map(|(met, walk)| Hit::of(scene, frame, walk, &met));
             }
             Event::Light { number, cosine } => {
                 *light = true;
@@ -291,7 +296,7 @@ impl Ray {
                 match self.lights.last_mut().filter(|l| l.light == number) {
                     Some(lighting) => {
                         lighting.radiance = radiance;
-                        lighting.outcome = lighting.outcome(scene);
+                        lighting.outcome = lighting.outcome();
                     }
                     // The light had no event before.
                     None => self
@@ -314,7 +319,7 @@ impl Ray {
                 let shadow = self.lights.last_mut().and_then(|l| l.shadow.last_mut());
                 let walk = if *light { shadow } else { self.walk.as_mut() };
                 if let Some(walk) = walk {
-                    walk.take(event);
+                    walk.take(scene, event);
                 }
             }
         }
@@ -322,7 +327,10 @@ impl Ray {
 }
 
 impl Hit {
-    fn of(frame: &Frame, walk: &Walk, met: &QueryHit) -> Self {
+    fn of(scene: &Scene<'_>, frame: &Frame, walk: &Walk, met: &QueryHit) -> Self {
+        let instance = met
+            .instance
+            .and_then(|it| scene.instances().get(it as usize));
         let (distance, error) = (walk.distance(met.t), frame.length(met.error));
         Self {
             distance,
@@ -332,6 +340,7 @@ impl Hit {
             front: met.front,
             object: met.object,
             primitive: met.primitive,
+            instance: instance.map(|instance| instance.number),
             error,
         }
     }
@@ -349,7 +358,7 @@ impl Lighting {
         }
     }
 
-    fn outcome(&self, scene: &Scene<'_>) -> LightOutcome {
+    fn outcome(&self) -> LightOutcome {
         if self.radiance != [0.0; 3] {
             return LightOutcome::Lit;
         }
@@ -365,7 +374,8 @@ impl Lighting {
             Some(met) => LightOutcome::Blocked {
                 kind: met.kind,
                 primitive: met.primitive,
-                object: scene.object(met.primitive),
+                object: met.object,
+                instance: met.instance,
             },
             None => LightOutcome::Unreflected,
         }

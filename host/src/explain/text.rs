@@ -79,6 +79,21 @@ impl Shown<'_> {
         }
     }
 
+    /// The instance that something is part of, as words that follow it.
+    fn of_instance(&self, number: Option<u32>) -> String {
+        match number.map(|number| self.instance(number)) {
+            Some(instance) => format!(" in {instance}"),
+            None => String::new(),
+        }
+    }
+
+    fn instance(&self, number: u32) -> String {
+        match self.names.instance(number) {
+            Some(name) => format!("{} (instance {number})", printable(name)),
+            None => format!("instance {number}"),
+        }
+    }
+
     fn material(&self, object: u32) -> String {
         match self.names.material_of(object) {
             Some(name) => format!(" of {}", printable(name)),
@@ -198,11 +213,12 @@ impl Shown<'_> {
         let kind = ray.walk.as_ref().and_then(Walk::met).map_or("", |c| c.kind);
         writeln!(
             f,
-            "{indent}  hits the {} of {kind} {}, which is {}{}, at distance {} within {}",
+            "{indent}  hits the {} of {kind} {}, which is {}{}{}, at distance {} within {}",
             if hit.front { "front" } else { "back" },
             hit.primitive,
             self.object(hit.object),
             self.material(hit.object),
+            self.of_instance(hit.instance),
             precise(hit.distance, hit.distance_error),
             bound(hit.distance_error)
         )?;
@@ -269,10 +285,12 @@ impl Shown<'_> {
                 kind,
                 primitive,
                 object,
+                instance,
             } => format!(
-                "{light} is blocked by {kind} {primitive}, which is {}{}{glass}",
+                "{light} is blocked by {kind} {primitive}, which is {}{}{}{glass}",
                 self.object(object),
-                self.material(object)
+                self.material(object),
+                self.of_instance(instance)
             ),
             LightOutcome::Faded => format!("{light} is absorbed{glass}"),
             LightOutcome::Here => format!("{light} is at this point, so it has no direction"),
@@ -306,6 +324,20 @@ impl Shown<'_> {
         for step in &walk.steps {
             match step {
                 Step::Opened { place } => writeln!(f, "  {place}")?,
+                Step::InstanceEntered { instance, part } => writeln!(
+                    f,
+                    "  {}: the ray goes on in part {part}, in whose coordinates the planes are",
+                    self.instance(*instance)
+                )?,
+                Step::InstanceLeft { instance, nearest } => writeln!(
+                    f,
+                    "  {} is left, {}",
+                    self.instance(*instance),
+                    match nearest {
+                        true => "with the closest hit so far",
+                        false => "without a closer hit",
+                    }
+                )?,
                 Step::Tested(tested) => writeln!(f, "    {}", tested_text(walk, tested))?,
                 Step::GivenUp { place, enters, hit } => writeln!(
                     f,
@@ -333,7 +365,11 @@ impl Shown<'_> {
                         Verdict::Nearest => ": the closest hit so far",
                     };
                     let (kind, primitive) = (candidate.kind, candidate.primitive);
-                    writeln!(f, "    {kind} {primitive} {crossing}{verdict}")?;
+                    let object = match candidate.instance {
+                        Some(_) => format!(" of {}", self.object(candidate.object)),
+                        None => String::new(),
+                    };
+                    writeln!(f, "    {kind} {primitive}{object} {crossing}{verdict}")?;
                 }
             }
         }

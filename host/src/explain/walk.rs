@@ -4,7 +4,7 @@ use crate::trace::{Frame, SceneRay};
 use crate::verify::judge;
 use glam::DVec3;
 use gridel_core::observe::event::{NodeId, Sides};
-use gridel_core::{Event, Format};
+use gridel_core::{Event, Format, Scene};
 use serde::Serialize;
 
 /// One query: a ray and its way. Distances are scene units along the ray, counted from `origin`.
@@ -32,6 +32,22 @@ pub struct Walk {
     pub candidates: usize,
     #[serde(skip)]
     ray: InUnits,
+    #[serde(skip)]
+    inside: Option<Inside>,
+}
+
+/// The instance that a walk is in.
+#[derive(Clone, Copy, Debug)]
+struct Inside {
+    instance: u32,
+    first_primitive: u32,
+    /// The ray in the scene.
+    outer: InUnits,
+    /// t in the scene is `scale * (start_t + t)`, counted from the outer ray's start.
+    start_t: f64,
+    scale: f64,
+    /// The step with which the instance was entered.
+    step: usize,
 }
 
 /// A ray as it was given, in scene units.
@@ -93,6 +109,18 @@ pub enum Step {
     },
     Opened {
         place: String,
+    },
+    /// The ray goes into an instance. The planes of the steps up to `InstanceLeft` are in the part's own coordinates,
+    /// and its nodes are numbered apart; distances stay those of the ray.
+    InstanceEntered {
+        /// In scene-file order.
+        instance: u32,
+        part: u32,
+    },
+    InstanceLeft {
+        instance: u32,
+        /// Whether the nearest hit so far is in it.
+        nearest: bool,
     },
     Candidate(Candidate),
 }
@@ -165,6 +193,9 @@ pub enum Culled {
 pub struct Candidate {
     pub kind: &'static str,
     pub primitive: u32,
+    pub object: u32,
+    /// The instance in scene-file order; `None` for the scene's own objects.
+    pub instance: Option<u32>,
     /// Where the ray's line enters and leaves it.
     pub crossing: Option<[f64; 2]>,
     pub verdict: Verdict,
@@ -240,6 +271,7 @@ impl Walk {
                 limit: interval[1],
                 around: interval,
             },
+            inside: None,
         })
     }
 
@@ -264,16 +296,31 @@ impl Walk {
     }
 
     /// Takes a step, if the event is one.
-    pub(super) fn take(&mut self, event: &Event) {
+    pub(super) fn take(&mut self, scene: &Scene<'_>, event: &Event) {
         let ray = self.ray;
         let mut step = match *event {
+            Event::InstanceEntered { .. } => {
+                self.enter(scene, event);
+                return;
+            }
+            Event::InstanceLeft { nearest } => {
+                self.leave(nearest);
+                return;
+            }
             Event::Opened(place) => {
                 self.opened += 1;
-                let place = name(place);
-                let span = self.steps.iter().rev().find_map(|step| match step {
-                    Step::Tested(tested) if tested.place == place => Some(tested.units),
-                    _ => None,
-                });
+                let place = match scene.instances().get(place.number as usize) {
+                    Some(instance) if place.what == INSTANCE => instance_name(instance.number),
+                    _ => name(place),
+                };
+                let first = self.inside.map_or(0, |inside| inside.step);
+                let span = self.steps[first..]
+                    .iter()
+                    .rev()
+                    .find_map(|step| match step {
+                        Step::Tested(tested) if tested.place == place => Some(tested.units),
+                        _ => None,
+                    });
                 if let Some(span) = span {
                     self.ray.around = span;
                 }
@@ -326,9 +373,13 @@ impl Walk {
                         leave
                     };
                 }
+                let first = self.inside.map_or(0, |inside| inside.first_primitive);
+                let primitive = first.wrapping_add(primitive);
                 Step::Candidate(Candidate {
                     kind: kind.name(),
                     primitive,
+                    object: scene.object(primitive),
+                    instance: self.inside.map(|inside| inside.instance),
                     crossing: crossing.map(|c| c.map(|t| t * ray.scale)),
                     verdict,
                 })
@@ -337,6 +388,83 @@ impl Walk {
         };
         step.count_from(ray.moved);
         self.steps.push(step);
+    }
+
+    /// Goes into an instance.
+    fn enter(&mut self, scene: &Scene<'_>, event: &Event) {
+        let &Event::InstanceEntered {
+            index,
+            first_primitive,
+            origin,
+            slope,
+            interval,
+            start_t,
+            scale,
+        } = event
+        else {
+            return;
+        };
+        let placed = scene.instances().get(index as usize);
+        let Some((instance, part)) = placed.and_then(|instance| {
+            let part = scene.parts().get(usize::from(instance.part))?;
+            Some((instance, part))
+        }) else {
+            return;
+        };
+        let outer = self.ray;
+        // The hierarchy above several instances says so before.
+        let entered = instance_name(instance.number);
+        if matches!(self.steps.last(), Some(Step::Opened { place }) if *place == entered) {
+            self.steps.pop();
+        }
+        self.inside = Some(Inside {
+            instance: instance.number,
+            first_primitive,
+            outer,
+            start_t,
+            scale,
+            step: self.steps.len(),
+        });
+        self.ray = InUnits {
+            frame: Frame::of(part),
+            start: origin,
+            slope,
+            moved: outer.moved + start_t * scale * outer.scale,
+            scale: scale * outer.scale,
+            interval,
+            limit: interval[1],
+            around: interval,
+            ..outer
+        };
+        self.steps.push(Step::InstanceEntered {
+            instance: instance.number,
+            part: instance.part.into(),
+        });
+    }
+
+    /// Leaves the instance.
+    fn leave(&mut self, nearest: bool) {
+        let Some(inside) = self.inside.take() else {
+            return;
+        };
+        let met = self.ray.limit;
+        self.ray = inside.outer;
+        if nearest {
+            self.ray.limit = inside.scale * (inside.start_t + met);
+        } else {
+            // In the scene another hit is as near.
+            for step in &mut self.steps[inside.step..] {
+                if let Step::Candidate(candidate) = step
+                    && candidate.verdict == Verdict::Nearest
+                {
+                    candidate.verdict = Verdict::Farther;
+                }
+            }
+        }
+        self.steps.push(Step::InstanceLeft {
+            instance: inside.instance,
+            nearest,
+        });
     }
 
     /// The primitive that was the nearest when the walk ended.
@@ -365,7 +493,7 @@ impl Step {
                 *enters += moved;
                 *hit += moved;
             }
-            Self::Opened { .. } => {}
+            Self::Opened { .. } | Self::InstanceEntered { .. } | Self::InstanceLeft { .. } => {}
             Self::Candidate(candidate) => {
                 candidate.crossing = candidate.crossing.map(|c| c.map(|t| t + moved));
             }
@@ -392,6 +520,13 @@ impl Culled {
             Self::NotInInterval | Self::Margin | Self::NotInVolume | Self::Empty => {}
         }
     }
+}
+
+/// What the core calls an instance that the hierarchy above leads to.
+const INSTANCE: &str = "instance";
+
+fn instance_name(number: u32) -> String {
+    format!("{INSTANCE} {number}")
 }
 
 fn name(place: NodeId) -> String {

@@ -228,6 +228,12 @@ impl Scene {
         let parts = self.parts.iter().flat_map(|part| &part.objects);
         self.objects.iter().chain(parts)
     }
+
+    /// Returns whether there is anything of an instance: whether its part has primitives.
+    pub(crate) fn is_placed(&self, instance: &Instance) -> bool {
+        let mut objects = self.parts[instance.part].objects.iter();
+        objects.any(|object| object.shape.primitives() > 0)
+    }
 }
 
 impl Default for Scene {

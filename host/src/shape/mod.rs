@@ -241,6 +241,14 @@ impl Shape {
         })
     }
 
+    /// Number of primitives that it is compiled to.
+    pub(crate) fn primitives(&self) -> usize {
+        match self {
+            Self::Mesh { triangles, .. } => triangles.len(),
+            _ => 1,
+        }
+    }
+
     /// Its middle; `None` for a mesh.
     pub(crate) fn middle(&self) -> Option<DVec3> {
         let [(first, _), (last, _)] =

@@ -1,13 +1,12 @@
 //! Traces one ray through every structure in one number format, and tests the properties of the answers.
 
-use super::judge::{Answer, GRAZING, Judge, Mismatch, RoundedRay, STEPS, step};
-use crate::shape::Solid;
+use super::closed::ClosedMesh;
+use super::judge::{Answer, GRAZING, HitId, Judge, Mismatch, RoundedRay, STEPS, step};
 use crate::shape::random::Random;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
-    Accel, Format, Hit, Kind, List, NoCount, Number, Ray, Scene, Stack, Structure, any_hit,
-    closest_hit,
+    Accel, Format, Hit, List, NoCount, Number, Ray, Scene, Stack, Structure, any_hit, closest_hit,
 };
 
 /// A property that holds for every scene.
@@ -124,7 +123,11 @@ pub fn check<N: Number>(
         });
     };
     let described = |hit: &Option<Hit<N>>| match hit {
-        Some(hit) => format!("primitive {} at {:?}", hit.primitive, N::far_to_f64(hit.t)),
+        Some(hit) => format!(
+            "{} at {:?}",
+            HitId::of(hit).written(scene),
+            N::far_to_f64(hit.t)
+        ),
         None => String::from("nothing"),
     };
     for other in heard {
@@ -153,7 +156,7 @@ pub fn check<N: Number>(
 
     let answer = list.hit.as_ref().map(|hit| Answer {
         t: N::far_to_f64(hit.t) - rounded.moved,
-        primitive: hit.primitive,
+        hit: HitId::of(hit),
     });
     let reference = rounded.in_f64(scene);
     let reference = reference.and_then(|ray| ask::<f64, List>(scene, &ray).hit);
@@ -161,14 +164,14 @@ pub fn check<N: Number>(
         (None, None) => true,
         // Of a solid, what is met where a ray enters it is not compared with where it leaves.
         (Some(answer), Some(reference))
-            if answer.primitive == reference.primitive
+            if answer.hit == HitId::of(&reference)
                 && list.hit.is_some_and(|hit| hit.front == reference.front) =>
         {
             let extent = reference.point.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             let start = rounded.start.iter().fold(extent, |m, x| m.max(x.abs()));
             let reach = start.max(reference.t.abs()).max(rounded.moved.abs());
-            let solid = judge.solid(answer.primitive);
-            let at_solid = solid.map_or(0.0, |it| rounded.step(N::FORMAT, reference.t, it));
+            let solid = judge.solid(answer.hit);
+            let at_solid = solid.map_or(0.0, |it| it.step(N::FORMAT, &rounded, reference.t));
             let step = step(N::FORMAT, reach).max(at_solid);
             let normals = list.hit.iter().map(|hit| hit.normal.map(N::ratio_to_f64));
             let mut normals = normals.chain([reference.normal]);
@@ -188,9 +191,10 @@ pub fn check<N: Number>(
                         described(&list.hit)
                     )
                 }
-                Mismatch::Missed { primitive, t } => format!(
-                    "hits {}; by exact arithmetic it hits primitive {primitive} before, at {:?}",
+                Mismatch::Missed { hit, t } => format!(
+                    "hits {}; by exact arithmetic it hits {} before, at {:?}",
                     described(&list.hit),
+                    hit.written(scene),
                     t + rounded.moved
                 ),
             };
@@ -206,14 +210,14 @@ pub fn check<N: Number>(
 }
 
 /// A hit to the last bit.
-fn bits<N: Number>(hit: &Option<Hit<N>>) -> Option<(u32, u32, bool, [u64; 8])> {
+fn bits<N: Number>(hit: &Option<Hit<N>>) -> Option<(HitId, u32, bool, [u64; 8])> {
     hit.as_ref().map(|hit| {
         let [px, py, pz] = hit.point.map(|x| x.length_to_f64().to_bits());
         let [nx, ny, nz] = hit.normal.map(|x| x.ratio_to_f64().to_bits());
         let error = hit.error.length_to_f64().to_bits();
         let t = N::far_to_f64(hit.t).to_bits();
         (
-            hit.primitive,
+            HitId::of(hit),
             hit.object,
             hit.front,
             [t, px, py, pz, nx, ny, nz, error],
@@ -243,8 +247,8 @@ fn numbers<N: Number>(ray: &RoundedRay, judge: &Judge, hit: &Hit<N>) -> Option<S
     }
     // Hits count from the ray's own start, which rounds once more.
     let slack = 2.0 * step(N::FORMAT, t.abs().max(ray.moved.abs()));
-    let solid = judge.solid(hit.primitive);
-    let interval = ray.interval_of(solid.is_none_or(Solid::is_bounded));
+    let solid = judge.solid(HitId::of(hit));
+    let interval = ray.interval_of(solid.is_none_or(|it| it.solid.is_bounded()));
     let [first, last] = interval.map(|t| t + ray.moved);
     if t < first - slack || t > last + slack {
         return Some(format!("t {t:?} lies outside of {first:?} to {last:?}"));
@@ -271,9 +275,11 @@ pub fn leave<N: Number>(
     random: &mut Random,
 ) -> Vec<Fault> {
     let mut faults = Vec::new();
-    let Some(solid) = judge.solid(hit.primitive) else {
+    let itself = HitId::of(hit);
+    let Some(placed) = judge.solid(itself) else {
         return faults;
     };
+    let solid = placed.solid;
     for outward in [true, false] {
         let sign = if outward { 1.0 } else { -1.0 };
         let normal = hit.normal.map(|x| sign * x.ratio_to_f64());
@@ -289,20 +295,19 @@ pub fn leave<N: Number>(
         let from = depart(scene, hit, outward);
         let away = outward || solid.is_flat();
         // Where a solid is thinner than the bound, there is no inside to start from.
-        if !away && solid.excess(from) > -0.5 * hit.error.length_to_f64() {
+        if !away && placed.excess(from) > -0.5 * hit.error.length_to_f64() {
             continue;
         }
         let ray = Ray::<N>::from_f64(scene.bounds(), from, direction, 0.0, f64::INFINITY);
         let Ok(ray) = ray else { continue };
         let next = ask::<N, List>(scene, &ray).hit;
-        let again = next.filter(|next| next.primitive == hit.primitive);
+        let again = next.filter(|next| HitId::of(next) == itself);
         // What is not convex can be met again elsewhere.
         let elsewhere = again.is_some_and(|again| {
             let rounded = RoundedRay::of(&ray);
             let t = N::far_to_f64(again.t) - rounded.moved;
-            let itself = hit.primitive;
             away && !solid.is_convex()
-                && solid.excess(from) > 0.0
+                && placed.excess(from) > 0.0
                 && again.front
                 && judge.crosses(N::FORMAT, itself, &rounded, t, 0.0)
         });
@@ -320,9 +325,8 @@ pub fn leave<N: Number>(
             format: N::FORMAT,
             structure: Structure::List,
             what: format!(
-                "the ray that goes on from primitive {}, from {from:?} along {direction:?} (in \
-                 units), {what}",
-                hit.primitive
+                "the ray that goes on from {}, from {from:?} along {direction:?} (in units), {what}",
+                itself.written(scene)
             ),
         });
     }
@@ -334,7 +338,7 @@ pub fn leave<N: Number>(
 pub fn sealed<N: Number, A: Accel>(
     scene: &Scene<'_>,
     judge: &Judge,
-    object: u32,
+    mesh: &ClosedMesh,
     origin: [f64; 3],
     direction: [f64; 3],
 ) -> Option<Fault> {
@@ -351,23 +355,19 @@ pub fn sealed<N: Number, A: Accel>(
         let Some(hit) = ask::<N, A>(scene, &ray).hit else {
             // Where surfaces coincide, only one of them was reported.
             let crosses = |&(t, moved_on): &(f64, f64)| {
-                let mesh = (0..scene.count(Kind::Triangle)).filter_map(|slot| {
-                    let primitive = scene.primitive(Kind::Triangle, slot as u32);
-                    (scene.object(primitive) == object).then_some(primitive)
-                });
                 let t = t - rounded.moved;
-                mesh.into_iter()
-                    .any(|primitive| judge.crosses(N::FORMAT, primitive, &rounded, t, moved_on))
+                mesh.hits(scene)
+                    .any(|hit| judge.crosses(N::FORMAT, hit, &rounded, t, moved_on))
             };
             let hidden = passed.iter().any(crosses);
             return (!hidden).then(|| Fault {
                 property: Property::Leaks,
                 format: N::FORMAT,
                 structure: A::STRUCTURE,
-                what: format!("leaves the closed mesh of object {object} without a hit"),
+                what: format!("leaves the closed mesh of {mesh} without a hit"),
             });
         };
-        if hit.object == object {
+        if mesh.holds(&hit) {
             return None;
         }
         let t = N::far_to_f64(hit.t);

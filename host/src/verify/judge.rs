@@ -1,6 +1,7 @@
 //! Right answers, by arithmetic that owes nothing to the kernels: which primitive a ray hits first,
 //! within what a number format may be off by.
 
+use super::placed::{PlacedPart, PlacedSolid};
 use crate::shape::Solid;
 use crate::shape::exact::{Line, Real};
 use gridel_core::format::limits;
@@ -84,7 +85,8 @@ impl RoundedRay {
         Line::new(self.start, self.slope)
     }
 
-    fn magnitude(&self, t: f64) -> f64 {
+    /// The largest magnitude among the coordinates of a ray up to a t.
+    pub fn magnitude(&self, t: f64) -> f64 {
         largest(self.start).max(t.abs()).max(self.moved.abs())
     }
 
@@ -104,13 +106,21 @@ fn largest(v: [f64; 3]) -> f64 {
     v.iter().fold(0.0, |most, x| most.max(x.abs()))
 }
 
+/// The primitive of a hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HitId {
+    /// In scene-file order.
+    pub primitive: u32,
+    /// The place of its instance among those of the blob.
+    pub instance: Option<u32>,
+}
+
 /// An answer of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Answer {
     /// From the ray's start.
     pub t: f64,
-    /// In scene-file order.
-    pub primitive: u32,
+    pub hit: HitId,
 }
 
 /// Why an answer is wrong.
@@ -119,17 +129,22 @@ pub enum Mismatch {
     /// The primitive is not met, or not there.
     NotThere,
     /// Another primitive is met before.
-    Missed { primitive: u32, t: f64 },
+    Missed { hit: HitId, t: f64 },
 }
 
 /// The primitives of a scene as exact shapes.
 pub struct Judge {
-    /// In ascending order of the primitives' numbers, which the pieces of a cut triangle share.
-    solids: Vec<(u32, Option<UnitBox>, Solid)>,
+    own: Solids,
+    parts: Vec<Solids>,
+    placed: Vec<PlacedPart>,
 }
 
-impl Judge {
-    pub fn of(scene: &Scene<'_>) -> Self {
+/// The primitives of a blob without its parts, in ascending order of their numbers, which the pieces of a cut triangle
+/// share.
+struct Solids(Vec<(u32, Option<UnitBox>, Solid)>);
+
+impl Solids {
+    fn of(scene: &Scene<'_>) -> Self {
         let mut solids = Vec::new();
         for kind in Kind::ALL {
             for slot in 0..scene.count(kind) {
@@ -140,21 +155,50 @@ impl Judge {
             }
         }
         solids.sort_by_key(|&(primitive, _, _)| primitive);
-        Self { solids }
-    }
-
-    /// The shape of a primitive, or of a piece of it.
-    pub fn solid(&self, primitive: u32) -> Option<&Solid> {
-        self.pieces(primitive).next()
+        Self(solids)
     }
 
     /// The shapes of the pieces of a primitive: one, unless it is a triangle that was cut.
     fn pieces(&self, primitive: u32) -> impl Iterator<Item = &Solid> {
-        let first = self.solids.partition_point(|it| it.0 < primitive);
-        let behind = self.solids.iter().skip(first);
+        let first = self.0.partition_point(|it| it.0 < primitive);
+        let behind = self.0.iter().skip(first);
         behind
             .take_while(move |it| it.0 == primitive)
             .map(|(_, _, solid)| solid)
+    }
+}
+
+impl Judge {
+    pub fn of(scene: &Scene<'_>) -> Self {
+        Self {
+            own: Solids::of(scene),
+            parts: scene.parts().iter().map(Solids::of).collect(),
+            placed: PlacedPart::all(scene),
+        }
+    }
+
+    /// The shape of a primitive, or of a piece of it.
+    pub fn solid(&self, hit: HitId) -> Option<PlacedSolid<'_>> {
+        self.pieces(hit).next()
+    }
+
+    /// The shapes of the pieces of a primitive.
+    fn pieces(&self, hit: HitId) -> impl Iterator<Item = PlacedSolid<'_>> {
+        let placed = hit.instance.map(|it| self.placed.get(it as usize));
+        let (solids, first, map) = match placed {
+            None => (Some(&self.own), 0, None),
+            Some(None) => (None, 0, None),
+            Some(Some(placed)) => (
+                self.parts.get(placed.part),
+                placed.first_primitive,
+                Some(&placed.map),
+            ),
+        };
+        let own = hit.primitive.checked_sub(first);
+        let pieces = solids.zip(own).into_iter();
+        pieces
+            .flat_map(|(solids, own)| solids.pieces(own))
+            .map(move |solid| PlacedSolid { solid, map })
     }
 
     /// Returns whether an answer is right, within [`STEPS`].
@@ -165,16 +209,18 @@ impl Judge {
         answer: Option<Answer>,
     ) -> Result<(), Mismatch> {
         let line = ray.line();
-        let met = answer.and_then(|answer| self.solid(answer.primitive));
-        let [tmin, tmax] = ray.interval_of(met.is_none_or(Solid::is_bounded));
+        let met = answer.and_then(|answer| self.solid(answer.hit));
+        let [tmin, tmax] = ray.interval_of(met.is_none_or(|met| met.solid.is_bounded()));
         let begin = Real::of(tmin);
         let mut end = None;
         if let Some(answer) = answer {
-            let pieces = || self.pieces(answer.primitive);
-            let step = pieces().map(|solid| ray.step(format, answer.t, solid));
+            let pieces = || self.pieces(answer.hit);
+            let step = pieces().map(|piece| piece.step(format, ray, answer.t));
             let off = STEPS * step.reduce(f64::max).ok_or(Mismatch::NotThere)?;
-            let there = pieces().any(|solid| {
-                Crossings::new(solid, &line, off).may_be_met_at(&Real::of(answer.t), &begin)
+            let there = pieces().any(|piece| {
+                let line = piece.line(&line);
+                let crossings = Crossings::new(piece.solid, &line, piece.own_length(off));
+                crossings.may_be_met_at(&Real::of(answer.t), &begin)
             });
             if !there || answer.t < tmin - off || answer.t > tmax + off {
                 return Err(Mismatch::NotThere);
@@ -182,48 +228,106 @@ impl Judge {
             // Hits count from the ray's own start, which rounds once more.
             end = Some(answer.t - off);
         }
-        let reach = answer.map_or(FARTHEST, |answer| answer.t);
-        for (primitive, bounds, solid) in &self.solids {
-            let itself = answer.is_some_and(|answer| answer.primitive == *primitive);
-            if itself || bounds.is_some_and(|bounds| !may_meet(ray, &bounds)) {
-                continue;
-            }
-            let [begin, last] = ray.interval_of(solid.is_bounded());
-            let begin = Real::of(begin);
-            let end = Real::of(end.unwrap_or(last.min(FARTHEST_HIT)));
-            let met_by = |reach: f64| {
-                let off = STEPS * ray.step(format, reach, solid);
-                Crossings::new(solid, &line, off).are_met_by(&begin)
-            };
-            let met = match met_by(reach) {
-                // It may be met far beyond.
-                Some(t) if !solid.is_bounded() => met_by(t.to_f64().max(reach)),
-                met => met,
-            };
-            if let Some(t) = met.filter(|t| *t < end) {
-                return Err(Mismatch::Missed {
-                    primitive: *primitive,
-                    t: t.to_f64(),
-                });
-            }
-        }
-        Ok(())
+        let nearest = Nearest {
+            judge: self,
+            format,
+            ray,
+            line: &line,
+            answer,
+            end,
+        };
+        nearest.among_own()?;
+        nearest.among_placed()
     }
 
     /// Returns whether a ray meets a primitive at `t`, which may be as far off as `within`, or [`STEPS`] more.
     pub fn crosses(
         &self,
         format: Format,
-        primitive: u32,
+        hit: HitId,
         ray: &RoundedRay,
         t: f64,
         within: f64,
     ) -> bool {
-        self.pieces(primitive).any(|solid| {
-            let off = within + STEPS * ray.step(format, t, solid);
-            let begin = Real::of(ray.interval_of(solid.is_bounded())[0]);
-            Crossings::new(solid, &ray.line(), off).may_be_met_at(&Real::of(t), &begin)
+        self.pieces(hit).any(|piece| {
+            let off = within + STEPS * piece.step(format, ray, t);
+            let begin = Real::of(ray.interval_of(piece.solid.is_bounded())[0]);
+            let line = piece.line(&ray.line());
+            let crossings = Crossings::new(piece.solid, &line, piece.own_length(off));
+            crossings.may_be_met_at(&Real::of(t), &begin)
         })
+    }
+}
+
+/// The search for primitives that are met before an answer.
+struct Nearest<'j> {
+    judge: &'j Judge,
+    format: Format,
+    ray: &'j RoundedRay,
+    line: &'j Line,
+    answer: Option<Answer>,
+    /// The t before which another must be met.
+    end: Option<f64>,
+}
+
+impl Nearest<'_> {
+    fn among_own(&self) -> Result<(), Mismatch> {
+        for (primitive, bounds, solid) in &self.judge.own.0 {
+            if bounds.is_none_or(|bounds| may_meet(self.ray.start, self.ray.slope, &bounds)) {
+                let piece = PlacedSolid { solid, map: None };
+                self.before(HitId::own(*primitive), piece, self.line)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn among_placed(&self) -> Result<(), Mismatch> {
+        let RoundedRay { start, slope, .. } = *self.ray;
+        for (instance, placed) in (0..).zip(&self.judge.placed) {
+            if !may_meet(start, slope, &placed.bounds) {
+                continue;
+            }
+            let map = &placed.map;
+            let line = map.line(self.line);
+            let (start, slope) = (map.point(start), map.direction(slope));
+            for (primitive, bounds, solid) in &self.judge.parts[placed.part].0 {
+                if bounds.is_some_and(|bounds| !may_meet(start, slope, &bounds)) {
+                    continue;
+                }
+                let hit = HitId {
+                    primitive: placed.first_primitive + primitive,
+                    instance: Some(instance),
+                };
+                let map = Some(map);
+                self.before(hit, PlacedSolid { solid, map }, &line)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// An error if a primitive is met before the answer. The line is in its coordinates.
+    fn before(&self, hit: HitId, piece: PlacedSolid<'_>, line: &Line) -> Result<(), Mismatch> {
+        if self.answer.is_some_and(|answer| answer.hit == hit) {
+            return Ok(());
+        }
+        let (ray, solid) = (self.ray, piece.solid);
+        let [begin, last] = ray.interval_of(solid.is_bounded());
+        let begin = Real::of(begin);
+        let end = Real::of(self.end.unwrap_or(last.min(FARTHEST_HIT)));
+        let met_by = |reach: f64| {
+            let off = STEPS * piece.step(self.format, ray, reach);
+            Crossings::new(solid, line, piece.own_length(off)).are_met_by(&begin)
+        };
+        let reach = self.answer.map_or(FARTHEST, |answer| answer.t);
+        let met = match met_by(reach) {
+            // It may be met far beyond.
+            Some(t) if !solid.is_bounded() => met_by(t.to_f64().max(reach)),
+            met => met,
+        };
+        match met.filter(|t| *t < end) {
+            Some(t) => Err(Mismatch::Missed { hit, t: t.to_f64() }),
+            None => Ok(()),
+        }
     }
 }
 
@@ -283,12 +387,12 @@ impl<'c> Crossings<'c> {
 }
 
 /// Returns whether a ray can meet a box, or one that is larger by a unit.
-fn may_meet(ray: &RoundedRay, bounds: &UnitBox) -> bool {
+fn may_meet(start: [f64; 3], slope: [f64; 3], bounds: &UnitBox) -> bool {
     let mut span = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
         let [low, high] = bounds.0[axis].map(f64::from);
-        let (low, high) = (low - 1.0 - ray.start[axis], high + 1.0 - ray.start[axis]);
-        let slope = ray.slope[axis];
+        let (low, high) = (low - 1.0 - start[axis], high + 1.0 - start[axis]);
+        let slope = slope[axis];
         if slope == 0.0 {
             if low > 0.0 || high < 0.0 {
                 return false;

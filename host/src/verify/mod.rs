@@ -3,12 +3,13 @@
 //! `rays.rs` makes the rays, `check.rs` puts one to all structures of a blob and compares, `judge.rs`
 //! decides by 320-bit arithmetic where they disagree, from the textbook's formulas of each shape.
 //! Every format is asked with the ray that it can hold, so what is judged is the kernels' arithmetic
-//! and not the rounding of the question.
+//! and not the rounding of the question. `placed.rs` maps rays by the integers of instances, exactly.
 
 mod check;
 mod closed;
 #[doc(hidden)]
 pub mod judge;
+mod placed;
 #[doc(hidden)]
 pub mod rays;
 mod shadow;
@@ -186,14 +187,14 @@ pub fn verify(scene: &Scene<'_>, rays: u64, progress: &(dyn Fn() + Sync)) -> Rep
 }
 
 /// A ray from the inside of a closed mesh, in units.
-struct Aim {
-    object: u32,
+struct Aim<'m> {
+    mesh: &'m ClosedMesh,
     origin: [f64; 3],
     direction: [f64; 3],
 }
 
 /// Rays at the vertices, along the edges and at the faces of meshes, from their inside.
-fn aims(work: &Work<'_>, meshes: &[ClosedMesh], rays: u64) -> Vec<Aim> {
+fn aims<'m>(work: &Work<'_>, meshes: &'m [ClosedMesh], rays: u64) -> Vec<Aim<'m>> {
     let mut random = Random(0x1ea5);
     let mut aims = Vec::new();
     let inside: Vec<_> = meshes
@@ -207,11 +208,11 @@ fn aims(work: &Work<'_>, meshes: &[ClosedMesh], rays: u64) -> Vec<Aim> {
         let (mesh, origin) = &inside[number as usize % inside.len()];
         // All triangles in turn, then all again with other targets.
         let turn = number as usize / inside.len();
-        let [a, b, c] = mesh.triangles[turn % mesh.triangles.len()];
+        let [a, b, c] = mesh.triangle(turn % mesh.count());
         let mix = |a: [f64; 3], b: [f64; 3], part: f64| {
             [0, 1, 2].map(|axis| a[axis] + part * (b[axis] - a[axis]))
         };
-        let target = match (turn / mesh.triangles.len() + turn) % 4 {
+        let target = match (turn / mesh.count() + turn) % 4 {
             0 => a,
             1 => mix(a, b, 0.5),
             2 => mix(b, c, random.unit()),
@@ -220,7 +221,7 @@ fn aims(work: &Work<'_>, meshes: &[ClosedMesh], rays: u64) -> Vec<Aim> {
         let direction = [0, 1, 2].map(|axis| target[axis] - origin[axis]);
         if direction != [0.0; 3] {
             aims.push(Aim {
-                object: mesh.object,
+                mesh,
                 origin: *origin,
                 direction,
             });
@@ -289,9 +290,9 @@ impl Work<'_> {
     /// A point inside of a closed mesh, in units: halfway from a face to what is opposite of it.
     fn inside(&self, mesh: &ClosedMesh) -> Option<[f64; 3]> {
         const TRIED: usize = 64;
-        let step = mesh.triangles.len().div_ceil(TRIED);
-        let places = mesh.triangles.iter().step_by(step).filter_map(|corners| {
-            let [a, b, c] = corners.map(glam::DVec3::from_array);
+        let step = mesh.count().div_ceil(TRIED);
+        let places = (0..mesh.count()).step_by(step).filter_map(|index| {
+            let [a, b, c] = mesh.triangle(index).map(glam::DVec3::from_array);
             let middle = (a + b + c) / 3.0;
             let inward = -(b - a).cross(c - a);
             let ray = |tmin| {
@@ -307,7 +308,7 @@ impl Work<'_> {
             let mut tmin = 1.0 / 1024.0;
             for _ in 0..64 {
                 let hit = ask::<f64, List>(self.scene, &ray(tmin).ok()?).hit?;
-                if hit.object == mesh.object {
+                if mesh.holds(&hit) {
                     let depth = 0.5 * hit.t / inward.abs().max_element();
                     return (!hit.front).then(|| (hit.t, (middle + inward * depth).to_array()));
                 }
@@ -321,14 +322,14 @@ impl Work<'_> {
     }
 
     /// Follows a ray from inside of a closed mesh through every structure.
-    fn leak<N: Number>(&self, aim: &Aim, tally: &mut Tally) {
+    fn leak<N: Number>(&self, aim: &Aim<'_>, tally: &mut Tally) {
         let (origin, direction) = (aim.origin, aim.direction);
         for structure in Structure::ALL {
             let Some(scene) = self.scene.choose(structure) else {
                 continue;
             };
             tally.checked(Property::Leaks, 1);
-            let fault = sealed::<N, DynAccel>(&scene, self.judge, aim.object, origin, direction);
+            let fault = sealed::<N, DynAccel>(&scene, self.judge, aim.mesh, origin, direction);
             if let Some(fault) = fault {
                 let ray = UnitRay::new(origin, direction);
                 tally.fault(Fault { structure, ..fault }, &self.frame.scene_ray(&ray));

@@ -1,5 +1,6 @@
 //! Rays of every sort that a structure can go wrong on, aimed at one scene.
 
+use super::placed::PlacedPart;
 use crate::shape::random::Random;
 use crate::trace::UnitRay;
 use gridel_core::format::record::UnitBox;
@@ -72,17 +73,34 @@ impl Targets {
         });
         let triangles = chosen(Kind::Triangle).filter_map(|slot| scene.triangle(slot));
         let point_lights = scene.lights().iter().filter(|it| it.directional == 0);
+        let units = |corners: [[i32; 3]; 3]| corners.map(|it| it.map(|x| f64::from(x) / 256.0));
         let mut targets = Self {
             bounds: *scene.bounds(),
             boxes: boxes.collect(),
-            triangles: triangles
-                .map(|corners| corners.map(|corner| corner.map(|x| f64::from(x) / 256.0)))
-                .collect(),
+            triangles: triangles.map(units).collect(),
             points: std::iter::once(scene.view().eye)
                 .chain(point_lights.map(|light| light.vector))
                 .map(|place| place.map(|x| x as f64 / 8192.0))
                 .collect(),
         };
+        let placed = PlacedPart::all(scene);
+        let placed: Vec<_> = placed
+            .iter()
+            .step_by(placed.len().div_ceil(MOST).max(1))
+            .collect();
+        // Others of each instance.
+        let each = MOST / placed.len().max(1);
+        for (number, placed) in placed.iter().enumerate() {
+            targets.boxes.push(placed.bounds);
+            let part = &scene.parts()[placed.part];
+            let count = part.count(Kind::Triangle);
+            let step = count.div_ceil(each).max(1);
+            let slots = (number % step..count).step_by(step);
+            let triangles = slots.filter_map(|slot| part.triangle(slot)).map(units);
+            let map = &placed.map;
+            let in_scene = triangles.map(|corners| corners.map(|corner| map.back(corner)));
+            targets.triangles.extend(in_scene);
+        }
         targets.boxes.push(targets.bounds);
         targets
     }

@@ -1,11 +1,13 @@
 //! Contact shadows: what lies in the dark by `f64`, and what another format says of it.
 
 use super::check::{Fault, Property, ask, depart};
-use super::judge::{RoundedRay, step};
+use super::judge::{HitId, RoundedRay, step};
+use super::placed::{ExactMap, PLACED};
 use crate::shape::Solid;
 use crate::shape::random::Random;
 use crate::trace::UnitRay;
 use glam::DVec3;
+use gridel_core::format::instance::Instance;
 use gridel_core::format::record::Light;
 use gridel_core::{Effects, Format, Hit, Kind, List, Number, Ray, Scene, Structure};
 
@@ -15,7 +17,8 @@ pub fn at_a_shadow(scene: &Scene<'_>, random: &mut Random) -> Option<UnitRay> {
     if !scene.effects().contains(Effects::SHADOW) || scene.lights().is_empty() {
         return None;
     }
-    let count = |kind| scene.count(kind);
+    let (held_by, placed) = anywhere(scene, random)?;
+    let count = |kind| held_by.count(kind);
     let mut slot = random.below(Kind::ALL.into_iter().map(count).sum::<usize>().max(1));
     let kind = Kind::ALL.into_iter().find(|&kind| {
         let is_here = slot < count(kind);
@@ -24,16 +27,27 @@ pub fn at_a_shadow(scene: &Scene<'_>, random: &mut Random) -> Option<UnitRay> {
         }
         is_here
     })?;
-    let primitive = scene.primitive(kind, slot as u32);
-    let from =
-        Solid::of(scene.geometry(kind, slot)?).point(DVec3::from_array(random.direction()), random);
+    let own = held_by.primitive(kind, slot as u32);
+    let from = Solid::of(held_by.geometry(kind, slot)?)
+        .point(DVec3::from_array(random.direction()), random);
+    let (id, from) = match placed {
+        None => (HitId::own(own), from),
+        Some((instance, record)) => {
+            let id = HitId {
+                primitive: own + scene.first_primitive_of_part(record.part.into())?,
+                instance: Some(instance),
+            };
+            let place = ExactMap::of(record).back(from.to_array());
+            (id, DVec3::from_array(place))
+        }
+    };
     let light = &scene.lights()[random.below(scene.lights().len())];
     let travel = -to_light(light, from)?;
     // What lies behind the object as the light sees it.
     let mut ray = UnitRay::new(from.to_array(), travel.to_array());
     let hit = (0..8).find_map(|_| {
         let hit = ask::<f64, List>(scene, &ray.ready::<f64>(scene)?).hit?;
-        if hit.primitive != primitive {
+        if HitId::of(&hit) != id {
             return Some(Some(hit));
         }
         ray.tmin = hit.t + 4.0 * step(Format::F32, hit.t.max(1.0));
@@ -50,6 +64,21 @@ pub fn at_a_shadow(scene: &Scene<'_>, random: &mut Random) -> Option<UnitRay> {
     let away = (place.distance(from) + 1.0 / 256.0) * random.magnitude(0.5, 8.0);
     let eye = place + away * (towards + 0.9 * aside);
     Some(UnitRay::new(eye.to_array(), (place - eye).to_array()))
+}
+
+/// The scene's own objects, or a part, and which instance it is of.
+fn anywhere<'s>(
+    scene: &'s Scene<'_>,
+    random: &mut Random,
+) -> Option<(&'s Scene<'s>, Option<(u32, &'s Instance)>)> {
+    let instances = scene.instances();
+    let own = usize::from(Kind::ALL.into_iter().any(|kind| scene.count(kind) > 0));
+    let chosen = random.below((instances.len() + own).max(1));
+    let Some(instance) = instances.get(chosen) else {
+        return Some((scene, None));
+    };
+    let part = scene.parts().get(usize::from(instance.part))?;
+    Some((part, Some((chosen as u32, instance))))
 }
 
 /// The way from a point to a light.
@@ -93,7 +122,7 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
     let (Some(hit), Some(right)) = (hit, right) else {
         return Vec::new();
     };
-    if hit.primitive != right.primitive || hit.front != right.front {
+    if HitId::of(&hit) != HitId::of(&right) || hit.front != right.front {
         return Vec::new();
     }
     let normal = DVec3::from_array(right.normal) * if right.front { 1.0 } else { -1.0 };
@@ -102,39 +131,50 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
     let lattice_step = f64::powi(2.0, 16 - i32::from(scene.header().lattice_bits));
     let normal = normal.normalize();
     let (u, v) = normal.any_orthonormal_pair();
-    let found = scene.lights().iter().enumerate().filter_map(|(number, light)| {
-        if normal.dot(to_light(light, place)?) <= 0.0 {
-            return None;
-        }
-        let is_opaque = |other: &Hit<f64>| {
-            let material = scene.material(other.object);
-            material.is_some_and(|material| material.transmit == [0; 3])
-        };
-        let nearest = blocker::<f64>(scene, light, place).filter(is_opaque)?;
-        let offset = from - place;
-        let height = offset.dot(normal);
-        let aside = offset - height * normal;
-        let largest = place.abs().max(DVec3::from_array(nearest.point).abs());
-        let rounded = ROUNDINGS * step(N::FORMAT, largest.max_element());
-        let beside = lattice_step.max(2.0 * aside.length() + rounded);
-        for offset in [u, -u, v, -v].map(|it| beside * it) {
-            blocker::<f64>(scene, light, place + offset).filter(is_opaque)?;
-        }
-        let distance = place.distance(DVec3::from_array(nearest.point));
-        let above = lattice_step.max((2.0 * height.abs() + rounded).min(distance / 4.0));
-        blocker::<f64>(scene, light, place + above * normal).filter(is_opaque)?;
-        if blocker::<N>(scene, light, from).is_some() {
-            return None;
-        }
-        Some(Fault {
-            property: Property::Shadows,
-            format: N::FORMAT,
-            structure: Structure::List,
-            what: format!(
-                "light {number} reaches primitive {}, though primitive {} blocks it {:?} units away",
-                hit.primitive, nearest.primitive, nearest.t
-            ),
-        })
-    });
+    let found = scene
+        .lights()
+        .iter()
+        .enumerate()
+        .filter_map(|(number, light)| {
+            if normal.dot(to_light(light, place)?) <= 0.0 {
+                return None;
+            }
+            let is_opaque = |other: &Hit<f64>| {
+                let material = scene.material(other.object);
+                material.is_some_and(|material| material.transmit == [0; 3])
+            };
+            let nearest = blocker::<f64>(scene, light, place).filter(is_opaque)?;
+            let offset = from - place;
+            let height = offset.dot(normal);
+            let aside = offset - height * normal;
+            let largest = place.abs().max(DVec3::from_array(nearest.point).abs());
+            let maps = if nearest.instance().is_some() || right.instance().is_some() {
+                PLACED
+            } else {
+                1.0
+            };
+            let rounded = maps * ROUNDINGS * step(N::FORMAT, largest.max_element());
+            let beside = lattice_step.max(2.0 * aside.length() + rounded);
+            for offset in [u, -u, v, -v].map(|it| beside * it) {
+                blocker::<f64>(scene, light, place + offset).filter(is_opaque)?;
+            }
+            let distance = place.distance(DVec3::from_array(nearest.point));
+            let above = lattice_step.max((2.0 * height.abs() + rounded).min(distance / 4.0));
+            blocker::<f64>(scene, light, place + above * normal).filter(is_opaque)?;
+            if blocker::<N>(scene, light, from).is_some() {
+                return None;
+            }
+            Some(Fault {
+                property: Property::Shadows,
+                format: N::FORMAT,
+                structure: Structure::List,
+                what: format!(
+                    "light {number} reaches {}, though {} blocks it {:?} units away",
+                    HitId::of(&hit).written(scene),
+                    HitId::of(&nearest).written(scene),
+                    nearest.t
+                ),
+            })
+        });
     found.collect()
 }

@@ -233,6 +233,7 @@ pub fn suzanne_as_an_instance() -> [Compiled; 2] {
     placed.instances = vec![Instance {
         name: String::from("suzanne"),
         part: 0,
+        joint: None,
         placement,
         place: SourceSpan::default(),
     }];
@@ -247,7 +248,7 @@ pub fn arm() -> Compiled {
 /// 32 instances of one ball, here and there.
 pub fn thirty_two_balls() -> Compiled {
     let random = &mut Random(32);
-    let mut scene = torus_mesh_scene();
+    let mut scene = torus_mesh_scene([3, 3]);
     scene.lights.clear();
     scene.objects.clear();
     scene.parts = vec![Part {
@@ -272,6 +273,7 @@ pub fn thirty_two_balls() -> Compiled {
         .map(|number| Instance {
             name: format!("ball {number}"),
             part: 0,
+            joint: None,
             placement: turned(random),
             place: SourceSpan::default(),
         })

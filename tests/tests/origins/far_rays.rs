@@ -5,7 +5,7 @@ use super::{LIMIT, ball, exact_line};
 use glam::DVec3;
 use gridel_core::{Fixed, Format, List, NoCount, Number, Ray, Scene};
 use gridel_host::trace::Frame;
-use gridel_host::verify::judge::{Crossings, Judge, step};
+use gridel_host::verify::judge::{Crossings, HitId, Judge, step};
 use gridel_tests::effort::part_of;
 use gridel_tests::exact::{Real, along, minus, scaled, vector};
 use gridel_tests::query::{HitBits, closest, held, through};
@@ -61,7 +61,7 @@ fn judge_far_rays<N: Number>(
             // From the start along the major axis, which is exact.
             let sign = line.slope[major].to_f64();
             let local = (hit.point[major].length_to_f64() - plane) * sign;
-            let solid = judge.solid(hit.primitive).expect("a primitive");
+            let solid = judge.solid(HitId::of(&hit)).expect("a primitive").solid;
             let there = |steps: f64| {
                 let within = steps * off(solid.extent()) / 16.0;
                 Crossings::new(solid, &line, within).may_be_met_at(&Real::of(local), &begin)
@@ -83,7 +83,7 @@ fn judge_far_rays<N: Number>(
             end = Real::of(local - off(solid.extent()));
         }
         for primitive in 0..primitives {
-            let Some(solid) = judge.solid(primitive) else {
+            let Some(solid) = judge.solid(HitId::own(primitive)).map(|it| it.solid) else {
                 continue;
             };
             let missed = Crossings::new(solid, &line, off(solid.extent())).are_met_by(&begin);

@@ -71,3 +71,31 @@ fn a_module_is_emitted_for_the_board() {
         "{module}"
     );
 }
+
+/// The number of parts is asserted at compile time, and what only a part holds is among the features.
+#[test]
+fn a_module_asserts_the_number_of_parts() {
+    let folder = Folder::new();
+    let text = "[[part]]\nname = \"wheel\"\nobject = [{ kind = \"torus\", center = [0, 0, 0], \
+                axis = [0, 1, 0], major_radius = 1, minor_radius = 0.25 }]\n\
+                [[instance]]\npart = \"wheel\"\n";
+    folder.write("wheel.toml", text);
+    folder.done(&[
+        "build",
+        "wheel.toml",
+        "-o",
+        "w.gridel",
+        "--emit-rust",
+        "src",
+    ]);
+    let module = String::from_utf8(folder.read("src/scene.rs")).unwrap();
+    for line in [
+        "pub const PARTS: usize = 1;",
+        "demand.parts <= PARTS",
+        "gridel_core::Parts<'static, PARTS>",
+        "\"torus\"",
+        "\"instances\"",
+    ] {
+        assert!(module.contains(line), "{line}: {module}");
+    }
+}

@@ -3,8 +3,10 @@
 use super::{Errors, Forgery, balls};
 use glam::DVec3;
 use gridel_core::format::instance::{Instance, Part};
+use gridel_core::format::record::Header;
 use gridel_core::format::{BlobError, Field, Reason, SectionKind};
-use gridel_core::{Parts, Scene as Loaded, Structure};
+use gridel_core::scene::part_blobs;
+use gridel_core::{Parts, Prevalidated, Scene as Loaded, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_host::scene::{self, Placement, Scene, Shape, SourceSpan};
@@ -94,6 +96,7 @@ pub(super) fn instances() -> Errors {
     let unbounded = with_part(&errors.base, &blob(&scenes::of([plane])));
     errors.reason("part 0", Reason::UnboundedPart, |it| *it = unbounded);
     errors.others(&honest);
+    errors.without_parts();
     errors
 }
 
@@ -104,6 +107,18 @@ impl Errors {
         let parts = Parts::<1>::from_bytes(copy.bytes()).expect("a part");
         let error = Loaded::with_parts(honest.bytes(), &parts).unwrap_err();
         self.take_reason(error, "part 0", Reason::OtherPart);
+        // Rays would pass by the parts of a part.
+        let outer = with_part(&self.base, honest).sealed();
+        let mut parts = part_blobs(outer.bytes()).expect("a part");
+        let part = parts.next().expect("a part");
+        let inner = Parts::<1>::from_bytes(part).expect("a part of the part");
+        let nested = [Loaded::with_parts(part, &inner).expect("a part with a part")];
+        let error = Loaded::with_parts(outer.bytes(), &nested).unwrap_err();
+        self.take_reason(error, "part 0", Reason::OtherPart);
+        assert!(matches!(
+            outer.scene(),
+            Err(BlobError::Parts { found: 0, .. })
+        ));
         let error = Parts::<0>::from_bytes(honest.bytes()).unwrap_err();
         self.take_field(error, "header", Field::Parts);
         let none = Loaded::from_bytes(honest.bytes()).unwrap_err();
@@ -112,5 +127,25 @@ impl Errors {
             expected: 1,
         };
         assert_eq!(none, expected);
+    }
+
+    /// Takes the errors of a blob that has instances and no parts.
+    fn without_parts(&mut self) {
+        let mut base = self.base.clone();
+        base.remove(&[SectionKind::Parts, SectionKind::PartBlobs]);
+        let blob = base.sealed();
+        let error = Prevalidated::of(blob.bytes()).unwrap_err();
+        let bytes = blob.bytes();
+        let count =
+            bytemuck::pod_read_unaligned::<Header>(&bytes[..size_of::<Header>()]).section_count;
+        // Instances and the pairs above them come last.
+        let line = format!("line {} of the section table", count - 2);
+        self.take_reason(error, &line, Reason::NotPrevalidated);
+        let expected = BlobError::Count {
+            section: SectionKind::Parts,
+            found: 0,
+            expected: 1,
+        };
+        assert_eq!(blob.scene().unwrap_err(), expected);
     }
 }

@@ -1,0 +1,72 @@
+//! The compiler's report.
+
+use super::candidates::lists::Figures;
+use super::names::KeptNames;
+use super::primitives::LeftOut;
+use std::time::Duration;
+
+/// The compiler's report.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Report {
+    /// Scene units of a lattice step.
+    pub step: f64,
+    /// The farthest that snapping moved a surface, in scene units: no point of the given surface of
+    /// any primitive is farther from its snapped one, and the other way round. For instances it is counted from their
+    /// rotations: a matrix of a scene file becomes the nearest one when it is read.
+    pub largest_displacement: f64,
+    /// The displacement of each primitive in scene-file order, in steps of the lattice; 0 for those that are
+    /// left out.
+    #[serde(skip)]
+    pub displacements: Vec<f32>,
+    /// Primitives whose surface was moved by more than four steps of the lattice.
+    pub far_moved: LeftOut,
+    /// Primitives that the lattice leaves nothing of; they keep their numbers.
+    pub collapsed: LeftOut,
+    /// Triangles that have no area in the scene file already; they keep their numbers, too.
+    pub without_area: LeftOut,
+    /// Cost of the hierarchy that structures share by the surface area heuristic, the root's area
+    /// being 1; `None` where none is built.
+    pub sah_cost: Option<f64>,
+    /// Length of the blob.
+    pub bytes: usize,
+    /// Primitives of the longest list that a ray can be led to.
+    pub longest_list: usize,
+    /// Effects and the names of what requires each.
+    pub effects: Vec<(String, Vec<String>)>,
+    /// Parts that the compiler supplied because the scene has none.
+    pub supplied: Vec<String>,
+    /// The time that the structures took to build, from primitives on the lattice to records.
+    #[serde(skip)]
+    pub setup: Duration,
+    /// Structures with tables of candidate lists.
+    pub tables: Vec<TableStats>,
+    /// The names in the blob; `None` if they are not asked for, or there are none.
+    pub names: Option<KeptNames>,
+}
+
+/// A structure with tables of candidate lists, and what they came to.
+#[derive(Clone, Copy, Debug, serde::Serialize)]
+pub struct TableStats {
+    pub structure: &'static str,
+    #[serde(flatten)]
+    pub figures: Figures,
+}
+
+impl Report {
+    /// Adds what a part has to report, whose primitives come after those before it.
+    pub(super) fn add_part(&mut self, part: &Report) {
+        let steps = (part.step / self.step) as f32;
+        let displacements = part.displacements.iter().map(|it| it * steps);
+        self.displacements.extend(displacements);
+        for (all, of_part) in [
+            (&mut self.far_moved, &part.far_moved),
+            (&mut self.collapsed, &part.collapsed),
+            (&mut self.without_area, &part.without_area),
+        ] {
+            all.add_all(of_part);
+        }
+        self.longest_list = self.longest_list.max(part.longest_list);
+        self.setup += part.setup;
+        self.tables.extend(part.tables.iter().copied());
+    }
+}
