@@ -189,6 +189,9 @@ macro_rules! sections {
             Instances = 70, "instances", [instance::Instance], "instance" of "";
             /// [`Pair`](crate::format::record::Pair)s of the hierarchy above the instances, whose leaves are instances.
             InstancePairs = 71, "instance-pairs", [record::Pair], "pair" of "instances";
+            /// The normals of the first vertices, octahedral: see [`smooth`](crate::geometry::smooth). A triangle
+            /// whose three vertices have one is shaded by them.
+            Normals = 72, "normals", [[i16; 2]], "normal" of "";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

@@ -50,6 +50,11 @@ impl<'a> Sections<'a> {
             if kind < kinds[0] || kind > kinds[1] {
                 return Err(line.out_of_range(Field::Kind, kind, kinds));
             }
+            let of_parts = SectionKind::Parts as i64..=SectionKind::InstancePairs as i64;
+            if !INSTANCES && of_parts.contains(&kind) {
+                let missing = "instances";
+                return Err(BlobError::MissingPart { missing });
+            }
             last = entry.kind;
             if entry.spare != 0 {
                 return Err(line.invalid(Reason::SpareNotZero));
@@ -66,11 +71,6 @@ impl<'a> Sections<'a> {
                 return Err(line.out_of_range(Field::End, range[0] + length, range));
             };
             end = start.saturating_add(bytes.len());
-        }
-        // Kinds ascend, so the last entry tells.
-        if !INSTANCES && last >= SectionKind::Parts as u16 {
-            let missing = "instances";
-            return Err(BlobError::MissingPart { missing });
         }
         if end != blob.len() {
             return Err(BlobError::Truncated {
