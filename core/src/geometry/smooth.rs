@@ -6,17 +6,18 @@
 //! 8e-5 radians off. Vertices with a normal come first; a triangle is smooth if its three vertices have one.
 //!
 //! **Interpolation.** The normals, of length 1, are weighted by the areas that the point cuts the triangle into, as seen
-//! along the largest component of the geometric normal.
+//! along the largest component of the geometric normal. Cores without an instruction for roots take a hundred others for
+//! one, so inverse roots are those of a line and Newton's steps: of corners within 0.5 %, which turns the normal by
+//! at most 1/800 of the angle between theirs, and of the sum within the rounding of the format.
 //!
 //! **Light behind the triangle.** Near the terminator a triangle can face away from a light that its smooth normal
 //! faces, and would be black. [`SmoothTriangle::lift`] moves the start of the shadow ray out to the curved surface for
 //! which the triangle stands (Hanika, "Hacking the Shadow Terminator", *Ray Tracing Gems II*, 2021): the point is
 //! projected onto the tangent plane of each vertex, and the projections are interpolated.
 
-use crate::axis::pick;
 use crate::format::range::At;
 use crate::format::{BlobError, Field, SectionKind};
-use crate::number::{Arithmetic, extent};
+use crate::number::{Arithmetic, Format, extent};
 
 /// The largest coordinate of a stored normal; the sum of the magnitudes of all three.
 pub const LARGEST: i16 = i16::MAX;
@@ -72,6 +73,76 @@ pub(crate) fn decode<N: Arithmetic>(stored: [i16; 2]) -> [N; 3] {
     N::normalize(unfold(stored).map(N::from_unit)).0
 }
 
+/// The inverse root of a ratio, by some of Newton's steps from `a - b x`, which is given with 30 fraction bits.
+#[inline(always)]
+fn inverse_root<N: Arithmetic>(x: N, [a, b]: [i32; 2], steps: usize) -> N {
+    let mut root = N::ratio(a) - N::ratio(b) * x;
+    for _ in 0..steps {
+        let square = x * root * root;
+        root = root * (N::ratio(3 << 29) - square.half());
+    }
+    root
+}
+
+/// The line that is within 5.5 % of the inverse root from 1/3 to 1: 1.98275 - 1.03771 x.
+const FROM_A_THIRD: [i32; 2] = [2_128_961_606, 1_114_232_640];
+/// The line that is within 2.3 % of the inverse root from 1/2 to 1: 1.7877 - 0.80998 x.
+const FROM_HALF: [i32; 2] = [1_919_528_257, 869_709_402];
+
+/// A stored normal, nearly of length 1, times a weight.
+#[inline(always)]
+fn weighted<N: Arithmetic>([x, y]: [i16; 2], weight: N) -> [N; 3] {
+    // Fractions of 2^15, so that all three are ratios.
+    let ratio = |x: i16| N::ratio(i32::from(x) << 15);
+    let (x, y, largest) = (ratio(x), ratio(y), ratio(LARGEST));
+    let z = largest - x.abs() - y.abs();
+    let v = if z < N::ZERO {
+        let with_sign = |rest: N, of: N| if of < N::ZERO { -rest } else { rest };
+        [
+            with_sign(largest - y.abs(), x),
+            with_sign(largest - x.abs(), y),
+            z,
+        ]
+    } else {
+        [x, y, z]
+    };
+    let square = N::from_wide(N::dot(v, v));
+    let scale = weight * inverse_root(square, FROM_A_THIRD, 1);
+    [v[0] * scale, v[1] * scale, v[2] * scale]
+}
+
+/// The mean of normals, given their weighted sum and that of the weights, with length 1, or its opposite; `None` where
+/// they cancel out.
+#[inline(always)]
+fn unit<N: Arithmetic>(sum: [N; 3], weights: N, is_away: bool) -> Option<[N; 3]> {
+    if N::FORMAT != Format::Fixed {
+        let inverse = N::ONE.div(weights);
+        let v = [sum[0] * inverse, sum[1] * inverse, sum[2] * inverse];
+        let square = N::from_wide(N::dot(v, v));
+        // At most a little above 1. Not so for NaN.
+        if square >= N::ONE.half() && square <= N::ratio(0x4800_0000) {
+            let steps = if N::FORMAT == Format::F32 { 3 } else { 5 };
+            let scale = inverse_root(square, FROM_HALF, steps);
+            let scale = if is_away { -scale } else { scale };
+            return Some([v[0] * scale, v[1] * scale, v[2] * scale]);
+        }
+    }
+    far_unit(sum, (weights < N::ZERO) != is_away)
+}
+
+/// [`unit`] of normals that lie far apart.
+#[cold]
+#[inline(never)]
+fn far_unit<N: Arithmetic>(sum: [N; 3], is_opposite: bool) -> Option<[N; 3]> {
+    let (normal, length) = N::normalize(sum);
+    let normal = if is_opposite {
+        normal.map(|x| -x)
+    } else {
+        normal
+    };
+    (length > N::ZERO).then_some(normal)
+}
+
 /// Proves that normals are those of vertices, and that their coordinates are in range.
 pub(crate) fn validate(normals: &[[i16; 2]], vertices: usize) -> Result<(), BlobError> {
     let section = SectionKind::Normals;
@@ -96,52 +167,55 @@ pub(crate) struct SmoothTriangle {
 }
 
 impl SmoothTriangle {
-    /// The weights of the corners at a point of the triangle: ratios whose sum is not 1, but at most 3/2. They are
-    /// negative on the side away from `facing`, which is the geometric normal or its opposite.
+    /// The weights of the corners at a point of the triangle, and whether its front is turned away from `facing`, the
+    /// geometric normal or its opposite. Weights are ratios whose sum is not 1, but at most 3/2 in magnitude.
     #[inline(always)]
-    fn weights<N: Arithmetic>(&self, point: [N; 3], facing: [N; 3]) -> [N; 3] {
+    fn weights<N: Arithmetic>(&self, point: [N; 3], facing: [N; 3]) -> ([N; 3], bool) {
         let [x, y, z] = facing.map(N::abs);
-        let axis = if x >= y && x >= z {
-            0
+        // Written out by axis, so that nothing is looked up.
+        let (areas, across) = if x >= y && x >= z {
+            (self.areas::<N, 1, 2>(point), facing[0])
         } else if y >= z {
-            1
+            (self.areas::<N, 2, 0>(point), facing[1])
         } else {
-            2
+            (self.areas::<N, 0, 1>(point), facing[2])
         };
-        let (first, second) = match axis {
-            0 => (1, 2),
-            1 => (2, 0),
-            _ => (0, 1),
-        };
-        // So that areas are positive as seen from where `facing` points.
-        let (first, second) = if pick(facing, axis) < N::ZERO {
-            (second, first)
-        } else {
-            (first, second)
-        };
-        let [across, up] = [pick(point, first), pick(point, second)];
+        let [u, v, w] = N::proportions(areas);
+        // Areas are positive where the front points up that axis.
+        ([u, v, w], (u + v + w < N::ZERO) != (across < N::ZERO))
+    }
+
+    /// Twice the areas into which a point cuts the triangle as it is seen along an axis, given the other two.
+    #[inline(always)]
+    fn areas<N: Arithmetic, const FIRST: usize, const SECOND: usize>(
+        &self,
+        point: [N; 3],
+    ) -> [N::Wide; 3] {
         let seen = |corner: [i32; 3]| {
             [
-                N::from_lattice(pick(corner, first)) - across,
-                N::from_lattice(pick(corner, second)) - up,
+                N::from_lattice(corner[FIRST]) - point[FIRST],
+                N::from_lattice(corner[SECOND]) - point[SECOND],
             ]
         };
         let [a, b, c] = self.corners;
         let (a, b, c) = (seen(a), seen(b), seen(c));
         let area = |p: [N; 2], q: [N; 2]| p[0].wide(q[1]) - p[1].wide(q[0]);
-        N::proportions([area(b, c), area(c, a), area(a, b)])
+        [area(b, c), area(c, a), area(a, b)]
     }
 
     /// The interpolated normal of length 1 at a point of the triangle, on the side of `facing`, which is the geometric
     /// normal or its opposite. `None` where the normals of the corners cancel out.
     #[inline(always)]
     pub(crate) fn normal<N: Arithmetic>(&self, point: [N; 3], facing: [N; 3]) -> Option<[N; 3]> {
-        let [u, v, w] = self.weights(point, facing);
+        let ([u, v, w], is_away) = self.weights(point, facing);
         let [a, b, c] = self.normals;
-        let (a, b, c) = (decode::<N>(a), decode::<N>(b), decode::<N>(c));
-        let component = |k: usize| u * a[k] + v * b[k] + w * c[k];
-        let (normal, length) = N::normalize([component(0), component(1), component(2)]);
-        (length > N::ZERO).then_some(normal)
+        let (a, b, c) = (weighted(a, u), weighted(b, v), weighted(c, w));
+        let component = |k: usize| a[k] + b[k] + c[k];
+        unit(
+            [component(0), component(1), component(2)],
+            u + v + w,
+            is_away,
+        )
     }
 
     /// The way from a point of the triangle out to the curved surface, on the side of `facing`; zero where that
@@ -149,14 +223,14 @@ impl SmoothTriangle {
     #[cold]
     #[inline(never)]
     pub(crate) fn lift<N: Arithmetic>(&self, point: [N; 3], facing: [N; 3]) -> [N; 3] {
-        let weights = self.weights(point, facing);
+        let (weights, is_away) = self.weights(point, facing);
         let sum = weights[0] + weights[1] + weights[2];
         let mut way = [N::ZERO; 3];
         for ((corner, normal), weight) in self.corners.iter().zip(self.normals).zip(weights) {
-            // The same weights, and of the side that faces: negative ones by rounding alone.
+            // Negative by rounding alone.
             let weight = weight.div(sum).max(N::ZERO).min(N::ONE);
             let mut normal = decode::<N>(normal);
-            if sum < N::ZERO {
+            if is_away {
                 normal = normal.map(|x| -x);
             }
             let below = |k: usize| N::from_lattice(corner[k]) - point[k];

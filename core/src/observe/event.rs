@@ -101,6 +101,9 @@ pub enum Event {
         /// The normal, of length 1, on the side from which the ray came.
         normal: [f64; 3],
     },
+    /// The light that was just considered, which the smooth normal faces, lies behind the triangle, and does not
+    /// reach it.
+    BehindTriangle,
     /// Light for a shadow comes through the glass that was just met.
     Filtered {
         /// The part of it that is left.

@@ -305,6 +305,8 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
 
     const FILTERS: bool = EFFECTS & All::FILTERING != 0;
 
+    const SENDS: bool = EFFECTS & All::CASTING != 0;
+
     #[inline(always)]
     fn scene(&self) -> &'s Scene<'s> {
         self.scene

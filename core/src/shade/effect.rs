@@ -23,6 +23,9 @@ pub(crate) trait Tracer<'s, N: Number> {
     /// Whether light may pass a surface on its way to another one.
     const FILTERS: bool;
 
+    /// Whether surfaces may send rays on.
+    const SENDS: bool;
+
     fn scene(&self) -> &'s Scene<'s>;
 
     fn count(&mut self) -> &mut Self::Observer;

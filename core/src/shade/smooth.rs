@@ -47,7 +47,7 @@ impl Effect for Smooth {
         let Some(mut normal) = smooth else {
             return;
         };
-        if surface.required.0 & SENDING != 0 {
+        if X::SENDS && surface.required.0 & SENDING != 0 {
             normal = turned_to_ray(normal, surface.direction);
         }
         surface.shading_normal = normal;
@@ -66,6 +66,11 @@ impl Effect for Smooth {
         lighting: &mut Lighting<'_, N>,
         is_reached: &mut bool,
     ) {
+        // Without shadows nothing is in the way.
+        let both = Self::EFFECT.with(Effects::SHADOW);
+        if !tracer.scene().effects().contains(both) {
+            return;
+        }
         let cos = N::dot(surface.hit.normal, lighting.to_light);
         let zero = N::Wide::default();
         let behind = if surface.hit.front {
@@ -73,10 +78,11 @@ impl Effect for Smooth {
         } else {
             cos >= zero
         };
-        // Without shadows nothing is in the way.
-        let both = Self::EFFECT.with(Effects::SHADOW);
-        if behind && tracer.scene().effects().contains(both) {
+        if behind {
             *is_reached = lift(tracer, surface, lighting);
+            if X::Observer::ENABLED && !*is_reached {
+                tracer.count().event(Event::BehindTriangle);
+            }
         }
     }
 

@@ -17,6 +17,7 @@ mod gzip;
 mod importer;
 mod model;
 pub(crate) mod molecule;
+mod normals;
 mod options;
 mod placement;
 mod polygon;
@@ -34,7 +35,10 @@ pub use importer::Importer;
 pub use model::{
     Camera, Color, Diffuse, Instance, Light, Material, Object, Part, RenderSettings, Scene,
 };
-pub use options::{Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle};
+pub use normals::Normals;
+pub use options::{
+    Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, NormalsChoice,
+};
 pub use placement::Placement;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
@@ -116,8 +120,13 @@ pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, Scene
     finish(importer.import(input)?, options)
 }
 
-/// Flattens what was read, if that is asked for.
+/// Shades and flattens what was read as it is asked for.
 fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, SceneError> {
+    let scene = &mut imported.scene;
+    let in_parts = scene.parts.iter_mut().flat_map(|part| &mut part.objects);
+    for object in scene.objects.iter_mut().chain(in_parts) {
+        object.shade(options.normals);
+    }
     if options.instances == Instances::Flatten {
         imported.scene = imported.scene.into_flattened()?;
     }

@@ -63,6 +63,18 @@ pub enum Instances {
     Flatten,
 }
 
+/// Which normals meshes are shaded with.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum NormalsChoice {
+    /// Those of the file, where it has some.
+    #[default]
+    File,
+    /// Those of the faces.
+    Flat,
+    /// Computed ones, smooth where faces meet at less than this angle in degrees.
+    Smooth(f64),
+}
+
 /// How a scene file is read.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImportOptions {
@@ -75,6 +87,8 @@ pub struct ImportOptions {
     pub choice: Choice,
     /// Whether instances are kept.
     pub instances: Instances,
+    /// Which normals meshes are shaded with.
+    pub normals: NormalsChoice,
     /// Whether the file may name files outside of its folder: imports, materials, buffers. A scene
     /// from elsewhere could read any file of the user's so.
     pub allow_outside: bool,

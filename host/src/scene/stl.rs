@@ -251,6 +251,7 @@ impl Soup {
             material: 0,
             shape,
             place,
+            normals: Default::default(),
         })
     }
 }

@@ -154,6 +154,7 @@ fn torus_mesh_scene() -> Scene {
                 triangles: cells.flat_map(|(ring, step)| faces(ring, step)).collect(),
             },
             place: SourceSpan::default(),
+            normals: Default::default(),
         }],
         ..Scene::default()
     }
@@ -184,6 +185,11 @@ pub fn small_suzanne() -> Compiled {
 
 fn suzanne_scene() -> Scene {
     let mut scene = load(&real(SUZANNE));
+    // As other tracers draw it.
+    scene
+        .objects
+        .iter_mut()
+        .for_each(|object| object.normals = Default::default());
     let vertices = scene.objects.iter().flat_map(|object| match &object.shape {
         Shape::Mesh { vertices, .. } => &vertices[..],
         _ => &[],

@@ -135,7 +135,7 @@ fn with_properties(vertex: &str, face: &str) -> String {
 }
 
 #[test]
-fn colors_normals_and_textures_are_warned_of() {
+fn colors_and_textures_are_warned_of() {
     let text = with_properties(
         "property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\n",
         "property uchar red\n",
@@ -149,7 +149,6 @@ fn colors_normals_and_textures_are_warned_of() {
         ends,
         [
             "3: textures are not drawn; the plain colors are used",
-            "8: the normal of a vertex is ignored; the surface is shaded flat (and 2 times more)",
             "11: the color of a vertex is ignored; the surface has one color (and 2 times more)",
             "14: the color of a face is ignored; the surface has one color",
         ]
