@@ -113,7 +113,7 @@ fn errors<N: Number>(levels: u32) -> [f64; 2] {
 fn check_convergence<N: Number>() {
     // At level 1 all vertices are alike, and have the sphere's own normals.
     let exact = errors::<N>(1);
-    assert!(exact[0] < 2e-4 && exact[1] > 0.3, "{exact:?}");
+    assert!(exact[0] < 1e-3 && exact[1] > 0.3, "{exact:?}");
     let all = [2, 3, 4].map(errors::<N>);
     for pair in all.windows(2) {
         let [[smooth, flat], [finer, finer_flat]] = [pair[0], pair[1]];
