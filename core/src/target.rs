@@ -16,6 +16,9 @@ pub(crate) type AllStructuresOnly<T> =
 /// A value that only builds with the code for instances hold.
 pub(crate) type InstancesOnly<T> = InSomeBuilds<T, { cfg!(feature = "instances") as usize }>;
 
+/// A value that only builds with the code for smooth normals hold.
+pub(crate) type SmoothOnly<T> = InSomeBuilds<T, { cfg!(feature = "smooth") as usize }>;
+
 /// A value that builds hold for which `COUNT` is 1; it has no size where `COUNT` is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct InSomeBuilds<T, const COUNT: usize>([T; COUNT]);

@@ -23,6 +23,7 @@ pub fn scene() -> Scene {
         material,
         shape,
         place: SourceSpan::default(),
+        normals: Default::default(),
     };
     let floor = Shape::Box(Cuboid {
         min: DVec3::new(-4.0, -0.5, -4.0),

@@ -232,3 +232,6 @@ fn render_row<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
         counted(count);
     }
 }
+
+#[cfg(test)]
+mod tests;

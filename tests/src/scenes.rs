@@ -19,6 +19,7 @@ pub fn of(shapes: impl IntoIterator<Item = Shape>) -> Scene {
         material: 0,
         shape,
         place: SourceSpan::default(),
+        normals: Default::default(),
     });
     Scene {
         materials: vec![Material::default()],

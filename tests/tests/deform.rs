@@ -457,6 +457,7 @@ fn with_parts() -> Scene {
         place: SourceSpan::default(),
     };
     let instance = |part: usize, x: f64, scale: f64| Instance {
+        joint: None,
         name: String::from("copy"),
         part,
         placement: Placement {

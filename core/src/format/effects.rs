@@ -32,6 +32,9 @@ macro_rules! effects {
             /// Checkerboards.
             CHECKER = 5, "checker", Checker in checker, casts 0,
                 required by "a material whose checker size is above 0";
+            /// Smooth normals: meshes are shaded by the normals of their vertices.
+            SMOOTH = 6, "smooth", Smooth in smooth, casts 0,
+                required by "a mesh with normals that are not those of its faces";
         }
     };
 }
@@ -119,7 +122,7 @@ impl Effects {
     /// use gridel_core::Effects;
     ///
     /// let opaque = Effects::ALL.without(Effects::GLASS).without(Effects::ABSORPTION);
-    /// assert_eq!(opaque.to_string(), "shadow, highlight, mirror, checker");
+    /// assert_eq!(opaque.to_string(), "shadow, highlight, mirror, checker, smooth");
     /// ```
     pub const fn without(self, other: Effects) -> Effects {
         Effects(self.0 & !other.0)

@@ -63,5 +63,8 @@ pub(crate) const WIDE_INDICES: bool = cfg!(feature = "wide-indices");
 /// Whether this build holds the code for shapes without bounds.
 pub(crate) const UNBOUNDED: bool = cfg!(feature = "unbounded");
 
+/// Whether this build holds the code for smooth normals.
+pub(crate) const SMOOTH: bool = cfg!(feature = "smooth");
+
 /// Whether this build holds the code for parts and their instances.
 pub(crate) const INSTANCES: bool = cfg!(feature = "instances");

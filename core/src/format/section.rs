@@ -180,19 +180,22 @@ macro_rules! sections {
             TrackTimes = 66, "track-times", [i32], "key" of "tracks";
             /// The [values](crate::format::track) of the keys of all tracks, `i32` each.
             TrackWords = 67, "track-words", [i32], "word" of "tracks";
+            /// The normals of the first vertices, octahedral: see [`smooth`](crate::geometry::smooth). A triangle
+            /// whose three vertices have one is shaded by them.
+            Normals = 68, "normals", [[i16; 2]], "normal" of "";
             /// [`Part`](crate::format::instance::Part)s.
-            Parts = 68, "parts", [instance::Part], "part" of "";
+            Parts = 69, "parts", [instance::Part], "part" of "";
             /// The blobs of all parts, one behind the other, in words of [`ALIGNMENT`](crate::format::record::ALIGNMENT)
             /// bytes.
-            PartBlobs = 69, "part-blobs", [[u32; 4]], "word" of "parts";
+            PartBlobs = 70, "part-blobs", [[u32; 4]], "word" of "parts";
             /// [`Instance`](crate::format::instance::Instance)s.
-            Instances = 70, "instances", [instance::Instance], "instance" of "";
+            Instances = 71, "instances", [instance::Instance], "instance" of "";
             /// [`Pair`](crate::format::record::Pair)s of the hierarchy above the instances, whose leaves are instances.
-            InstancePairs = 71, "instance-pairs", [record::Pair], "pair" of "instances";
+            InstancePairs = 72, "instance-pairs", [record::Pair], "pair" of "instances";
             /// [`Joint`](crate::format::track::Joint)s.
-            Joints = 72, "joints", [track::Joint], "joint" of "tracks";
+            Joints = 73, "joints", [track::Joint], "joint" of "tracks";
             /// For each instance, the joint on which it hangs, or `u32::MAX`. Absent where there are no joints.
-            InstanceJoints = 73, "instance-joints", [u32], "instance" of "tracks";
+            InstanceJoints = 74, "instance-joints", [u32], "instance" of "tracks";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

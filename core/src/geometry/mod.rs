@@ -13,6 +13,7 @@ pub(crate) mod primitive;
 mod primitive_id;
 pub(crate) mod project;
 mod shapes;
+pub mod smooth;
 pub(crate) mod sphere;
 pub(crate) mod strip;
 mod surface;

@@ -1,18 +1,19 @@
 //! All primitives of a blob, each kind in an array of its own.
 
 use crate::format::kind::shapes;
-use crate::format::limits::{UNBOUNDED, WIDE_INDICES, WIDE_LATTICE};
+use crate::format::limits::{SMOOTH, UNBOUNDED, WIDE_INDICES, WIDE_LATTICE};
 use crate::format::range::{At, at_most};
 use crate::format::record::{Header, UnitBox};
 use crate::format::{BlobError, Field, Kind, Leaf, SectionKind, Sections};
 use crate::geometry::Clusters;
 use crate::geometry::primitive::{InScene, Primitive, offset_inward};
+use crate::geometry::smooth::{self, SmoothTriangle};
 use crate::geometry::sphere::{self, Spheres};
 use crate::geometry::triangle::{self, Triangles, Vertices};
 use crate::geometry::{LEAVING, Part, PrimitiveId, Surface};
 use crate::number::Arithmetic;
 use crate::ray::Ray;
-use crate::target::{WIDE, WideOnly, inline_on_boards, inline_on_hosts};
+use crate::target::{SmoothOnly, WIDE, WideOnly, inline_on_boards, inline_on_hosts};
 
 macro_rules! registry {
     (
@@ -31,6 +32,8 @@ macro_rules! registry {
             $(pub(crate) $field: &'a [super::$module::$record],)*
             /// Where there are both, the same triangles and spheres lie in clusters as in the arrays above.
             clusters: WideOnly<Clusters<'a>>,
+            /// Normals of the first vertices.
+            normals: SmoothOnly<&'a [[i16; 2]]>,
         }
 
         /// A primitive of any kind, in 1/256 unit.
@@ -110,6 +113,10 @@ macro_rules! registry {
                 $(lacks(holds(SectionKind::$section), Kind::$kind.is_available(), $name)?;)*
                 lacks(!short, WIDE_LATTICE, "wide-lattice")?;
                 lacks(wide_indices, WIDE_INDICES, "wide-indices")?;
+                let normals = match SMOOTH {
+                    true => sections.records(SectionKind::Normals)?,
+                    false => &[],
+                };
                 let clusters = match WIDE {
                     true => Clusters::read(sections, short)?,
                     false => Clusters::NONE,
@@ -125,6 +132,7 @@ macro_rules! registry {
                         &[]
                     },)*
                     clusters: WideOnly::new(|| clusters),
+                    normals: SmoothOnly::new(|| normals),
                 })
             }
 
@@ -135,6 +143,9 @@ macro_rules! registry {
                 let bounds = &header.bounds;
                 let vertices = self.vertices.validate(bounds)?;
                 self.triangles.validate(self.records(Kind::Triangle), vertices)?;
+                if SMOOTH {
+                    smooth::validate(self.normals(), vertices)?;
+                }
                 self.spheres.validate(self.records(Kind::Sphere), bounds)?;
                 $(if Kind::$kind.is_available() {
                     validate(self.$field, SectionKind::$section, bounds)?;
@@ -356,6 +367,22 @@ impl<'a> Shapes<'a> {
         let [a, b, c] = self.triangles.corners(index)?;
         let position = |corner| self.vertices.position(corner);
         Some([position(a)?, position(b)?, position(c)?])
+    }
+
+    /// The normals of the first vertices; none in builds without the code for them.
+    pub(crate) fn normals(&self) -> &'a [[i16; 2]] {
+        self.normals.get().copied().unwrap_or_default()
+    }
+
+    /// The corners of a triangle in a slot and their normals, if it has some.
+    #[inline(always)]
+    pub(crate) fn smooth_triangle(&self, slot: usize) -> Option<SmoothTriangle> {
+        let [a, b, c] = self.triangles.corners(slot)?;
+        let all = self.normals();
+        let normals = [*all.get(a)?, *all.get(b)?, *all.get(c)?];
+        let position = |corner| self.vertices.position(corner);
+        let corners = [position(a)?, position(b)?, position(c)?];
+        Some(SmoothTriangle { corners, normals })
     }
 
     /// The box of a sphere.

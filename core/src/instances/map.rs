@@ -94,7 +94,7 @@ impl<N: Arithmetic> Map<N> {
 
     /// A normal of the part in the scene, and the part's units per unit along it, without the map's power of two.
     #[inline(always)]
-    fn normal(&self, normal: [N; 3]) -> ([N; 3], N) {
+    pub(crate) fn normal(&self, normal: [N; 3]) -> ([N; 3], N) {
         let column = |k: usize| [self.rows[0][k], self.rows[1][k], self.rows[2][k]];
         let component = |k: usize| N::from_wide(N::dot(column(k), normal));
         N::normalize([component(0), component(1), component(2)])

@@ -328,6 +328,11 @@ macro_rules! float_number {
             }
 
             #[inline(always)]
+            fn proportions(v: [Self; 3]) -> [Self; 3] {
+                v
+            }
+
+            #[inline(always)]
             fn slopes(v: [Self; 3]) -> Option<([Self; 3], usize)> {
                 // Magnitudes order like integers, NaN above all.
                 let magnitude = |x: $float| x.to_bits() << 1;

@@ -7,6 +7,9 @@ pub trait Vectors: Products {
     /// A vector of integers (below 2^52) as ratios: exact up to one common factor and two roundings
     /// each; the largest magnitude in \[1/4, 1\] in [`Fixed`](crate::Fixed), unscaled in floats.
     fn direction(v: [i64; 3]) -> [Self; 3];
+    /// Products of one kind as numbers in the same proportions: the largest magnitude in \[1/8, 1/2\] in
+    /// [`Fixed`](crate::Fixed), unscaled in floats.
+    fn proportions(v: [Self::Wide; 3]) -> [Self; 3];
     /// A direction of any length as slopes: divided by the magnitude of its largest component, with
     /// that component's axis. `None` for zero, NaN and infinite vectors.
     fn slopes(v: [Self::Wide; 3]) -> Option<([Self; 3], usize)>;

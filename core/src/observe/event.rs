@@ -119,6 +119,14 @@ pub enum Event {
         /// is turned away.
         cosine: f64,
     },
+    /// The surface that was hit is shaded with a smooth normal.
+    Smooth {
+        /// The normal, of length 1, on the side from which the ray came.
+        normal: [f64; 3],
+    },
+    /// The light that was just considered, which the smooth normal faces, lies behind the triangle, and does not
+    /// reach it.
+    BehindTriangle,
     /// Light for a shadow comes through the glass that was just met.
     Filtered {
         /// The part of it that is left.

@@ -115,7 +115,7 @@ pub struct Hit<N: Number> {
     /// Whether `point` lies on the surface exactly.
     is_exact: bool,
     /// The primitive by kind and slot, as a leaf's word, whichever structure found it.
-    place: u32,
+    pub(super) place: u32,
     /// The instance that it is part of.
     instance: InstancesOnly<u32>,
 }
@@ -244,7 +244,7 @@ impl<N: Number> Hit<N> {
 }
 
 /// An instance by its place, and its part.
-fn find<'s>(scene: &'s Scene<'_>, index: u32) -> Option<(&'s Instance, &'s Scene<'s>)> {
+pub(super) fn find<'s>(scene: &'s Scene<'_>, index: u32) -> Option<(&'s Instance, &'s Scene<'s>)> {
     let placed = scene.placed.get()?;
     let instance = placed.top.instances.get(index as usize)?;
     Some((instance, placed.part(instance)?.0))

@@ -1,7 +1,7 @@
 //! Queries: the first hit of a ray, and any hit.
 //!
 //! `search` tests the primitives to which a structure leads, `clusters` those in leaves of eight, `unbounded`
-//! those that lie in no structure; `hit` is the answer.
+//! those that lie in no structure; `hit` is the answer, and `smooth` its normal for shading.
 
 mod clusters;
 #[cfg(feature = "all-structures")]
@@ -9,6 +9,7 @@ mod dynamic;
 mod hit;
 mod placed;
 mod search;
+mod smooth;
 mod unbounded;
 
 pub use hit::{Hit, PrimitiveHit};

@@ -182,11 +182,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         };
         let required = All::required_by_material(material);
         All::arrive::<EFFECTS, N, _>(self, &mut state, ray, &hit, material, &mut weight);
-        let shading_normal = if hit.front {
-            hit.normal
-        } else {
-            hit.normal.map(|x| -x)
-        };
+        let shading_normal = hit.facing_normal();
         let direction = if const { EFFECTS & All::DIRECTED == 0 } {
             ray.slope
         } else {
@@ -279,7 +275,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         if cos <= N::ZERO {
             return Color::BLACK;
         }
-        let lighting = Lighting {
+        let mut lighting = Lighting {
             light,
             origin,
             way,
@@ -287,6 +283,11 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             to_light,
         };
         let mut reflected = surface.diffuse.scaled(cos);
+        let mut is_reached = true;
+        All::face::<EFFECTS, N, _>(self, &mut state, surface, &mut lighting, &mut is_reached);
+        if !is_reached {
+            return Color::BLACK;
+        }
         All::reflect::<EFFECTS, N, _>(self, &mut state, surface, &lighting, &mut reflected);
         if reflected == Color::BLACK {
             return Color::BLACK;
@@ -303,6 +304,8 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
     type Observer = C;
 
     const FILTERS: bool = EFFECTS & All::FILTERING != 0;
+
+    const SENDS: bool = EFFECTS & All::CASTING != 0;
 
     #[inline(always)]
     fn scene(&self) -> &'s Scene<'s> {
@@ -331,7 +334,9 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
     }
 
     #[inline(always)]
-    fn send(&mut self, hit: &Hit<N>, secondary: Secondary<N>) {
+    fn send(&mut self, hit: &Hit<N>, mut secondary: Secondary<N>) {
+        let mut state = self.state;
+        All::leave::<EFFECTS, N, _>(self, &mut state, hit, &mut secondary);
         let Secondary {
             kind,
             direction,

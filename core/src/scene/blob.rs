@@ -160,6 +160,11 @@ impl<'a> Scene<'a> {
         self.space.shapes.vertices.len()
     }
 
+    /// Number of vertices that have a normal: see [`smooth`](crate::geometry::smooth).
+    pub fn normals(&self) -> usize {
+        self.space.shapes.normals().len()
+    }
+
     /// The box of a primitive, given by its kind and its slot among those of that kind; `None` for one without bounds.
     pub fn primitive_bounds(&self, kind: Kind, slot: usize) -> Option<UnitBox> {
         self.space.shapes.bounds(kind, slot)

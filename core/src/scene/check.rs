@@ -1,7 +1,7 @@
 //! The proofs that [`Scene::from_bytes`] makes, in the order in which each relies on those before.
 
 use crate::accel::StructureViews;
-use crate::format::limits::FARTHEST;
+use crate::format::limits::{FARTHEST, SMOOTH};
 use crate::format::range::{At, Ranges, exactly};
 use crate::format::record::{Header, Light, Material};
 use crate::format::{
@@ -79,6 +79,7 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
         at.ensure(uncalled == Effects::NONE, Reason::MissingEffect)?;
         required = required.with(material.effects());
     }
+    required = required.with(check_smooth(scene)?);
     // Without objects lights require nothing.
     if header.objects > 0 {
         let lights = scene.lights.iter();
@@ -86,6 +87,22 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
     }
     let unneeded = Effects(header.effects).without(required);
     Location::Header.ensure(unneeded == Effects::NONE, Reason::UnneededEffects)
+}
+
+/// What the normals of vertices require, of the scene and of its parts; an error where the header does not require it.
+fn check_smooth(scene: &Scene<'_>) -> Result<Effects, BlobError> {
+    let own = !scene.space.shapes.normals().is_empty();
+    let mut parts = scene.parts().iter();
+    let mut in_parts = || parts.any(|part| part.effects().contains(Effects::SMOOTH));
+    let required = Effects::SMOOTH.only_if(SMOOTH && (own || in_parts()));
+    let is_known = Effects(scene.space.header.effects).contains(required);
+    let section = if own {
+        SectionKind::Normals
+    } else {
+        SectionKind::Parts
+    };
+    Location::Section(section).ensure(is_known, Reason::MissingEffect)?;
+    Ok(required)
 }
 
 /// Proves the ranges of a material.

@@ -11,11 +11,14 @@ use bytemuck::{NoUninit, Zeroable, bytes_of};
 use core::mem::size_of;
 
 /// Sections of the blob.
-const SECTIONS: usize = 11;
+const SECTIONS: usize = 12;
 /// Room for the blob.
-const ROOM: usize = 1344;
+const ROOM: usize = 1376;
 /// The ratio 1.
 const ONE: i32 = 1 << 30;
+
+/// The normals of the triangle's vertices.
+const NORMALS: [[i16; 2]; 3] = [[-8_000, -6_000], [8_000, -6_000], [0, 9_000]];
 
 /// A blob with its length.
 pub(crate) struct TinyBlob {
@@ -32,7 +35,7 @@ impl TinyBlob {
     ///
     /// | object | where |
     /// |---|---|
-    /// | 0 triangle | (-60, -20, -10), (-20, -20, -10), (-40, 30, -10) |
+    /// | 0 triangle | (-60, -20, -10), (-20, -20, -10), (-40, 30, -10), with normals that lean apart |
     /// | 1 sphere | center (30, 30, 0), radius 25 |
     /// | 2 box | (-90, -90, -50) to (90, -70, 50) |
     /// | 3 disc | center (-40, 60, 20), radius 20, facing up |
@@ -88,6 +91,7 @@ impl TinyBlob {
         blob.section(SectionKind::Discs, &[disc]);
         blob.section(SectionKind::Cones, &[cone]);
         blob.section(SectionKind::Tori, &[torus]);
+        blob.section(SectionKind::Normals, &NORMALS);
         blob.seal(Header {
             magic: MAGIC,
             endianness: ENDIANNESS,

@@ -23,6 +23,9 @@ pub(crate) trait Tracer<'s, N: Number> {
     /// Whether light may pass a surface on its way to another one.
     const FILTERS: bool;
 
+    /// Whether surfaces may send rays on.
+    const SENDS: bool;
+
     fn scene(&self) -> &'s Scene<'s>;
 
     fn count(&mut self) -> &mut Self::Observer;
@@ -185,6 +188,9 @@ places! {
     /// A ray hits a surface: the diffuse color and the shading normal may change.
     fn surface(ray: &Ray<N>, surface: &mut Surface<'_, N>);
 
+    /// A surface faces a light: the start of the way there may change, and whether the light reaches it.
+    fn face(surface: &Surface<'_, N>, lighting: &mut Lighting<'_, N>, is_reached: &mut bool);
+
     /// A surface reflects a light that it faces: the reflected ratio may change.
     fn reflect(surface: &Surface<'_, N>, lighting: &Lighting<'_, N>, reflected: &mut Color<N>);
 
@@ -199,6 +205,9 @@ places! {
 
     /// A surface may send rays on, if the ray depth allows more.
     fn bounce(surface: &Surface<'_, N>, bounce: &mut Bounce<N>);
+
+    /// A ray is about to leave a hit: its direction may change.
+    fn leave(hit: &Hit<N>, secondary: &mut Secondary<N>);
 
     /// All rays of a sample were traced: its radiance may change before it is limited to the
     /// range of a display. The state is a new one.

@@ -26,8 +26,17 @@ impl CalledFor {
             let lights = scene.lights().iter().map(Light::effects);
             let lights = numbers_of("light", effect, lights);
             let materials = scene.materials().iter().map(Material::effects);
+            let smooth = |scene: &Scene<'_>| match scene.normals() {
+                0 => Effects::NONE,
+                _ => Effects::SMOOTH,
+            };
+            let own =
+                (smooth(scene).contains(effect)).then(|| String::from("the scene's own meshes"));
+            let parts = numbers_of("part", effect, scene.parts().iter().map(smooth));
             lights
                 .chain(numbers_of("material", effect, materials))
+                .chain(own)
+                .chain(parts)
                 .collect()
         };
         Effects::NAMED

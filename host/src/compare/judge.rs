@@ -123,6 +123,7 @@ mod tests {
                     radius,
                 }),
                 place: scene::SourceSpan::default(),
+                normals: Default::default(),
             });
         let wall = scene::Object {
             name: String::from("wall"),
@@ -132,6 +133,7 @@ mod tests {
                 max: DVec3::new(2.0, 2.0, -2.5),
             }),
             place: scene::SourceSpan::default(),
+            normals: Default::default(),
         };
         let scene = scene::Scene {
             materials: vec![scene::Material::default()],

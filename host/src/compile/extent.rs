@@ -153,7 +153,7 @@ impl<'s> Shapes<'s> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Material, SourceSpan};
+    use crate::scene::{Material, Normals, SourceSpan};
     use crate::shape::random::Random;
     use glam::DQuat;
 
@@ -177,6 +177,7 @@ mod tests {
         let mut shapes = vec![mesh];
         shapes.extend((0..40).map(|_| ball(random)));
         let object = |shape| Object {
+            normals: Normals::default(),
             name: String::new(),
             material: 0,
             shape,

@@ -122,6 +122,7 @@ mod tests {
             material: 0,
             shape: Shape::Box(Cuboid { min, max }),
             place: SourceSpan::default(),
+            normals: Default::default(),
         };
         Scene {
             materials: vec![Material::default()],

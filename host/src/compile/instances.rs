@@ -10,6 +10,7 @@ use crate::scene::{Instance, Material, Object, Part, Scene};
 use crate::shape::{Lattice, exp2};
 use crate::table::printable;
 use glam::DVec3;
+use gridel_core::Effects;
 use gridel_core::format::instance::{LARGEST_CENTER, MATRIX_BITS};
 use gridel_core::format::limits::{INSTANCE_EXPONENT, MAX_INSTANCES};
 use gridel_core::format::record::{ALIGNMENT, UnitBox};
@@ -40,6 +41,8 @@ pub struct Parts {
     pub reach: Reach,
     /// For each object of all parts, its first primitive, counted from that of the first part.
     pub object_first: Vec<u32>,
+    /// Parts with meshes that are smooth, by name.
+    pub smooth: Vec<String>,
     /// For each part, its first primitive, counted likewise; then how many there are.
     first_primitive: Vec<u32>,
     /// The bytes of their structures.
@@ -86,6 +89,9 @@ impl Parts {
                 unit_exponent: header.unit_exponent,
                 origin: DVec3::from_array(header.origin),
             });
+            if Effects(header.effects).contains(Effects::SMOOTH) {
+                parts.smooth.push(format!("part {}", printable(&part.name)));
+            }
             parts.bounds.push(header.bounds);
             parts.blobs.push(blob);
             parts.displacements.push(displacement);

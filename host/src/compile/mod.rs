@@ -34,6 +34,7 @@ mod shading_data;
 mod structures;
 mod support;
 mod tracks;
+mod vertices;
 mod volumes;
 mod wide;
 mod writer;
@@ -180,7 +181,11 @@ fn compile_as(
     }
     let (lattice, snapped, placed) = snap(role, scene, extent, options.lattice_bits)?;
     let structures = held(&options.structures);
-    let shading_data = shading_data::ShadingData::of(&shapes, &lattice, extent)?;
+    let smooth = match role {
+        Role::Part { .. } => snapped.smooth.clone(),
+        Role::Whole(parts) => [&snapped.smooth[..], &parts.smooth[..]].concat(),
+    };
+    let shading_data = shading_data::ShadingData::of(&shapes, &lattice, extent, smooth)?;
     // WebAssembly without a system has no clock, and asking for the time would panic.
     let has_clock = !cfg!(all(target_family = "wasm", target_os = "unknown"));
     let started = has_clock.then(Instant::now);
@@ -379,7 +384,9 @@ impl Hierarchies {
         };
         // The eight-wide hierarchy holds triangles and spheres itself; alone it needs no slots of them.
         let has_wide = structures.contains(&Structure::Wide);
+        // Normals belong to vertices, which slots lead to.
         let wide_alone = has_wide
+            && snapped.normals.is_empty()
             && structures
                 .iter()
                 .all(|it| [Structure::Wide, Structure::List].contains(it));

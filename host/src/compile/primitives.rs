@@ -5,6 +5,7 @@ use super::cuts::{self, Sliver};
 use super::flattened::{self, is_degenerate};
 use super::hierarchy::Primitive;
 use super::records::{Added, Records};
+use super::vertices::{self, Stored, Vertices};
 use crate::scene::{Object, Scene};
 use crate::shape::{Lattice, Shape, Solid, displacement};
 use crate::table::{grouped, printable};
@@ -14,7 +15,6 @@ use gridel_core::format::limits::FARTHEST_POINT;
 use gridel_core::format::record::UnitBox;
 use gridel_core::geometry::Geometry;
 use serde::{Serialize, Serializer};
-use std::collections::HashMap;
 
 /// Most primitives in a blob.
 const MOST: usize = 1 << 24;
@@ -26,8 +26,12 @@ const FAR_MOVED: f64 = 4.0;
 /// Primitives of all kinds, each in scene-file order.
 #[derive(Debug, Default)]
 pub struct Primitives {
-    /// Distinct vertices of all meshes, in 1/256 unit.
+    /// Distinct vertices of all meshes, in 1/256 unit. Those with different normals differ.
     pub vertices: Vec<[i32; 3]>,
+    /// The normal of each vertex, if it has one; empty where none has.
+    pub normals: Vec<Option<Stored>>,
+    /// Objects with triangles that are smooth, by name.
+    pub smooth: Vec<String>,
     pub triangles: Vec<[u32; 3]>,
     pub records: Records,
     /// For each kind, the numbers of its primitives in scene-file order.
@@ -97,17 +101,18 @@ impl Primitives {
     /// Snaps everything.
     pub fn snap(scene: &Scene, lattice: &Lattice) -> Result<Self, CompileError> {
         let mut primitives = Self::default();
-        let mut vertex_numbers = HashMap::new();
+        let mut distinct = Vertices::default();
         for object in &scene.objects {
             primitives.object_first.push(primitives.total);
-            primitives.add(object, lattice, &mut vertex_numbers)?;
+            primitives.add(object, lattice, &mut distinct)?;
         }
-        primitives.cut(&mut vertex_numbers)?;
+        primitives.cut(&mut distinct)?;
+        (primitives.vertices, primitives.normals) = distinct.into_parts();
         Ok(primitives)
     }
 
     /// Cuts the neighbors of slivers at the slivers' corners.
-    fn cut(&mut self, vertex_numbers: &mut HashMap<[i32; 3], u32>) -> Result<(), CompileError> {
+    fn cut(&mut self, distinct: &mut Vertices) -> Result<(), CompileError> {
         let cuts = cuts::Cuts::around(&self.slivers);
         if cuts.is_empty() {
             return Ok(());
@@ -115,13 +120,11 @@ impl Primitives {
         let triangles = std::mem::take(&mut self.triangles);
         let numbers = std::mem::take(&mut self.numbers[Kind::Triangle as usize]);
         for (triangle, number) in triangles.into_iter().zip(numbers) {
-            let corners = triangle.map(|vertex| self.vertices[vertex as usize]);
+            let corners = triangle.map(|vertex| distinct.get(vertex).0);
+            let normals = triangle.map(|vertex| distinct.get(vertex).1);
             for piece in cuts.pieces(corners) {
                 let piece = piece.map(|corner| {
-                    *vertex_numbers.entry(corner).or_insert_with(|| {
-                        self.vertices.push(corner);
-                        self.vertices.len() as u32 - 1
-                    })
+                    distinct.number(corner, vertices::normal_at(corner, corners, normals))
                 });
                 self.triangles.push(piece);
                 self.numbers[Kind::Triangle as usize].push(number);
@@ -186,7 +189,7 @@ impl Primitives {
         &mut self,
         object: &Object,
         lattice: &Lattice,
-        vertex_numbers: &mut HashMap<[i32; 3], u32>,
+        distinct: &mut Vertices,
     ) -> Result<(), CompileError> {
         match &object.shape {
             Shape::Mesh {
@@ -194,8 +197,10 @@ impl Primitives {
                 triangles,
             } => {
                 let snapped: Vec<_> = vertices.iter().map(|&v| lattice.snap(v)).collect();
-                // Their numbers among all distinct ones, as soon as they are looked up.
+                // Their numbers among all distinct ones without normals, as soon as they are looked up.
                 let mut numbers = vec![None; vertices.len()];
+                let normals = vertices::stored(&object.normals);
+                let mut is_smooth = false;
                 for (number, triangle) in triangles.iter().enumerate() {
                     let corners = triangle.map(|vertex| snapped[vertex as usize]);
                     if is_degenerate(corners) {
@@ -220,18 +225,25 @@ impl Primitives {
                             })
                             .into_iter()
                             .fold(0.0, f64::max);
-                        let triangle = triangle.map(|vertex| {
-                            *numbers[vertex as usize].get_or_insert_with(|| {
-                                let corner = snapped[vertex as usize];
-                                *vertex_numbers.entry(corner).or_insert_with(|| {
-                                    self.vertices.push(corner);
-                                    self.vertices.len() as u32 - 1
+                        let triangle = match normals.get(number).copied().flatten() {
+                            Some(normals) => {
+                                is_smooth = true;
+                                [0, 1, 2]
+                                    .map(|k: usize| distinct.number(corners[k], Some(normals[k])))
+                            }
+                            None => triangle.map(|vertex| {
+                                *numbers[vertex as usize].get_or_insert_with(|| {
+                                    distinct.number(snapped[vertex as usize], None)
                                 })
-                            })
-                        });
+                            }),
+                        };
                         self.triangles.push(triangle);
                         self.keep(Kind::Triangle, displacement);
                     }
+                }
+                if is_smooth {
+                    self.smooth
+                        .push(format!("mesh {}", printable(&object.name)));
                 }
                 if flattened::is_flattened((vertices, &snapped), triangles) {
                     return Err(CompileError::Flattened {

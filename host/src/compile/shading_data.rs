@@ -40,10 +40,12 @@ pub struct ShadingData {
 }
 
 impl ShadingData {
+    /// Of a scene, in which these meshes have normals of their own.
     pub fn of(
         shapes: &Shapes<'_>,
         lattice: &Lattice,
         (lowest, highest): (DVec3, DVec3),
+        smooth: Vec<String>,
     ) -> Result<Self, CompileError> {
         let scene = shapes.scene();
         let mut supplied = Vec::new();
@@ -76,7 +78,8 @@ impl ShadingData {
         let far = |what, point| on_lattice(lattice, size, what, point);
         let mut numbers: Vec<Option<u32>> = vec![None; scene.materials.len()];
         let mut materials = Vec::new();
-        let mut required_by: Vec<(Effects, String)> = Vec::new();
+        let mut required_by: Vec<(Effects, String)> =
+            smooth.into_iter().map(|by| (Effects::SMOOTH, by)).collect();
         let mut object_material = Vec::with_capacity(scene.objects.len());
         for object in scene.all_objects() {
             let material = &scene.materials[object.material];

@@ -186,10 +186,20 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
 /// The geometry, every kind in the order of its slots.
 fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Section> {
     let slots = &flat.slots[Kind::Triangle as usize];
-    // Vertices in the order in which the leaves need them.
+    let triangles = in_order(&primitives.triangles, slots);
+    // Vertices in the order in which the leaves need them, those with normals first.
     let mut number = vec![u32::MAX; primitives.vertices.len()];
     let mut vertices = Vec::with_capacity(primitives.vertices.len());
-    let triangles: Vec<[u32; 3]> = in_order(&primitives.triangles, slots)
+    let mut normals = Vec::new();
+    for &vertex in triangles.iter().flatten() {
+        let normal = primitives.normals.get(vertex as usize).copied().flatten();
+        if let Some(normal) = normal.filter(|_| number[vertex as usize] == u32::MAX) {
+            number[vertex as usize] = vertices.len() as u32;
+            vertices.push(primitives.vertices[vertex as usize]);
+            normals.push(normal);
+        }
+    }
+    let triangles: Vec<[u32; 3]> = triangles
         .iter()
         .map(|corners| {
             corners.map(|vertex| {
@@ -219,7 +229,8 @@ fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Sect
     } else {
         section(SectionKind::Triangles, &triangles)
     };
-    let mut sections = vec![vertex_section, triangle_section];
+    let normals = section(SectionKind::Normals, &normals);
+    let mut sections = vec![vertex_section, triangle_section, normals];
     sections.extend(primitives.records.sections(lattice.bits, &flat.slots));
     sections
 }

@@ -50,6 +50,8 @@ pub struct Ray {
     pub hit: Option<Hit>,
     /// The weight that absorption on the way leaves.
     pub absorbed: Option<[f64; 3]>,
+    /// The smooth normal that the surface is shaded with.
+    pub smooth: Option<[f64; 3]>,
     pub lights: Vec<Lighting>,
     /// The radiance that it adds to the sample, its weight included.
     pub added: [f64; 3],
@@ -114,6 +116,8 @@ pub enum LightOutcome {
     Lit,
     /// The surface is turned away from it.
     Behind,
+    /// The smooth normal faces it, and the triangle does not.
+    BehindTriangle,
     /// Something stands in between.
     Blocked {
         kind: &'static str,
@@ -247,6 +251,7 @@ impl<'t> Reader<'t> {
             walk: None,
             hit: None,
             absorbed: None,
+            smooth: None,
             lights: Vec::new(),
             added: [0.0; 3],
             background: false,
@@ -305,6 +310,12 @@ impl Ray {
                 }
             }
             Event::Absorbed { weight } => self.absorbed = Some(weight),
+            Event::Smooth { normal } => self.smooth = Some(normal),
+            Event::BehindTriangle => {
+                if let Some(lighting) = self.lights.last_mut() {
+                    lighting.outcome = LightOutcome::BehindTriangle;
+                }
+            }
             Event::Added { source, radiance } => {
                 self.added = radiance;
                 self.background = source == Source::Background;
@@ -364,6 +375,9 @@ impl Lighting {
         }
         if self.cosine <= 0.0 {
             return LightOutcome::Behind;
+        }
+        if matches!(self.outcome, LightOutcome::BehindTriangle) {
+            return LightOutcome::BehindTriangle;
         }
         let Some(last) = self.shadow.last() else {
             return LightOutcome::Unreflected;

@@ -229,6 +229,13 @@ impl Shown<'_> {
             bound(hit.error),
             vector(hit.normal, significant)
         )?;
+        if let Some(normal) = ray.smooth {
+            writeln!(
+                f,
+                "{indent}  shaded with the smooth normal {}",
+                vector(normal, significant)
+            )?;
+        }
         if let Some(weight) = ray.absorbed {
             writeln!(
                 f,
@@ -281,6 +288,9 @@ impl Shown<'_> {
                 color(lighting.radiance)
             ),
             LightOutcome::Behind => format!("{light} is behind the surface (cosine {cosine})"),
+            LightOutcome::BehindTriangle => {
+                format!("{light} is behind the triangle (cosine {cosine} with the smooth normal)")
+            }
             LightOutcome::Blocked {
                 kind,
                 primitive,

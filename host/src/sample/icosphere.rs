@@ -43,6 +43,7 @@ pub fn icosphere(levels: u32) -> Scene {
             triangles,
         },
         place: SourceSpan::default(),
+        normals: Default::default(),
     };
     lit(
         Scene {

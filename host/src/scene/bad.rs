@@ -39,7 +39,7 @@ const FILES: [(&str, Expected); 64] = [
     ("empty.ply", Rejected(NO_FACES)),
     ("empty.stl", Rejected("the file has no triangles")),
     ("end-endmdl.pdb", Read(4, &["\"A\" is unknown", "\"E\" is unknown", "\"G\" is unknown", "has 2 models, of which model 1 is drawn"])),
-    ("face_in_group_name_mid_file.obj", Read(2, &[])),
+    ("face_in_group_name_mid_file.obj", Read(2, &["a face has a normal that the file lacks"])),
     ("insertion-code.pdb", Read(4, &["\"A\" is unknown"])),
     ("insertion_codes.pdb", Read(6, &[])),
     ("invalid-face-definition.obj", Rejected("the file has no faces")),

@@ -111,6 +111,7 @@ fn placed(instance: &Instance, object: &Object) -> Result<Object, SceneError> {
         material: object.material,
         shape: object.shape.transformed(&by).map_err(misfit)?,
         place: object.place.clone(),
+        normals: object.normals.transformed(&by),
     })
 }
 

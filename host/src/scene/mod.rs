@@ -18,6 +18,7 @@ mod importer;
 mod joint;
 mod model;
 pub(crate) mod molecule;
+mod normals;
 mod options;
 mod placement;
 mod polygon;
@@ -39,7 +40,10 @@ pub use joint::{LARGEST_SCALE, LEAST_SCALE};
 pub use model::{
     Camera, Color, Diffuse, Instance, Joint, Light, Material, Object, Part, RenderSettings, Scene,
 };
-pub use options::{Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle};
+pub use normals::Normals;
+pub use options::{
+    Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, NormalsChoice,
+};
 pub use placement::Placement;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
@@ -121,8 +125,13 @@ pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, Scene
     finish(importer.import(input)?, options)
 }
 
-/// Flattens what was read, if that is asked for.
+/// Shades and flattens what was read as it is asked for.
 fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, SceneError> {
+    let scene = &mut imported.scene;
+    let in_parts = scene.parts.iter_mut().flat_map(|part| &mut part.objects);
+    for object in scene.objects.iter_mut().chain(in_parts) {
+        object.shade(options.normals);
+    }
     if options.instances == Instances::Flatten {
         let scene = &mut imported.scene;
         let moving = scene.instances.iter().find(|it| it.joint.is_some());

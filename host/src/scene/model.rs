@@ -1,5 +1,7 @@
 //! The scene as data.
 
+use super::normals::Normals;
+use super::options::NormalsChoice;
 use super::placement::Placement;
 use super::source_span::SourceSpan;
 use super::track::Track;
@@ -133,6 +135,8 @@ pub struct Object {
     /// Index into [`Scene::materials`].
     pub material: usize,
     pub shape: Shape,
+    /// The normals that a mesh is shaded with. Other shapes have none.
+    pub normals: Normals,
     /// Where the scene file says so, for messages.
     pub place: SourceSpan,
 }
@@ -218,6 +222,25 @@ impl Default for Material {
             transmit: [0.0; 3],
             ior: 1.5,
             absorption: [0.0; 3],
+        }
+    }
+}
+
+impl Object {
+    /// Chooses the normals of a mesh.
+    pub(crate) fn shade(&mut self, choice: NormalsChoice) {
+        match (choice, &self.shape) {
+            (NormalsChoice::File, _) => {}
+            (
+                NormalsChoice::Smooth(degrees),
+                Shape::Mesh {
+                    vertices,
+                    triangles,
+                },
+            ) => {
+                self.normals = Normals::computed(vertices, triangles, degrees);
+            }
+            _ => self.normals = Normals::default(),
         }
     }
 }

@@ -108,6 +108,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
                 triangles,
             },
             place: SourceSpan::of(&source.path),
+            normals: Default::default(),
         }],
         ..Scene::default()
     };
@@ -208,7 +209,7 @@ fn read_vertices(
         ),
         (
             keyword.normals,
-            "the normal of a vertex is ignored; the surface is shaded flat",
+            "the normal of a vertex is ignored; for smooth normals use `--normals smooth=40`",
         ),
         (
             keyword.textured,
@@ -360,7 +361,7 @@ mod tests {
             format!("{keyword}\n4 1 4\n{}4 0 1 2 3\n", lines.concat())
         };
         let color = "thing.off:3: the color of a vertex is ignored; the surface has one color (and 3 times more)";
-        let normal = "thing.off:3: the normal of a vertex is ignored; the surface is shaded flat (and 3 times more)";
+        let normal = "thing.off:3: the normal of a vertex is ignored; for smooth normals use `--normals smooth=40` (and 3 times more)";
         let texture = "thing.off:3: the texture coordinates of a vertex are ignored; textures are not drawn (and 3 times more)";
         holds_the_square(&with("COFF", "1 0 0 1"), &[color]);
         holds_the_square(&with("COFF", "255 0 0"), &[color]);

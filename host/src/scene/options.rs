@@ -65,6 +65,18 @@ pub enum Instances {
     Flatten,
 }
 
+/// Which normals meshes are shaded with.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum NormalsChoice {
+    /// Those of the file, where it has some.
+    #[default]
+    File,
+    /// Those of the faces.
+    Flat,
+    /// Computed ones, smooth where faces meet at less than this angle in degrees.
+    Smooth(f64),
+}
+
 /// How a scene file is read.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImportOptions {
@@ -79,6 +91,8 @@ pub struct ImportOptions {
     pub instances: Instances,
     /// The time in seconds at which instances are copied where they move; without one they are copied at rest.
     pub at: Option<f64>,
+    /// Which normals meshes are shaded with.
+    pub normals: NormalsChoice,
     /// Whether the file may name files outside of its folder: imports, materials, buffers. A scene
     /// from elsewhere could read any file of the user's so.
     pub allow_outside: bool,

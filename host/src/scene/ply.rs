@@ -7,7 +7,7 @@
 use super::importer::{Importer, Input, stem};
 use super::polygon::{self, MAX_CONCAVE};
 use super::text::{Warnings, check_encoding};
-use super::{Imported, Material, Object, Scene, SceneError, Shape, SourceSpan};
+use super::{Imported, Material, Normals, Object, Scene, SceneError, Shape, SourceSpan};
 use glam::DVec3;
 use gridel_core::Up;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -90,7 +90,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         let sentence = "data behind what the header announces is ignored";
         warnings.add_times(SourceSpan::of(path), 1, sentence.to_owned());
     }
-    let shape = mesh(path, &vertices, &faces, &strips, &mut warnings)?;
+    let (shape, normals) = mesh(path, &vertices, &faces, &strips, &mut warnings)?;
     let scene = Scene {
         materials: vec![Material::default()],
         objects: vec![Object {
@@ -98,6 +98,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
             material: 0,
             shape,
             place: SourceSpan::of(path),
+            normals,
         }],
         ..Scene::default()
     };
@@ -112,21 +113,18 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
 }
 
 /// Properties that change a picture: what they are, and what the picture lacks.
-const IGNORED: [(&[&str], &str, &str); 2] = [
-    (
-        &[
-            "red",
-            "green",
-            "blue",
-            "diffuse_red",
-            "diffuse_green",
-            "diffuse_blue",
-        ],
-        "color",
-        "the surface has one color",
-    ),
-    (&["nx", "ny", "nz"], "normal", "the surface is shaded flat"),
-];
+const IGNORED: [(&[&str], &str, &str); 1] = [(
+    &[
+        "red",
+        "green",
+        "blue",
+        "diffuse_red",
+        "diffuse_green",
+        "diffuse_blue",
+    ],
+    "color",
+    "the surface has one color",
+)];
 
 /// Warns of what the header announces that changes the picture and is not drawn.
 fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
@@ -191,7 +189,7 @@ fn mesh(
     faces: &[Face],
     strips: &[Face],
     warnings: &mut Warnings,
-) -> Result<Shape, SceneError> {
+) -> Result<(Shape, Normals), SceneError> {
     let wrong = |cause: String, remedy: &str| SceneError::new(path, cause, remedy);
     if faces.is_empty() && strips.is_empty() {
         return Err(wrong(
@@ -201,7 +199,7 @@ fn mesh(
     }
     let vertices: Vec<DVec3> = read
         .iter()
-        .map(|vertex| DVec3::from_array(vertex.0))
+        .map(|vertex| DVec3::from_array(vertex.position))
         .collect();
     if let Some(number) = vertices.iter().position(|vertex| !vertex.is_finite()) {
         return Err(wrong(
@@ -285,10 +283,18 @@ fn mesh(
             "export a mesh; points and lines cannot be rendered",
         ));
     }
-    Ok(Shape::Mesh {
+    // Of those that the file lacks nothing is smooth.
+    let normals = read.iter().map(|vertex| DVec3::from_array(vertex.normal));
+    let normals = Normals::given(
+        normals.collect(),
+        triangles.clone(),
+        (&vertices, &triangles),
+    );
+    let shape = Shape::Mesh {
         vertices,
         triangles,
-    })
+    };
+    Ok((shape, normals))
 }
 
 /// The triangles of a strip, of which every second one is turned. Vertices that come twice join
@@ -306,18 +312,30 @@ fn strip_triangles(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
 }
 
 /// A vertex; NaN where it says nothing.
-struct Vertex([f64; 3]);
+struct Vertex {
+    position: [f64; 3],
+    normal: [f64; 3],
+}
 
 impl PropertyAccess for Vertex {
     fn new() -> Self {
-        Self([f64::NAN; 3])
+        Self {
+            position: [f64::NAN; 3],
+            normal: [f64::NAN; 3],
+        }
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == name) else {
-            return PropertyAccessResult::Ignored;
+        let component = match name {
+            "x" => &mut self.position[0],
+            "y" => &mut self.position[1],
+            "z" => &mut self.position[2],
+            "nx" => &mut self.normal[0],
+            "ny" => &mut self.normal[1],
+            "nz" => &mut self.normal[2],
+            _ => return PropertyAccessResult::Ignored,
         };
-        self.0[axis] = match property {
+        *component = match property {
             Property::Float(value) => value.into(),
             Property::Double(value) => value,
             Property::Char(value) => value.into(),

@@ -252,6 +252,7 @@ impl Soup {
             material: 0,
             shape,
             place,
+            normals: Default::default(),
         })
     }
 }

@@ -1,8 +1,8 @@
 //! Random chains of joints for tests.
 
 use super::{
-    Instance, Interpolation, Joint, Key, Material, Object, Part, Placement, Scene, SourceSpan,
-    Track, TrackTarget,
+    Instance, Interpolation, Joint, Key, Material, Normals, Object, Part, Placement, Scene,
+    SourceSpan, Track, TrackTarget,
 };
 use crate::shape::{Shape, Sphere};
 use glam::{DQuat, DVec3, DVec4};
@@ -93,6 +93,7 @@ pub fn chain(random: &mut Random, all_scale: bool) -> Scene {
     scene.parts.push(Part {
         name: String::new(),
         objects: vec![Object {
+            normals: Normals::default(),
             name: String::new(),
             material: 0,
             shape: Shape::Sphere(Sphere {

@@ -4,13 +4,14 @@
 use crate::program::Folder;
 use std::fmt::Write;
 
-const NORMALS: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//2\n";
+const COLORS: &str = "v 0 0 0\nv 1 0 0 1 1 1\nv 0 1 0 1 0 0\nf 1 2 3\n";
 
 #[test]
 fn ignored_data_are_in_the_json_of_every_command() {
     let folder = Folder::new();
-    folder.write("a.obj", NORMALS.as_bytes());
-    let warning = "a.obj:4: vertex normals are ignored; the surface is shaded flat (and once more)";
+    folder.write("a.obj", COLORS.as_bytes());
+    let warning =
+        "a.obj:2: vertex colors are ignored; the surface has its material's color (and once more)";
     let small = ["--size", "16x12"];
     for arguments in [
         &["build", "a.obj", "-o", "a.gridel"][..],
@@ -40,7 +41,7 @@ fn ignored_data_are_in_the_json_of_every_command() {
     let check = "[[check]]\nscene = \"a.obj\"\nbudget = { blob_bytes = 1_000_000 }\n";
     folder.write("check.toml", check.as_bytes());
     let report = folder.json(&["check", "check.toml"]).to_string();
-    assert!(report.contains("vertex normals are ignored"), "{report}");
+    assert!(report.contains("vertex colors are ignored"), "{report}");
 }
 
 #[test]

@@ -304,6 +304,7 @@ fn ball() -> Workload {
             triangles,
         },
         place: scene::SourceSpan::default(),
+        normals: Default::default(),
     });
     Workload::of(BALL, scene)
 }

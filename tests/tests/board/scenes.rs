@@ -180,6 +180,7 @@ fn torus_mesh_scene([rings, around]: [u32; 2]) -> Scene {
                 triangles: cells.flat_map(|(ring, step)| faces(ring, step)).collect(),
             },
             place: SourceSpan::default(),
+            normals: Default::default(),
         }],
         ..Scene::default()
     }
@@ -283,6 +284,11 @@ pub fn thirty_two_balls() -> Compiled {
 
 fn suzanne_scene() -> Scene {
     let mut scene = load(&real(SUZANNE));
+    // As other tracers draw it.
+    scene
+        .objects
+        .iter_mut()
+        .for_each(|object| object.normals = Default::default());
     let vertices = scene.objects.iter().flat_map(|object| match &object.shape {
         Shape::Mesh { vertices, .. } => &vertices[..],
         _ => &[],

@@ -26,6 +26,7 @@ fn reasons_are_true() {
             max: glam::DVec3::new(20.0, -2.0, 20.0),
         }),
         place: SourceSpan::default(),
+        normals: Default::default(),
     });
     scene.lights = vec![
         Light::Directional {

@@ -275,6 +275,11 @@ impl Vectors for Fixed {
     }
 
     #[inline(always)]
+    fn proportions(v: [Product; 3]) -> [Self; 3] {
+        vector::proportions(v)
+    }
+
+    #[inline(always)]
     fn slopes(v: [Product; 3]) -> Option<([Self; 3], usize)> {
         vector::slopes(v)
     }

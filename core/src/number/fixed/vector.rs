@@ -69,6 +69,14 @@ pub(super) fn direction(v: [i64; 3]) -> [Fixed; 3] {
     v.map(|component| Fixed(shift_magnitude(component, bits)))
 }
 
+/// [`Vectors::proportions`](crate::number::Vectors::proportions).
+#[inline(always)]
+pub(super) fn proportions(v: [Product; 3]) -> [Fixed; 3] {
+    let v = v.map(|product| product.0);
+    let bits = excess_bits(v, 29);
+    v.map(|component| Fixed(shift_magnitude(component, bits)))
+}
+
 inline_unless_small!(
     /// [`Vectors::slopes`](crate::number::Vectors::slopes).
     pub(super) fn slopes(v: [Product; 3]) -> Option<([Fixed; 3], usize)> {

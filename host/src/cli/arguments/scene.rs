@@ -7,7 +7,7 @@ use super::view::ViewOptions;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
-use gridel_host::scene::{self, Instances, MoleculeStyle};
+use gridel_host::scene::{self, Instances, MoleculeStyle, NormalsChoice};
 use std::num::NonZeroUsize;
 
 /// Help for the argument that names a scene file.
@@ -90,6 +90,11 @@ pub struct ImportOptions {
     #[arg(long, value_parser = instances())]
     instances: Option<Instances>,
 
+    /// Normals of meshes: those of the file, those of the faces, or smooth where faces meet at less than an angle in
+    /// degrees, such as smooth=40 [default: file]
+    #[arg(long, value_name = "file|flat|smooth=DEG", value_parser = normals)]
+    normals: Option<NormalsChoice>,
+
     /// Whether the command works on flattened scenes.
     #[arg(skip)]
     flattens: bool,
@@ -151,6 +156,7 @@ impl GeometryOptions {
             (self.room.is_some(), "--room"),
             (self.import.allow_outside, "--allow-outside"),
             (self.import.instances.is_some(), "--instances"),
+            (self.import.normals.is_some(), "--normals"),
             (self.import.assembly.is_some(), "--assembly"),
         ])
         .or(self.import.given_choice())
@@ -209,8 +215,14 @@ impl ImportOptions {
             None => "",
         };
         let assembly = choice("assembly", &self.assembly);
+        let normals = match self.normals {
+            Some(NormalsChoice::File) => String::from(" --normals file"),
+            Some(NormalsChoice::Flat) => String::from(" --normals flat"),
+            Some(NormalsChoice::Smooth(degrees)) => format!(" --normals smooth={degrees}"),
+            None => String::new(),
+        };
         let molecule = self.molecule.written();
-        format!("{outside}{camera}{animation}{instances}{assembly}{molecule}")
+        format!("{outside}{camera}{animation}{instances}{assembly}{normals}{molecule}")
     }
 
     /// The name of an option for glTF files, if one was given.
@@ -257,6 +269,7 @@ impl ImportOptions {
                 camera: self.camera.clone(),
                 animation: self.animation.clone(),
             },
+            normals: self.normals.unwrap_or_default(),
             allow_outside: self.allow_outside,
         }
     }
@@ -309,6 +322,18 @@ impl TargetPoint {
         let mut options = options.clone();
         options.view.target = self.target;
         options
+    }
+}
+
+fn normals(text: &str) -> Result<NormalsChoice, String> {
+    let degrees = |text: &str| text.parse().ok().filter(|it| (0.0..=180.0).contains(it));
+    match (text, text.strip_prefix("smooth=").and_then(degrees)) {
+        ("file", _) => Ok(NormalsChoice::File),
+        ("flat", _) => Ok(NormalsChoice::Flat),
+        (_, Some(degrees)) => Ok(NormalsChoice::Smooth(degrees)),
+        _ => Err(String::from(
+            "write file, flat, or smooth= and an angle from 0 to 180 degrees, such as smooth=40",
+        )),
     }
 }
 

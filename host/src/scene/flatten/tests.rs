@@ -12,6 +12,7 @@ fn object(name: &str, shape: Shape) -> Object {
         material: 0,
         shape,
         place: SourceSpan::of(Path::new("a.toml")),
+        normals: Default::default(),
     }
 }
 

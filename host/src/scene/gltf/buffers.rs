@@ -68,13 +68,22 @@ impl<'a> Buffers<'a> {
 
     /// Reads positions.
     pub(super) fn positions(&self, accessor: &Accessor<'_>) -> Result<Vec<[f32; 3]>, SceneError> {
+        self.vectors(accessor, "positions")
+    }
+
+    /// Reads positions or normals.
+    pub(super) fn vectors(
+        &self,
+        accessor: &Accessor<'_>,
+        what: &str,
+    ) -> Result<Vec<[f32; 3]>, SceneError> {
         match (accessor.data_type(), accessor.dimensions()) {
             (DataType::F32, Dimensions::Vec3) => {
                 self.values(accessor, [0.0; 3], bytemuck::pod_read_unaligned)
             }
             (kind, dimensions) => Err(self.error(
                 accessor,
-                format!("is to hold positions and holds {dimensions:?} of {kind:?}"),
+                format!("is to hold {what} and holds {dimensions:?} of {kind:?}"),
             )),
         }
     }

@@ -14,13 +14,14 @@ mod document;
 mod instances;
 mod joints;
 mod material;
+mod normals;
 mod place;
 mod shared;
 mod view;
 
 use super::importer::{Choices, Importer as Entry, Input};
 use super::text::Warnings;
-use super::{Choice, Imported, Object, Scene, SceneError, Shape, SourceSpan};
+use super::{Choice, Imported, Normals, Object, Scene, SceneError, Shape, SourceSpan};
 use animation::Motion;
 use buffers::{Buffers, MOST};
 use glam::{DMat4, DVec3};
@@ -174,10 +175,6 @@ impl Importer<'_> {
         let parts = || document.meshes().flat_map(|mesh| mesh.primitives());
         let with =
             |semantic: Semantic| parts().filter(|part| part.get(&semantic).is_some()).count();
-        self.warn_of(
-            with(Semantic::Normals),
-            "NORMAL of a primitive is ignored; its surface is shaded flat",
-        );
         self.warn_of(
             with(Semantic::Colors(0)),
             "COLOR_0 of a primitive is ignored; its surface has its material's color",
@@ -351,7 +348,7 @@ impl Importer<'_> {
         let mut objects = Vec::with_capacity(parts);
         for part in mesh.primitives() {
             let place = place(mesh, &part);
-            let Some(shape) = self.mesh(&place, &part, world)? else {
+            let Some((shape, normals)) = self.mesh(&place, &part, world)? else {
                 continue;
             };
             let name = match parts {
@@ -364,6 +361,7 @@ impl Importer<'_> {
                 material,
                 shape,
                 place: self.place.clone(),
+                normals,
             });
         }
         Ok(objects)
@@ -387,7 +385,7 @@ impl Importer<'_> {
         place: &str,
         part: &Primitive<'_>,
         world: &DMat4,
-    ) -> Result<Option<Shape>, SceneError> {
+    ) -> Result<Option<(Shape, Normals)>, SceneError> {
         if !matches!(
             part.mode(),
             Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
@@ -438,10 +436,15 @@ impl Importer<'_> {
                 "export the file again, or repair the vertex",
             ));
         }
-        Ok(Some(Shape::Mesh {
+        let normals = match part.get(&Semantic::Normals) {
+            Some(accessor) => self.normals(place, &accessor, world, (&vertices, &triangles))?,
+            None => Normals::default(),
+        };
+        let shape = Shape::Mesh {
             vertices,
             triangles,
-        }))
+        };
+        Ok(Some((shape, normals)))
     }
 }
 

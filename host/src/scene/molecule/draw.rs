@@ -57,6 +57,7 @@ pub(crate) fn draw(
                         apex_radius: STICK,
                     }),
                     place: balls[near].place.clone(),
+                    normals: Default::default(),
                 });
             }
         }
@@ -72,6 +73,7 @@ pub(crate) fn draw(
                 radius: scale * ball.site.element.van_der_waals(),
             }),
             place: ball.place,
+            normals: Default::default(),
         })
         .collect();
     objects.extend(sticks);

@@ -4,7 +4,7 @@ use crate::shape::{Cone, Sphere};
 use super::Importer;
 use super::reader::{Line, Lines};
 use crate::scene::polygon::{self, MAX_CONCAVE};
-use crate::scene::{Material, Object, SceneError, Shape};
+use crate::scene::{Material, Normals, Object, SceneError, Shape};
 use glam::DVec3;
 
 impl<'a> Importer<'a> {
@@ -118,15 +118,8 @@ impl<'a> Importer<'a> {
                 .source
                 .error_at(line.text, cause, "give it at least 3 vertices"));
         }
-        if numbers == 6 {
-            self.warnings.add(
-                self.source,
-                line.number,
-                "the normals of a patch are ignored; its surface is shaded flat",
-            );
-        }
         // Nothing is reserved for the count before its lines are there: it may be a lie.
-        let mut vertices = Vec::new();
+        let (mut vertices, mut normals) = (Vec::new(), Vec::new());
         while vertices.len() < count {
             let Some(given) = lines.next() else {
                 return Err(self.source.error_at(
@@ -150,8 +143,9 @@ impl<'a> Importer<'a> {
                 ));
             }
             let [x, y, z] = if numbers == 6 && given.numbers_from(0) >= 6 {
-                let [x, y, z, ..] =
+                let [x, y, z, nx, ny, nz] =
                     given.numbers::<6>(self.source, &mut self.warnings, 0, "x y z nx ny nz")?;
+                normals.push(DVec3::new(nx, ny, nz));
                 [x, y, z]
             } else {
                 given.numbers::<3>(self.source, &mut self.warnings, 0, "x y z")?
@@ -172,14 +166,19 @@ impl<'a> Importer<'a> {
                 "a polygon crosses itself; its triangles cover more than it encloses",
             );
         }
-        self.add(
-            "polygon",
-            line,
-            Shape::Mesh {
-                vertices,
-                triangles: result.triangles,
-            },
-        );
+        let triangles = result.triangles;
+        let normals = match normals.len() == vertices.len() {
+            true => Normals::given(normals, triangles.clone(), (&vertices, &triangles)),
+            false => Normals::default(),
+        };
+        let shape = Shape::Mesh {
+            vertices,
+            triangles,
+        };
+        self.add("polygon", line, shape);
+        if let Some(object) = self.scene.objects.last_mut() {
+            object.normals = normals;
+        }
         Ok(())
     }
 
@@ -206,6 +205,7 @@ impl<'a> Importer<'a> {
             material,
             shape,
             place: self.source.place(line.number),
+            normals: Normals::default(),
         });
     }
 }

@@ -15,6 +15,16 @@ fn fault(text: &str) -> String {
 const VIEW: &str = "v\nfrom 0 0 9\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 64 48\n";
 
 #[test]
+fn patches_have_their_normals() {
+    let patch = "pp 3\n0 0 0 0 0 1\n1 0 0 .5 0 1\n0 1 0 0 0 -1\np 3\n0 0 0\n1 0 0\n0 1 0\n";
+    let scene = read(&format!("{VIEW}f 1 1 1 1 0 0 0 0\n{patch}")).unwrap().scene;
+    let [smooth, flat] = [0, 1].map(|number: usize| &scene.objects[number].normals);
+    assert_eq!(smooth.triangles, [[0, 1, 2]]);
+    assert_eq!(smooth.vectors[2], -DVec3::Z);
+    assert!(flat.is_flat());
+}
+
+#[test]
 fn everything_the_format_has() {
     let text = format!(
         "b .1 .2 .3 # sky\n{VIEW}l 1 2 3\nl 4 5 6\nl 4 5 6 1 .5 0\nf 1 .5 0 .8 .25 20 .5 1.5\ns 1 2 3 -4\n\
@@ -24,10 +34,7 @@ fn everything_the_format_has() {
     let Imported {
         scene, warnings, ..
     } = read(&text).unwrap();
-    assert_eq!(
-        warnings,
-        ["t.nff:21: the normals of a patch are ignored; its surface is shaded flat"]
-    );
+    assert_eq!(warnings, [] as [&str; 0]);
     assert!(scene.display_values);
     assert_eq!(scene.background, Some([0.1, 0.2, 0.3]));
     let camera = scene.camera.unwrap();
@@ -236,8 +243,9 @@ fn standard_procedural_databases() {
             scene, warnings, ..
         } = load(&path).unwrap();
         let patches = ["sample.nff", "teapot.nff"].contains(&name);
-        assert_eq!(warnings.len(), usize::from(patches), "{name}: {warnings:?}");
-        assert!(warnings.iter().all(|it| it.contains("normals of a patch")));
+        assert_eq!(warnings, [] as [&str; 0], "{name}");
+        let is_smooth = scene.objects.iter().any(|it| !it.normals.is_flat());
+        assert_eq!(is_smooth, patches, "{name}");
         assert_eq!(counts(&scene), expected.iter().copied().collect(), "{name}");
         assert!(scene.camera.is_some());
         for object in &scene.objects {

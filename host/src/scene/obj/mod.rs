@@ -6,8 +6,8 @@
 //! of a file would have had to be parsed before it was handed over.
 //!
 //! Every `o`, `g` and change of `usemtl` starts a new mesh, in file order, which holds only the
-//! vertices that it uses. Faces are cut into triangles in file order. Normals, smoothing groups,
-//! textures and vertex colors are ignored, with a warning each. Zero-area triangles are kept for
+//! vertices that it uses. Faces are cut into triangles in file order. A face whose corners all have
+//! normals is smooth. Smoothing groups, textures and vertex colors are ignored, with a warning each. Zero-area triangles are kept for
 //! the compiler to report.
 
 mod mtl;
@@ -18,10 +18,10 @@ use super::importer::{Importer, Input};
 use super::polygon::{self, MAX_CONCAVE};
 use super::size::Size;
 use super::text::{Source, Warnings};
-use super::{Imported, Material, Object, Scene, SceneError, Shape};
+use super::{Imported, Material, Normals, Object, Scene, SceneError, Shape};
 use gridel_core::Up;
 use glam::DVec3;
-use parser::{Parsed, Part};
+use parser::{NO_NORMAL, Parsed, Part};
 use std::collections::{HashMap, HashSet};
 
 pub(super) const IMPORTER: Importer = Importer {
@@ -74,6 +74,7 @@ fn import(source: &Source, access: &Access) -> Result<Imported, SceneError> {
     };
     let mut mesher = Mesher {
         vertices: &parsed.vertices,
+        normals: &parsed.normals,
         seen: vec![(usize::MAX, 0); parsed.vertices.len()],
     };
     let mut scene = Scene::default();
@@ -84,12 +85,13 @@ fn import(source: &Source, access: &Access) -> Result<Imported, SceneError> {
             part.name.to_owned()
         };
         let material = materials.resolve(part, source, &mut warnings);
-        let shape = mesher.mesh(number, part, source, &mut warnings)?;
+        let (shape, normals) = mesher.mesh(number, part, source, &mut warnings)?;
         scene.objects.push(Object {
             name,
             material,
             shape,
             place: source.place(part.line),
+            normals,
         });
     }
     scene.materials = materials.used;
@@ -198,6 +200,7 @@ impl<'a> Materials<'a> {
 /// Makes meshes of parts of one file.
 struct Mesher<'a> {
     vertices: &'a [DVec3],
+    normals: &'a [DVec3],
     /// For each vertex of the file, the last part that used it and its index there.
     seen: Vec<(usize, u32)>,
 }
@@ -209,9 +212,11 @@ impl Mesher<'_> {
         part: &Part<'_>,
         source: &Source,
         warnings: &mut Warnings,
-    ) -> Result<Shape, SceneError> {
+    ) -> Result<(Shape, Normals), SceneError> {
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
         let mut corners = part.corners.as_slice();
+        let mut of_corners = part.normals.as_slice();
+        let mut normals = PartNormals::default();
         let (mut local, mut points) = (Vec::new(), Vec::new());
         for face in &part.faces {
             let (outline, rest) = corners.split_at(face.corners);
@@ -239,6 +244,14 @@ impl Mesher<'_> {
                 let sentence = "a face crosses itself; its triangles cover more than it encloses";
                 warnings.add(source, face.line, sentence);
             }
+            if !of_corners.is_empty() {
+                let (outline, rest) = of_corners.split_at(face.corners);
+                of_corners = rest;
+                if !normals.add(self.normals, outline, &result.triangles) {
+                    let sentence = "a face has a normal that the file lacks, and is shaded flat";
+                    warnings.add(source, face.line, sentence);
+                }
+            }
             triangles.extend(
                 result
                     .triangles
@@ -246,10 +259,44 @@ impl Mesher<'_> {
                     .map(|t| t.map(|corner| local[corner as usize])),
             );
         }
-        Ok(Shape::Mesh {
+        let normals = Normals::given(normals.vectors, normals.triangles, (&vertices, &triangles));
+        let shape = Shape::Mesh {
             vertices,
             triangles,
-        })
+        };
+        Ok((shape, normals))
+    }
+}
+
+/// The normals of a part, of which it holds only those that it uses.
+#[derive(Default)]
+struct PartNormals {
+    vectors: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    /// The numbers here of normals of the file.
+    numbers: HashMap<u32, u32>,
+}
+
+impl PartNormals {
+    /// Adds those of a face's corners, which has these triangles. Returns false if one of them is missing.
+    fn add(&mut self, all: &[DVec3], outline: &[u32], triangles: &[[u32; 3]]) -> bool {
+        let is_flat = outline.contains(&NO_NORMAL);
+        let is_missing = outline.iter().any(|it| *it as usize >= all.len());
+        let is_complete = is_flat || !is_missing;
+        if is_flat || is_missing {
+            self.triangles.extend(triangles.iter().map(|_| Normals::FLAT));
+            return is_complete;
+        }
+        let number = |corner: &u32| {
+            *self.numbers.entry(*corner).or_insert_with(|| {
+                self.vectors.push(all[*corner as usize]);
+                self.vectors.len() as u32 - 1
+            })
+        };
+        let local: Vec<u32> = outline.iter().map(number).collect();
+        let named = |triangle: &[u32; 3]| triangle.map(|corner| local[corner as usize]);
+        self.triangles.extend(triangles.iter().map(named));
+        true
     }
 }
 

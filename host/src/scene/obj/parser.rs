@@ -7,6 +7,8 @@ use glam::DVec3;
 #[derive(Default)]
 pub(super) struct Parsed<'a> {
     pub(super) vertices: Vec<DVec3>,
+    /// Of any length.
+    pub(super) normals: Vec<DVec3>,
     /// In file order; each has at least one face.
     pub(super) parts: Vec<Part<'a>>,
     /// The text behind each `mtllib`, with its line.
@@ -23,7 +25,14 @@ pub(super) struct Part<'a> {
     pub(super) faces: Vec<Face>,
     /// Vertex indices of all faces, one after the other.
     pub(super) corners: Vec<u32>,
+    /// The normals of the corners, likewise; [`NO_NORMAL`] where there is none. Empty where no face has any.
+    pub(super) normals: Vec<u32>,
 }
+
+/// Stands for the normal of a corner that has none.
+pub(super) const NO_NORMAL: u32 = u32::MAX;
+/// Stands for a normal that the file cannot have.
+const MISSING_NORMAL: u32 = NO_NORMAL - 1;
 
 pub(super) struct Face {
     pub(super) line: usize,
@@ -51,6 +60,7 @@ pub(super) fn parse<'a>(
         material: None,
         fresh: true,
         highest: None,
+        smoothing: None,
     };
     let mut lines = source.lines();
     while let Some((number, line)) = lines.next() {
@@ -69,11 +79,12 @@ pub(super) fn parse<'a>(
             .unwrap_or(words.len());
         match words.first() {
             Some(&"v") => parser.vertex(number, line, &words[1..end], warnings)?,
+            Some(&"vn") => parser.normal(line, &words[1..end])?,
             Some(&"f") => parser.face(number, &words[1..end], warnings)?,
             _ => parser.statement(number, line.trim(), warnings),
         }
     }
-    parser.finish()
+    parser.finish(warnings)
 }
 
 struct Parser<'a> {
@@ -85,6 +96,8 @@ struct Parser<'a> {
     fresh: bool,
     /// The highest index of a face and its word; it may point ahead to vertices not yet read.
     highest: Option<(u64, &'a str)>,
+    /// The first smoothing group.
+    smoothing: Option<usize>,
 }
 
 impl<'a> Parser<'a> {
@@ -122,16 +135,38 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
+    fn normal(&mut self, line: &'a str, words: &[&'a str]) -> Result<(), SceneError> {
+        let &[x, y, z, ..] = words else {
+            return Err(self.source.error_at(
+                line.trim(),
+                format!("a normal has {} of 3 components", words.len()),
+                "write `vn x y z`",
+            ));
+        };
+        let mut normal = [0.0; 3];
+        for (value, word) in normal.iter_mut().zip([x, y, z]) {
+            *value = self.source.number(word, "a component of a normal")?;
+        }
+        self.parsed.normals.push(DVec3::from_array(normal));
+        Ok(())
+    }
+
     fn face(
         &mut self,
         line: usize,
         words: &[&'a str],
         warnings: &mut Warnings,
     ) -> Result<(), SceneError> {
-        let corners = words
-            .iter()
-            .map(|word| self.corner(word))
-            .collect::<Result<Vec<u32>, _>>()?;
+        let mut corners = Vec::with_capacity(words.len());
+        let mut normals = Vec::new();
+        for word in words {
+            let mut indices = word.split('/');
+            corners.push(self.corner(word, indices.next().unwrap_or(""))?);
+            normals.push(match indices.nth(1) {
+                None | Some("") => NO_NORMAL,
+                Some(index) => self.normal_of(index),
+            });
+        }
         if corners.len() < 3 {
             let sentence = format!(
                 "a face of {} vertices has no surface and is skipped",
@@ -147,6 +182,7 @@ impl<'a> Parser<'a> {
                 line,
                 faces: Vec::new(),
                 corners: Vec::new(),
+                normals: Vec::new(),
             });
             self.fresh = false;
         }
@@ -155,14 +191,17 @@ impl<'a> Parser<'a> {
                 line,
                 corners: corners.len(),
             });
+            if !part.normals.is_empty() || normals.iter().any(|it| *it != NO_NORMAL) {
+                part.normals.resize(part.corners.len(), NO_NORMAL);
+                part.normals.extend(normals);
+            }
             part.corners.extend(corners);
         }
         Ok(())
     }
 
     /// Reads the position of `position/texture/normal` as an index counted from 0.
-    fn corner(&mut self, word: &'a str) -> Result<u32, SceneError> {
-        let index = word.split('/').next().unwrap_or("");
+    fn corner(&mut self, word: &'a str, index: &str) -> Result<u32, SceneError> {
         let remedy = "vertices are counted from 1, or backwards from -1";
         let count = self.parsed.vertices.len();
         let fault = |cause: String| Err(self.source.error_at(word, cause, remedy));
@@ -186,6 +225,15 @@ impl<'a> Parser<'a> {
         }
     }
 
+    /// Reads the index of a normal, counted from 0; [`MISSING_NORMAL`] for one that cannot be.
+    fn normal_of(&self, index: &str) -> u32 {
+        let count = self.parsed.normals.len() as i64;
+        let index = index.parse::<i64>().ok().filter(|it| *it != 0);
+        let index = index.map(|it| if it < 0 { count + it } else { it - 1 });
+        let index = index.and_then(|it| u32::try_from(it).ok());
+        index.map_or(MISSING_NORMAL, |it| it.min(MISSING_NORMAL))
+    }
+
     fn statement(&mut self, number: usize, line: &'a str, warnings: &mut Warnings) {
         let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
         let rest = rest.trim();
@@ -205,16 +253,9 @@ impl<'a> Parser<'a> {
                 number,
                 "points and lines have no surface and are skipped",
             ),
-            "vn" => warnings.add(
-                self.source,
-                number,
-                "vertex normals are ignored; the surface is shaded flat",
-            ),
-            "s" if !["", "0", "off"].contains(&rest) => warnings.add(
-                self.source,
-                number,
-                "smoothing groups are ignored; the surface is shaded flat",
-            ),
+            "s" if !["", "0", "off"].contains(&rest) => {
+                self.smoothing.get_or_insert(number);
+            }
             "usemap" if !["", "off"].contains(&rest) => warnings.add(
                 self.source,
                 number,
@@ -231,15 +272,21 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn finish(self) -> Result<Parsed<'a>, SceneError> {
+    fn finish(self, warnings: &mut Warnings) -> Result<Parsed<'a>, SceneError> {
         let count = self.parsed.vertices.len();
-        match self.highest {
-            Some((index, word)) if index > count as u64 => Err(self.source.error_at(
+        if let Some((index, word)) = self.highest.filter(|(index, _)| *index > count as u64) {
+            return Err(self.source.error_at(
                 word,
                 format!("a face has the vertex index {index}, but the file has {count} vertices"),
                 "correct the index, or check that the file is complete",
-            )),
-            _ => Ok(self.parsed),
+            ));
         }
+        if let Some(line) = self.smoothing
+            && self.parsed.parts.iter().all(|part| part.normals.is_empty())
+        {
+            let sentence = "smoothing groups are ignored; for smooth normals use `--normals smooth=40`";
+            warnings.add(self.source, line, sentence);
+        }
+        Ok(self.parsed)
     }
 }

@@ -267,7 +267,8 @@ fn real_meshes_have_the_triangles_box_and_area_that_trimesh_finds() {
 #[test]
 fn known_meshes() {
     for (name, objects, triangles, normals) in [
-        ("suzanne.obj", 1, 968, 507),
+        // Faces wound the other way round take three of its 507 normals turned.
+        ("suzanne.obj", 1, 968, 510),
         ("stanford-bunny.obj", 1, 69_451, 0),
         ("cornell_box.obj", 8, 36, 0),
     ] {
@@ -279,20 +280,36 @@ fn known_meshes() {
         } = load(&path).unwrap();
         assert_eq!(measure(&scene).0, triangles, "{name}");
         assert_eq!(scene.objects.len(), objects, "{name}");
-        match normals {
-            0 => assert_eq!(warnings, [] as [&str; 0], "{name}"),
-            _ => {
-                let expected = format!(
-                    "vertex normals are ignored; the surface is shaded flat (and {} times more)",
-                    normals - 1
-                );
-                assert!(
-                    warnings.len() == 1 && warnings[0].ends_with(&expected),
-                    "{warnings:?}"
-                );
-            }
-        }
+        assert_eq!(warnings, [] as [&str; 0], "{name}");
+        let found = scene.objects.iter().map(|it| it.normals.vectors.len());
+        assert_eq!(found.sum::<usize>(), normals, "{name}");
     }
+}
+
+#[test]
+fn faces_are_smooth_where_all_corners_have_normals() {
+    let text = format!(
+        "{CORNERS}vn 0 0 2\nvn 1 0 1\nvn 0 1 1\nvn 9 9 9\nf 1//1 2//2 3/7/-2\nf 1//1 2 3//3\nf 1 3 4\n\
+         f 1//2 2//1 3//5\nf 1//0 2//1 3//1\nf 1//1 2//1 3//1 4//1\n"
+    );
+    let Imported {
+        scene, warnings, ..
+    } = read(&text).unwrap();
+    let normals = &scene.objects[0].normals;
+    let flat = Normals::FLAT;
+    // The file's face of its own normals is flat, too.
+    assert_eq!(normals.triangles, [[0, 1, 2], flat, flat, flat, flat, flat, flat]);
+    assert_eq!(normals.vectors[0], DVec3::Z);
+    assert!((normals.vectors[1] - DVec3::new(1.0, 0.0, 1.0).normalize()).length() < 1e-15);
+    assert_eq!(
+        warnings,
+        ["t.obj:12: a face has a normal that the file lacks, and is shaded flat (and once more)"]
+    );
+    assert_eq!(fault("vn 1 2\n"), "t.obj:1: a normal has 2 of 3 components");
+    assert_eq!(
+        fault("vn 1 2 x\n"),
+        "t.obj:1: a component of a normal is \"x\", which is not a number"
+    );
 }
 
 #[test]
@@ -304,8 +321,7 @@ fn ignored_smoothing_and_colors_cause_one_warning_with_a_count() {
         [
             "t.obj:1: vertex colors are ignored; the surface has its material's color (and 2 \
              times more)",
-            "t.obj:4: vertex normals are ignored; the surface is shaded flat (and once more)",
-            "t.obj:8: smoothing groups are ignored; the surface is shaded flat",
+            "t.obj:8: smoothing groups are ignored; for smooth normals use `--normals smooth=40`",
         ]
     );
 }

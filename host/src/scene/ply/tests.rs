@@ -135,7 +135,7 @@ fn with_properties(vertex: &str, face: &str) -> String {
 }
 
 #[test]
-fn colors_normals_and_textures_are_warned_of() {
+fn colors_and_textures_are_warned_of() {
     let text = with_properties(
         "property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\n",
         "property uchar red\n",
@@ -149,7 +149,6 @@ fn colors_normals_and_textures_are_warned_of() {
         ends,
         [
             "3: textures are not drawn; the plain colors are used",
-            "8: the normal of a vertex is ignored; the surface is shaded flat (and 2 times more)",
             "11: the color of a vertex is ignored; the surface has one color (and 2 times more)",
             "14: the color of a face is ignored; the surface has one color",
         ]
@@ -185,4 +184,20 @@ fn data_behind_what_is_announced_is_reported() {
     assert_eq!(found.count(), 1, "{:?}", imported.warnings);
     let blank = read(&[SQUARE.as_bytes(), b"\n \n"].concat()).unwrap();
     assert_eq!(blank.warnings.len(), 3, "{:?}", blank.warnings);
+}
+
+#[test]
+fn vertices_bring_their_normals() {
+    let properties = "property float nx\nproperty float ny\nproperty float nz\n";
+    let text =
+        with_properties(properties, "") + "0 0 0 0 0 2\n1 0 0 .5 0 1\n0 1 0 0 .5 1\n3 0 1 2\n";
+    let scene = read(text.as_bytes()).unwrap().scene;
+    let normals = &scene.objects[0].normals;
+    assert_eq!(normals.triangles, [[0, 1, 2]]);
+    assert_eq!(normals.vectors[0], DVec3::Z);
+    assert!(
+        read(SQUARE.as_bytes()).unwrap().scene.objects[0]
+            .normals
+            .is_flat()
+    );
 }

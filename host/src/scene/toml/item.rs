@@ -10,6 +10,8 @@ pub(super) struct Item {
     /// The name the file gives it, or one made of its kind and its number in its list.
     pub(super) name: String,
     pub(super) material: Option<Name>,
+    /// The angle of `smooth`.
+    pub(super) smooth: Option<f64>,
     pub(super) transform: DAffine3,
     pub(super) span: Span,
     pub(super) content: Content,

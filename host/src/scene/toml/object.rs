@@ -87,7 +87,7 @@ impl Reader<'_> {
         let keys: &[&str] = match kind {
             "group" => &["object"],
             "instance" => &["group"],
-            "import" => &["file", "style", "model", "altloc", "assembly"],
+            "import" => &["file", "style", "model", "altloc", "assembly", "smooth"],
             _ => shape::keys(kind),
         };
         let fields = table.fields(kind, &[KEYS, keys, transform::KEYS])?;
@@ -124,6 +124,7 @@ impl Reader<'_> {
         Ok(Item {
             name,
             material,
+            smooth: smooth(&fields)?,
             transform,
             span: fields.span,
             content,
@@ -145,6 +146,20 @@ impl Reader<'_> {
         let molecules = Molecules { options, assembly };
         self.imports.import(self.source, &file, molecules)
     }
+}
+
+/// The angle of `smooth` in degrees.
+fn smooth(fields: &Fields<'_>) -> Result<Option<f64>, SceneError> {
+    fields.or("smooth", None, |value| {
+        let degrees = value.number()?;
+        if !(0.0..=180.0).contains(&degrees) {
+            return Err(value.error(
+                format!("`smooth` is {degrees}; it must be from 0 to 180 degrees"),
+                "write the angle between two faces below which their edge is smooth, such as 40",
+            ));
+        }
+        Ok(Some(degrees))
+    })
 }
 
 fn style(value: Value<'_>) -> Result<MoleculeStyle, SceneError> {

@@ -6,7 +6,9 @@ use super::item::{Content, Group, InstanceItem, Item, JointItem, PartItem};
 use super::material::Palette;
 use super::source::Source;
 use crate::scene::size::{MOST_PRIMITIVES, Size, primitives};
-use crate::scene::{Instance, Joint, Object, Part, Placement, Scene, SceneError, Shape, Track};
+use crate::scene::{
+    Instance, Joint, Normals, NormalsChoice, Object, Part, Placement, Scene, SceneError, Shape, Track,
+};
 use crate::shape::transform::OUT_OF_RANGE;
 use glam::DAffine3;
 use std::collections::{BTreeMap, HashMap};
@@ -19,8 +21,8 @@ pub(super) struct Placer<'p> {
     placed: Placed,
     /// Whether the objects are those of a part, which holds no instances.
     in_part: bool,
-    /// The first part of each import that has some, by the import and its materials here.
-    imported: HashMap<(*const Scene, Vec<usize>), usize>,
+    /// The first part of each import that has some, by the import, its materials here, and how smooth it is made.
+    imported: HashMap<(*const Scene, Vec<usize>, Option<u64>), usize>,
     /// Counted again, because boxes that are turned become twelve triangles.
     primitives: u64,
     size: Size,
@@ -154,12 +156,17 @@ impl<'p> Placer<'p> {
                     let shape = self.shape(item, &transform, &name, shape)?;
                     let material = material.unwrap_or_else(|| self.palette.fallback());
                     let place = self.source.place(&item.span);
-                    self.placed.objects.push(Object {
+                    let mut object = Object {
                         name,
                         material,
                         shape,
+                        normals: Normals::default(),
                         place,
-                    });
+                    };
+                    if let Some(degrees) = item.smooth {
+                        object.shade(NormalsChoice::Smooth(degrees));
+                    }
+                    self.placed.objects.push(object);
                 }
                 Content::Group(items) => self.items(items, inside)?,
                 Content::Instance(name) => {
@@ -192,12 +199,18 @@ impl<'p> Placer<'p> {
         materials: &[usize],
     ) -> Result<Object, SceneError> {
         let name = format!("{}{}", site.path, object.name);
-        Ok(Object {
+        let mut placed = Object {
             shape: self.shape(item, &site.transform, &name, &object.shape)?,
             name,
             material: materials[object.material],
+            normals: Normals::default(),
             place: object.place.clone(),
-        })
+        };
+        match item.smooth {
+            Some(degrees) => placed.shade(NormalsChoice::Smooth(degrees)),
+            None => placed.normals = object.normals.transformed(&site.transform),
+        }
+        Ok(placed)
     }
 
     /// Places the instances of an import. They become objects inside of parts, and where they are mirrored
@@ -216,7 +229,8 @@ impl<'p> Placer<'p> {
         let Some(outer) = outer.filter(|_| !self.in_part) else {
             return self.flattened(item, site, scene, &materials);
         };
-        let key = (std::ptr::from_ref(scene), materials);
+        let smooth = item.smooth.map(f64::to_bits);
+        let key = (std::ptr::from_ref(scene), materials, smooth);
         let first = match self.imported.get(&key) {
             Some(&first) => first,
             None => {

@@ -14,7 +14,7 @@ const _: () = assert!(MAX_CORNERS <= MAX_CONCAVE);
 pub(super) fn keys(kind: &str) -> &'static [&'static str] {
     match kind {
         "triangle" => &["vertices"],
-        "mesh" => &["vertices", "faces"],
+        "mesh" => &["vertices", "faces", "smooth"],
         _ => Shape::kinds().find(|(name, _)| *name == kind).map_or(&[], |(_, keys)| keys),
     }
 }

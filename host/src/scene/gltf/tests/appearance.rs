@@ -105,7 +105,6 @@ fn ignored_attributes_are_counted_in_one_warning_each() {
     assert_eq!(
         warnings(&document),
         [
-            "NORMAL of a primitive is ignored; its surface is shaded flat (and 2 times more)",
             "COLOR_0 of a primitive is ignored; its surface has its material's color (and 2 times \
              more)",
             "the alpha mask of material \"leaf\" is ignored; it is opaque",

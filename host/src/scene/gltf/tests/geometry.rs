@@ -131,3 +131,30 @@ fn files_of_other_projects() {
         assert_eq!((scene.objects.len(), count), (objects, triangles), "{name}");
     }
 }
+
+#[test]
+fn normals_stay_at_right_angles_to_the_surface() {
+    let normals = [[0.6_f32, 0.0, 0.8], [0.0, 0.0, 1.0], [0.0, 0.0, 2.0], [0.0, 0.0, 1.0]];
+    let mut bytes = square();
+    bytes.extend(normals.iter().flatten().flat_map(|x| x.to_le_bytes()));
+    let mut document = document();
+    document["buffers"][0] = json!({
+        "byteLength": bytes.len(),
+        "uri": format!("data:;base64,{}", STANDARD.encode(&bytes)),
+    });
+    let views = document["bufferViews"].as_array_mut().unwrap();
+    views.push(json!({"buffer": 0, "byteOffset": 60, "byteLength": 48}));
+    let accessors = document["accessors"].as_array_mut().unwrap();
+    accessors.push(json!({"bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC3"}));
+    let attributes = &mut document["meshes"][0]["primitives"][0]["attributes"];
+    attributes["NORMAL"] = json!(2);
+    document["nodes"][0]["scale"] = json!([-1, 1, 2]);
+    let normals = scene(&document).objects[0].normals.clone();
+    assert_eq!(normals.triangles, [[0, 2, 1], [0, 3, 2]]);
+    let expected = DVec3::new(-0.6, 0.0, 0.4).normalize();
+    assert!((normals.vectors[0] - expected).length() < 1e-6, "{normals:?}");
+    // As many normals as vertices.
+    document["accessors"][2]["count"] = json!(3);
+    let error = read(document.to_string().as_bytes()).unwrap_err();
+    assert!(error.cause.contains("has 4 vertices and 3 normals"), "{error}");
+}

@@ -1,6 +1,6 @@
 //! Objects of valid files.
 
-use super::{example, load, material_of, named, scene};
+use super::{example, load, material_of, named, rejection, scene};
 use crate::scene::{Diffuse, Light, Material, RenderSettings, Scene, Shape};
 use crate::shape::{Cone, Cuboid, Sphere};
 use glam::DVec3;
@@ -278,4 +278,25 @@ material = "outer"
     );
     assert_eq!(material_of(&scene, "i/own"), "inner");
     assert_eq!(material_of(&scene, "i/none"), "outer");
+}
+
+#[test]
+fn meshes_are_smooth_below_an_angle() {
+    let roof = |smooth: &str| {
+        format!(
+            "[[object]]\nkind = 'mesh'\n{smooth}\nvertices = [[-1, 0, 0], [0, -1, 1], [0, 1, 1], [1, 0, 0]]\n\
+             faces = [[0, 1, 2], [1, 3, 2]]\nscale = [1, 1, -1]\n"
+        )
+    };
+    for (smooth, is_flat) in [("", true), ("smooth = 40", true), ("smooth = 91", false)] {
+        let normals = &scene(&roof(smooth)).objects[0].normals;
+        assert_eq!(normals.is_flat(), is_flat, "{smooth}");
+        let ridge = normals.vectors.iter().filter(|it| it.z.abs() > 0.99).count();
+        assert_eq!(ridge, if is_flat { 0 } else { 2 });
+    }
+    let error = rejection(&roof("smooth = 200")).to_string();
+    assert!(
+        error.contains("`smooth` is 200; it must be from 0 to 180 degrees"),
+        "{error}"
+    );
 }

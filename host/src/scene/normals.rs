@@ -1,0 +1,243 @@
+//! Normals that a mesh is shaded with: those of its file, or computed from its faces.
+
+use crate::shape::transform::to_size_one;
+use crate::shape::unit;
+use glam::{DAffine3, DMat3, DVec3};
+use std::collections::HashMap;
+
+/// The normals that a mesh is shaded with, for each corner of each triangle; empty for those of its faces.
+///
+/// ```
+/// use glam::DVec3;
+/// use gridel_host::scene::Normals;
+///
+/// let roof = [DVec3::Y, DVec3::Z, -DVec3::Z, DVec3::new(4.0, 1.0, 0.0)];
+/// let triangles = [[0, 1, 3], [0, 3, 2]];
+/// assert!(Normals::computed(&roof, &triangles, 60.0).is_flat());
+/// assert!(!Normals::computed(&roof, &triangles, 120.0).is_flat());
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Normals {
+    /// Of length 1.
+    pub vectors: Vec<DVec3>,
+    /// For each triangle, which of the vectors its corners have; [`Normals::FLAT`] for one that is flat. As many as the
+    /// mesh has, or none.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// How far a normal of a file may be from that of its face to be that one: less than a step of a display.
+const SAME: f64 = 1.0 / 1024.0;
+
+impl Normals {
+    /// Stands for the normals of a triangle's corners that has none but its own.
+    pub const FLAT: [u32; 3] = [u32::MAX; 3];
+
+    /// Returns whether all triangles are shaded with their own normals.
+    pub fn is_flat(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// The normals of a file: of any length, turned to the front of their triangles. A triangle is flat where a normal
+    /// is zero or not finite, or all are those of its face.
+    pub fn given(
+        vectors: Vec<DVec3>,
+        mut corners: Vec<[u32; 3]>,
+        (vertices, triangles): (&[DVec3], &[[u32; 3]]),
+    ) -> Self {
+        let mut vectors: Vec<DVec3> = vectors.into_iter().map(length_one).collect();
+        let (count, mut opposite) = (vectors.len(), HashMap::new());
+        for (normals, triangle) in corners.iter_mut().zip(triangles) {
+            let found = normals.map(|it| vectors.get(it as usize).copied().unwrap_or(DVec3::ZERO));
+            let face = face_normal(vertices, triangle);
+            let is_face = found.iter().all(|it| (*it - face).length() <= SAME);
+            if is_face || found.contains(&DVec3::ZERO) || face == DVec3::ZERO {
+                *normals = Self::FLAT;
+            } else if found.iter().all(|it| it.dot(face) < 0.0) {
+                // Wound the other way round.
+                for it in normals {
+                    *it = *opposite.entry(*it).or_insert_with(|| {
+                        vectors.push(-vectors[*it as usize]);
+                        vectors.len() as u32 - 1
+                    });
+                }
+            }
+        }
+        debug_assert!(vectors.len() <= 2 * count);
+        Self::unless_flat(vectors, corners)
+    }
+
+    /// Normals that are smooth across edges where two faces meet at less than an angle in degrees: at each vertex the
+    /// mean of such faces, weighted by their angles there. Vertices are the same where their coordinates are.
+    pub fn computed(vertices: &[DVec3], triangles: &[[u32; 3]], degrees: f64) -> Self {
+        let places = same_places(vertices);
+        let faces: Vec<DVec3> = triangles
+            .iter()
+            .map(|it| face_normal(vertices, it))
+            .collect();
+        let least_cosine = libm::cos(degrees.clamp(0.0, 180.0).to_radians());
+        let corner = |triangle: usize, corner: usize| places[triangles[triangle][corner] as usize];
+        // Groups of corners: of one vertex and joined across smooth edges.
+        let mut groups = Groups::new(3 * triangles.len());
+        for edge in shared_edges(triangles, &places) {
+            let [(a, p), (b, q)] = edge;
+            if faces[a].dot(faces[b]) > least_cosine || faces[a] == faces[b] {
+                // They run along the edge in opposite directions.
+                groups.join(3 * a + p, 3 * b + (q + 1) % 3);
+                groups.join(3 * a + (p + 1) % 3, 3 * b + q);
+            }
+        }
+        let mut sums = vec![DVec3::ZERO; 3 * triangles.len()];
+        for (number, face) in faces.iter().enumerate() {
+            for place in 0..3 {
+                let at = |k: usize| vertices[corner(number, (place + k) % 3) as usize];
+                let group = groups.of(3 * number + place);
+                sums[group] += *face * angle(at(1) - at(0), at(2) - at(0));
+            }
+        }
+        let mut numbers = vec![u32::MAX; sums.len()];
+        let mut vectors = Vec::new();
+        let mut corners = Vec::with_capacity(triangles.len());
+        for number in 0..triangles.len() {
+            corners.push([0, 1, 2].map(|place| {
+                let group = groups.of(3 * number + place);
+                if numbers[group] == u32::MAX {
+                    numbers[group] = vectors.len() as u32;
+                    vectors.push(sums[group]);
+                }
+                numbers[group]
+            }));
+        }
+        Self::given(vectors, corners, (vertices, triangles))
+    }
+
+    /// The normals after a transform of the mesh.
+    #[must_use]
+    pub(crate) fn transformed(&self, by: &DAffine3) -> Self {
+        let (cofactors, mirrored) = cofactors(by.matrix3);
+        let wind = |&[a, b, c]: &[u32; 3]| if mirrored { [a, c, b] } else { [a, b, c] };
+        let turned: Vec<DVec3> = self
+            .vectors
+            .iter()
+            .map(|it| length_one(cofactors * *it))
+            .collect();
+        let lost = |corners: &[u32; 3]| {
+            let normal = |it: &u32| turned.get(*it as usize).is_none_or(|it| *it == DVec3::ZERO);
+            corners.iter().any(normal)
+        };
+        let corners = self.triangles.iter().map(wind);
+        let corners = corners
+            .map(|it| if lost(&it) { Self::FLAT } else { it })
+            .collect();
+        Self::unless_flat(turned, corners)
+    }
+
+    fn unless_flat(vectors: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
+        if triangles.iter().all(|it| *it == Self::FLAT) {
+            return Self::default();
+        }
+        Self { vectors, triangles }
+    }
+}
+
+/// The matrix that turns normals where another one moves points, outward staying outward, and whether that mirrors: the
+/// inverse transposed, times the magnitude of the determinant.
+pub(super) fn cofactors(matrix: DMat3) -> (DMat3, bool) {
+    let DMat3 {
+        x_axis: x,
+        y_axis: y,
+        z_axis: z,
+    } = to_size_one(matrix).1;
+    let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+    let mirrors = cofactors.x_axis.dot(x) < 0.0;
+    let sign = if mirrors { -1.0 } else { 1.0 };
+    (cofactors * sign, mirrors)
+}
+
+/// Of length 1, or zero where it has no direction.
+fn length_one(vector: DVec3) -> DVec3 {
+    if vector == DVec3::ZERO || !vector.is_finite() {
+        return DVec3::ZERO;
+    }
+    unit(vector)
+}
+
+/// The normal of a triangle, of length 1; zero without an area.
+fn face_normal(vertices: &[DVec3], triangle: &[u32; 3]) -> DVec3 {
+    let [a, b, c] = triangle.map(|vertex| vertices[vertex as usize]);
+    let (p, q) = (length_one(b - a), length_one(c - a));
+    length_one(p.cross(q))
+}
+
+/// The angle between two vectors.
+fn angle(a: DVec3, b: DVec3) -> f64 {
+    let (a, b) = (length_one(a), length_one(b));
+    libm::atan2(a.cross(b).length(), a.dot(b))
+}
+
+/// For each vertex, the first one with its coordinates.
+fn same_places(vertices: &[DVec3]) -> Vec<u32> {
+    let mut first = HashMap::with_capacity(vertices.len());
+    let numbered = (0..).zip(vertices);
+    numbered
+        .map(|(number, vertex)| {
+            // Zero has two signs.
+            let bits = vertex.to_array().map(|x| (x + 0.0).to_bits());
+            *first.entry(bits).or_insert(number)
+        })
+        .collect()
+}
+
+/// A side of a triangle: the triangle, and the corner that it begins at.
+type Side = (usize, usize);
+
+/// The edges at which exactly two triangles meet that run along it in opposite directions: both, side by side.
+fn shared_edges(triangles: &[[u32; 3]], places: &[u32]) -> Vec<[Side; 2]> {
+    let mut sides: Vec<([u32; 2], bool, Side)> = Vec::with_capacity(3 * triangles.len());
+    for (number, triangle) in triangles.iter().enumerate() {
+        for corner in 0..3 {
+            let [from, to] = [corner, (corner + 1) % 3].map(|it| places[triangle[it] as usize]);
+            let ends = [from.min(to), from.max(to)];
+            sides.push((ends, from < to, (number, corner)));
+        }
+    }
+    sides.sort_unstable();
+    let edges = sides.chunk_by(|a, b| a.0 == b.0);
+    let pairs = edges.filter_map(|sides| match sides {
+        [first, second] if first.1 != second.1 => Some([first.2, second.2]),
+        _ => None,
+    });
+    pairs.collect()
+}
+
+/// Corners that share a normal.
+struct Groups {
+    /// For each corner another one of its group, or itself.
+    leads_to: Vec<u32>,
+}
+
+impl Groups {
+    fn new(corners: usize) -> Self {
+        Self {
+            leads_to: (0..corners as u32).collect(),
+        }
+    }
+
+    /// The corner that stands for a corner's group: the first one of it.
+    fn of(&mut self, corner: usize) -> usize {
+        let mut corner = corner;
+        while self.leads_to[corner] as usize != corner {
+            let next = self.leads_to[corner] as usize;
+            self.leads_to[corner] = self.leads_to[next];
+            corner = next;
+        }
+        corner
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.of(a), self.of(b));
+        self.leads_to[a.max(b)] = a.min(b) as u32;
+    }
+}
+
+#[cfg(test)]
+mod tests;
