@@ -8,7 +8,8 @@ use gridel_host::compile::{self, Options};
 use gridel_host::render::{Job, render};
 use gridel_host::sample;
 use gridel_host::scene::{
-    self, Camera, Instance, Light, Material, Object, Part, Placement, Scene, Shape, SourceSpan,
+    self, Camera, Instance, Light, Material, Normals, Object, Part, Placement, Scene, Shape,
+    SourceSpan,
 };
 use gridel_host::shape::Sphere;
 use gridel_tests::random::Random;
@@ -255,6 +256,7 @@ pub fn thirty_two_balls() -> Compiled {
     scene.parts = vec![Part {
         name: String::from("ball"),
         objects: vec![Object {
+            normals: Normals::default(),
             name: String::from("ball"),
             material: 0,
             shape: Shape::Sphere(Sphere {

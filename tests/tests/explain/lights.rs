@@ -62,6 +62,7 @@ fn reasons_are_true() {
         kind: "sphere",
         primitive: 1,
         object: 1,
+        instance: None,
     };
     assert_eq!(outcomes, [&blocked, &LightOutcome::Behind]);
     let walk = first.walk.as_ref().expect("a walk");

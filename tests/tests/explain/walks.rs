@@ -106,7 +106,9 @@ fn reported_walks_are_the_walks_of_queries() {
                         opened.push(place);
                     }
                     Step::GivenUp { place, .. } => opened.push(place),
-                    Step::Candidate(_) => {}
+                    Step::Candidate(_)
+                    | Step::InstanceEntered { .. }
+                    | Step::InstanceLeft { .. } => {}
                 }
             }
             for place in entered {

@@ -25,7 +25,7 @@ fn decoded<N: Arithmetic>(stored: [i16; 2]) -> [f64; 3] {
 fn stored_normals_are_near_in_all_formats() {
     for direction in directions() {
         let (stored, expected) = (encode(direction), unit(direction));
-        assert!(stored.iter().all(|x| x.abs() <= LARGEST));
+        assert!(stored.iter().all(|x| *x != i16::MIN));
         for found in [
             decoded::<f64>(stored),
             decoded::<f32>(stored),

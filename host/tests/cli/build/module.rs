@@ -79,7 +79,7 @@ fn a_module_asserts_the_number_of_parts() {
     let text = "[[part]]\nname = \"wheel\"\nobject = [{ kind = \"torus\", center = [0, 0, 0], \
                 axis = [0, 1, 0], major_radius = 1, minor_radius = 0.25 }]\n\
                 [[instance]]\npart = \"wheel\"\n";
-    folder.write("wheel.toml", text);
+    folder.write("wheel.toml", text.as_bytes());
     folder.done(&[
         "build",
         "wheel.toml",
