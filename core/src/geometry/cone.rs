@@ -293,7 +293,7 @@ impl Primitive for Cone {
         // Ends beyond what counts are infinite. Written so that a NaN is no crossing.
         let (start, end) = (-reach - reach, reach + reach);
         (enter.0 <= leave.0 && enter.0 > start && leave.0 < end).then(|| Crossing {
-            enter: back(enter),
+            enter: ray.ahead(back(enter)),
             leave: back(leave),
         })
     }

@@ -142,6 +142,18 @@ impl<N: Arithmetic> Ray<N> {
         }
     );
 
+    /// Where the ray enters a solid. One that starts where the scene's box begins enters nothing before its start: a cap
+    /// in that plane may be rounded there.
+    #[inline(always)]
+    pub(crate) fn ahead<P>(&self, (t, part): (N, P)) -> (N, P) {
+        let starts_outside = self.tmin == N::ZERO && self.start_t > N::Wide::default();
+        if t < N::ZERO && starts_outside {
+            (N::ZERO, part)
+        } else {
+            (t, part)
+        }
+    }
+
     /// [`from_inside`](Self::from_inside) of a place that can lie far outside of the scene's box, on a shape without
     /// bounds.
     #[cold]

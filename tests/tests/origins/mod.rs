@@ -4,6 +4,7 @@
 //! comes from; t is rounded once more. What is not answered is rejected with a reason. Nothing else.
 
 mod answers;
+mod faces;
 mod far_eyes;
 mod far_rays;
 mod starts;
