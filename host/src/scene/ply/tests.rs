@@ -190,7 +190,7 @@ fn data_behind_what_is_announced_is_reported() {
 fn vertices_bring_their_normals() {
     let properties = "property float nx\nproperty float ny\nproperty float nz\n";
     let text =
-        with_properties(properties, "") + "0 0 0 0 0 2\n1 0 0 .5 0 1\n0 1 0 0 .5 1\n3 0 1 2\n";
+        with_properties(properties, "") + "0 0 0 0 0 2\n1 0 0 0.5 0 1\n0 1 0 0 0.5 1\n3 0 1 2\n";
     let scene = read(text.as_bytes()).unwrap().scene;
     let normals = &scene.objects[0].normals;
     assert_eq!(normals.triangles, [[0, 1, 2]]);
