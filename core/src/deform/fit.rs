@@ -160,7 +160,6 @@ fn others(scene: &Scene<'_>, leaf: Leaf) -> Option<UnitBox> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::format::record::Vertex24;
 
     #[test]
