@@ -8,6 +8,7 @@ mod apex;
 mod blob;
 mod boxes;
 mod cylinder_cube;
+#[path = "deform/main.rs"]
 mod deform;
 #[path = "documents/main.rs"]
 mod documents;

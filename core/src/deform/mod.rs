@@ -260,6 +260,8 @@ impl<'a> Scene<'a> {
 
     /// Returns the scene with the vertices and boxes of a deformation in place of the blob's own. Costs nothing per ray.
     ///
+    /// Triangles are shaded flat: the normals that a blob may have are those at rest.
+    ///
     /// A part is deformed likewise: [`Parts::with_part`](crate::Parts::with_part) puts it in its place.
     ///
     /// # Errors
@@ -274,6 +276,7 @@ impl<'a> Scene<'a> {
         }
         let mut scene = *self;
         scene.space.shapes.vertices.replace(&deformation.vertices);
+        scene.space.shapes.drop_normals();
         scene.structures.replace_pairs(&deformation.pairs);
         Ok(scene)
     }

@@ -369,6 +369,11 @@ impl<'a> Shapes<'a> {
         Some([position(a)?, position(b)?, position(c)?])
     }
 
+    /// Takes the normals away, where vertices move.
+    pub(crate) fn drop_normals(&mut self) {
+        self.normals = SmoothOnly::new(Default::default);
+    }
+
     /// The normals of the first vertices; none in builds without the code for them.
     pub(crate) fn normals(&self) -> &'a [[i16; 2]] {
         self.normals.get().copied().unwrap_or_default()
