@@ -10,7 +10,8 @@ use gridel_host::scene::Shape;
 use gridel_host::shape::Solid;
 use gridel_host::shape::random::Random;
 use gridel_host::shape::{Cone, Cuboid};
-use gridel_host::verify::judge::{Answer, GRAZING, HitId, Judge, RoundedRay, STEPS};
+use gridel_host::verify::judge::{GRAZING, Judge, STEPS};
+use gridel_host::verify::rounded::{Answer, HitId, RoundedRay};
 use gridel_host::verify::{
     ClosedMesh, Property, RAYS, StructureAnswer, Targets, UnitRay, ask, ask_all, check, leave,
     sealed, verify,

@@ -120,7 +120,7 @@ texts! {
         FirstTime => "first time",
         LastTime => "last time",
         TrackTarget => "target",
-        TrackIndex => "number of a light or material",
+        TrackIndex => "number of a light, material or joint",
         Interpolation => "interpolation",
         Keys => "number of keys",
         KeyTime => "time of a key",

@@ -1,8 +1,9 @@
 //! The input of structures' builders.
 
 use super::candidates::target::Targets;
+use super::error::CompileError;
 use super::hierarchy::{Node, Primitive};
-use super::instances::{Placed, Role};
+use super::instances::{Parts, Placed, Role};
 use super::options::{OnProgress, Options};
 use super::pairs::Flat;
 use super::primitives::Primitives;
@@ -31,6 +32,8 @@ pub struct BuildContext<'g> {
     pub shading_data: &'g ShadingData,
     pub role: Role<'g>,
     pub placed: &'g Placed,
+    /// The scene's parts, compiled with other options.
+    pub parts_with: &'g dyn Fn(&Options) -> Result<Parts, CompileError>,
     pub options: &'g Options,
     pub on_progress: OnProgress<'g>,
 }

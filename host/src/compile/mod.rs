@@ -205,6 +205,7 @@ fn compile_as(
         bounds = octree::bounds(&bounds, &boxes);
     }
     let sah_cost = root.as_ref().map(hierarchy::sah_cost);
+    let parts_with = |options: &Options| Ok(compile_parts(scene, options, &|_, _, _| ())?.0);
     let context = BuildContext {
         scene,
         lattice: &lattice,
@@ -217,6 +218,7 @@ fn compile_as(
         shading_data: &shading_data,
         role,
         placed: &placed,
+        parts_with: &parts_with,
         options,
         on_progress,
     };

@@ -6,7 +6,6 @@ use super::candidates::entry::EntryNodes;
 use super::candidates::own_rays::own_rays;
 use super::candidates::{apex, ray_classes};
 use super::cells::{self, Cells, slot_boxes};
-use super::compile_parts;
 use super::context::BuildContext;
 use super::error::CompileError;
 use super::instances::Role;
@@ -117,9 +116,7 @@ fn picture_rays(context: &BuildContext<'_>) -> Result<Vec<ClassPoint>, CompileEr
     };
     // Parts have the structures of what holds them.
     let parts = match context.role {
-        Role::Whole(parts) if parts.primitives() > 0 => {
-            Some(compile_parts(context.scene, &options, &|_, _, _| ())?.0)
-        }
+        Role::Whole(parts) if parts.primitives() > 0 => Some((context.parts_with)(&options)?),
         _ => None,
     };
     let role = match &parts {

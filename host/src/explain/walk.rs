@@ -4,7 +4,7 @@ mod inside;
 mod planes;
 
 use crate::trace::{Frame, SceneRay};
-use crate::verify::judge;
+use crate::verify::rounded;
 use glam::DVec3;
 use gridel_core::observe::event::NodeId;
 use gridel_core::{Event, Format, Scene};
@@ -293,7 +293,7 @@ impl Walk {
             .max(largest(ray.start))
             .max(distance.abs() / ray.frame.length(1.0));
         // Of start, t from either place, and point, on three axes.
-        let kernels = 8.0 * ray.frame.length(judge::step(ray.format, units));
+        let kernels = 8.0 * ray.frame.length(rounded::step(ray.format, units));
         let sum = largest(self.origin) + largest(self.start) + distance.abs();
         ray.aside + ray.turned * inside + kernels + 8.0 * f64::EPSILON * sum
     }

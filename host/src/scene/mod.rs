@@ -40,10 +40,8 @@ pub use joint::{LARGEST_SCALE, LEAST_SCALE};
 pub use model::{
     Camera, Color, Diffuse, Instance, Joint, Light, Material, Object, Part, RenderSettings, Scene,
 };
-pub use normals::Normals;
-pub use options::{
-    Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, NormalsChoice,
-};
+pub use normals::{Normals, NormalsChoice};
+pub use options::{Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle};
 pub use placement::Placement;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;

@@ -1,7 +1,6 @@
 //! The scene as data.
 
-use super::normals::Normals;
-use super::options::NormalsChoice;
+use super::normals::{Normals, NormalsChoice};
 use super::placement::Placement;
 use super::source_span::SourceSpan;
 use super::track::Track;

@@ -25,6 +25,18 @@ pub struct Normals {
     pub triangles: Vec<[u32; 3]>,
 }
 
+/// Which normals meshes are shaded with.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum NormalsChoice {
+    /// Those of the file, where it has some.
+    #[default]
+    File,
+    /// Those of the faces.
+    Flat,
+    /// Computed ones, smooth where faces meet at less than this angle in degrees.
+    Smooth(f64),
+}
+
 /// How far a normal of a file may be from that of its face to be that one: less than a step of a display.
 const SAME: f64 = 1.0 / 1024.0;
 

@@ -1,6 +1,7 @@
 //! How a scene file is read, and what comes of it.
 
 use super::model::Scene;
+use super::normals::NormalsChoice;
 
 /// Choices that a molecule file leaves to a person.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,18 +64,6 @@ pub enum Instances {
     Keep,
     /// Each instance becomes objects of its own.
     Flatten,
-}
-
-/// Which normals meshes are shaded with.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum NormalsChoice {
-    /// Those of the file, where it has some.
-    #[default]
-    File,
-    /// Those of the faces.
-    Flat,
-    /// Computed ones, smooth where faces meet at less than this angle in degrees.
-    Smooth(f64),
 }
 
 /// How a scene file is read.

@@ -1,7 +1,8 @@
 //! Traces one ray through every structure in one number format, and tests the properties of the answers.
 
 use super::closed::ClosedMesh;
-use super::judge::{Answer, GRAZING, HitId, Judge, Mismatch, RoundedRay, STEPS, step};
+use super::judge::{GRAZING, Judge, Mismatch, STEPS};
+use super::rounded::{Answer, HitId, RoundedRay, step};
 use crate::shape::random::Random;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;

@@ -12,6 +12,7 @@ pub mod judge;
 mod placed;
 #[doc(hidden)]
 pub mod rays;
+pub mod rounded;
 mod shadow;
 
 pub use crate::trace::UnitRay;

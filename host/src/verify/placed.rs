@@ -1,6 +1,6 @@
 //! Instances by the integers of their maps, for exact arithmetic that shares no code with the kernels.
 
-use super::judge::{HitId, RoundedRay, step};
+use super::rounded::{HitId, RoundedRay, step};
 use crate::shape::Solid;
 use crate::shape::exact::{Line, Real, Vector, dot, minus};
 use gridel_core::format::instance::{Instance, MATRIX_BITS};

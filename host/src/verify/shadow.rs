@@ -1,8 +1,8 @@
 //! Contact shadows: what lies in the dark by `f64`, and what another format says of it.
 
 use super::check::{Fault, Property, ask, depart};
-use super::judge::{HitId, RoundedRay, step};
 use super::placed::{ExactMap, PLACED};
+use super::rounded::{HitId, RoundedRay, step};
 use crate::shape::Solid;
 use crate::shape::random::Random;
 use crate::trace::UnitRay;

@@ -47,7 +47,7 @@ fn instances_are_drawn_where_they_are_at_a_time() {
 }
 
 #[test]
-fn copies_at_rest_are_named_and_copies_at_a_time_are_explained() {
+fn explain_follows_instances_at_rest_and_at_a_time() {
     let folder = folder();
     let hits = |options: &[&str]| {
         let ray = ["explain", "a.toml", "--ray", "2,-4,0,0,1,0"];
@@ -58,7 +58,8 @@ fn copies_at_rest_are_named_and_copies_at_a_time_are_explained() {
             .contains("where they are at rest");
         (!hit.is_null(), warned)
     };
-    assert_eq!(hits(&[]), (false, true));
+    assert_eq!(hits(&[]), (false, false));
+    assert_eq!(hits(&["--instances", "flatten"]), (false, true));
     // It is led by two units, and turned by a whole turn.
     assert_eq!(hits(&["--time", "1"]), (true, false));
 }

@@ -113,9 +113,9 @@ pub fn field(section: &SectionEntry, record: usize, offset: usize) -> usize {
 #[test]
 fn forged_sections_are_rejected() {
     let bytes = small_blob(24);
-    // Those of parts and instances have tests of their own.
+    // Normals, parts and instances have tests of their own.
     let kinds = SectionKind::ALL.into_iter();
-    for kind in kinds.filter(|&kind| kind < SectionKind::Parts) {
+    for kind in kinds.filter(|&kind| kind < SectionKind::Normals) {
         let (place, entry) = section(&bytes, kind);
         let forgeries = [
             SectionEntry {

@@ -5,9 +5,7 @@ use crate::scenes::{Compiled, compile_with, small};
 use glam::DVec3;
 use gridel_core::{Kind, Structure};
 use gridel_host::compile::Options;
-use gridel_host::scene::{
-    Camera, Diffuse, Light, Material, Normals, Object, Scene, Shape, SourceSpan,
-};
+use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Scene, Shape, SourceSpan};
 use gridel_host::shape::{Cuboid, Sphere};
 use gridel_tests::shapes::examples;
 
@@ -17,7 +15,7 @@ pub const BASE: &str = "base";
 const TRIANGLE: &str = Kind::Triangle.name();
 
 /// A part's name, and how to require it.
-type Effects = [(&'static str, fn(&mut Scene)); 7];
+type Effects = [(&'static str, fn(&mut Scene)); 6];
 
 const EFFECTS: Effects = [
     ("shadow", |scene| scene.render.shadows = true),
@@ -36,23 +34,7 @@ const EFFECTS: Effects = [
             origin: DVec3::splat(0.1),
         }
     }),
-    ("smooth", |scene| {
-        for object in &mut scene.objects {
-            if let Shape::Mesh { triangles, .. } = &object.shape {
-                object.normals = leaning(triangles.len());
-            }
-        }
-    }),
 ];
-
-/// Normals that lean apart.
-fn leaning(triangles: usize) -> Normals {
-    let vectors = [[0.3, 0.0, 1.0], [-0.2, 0.3, 1.0], [0.0, -0.3, 1.0]];
-    Normals {
-        vectors: vectors.map(|it| DVec3::from_array(it).normalize()).to_vec(),
-        triangles: vec![[0, 1, 2]; triangles],
-    }
-}
 
 /// The base, and a scene for every shape and effect beside it. Scenes for shapes have no effects,
 /// and those for effects no other shapes; absorption comes with the glass that it is in.
@@ -87,14 +69,10 @@ pub fn every_shape() -> Compiled {
 /// of core, so the list is short; the memory report bounds what is not on it.
 pub fn combinations() -> impl Iterator<Item = (Vec<&'static str>, Vec<&'static str>)> {
     const EVERY: &str = "shadow highlight mirror glass absorption checker";
-    const EVERY_AND_SMOOTH: &str = "shadow highlight mirror glass absorption checker smooth";
     let programs = [
         ("triangle", "shadow"),
         ("triangle", "shadow highlight"),
         ("triangle", EVERY),
-        ("triangle", "shadow smooth"),
-        ("triangle", "shadow highlight smooth"),
-        ("triangle sphere box disc cone", EVERY_AND_SMOOTH),
         ("sphere", "shadow"),
         ("sphere", "shadow highlight"),
         ("sphere", EVERY),
@@ -246,9 +224,9 @@ fn object(shape: Shape) -> Object {
     Object {
         name: String::from("thing"),
         material: 0,
+        normals: Default::default(),
         shape,
         place: SourceSpan::default(),
-        normals: Default::default(),
     }
 }
 

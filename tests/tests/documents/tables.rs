@@ -66,9 +66,33 @@ fn blobs() -> Vec<Vec<u8>> {
         place: scene::SourceSpan::default(),
     }];
     scene.instances = vec![placed(4.0), placed(8.0)];
+    scene.instances[0].joint = Some(0);
+    scene.joints = vec![scene::Joint {
+        name: String::from("joint"),
+        parent: None,
+        pivot: DVec3::ZERO,
+        place: scene::SourceSpan::default(),
+    }];
+    scene.objects.push(bent_sheet());
     let compiled = compile(&scene, &options).expect("compiles");
     blobs.push(compiled.blob.bytes().to_vec());
     blobs
+}
+
+/// Two triangles with smooth normals.
+fn bent_sheet() -> scene::Object {
+    let vertices = vec![DVec3::Y, DVec3::Z, -DVec3::Z, DVec3::new(4.0, 1.0, 0.0)];
+    let triangles = vec![[0, 1, 3], [0, 3, 2]];
+    scene::Object {
+        name: String::from("sheet"),
+        material: 0,
+        normals: scene::Normals::computed(&vertices, &triangles, 120.0),
+        shape: Shape::Mesh {
+            vertices,
+            triangles,
+        },
+        place: scene::SourceSpan::default(),
+    }
 }
 
 /// Every section has a stride that the table allows.

@@ -195,7 +195,7 @@ fn closed_part_is_closed_under_every_motion() {
         vertices,
         triangles,
     };
-    let mut scene = scenes::of([ball(DVec3::splat(30.0), 0.01)]);
+    let mut scene = scenes::of([-8.0, 8.0].map(|it| ball(DVec3::splat(it), 0.01)));
     scene.parts = vec![part("ball", [mesh])];
     scene.instances = vec![instance(0, Placement::IDENTITY)];
     let blob = blob(

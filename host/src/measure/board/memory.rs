@@ -19,7 +19,7 @@ use crate::blob::best_structures;
 use crate::measure::bytes::{MemoryMap, board_memory};
 use crate::measure::deforming::Deforming;
 use crate::table::grouped;
-use gridel_core::{Format, Prevalidated, Rgb565, Scene, Structure};
+use gridel_core::{Effects, Format, Prevalidated, Rgb565, Scene, Structure};
 use serde::Serialize;
 
 /// Memory of a board that a scene is to fit into.
@@ -140,6 +140,10 @@ impl MemoryReport {
             }
         }
         program.list_code(&mut flash);
+        if scene.effects().contains(Effects::SMOOTH) {
+            // No program with it was recorded.
+            flash.add("code of smooth normals", None);
+        }
         if !scene.parts().is_empty() {
             // Their size on boards is not measured.
             ram.add("views of parts", None);

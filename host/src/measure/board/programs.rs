@@ -167,7 +167,8 @@ impl Programs {
 /// All that a program can have code for, in the order of the report.
 pub fn parts() -> impl Iterator<Item = &'static str> {
     let kinds = Kind::ALL.map(Kind::name);
-    kinds.into_iter().chain(FORMS).chain(Effects::ALL.names())
+    let effects = Effects::ALL.without(Effects::SMOOTH);
+    kinds.into_iter().chain(FORMS).chain(effects.names())
 }
 
 /// How a program is called: its parts in their order.
