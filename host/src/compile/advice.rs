@@ -1,62 +1,11 @@
 //! Advice for blobs that are larger than allowed.
 
-use super::layout::Layout;
 use super::options::Options;
-use super::section::taken;
+use super::sizes::{Size, Sizes};
 use super::structures::leads_to;
 use crate::blob::Blob;
 use crate::table::grouped;
 use gridel_core::{Prevalidated, Structure};
-
-/// The bytes of structures in a blob, and in its parts.
-#[derive(Clone, Debug, Default)]
-pub struct Sizes {
-    structures: Vec<Size>,
-    /// Bytes of the leaves that hierarchies share.
-    leaves: usize,
-}
-
-/// The bytes of a structure.
-#[derive(Clone, Copy, Debug)]
-struct Size {
-    structure: Structure,
-    /// Bytes of its own sections.
-    bytes: usize,
-    uses_leaves: bool,
-}
-
-impl Sizes {
-    /// The bytes of structures, and of leaves.
-    pub fn of(layouts: &[Layout], leaves: usize) -> Self {
-        let size = |layout: &Layout| {
-            let sections = layout.sections.iter();
-            Size {
-                structure: layout.structure,
-                bytes: sections.map(|section| taken(section.bytes.len())).sum(),
-                uses_leaves: layout.uses_leaves,
-            }
-        };
-        Self {
-            structures: layouts.iter().map(size).collect(),
-            leaves: taken(leaves),
-        }
-    }
-
-    /// Adds the bytes of a part, which has the same structures.
-    pub fn add(&mut self, part: &Self) {
-        self.leaves += part.leaves;
-        for size in &part.structures {
-            let mut sizes = self.structures.iter_mut();
-            match sizes.find(|it| it.structure == size.structure) {
-                Some(own) => {
-                    own.bytes += size.bytes;
-                    own.uses_leaves |= size.uses_leaves;
-                }
-                None => self.structures.push(*size),
-            }
-        }
-    }
-}
 
 /// Returns advice that makes a blob smaller, from its figures.
 /// `bytes_with` compiles the scene with other options, and returns the size of the blob.

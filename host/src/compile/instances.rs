@@ -1,10 +1,10 @@
 //! Parts and instances: parts become blobs of their own, and placements become maps of integers.
 
-use super::advice::Sizes;
 use super::error::CompileError;
 use super::instance_tree::{Tree, build};
 use super::reach::Reach;
 use super::section::{Section, section};
+use super::sizes::Sizes;
 use crate::blob::Blob;
 use crate::scene::{Instance, Material, Object, Part, Scene};
 use crate::shape::{Lattice, exp2};

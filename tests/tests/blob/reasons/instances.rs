@@ -1,9 +1,11 @@
 //! Parts and instances.
 
+use super::tracks::forged;
 use super::{Errors, Forgery, balls};
 use glam::DVec3;
 use gridel_core::format::instance::{Instance, Part};
 use gridel_core::format::record::Header;
+use gridel_core::format::track::{Interpolation, Joint, TrackTarget};
 use gridel_core::format::{BlobError, Field, Reason, SectionKind};
 use gridel_core::scene::part_blobs;
 use gridel_core::{Parts, Prevalidated, Scene as Loaded, Structure};
@@ -148,4 +150,42 @@ impl Errors {
         };
         assert_eq!(blob.scene().unwrap_err(), expected);
     }
+}
+
+/// Instances that hang on a joint which grows.
+pub(super) fn joints() -> Errors {
+    let mut scene = placed();
+    scene.joints = vec![scene::Joint {
+        name: String::from("joint"),
+        parent: None,
+        pivot: DVec3::ZERO,
+        place: SourceSpan::default(),
+    }];
+    scene.instances[0].joint = Some(0);
+    scene.tracks = vec![scene::Track {
+        target: TrackTarget::JointScale,
+        index: 0,
+        interpolation: Interpolation::Linear,
+        keys: vec![scene::Key {
+            value: [2.0, 0.0, 0.0, 0.0],
+            ..scene::Key::default()
+        }],
+        place: SourceSpan::default(),
+    }];
+    let mut errors = Errors::of(Base::of(blob(&scene).bytes()));
+    let base = errors.base.clone();
+    let parent = forged(&base, SectionKind::Joints, 0, |it: &mut Joint| {
+        it.parent = 0
+    });
+    errors.take_reason(parent, "joint 0", Reason::JointOrder);
+    let kind = SectionKind::InstanceJoints;
+    let joint = forged(&base, kind, 1, |it: &mut u32| *it = 1);
+    errors.take_field(joint, "instance 1 of tracks", Field::Joint);
+    for scale in [0, 1023, (1 << 30) + 1] {
+        let error = forged(&base, SectionKind::TrackWords, 0, |it: &mut i32| {
+            *it = scale
+        });
+        errors.take_field(error, "word 0 of tracks", Field::Scale);
+    }
+    errors
 }

@@ -19,7 +19,7 @@ use gridel_host::shape::Sphere;
 use gridel_tests::fuzz::{Base, speaks};
 use header::{headers, names, prevalidated, section_tables};
 use hierarchies::{deep_hierarchy, hierarchies, wide_hierarchies};
-use instances::instances;
+use instances::{instances, joints};
 use records::{primitives, shading_data};
 use tables::{candidates, cells};
 use tracks::{tracks, turned_camera};
@@ -159,6 +159,7 @@ fn every_field_and_reason_is_named_by_the_error_of_a_forged_blob() {
         tracks(),
         turned_camera(),
         instances(),
+        joints(),
     ];
     let failures: Vec<&String> = all.iter().flat_map(|errors| &errors.failures).collect();
     assert!(failures.is_empty(), "{failures:#?}");

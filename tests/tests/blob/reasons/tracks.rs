@@ -11,7 +11,7 @@ use gridel_tests::fuzz::{Base, speaks};
 use gridel_tests::scenes;
 
 /// The error of tracks after a record was changed.
-fn forged<T: Pod>(
+pub(super) fn forged<T: Pod>(
     base: &Base,
     kind: SectionKind,
     index: usize,
