@@ -11,7 +11,7 @@
 //! at most 1/800 of the angle between theirs, and of the sum within the rounding of the format.
 //!
 //! **Light behind the triangle.** Near the terminator a triangle can face away from a light that its smooth normal
-//! faces, and would be black. [`SmoothTriangle::lift`] moves the start of the shadow ray out to the curved surface for
+//! faces, and would be black. `SmoothTriangle::lift` moves the start of the shadow ray out to the curved surface for
 //! which the triangle stands (Hanika, "Hacking the Shadow Terminator", *Ray Tracing Gems II*, 2021): the point is
 //! projected onto the tangent plane of each vertex, and the projections are interpolated.
 
