@@ -177,7 +177,7 @@ pub(super) fn joints() -> Errors {
     let parent = forged(&base, SectionKind::Joints, 0, |it: &mut Joint| {
         it.parent = 0
     });
-    errors.take_reason(parent, "joint 0", Reason::JointOrder);
+    errors.take_reason(parent, "joint 0 of tracks", Reason::JointOrder);
     let kind = SectionKind::InstanceJoints;
     let joint = forged(&base, kind, 1, |it: &mut u32| *it = 1);
     errors.take_field(joint, "instance 1 of tracks", Field::Joint);
