@@ -20,15 +20,14 @@ pub fn bend(tracks: &Tracks<'_>, frame: u32, motions: &mut [Motion]) -> Result<(
     tracks.chain(motions)
 }
 
-/// Where the range finder in the hand is, and where it points: on from the elbow through the wrist.
+/// Where the range finder in the hand is, beyond its fingers, and where it points: straight down.
 pub fn hand(tracks: &Tracks<'_>, motions: &[Motion]) -> Option<(Position, [i32; 3])> {
     let [elbow, wrist] = [WRIST - 1, WRIST].map(|number| tracks.joints().get(number));
     let [from, to] = [elbow?.pivot, wrist?.pivot];
-    let way = |axis: usize| to.get(axis)?.checked_sub(*from.get(axis)?);
-    let direction = [way(0)?, way(1)?, way(2)?];
-    let motion = motions.get(WRIST)?;
-    // Beyond the hand and its fingers.
-    let tip = |axis: usize| to.get(axis)?.checked_add(way(axis)? / 2);
+    let tip = |axis: usize| {
+        let to = *to.get(axis)?;
+        to.checked_add(to.checked_sub(*from.get(axis)?)? / 2)
+    };
     let tip = Position([tip(0)?, tip(1)?, tip(2)?]);
-    Some((motion.position(tip), motion.direction(direction)))
+    Some((motions.get(WRIST)?.position(tip), [0, -1, 0]))
 }
