@@ -130,9 +130,14 @@ impl Parts {
         let mut records = Vec::with_capacity(scene.instances.len());
         let mut boxes = Vec::with_capacity(scene.instances.len());
         let mut displacement = 0_f64;
-        for instance in scene.instances.iter().filter(|it| scene.is_placed(it)) {
+        let all = scene.instances.iter().zip(&self.reach.scales);
+        let placed: Vec<_> = all.filter(|(it, _)| scene.is_placed(it)).collect();
+        for &(instance, scales) in &placed {
             let part = &self.lattices[instance.part];
-            let record = self.map(instance, lattice, records.len() as u32)?;
+            let record = instance::Instance {
+                number: records.len() as u32,
+                ..self.map(instance, lattice, *scales)?
+            };
             if !record.is_rotation() {
                 return Err(CompileError::Instance {
                     instance: instance_name(instance),
@@ -151,7 +156,8 @@ impl Parts {
         let tree = build(&boxes);
         let records = tree.order.iter().map(|&number| records[number as usize]);
         let joint = |&number: &u32| {
-            let joint = scene.instances[number as usize].joint;
+            let (instance, _) = placed[number as usize];
+            let joint = instance.joint;
             joint.map_or(Joint::NONE, |joint| joint as u32)
         };
         let joints = tree.order.iter().filter(|_| !scene.joints.is_empty());
@@ -164,20 +170,19 @@ impl Parts {
         }))
     }
 
-    /// The map of an instance, without its box.
+    /// The map of an instance without its number, given its least and its greatest scale relative to that at rest.
     fn map(
         &self,
         instance: &Instance,
         lattice: &Lattice,
-        number: u32,
+        scales: [f64; 2],
     ) -> Result<instance::Instance, CompileError> {
         let part = &self.lattices[instance.part];
         let placement = &instance.placement;
         let stretch = lattice.unit() / (placement.scale * part.unit());
         let exponent = libm::ceil(libm::log2(stretch)) as i64;
         let [least, most] = INSTANCE_EXPONENT;
-        let scales = self.reach.scales.get(number as usize).copied();
-        let [smallest, largest] = scales.unwrap_or([1.0; 2]).map(libm::log2);
+        let [smallest, largest] = scales.map(libm::log2);
         let [lowest, highest] = [exponent as f64 - largest, exponent as f64 - smallest];
         if lowest < least as f64 || highest > most as f64 {
             return Err(CompileError::InstanceSize {
@@ -206,7 +211,7 @@ impl Parts {
             center: center.to_array().map(|x| x as i32),
             exponent: exponent as i16,
             part: instance.part as u16,
-            number,
+            number: 0,
         })
     }
 

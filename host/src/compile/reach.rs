@@ -38,7 +38,7 @@ impl Reach {
         };
         for instance in &scene.instances {
             let mut scales = [1.0; 2];
-            if let Some(joint) = instance.joint {
+            if let Some(joint) = instance.joint.filter(|_| scene.is_placed(instance)) {
                 let mut region = Region::of(parts[instance.part], &instance.placement);
                 let chain = std::iter::successors(Some(joint), |&it| scene.joints[it].parent);
                 for joint in chain {

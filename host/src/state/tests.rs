@@ -3,7 +3,7 @@
 use super::{Instance as Record, *};
 use crate::compile::{Options, compile};
 use crate::scene::test_chains::{Random, chain};
-use crate::scene::{Instance, Scene as SceneFile, TICKS_PER_SECOND};
+use crate::scene::{Instance, Part, Scene as SceneFile, TICKS_PER_SECOND};
 use crate::shape::exp2;
 use glam::{DMat3, DVec3};
 use gridel_core::format::instance::MATRIX_BITS;
@@ -84,6 +84,26 @@ fn many_instances_are_where_their_joints_lead_whatever_their_order() {
         });
     }
     assert!(largest_error(&scene, 2.0) < 0.25);
+}
+
+#[test]
+fn instances_behind_one_of_an_empty_part_keep_their_joints() {
+    let mut scene = chain(&mut Random(3), false);
+    let empty = Part {
+        objects: Vec::new(),
+        ..scene.parts[0].clone()
+    };
+    scene.parts.push(empty);
+    let nothing = Instance {
+        part: 1,
+        joint: None,
+        ..scene.instances[0].clone()
+    };
+    scene.instances.insert(0, nothing);
+    let blob = compile(&scene, &Options::default()).expect("compiles").blob;
+    let tracks = Tracks::from_bytes(blob.bytes()).expect("valid");
+    assert_eq!(blob.scene().expect("valid").instances().len(), 1);
+    assert_eq!(tracks.joint_of(0), scene.instances[1].joint);
 }
 
 #[test]
