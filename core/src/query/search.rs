@@ -17,7 +17,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::target::{SMALL, WideOnly, inline_on_boards, inline_on_hosts};
+use crate::target::{SMALL, WideOnly, inline_on_boards};
 
 /// The best hit so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -335,50 +335,51 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     }
 }
 
-inline_on_hosts!(
-    /// The best hit among the primitives of a structure, and a first one that was found before.
-    pub(super) fn search_structure<N: Number, A: Accel, C: Observer, const ANY: bool>(
-        scene: &Scene<'_>,
-        ray: &Ray<N>,
-        first: Option<Candidate<N>>,
-        stack: &mut StackView,
-        count: &mut C,
-        any: bool,
-    ) -> Option<Candidate<N>> {
-        let views = A::views(&scene.structures);
-        let cull = A::Cull::<N>::new(ray);
-        let mut search = Search::new(scene, ray, &cull, first);
-        if ANY {
-            A::walk_any(
-                &scene.space,
-                views,
-                ray,
-                &cull,
-                stack,
-                count,
-                |leaf, count| {
-                    search.leaf::<A, C, ANY>(leaf, count);
-                    search.best.is_some()
-                },
-            );
-        } else {
-            A::walk(
-                &scene.space,
-                views,
-                ray,
-                &cull,
-                stack,
-                count,
-                |leaf, count| {
-                    search.leaf::<A, C, ANY>(leaf, count);
-                    let found = A::ONE_COPY && any && search.best.is_some();
-                    (!found).then_some(search.tmax)
-                },
-            );
-        }
-        search.best
+/// The best hit among the primitives of a structure, and a first one that was found before.
+// With instances it is searched for in several places: boards hold it once.
+#[cfg_attr(feature = "wide", inline(always))]
+#[cfg_attr(all(feature = "instances", not(feature = "wide")), inline(never))]
+pub(super) fn search_structure<N: Number, A: Accel, C: Observer, const ANY: bool>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    first: Option<Candidate<N>>,
+    stack: &mut StackView,
+    count: &mut C,
+    any: bool,
+) -> Option<Candidate<N>> {
+    let views = A::views(&scene.structures);
+    let cull = A::Cull::<N>::new(ray);
+    let mut search = Search::new(scene, ray, &cull, first);
+    if ANY {
+        A::walk_any(
+            &scene.space,
+            views,
+            ray,
+            &cull,
+            stack,
+            count,
+            |leaf, count| {
+                search.leaf::<A, C, ANY>(leaf, count);
+                search.best.is_some()
+            },
+        );
+    } else {
+        A::walk(
+            &scene.space,
+            views,
+            ray,
+            &cull,
+            stack,
+            count,
+            |leaf, count| {
+                search.leaf::<A, C, ANY>(leaf, count);
+                let found = A::ONE_COPY && any && search.best.is_some();
+                (!found).then_some(search.tmax)
+            },
+        );
     }
-);
+    search.best
+}
 
 /// The records of a leaf's slots, with the slots.
 #[inline(always)]

@@ -136,7 +136,8 @@ impl<'p> PosesView<'p> {
     ) -> Result<(), BlobError> {
         let numbered = |it: &Instance| it.number == number;
         let index = self.instances.iter().position(numbered);
-        self.place_at(scene, index.unwrap_or(usize::MAX), motion)
+        let beyond = (number as usize).max(self.instances.len());
+        self.place_at(scene, index.unwrap_or(beyond), motion)
     }
 
     /// Places an instance as [`place`](Self::place) does, given by its index among [`Scene::instances`]: in constant
@@ -182,26 +183,13 @@ impl<'a> Scene<'a> {
             pairs,
             order,
         } = poses;
-        let (found, expected) = (instances.len(), self.instances().len());
-        let Some(placed) = self.placed.get().filter(|_| found == expected) else {
-            return Err(BlobError::Count {
-                section: SectionKind::Instances,
-                found,
-                expected,
-            });
-        };
+        let placed = self.placed_as_many(instances.len())?;
         build(instances, order, pairs, self.bounds(), |instance| {
             let (part, _) = placed.part(instance)?;
             around(instance, part.bounds())
         })?;
-        let placed = Placed {
-            top: Top { instances, pairs },
-            ..*placed
-        };
-        Ok(Self {
-            placed: InstancesOnly::new(|| placed),
-            ..*self
-        })
+        let top = Top { instances, pairs };
+        Ok(self.with_placed(Placed { top, ..*placed }))
     }
 
     /// The scene with these instances and the hierarchy above them, which lie as in a blob: instances in the order of
@@ -216,22 +204,28 @@ impl<'a> Scene<'a> {
         instances: &'a [Instance],
         pairs: &'a [Pair],
     ) -> Result<Self, BlobError> {
-        let (found, expected) = (instances.len(), self.instances().len());
-        let Some(placed) = self.placed.get().filter(|_| found == expected) else {
-            return Err(BlobError::Count {
-                section: SectionKind::Instances,
-                found,
-                expected,
-            });
-        };
-        let placed = Placed {
-            top: Top { instances, pairs },
-            ..*placed
-        };
+        let placed = self.placed_as_many(instances.len())?;
+        let top = Top { instances, pairs };
+        let placed = Placed { top, ..*placed };
         check_instances(&placed, self.bounds())?;
-        Ok(Self {
+        Ok(self.with_placed(placed))
+    }
+
+    /// The parts and instances, if these are so many instances.
+    fn placed_as_many(&self, found: usize) -> Result<&Placed<'a, Self>, BlobError> {
+        let expected = self.instances().len();
+        let placed = self.placed.get().filter(|_| found == expected);
+        placed.ok_or(BlobError::Count {
+            section: SectionKind::Instances,
+            found,
+            expected,
+        })
+    }
+
+    fn with_placed(&self, placed: Placed<'a, Self>) -> Self {
+        Self {
             placed: InstancesOnly::new(|| placed),
             ..*self
-        })
+        }
     }
 }

@@ -34,13 +34,13 @@ pub type Accel = gridel_core::Grid;
 pub type Accel = gridel_core::List;
 
 /// The scene of [`BLOB`], proved now.
-#[cfg(not(feature = "prevalidated"))]
+#[cfg(any(not(feature = "prevalidated"), feature = "instances"))]
 pub fn load(blob: &'static [u8]) -> Result<Scene<'static>, BlobError> {
     Scene::from_bytes(blob)
 }
 
-/// The scene of [`BLOB`], proved while the program was compiled.
-#[cfg(feature = "prevalidated")]
+/// The scene of [`BLOB`], proved while the program was compiled; a blob with parts cannot be.
+#[cfg(all(feature = "prevalidated", not(feature = "instances")))]
 pub fn load(_: &'static [u8]) -> Result<Scene<'static>, BlobError> {
     static PREVALIDATED: gridel_core::Prevalidated<'static> =
         match gridel_core::Prevalidated::of(BLOB) {
@@ -48,6 +48,41 @@ pub fn load(_: &'static [u8]) -> Result<Scene<'static>, BlobError> {
             Err(_) => panic!("the blob was damaged"),
         };
     Scene::prevalidated(core::hint::black_box(PREVALIDATED))
+}
+
+/// Memory for the views of parts: none where no code places them.
+#[cfg(not(feature = "instances"))]
+#[derive(Default)]
+pub struct PartViews;
+
+#[cfg(not(feature = "instances"))]
+impl PartViews {
+    pub const fn new() -> Self {
+        Self
+    }
+
+    /// The scene of [`BLOB`].
+    pub fn load(&mut self, blob: &'static [u8]) -> Result<Scene<'_>, BlobError> {
+        load(blob)
+    }
+}
+
+/// Memory for the views of parts.
+#[cfg(feature = "instances")]
+#[derive(Default)]
+pub struct PartViews(Option<gridel_core::Parts<'static, PARTS>>);
+
+#[cfg(feature = "instances")]
+impl PartViews {
+    pub const fn new() -> Self {
+        Self(None)
+    }
+
+    /// The scene of [`BLOB`] with its parts, which are proved now in small code, too.
+    pub fn load(&mut self, blob: &'static [u8]) -> Result<Scene<'_>, BlobError> {
+        let parts = self.0.insert(gridel_core::Parts::from_bytes(blob)?);
+        Scene::with_parts(blob, parts)
+    }
 }
 
 /// A workspace that is exactly large enough.

@@ -12,9 +12,11 @@ use gridel_host::measure::board::Board;
 use std::collections::BTreeMap;
 
 pub fn plan(plan: &mut Plan) {
+    let discovery = board("stm32vldiscovery");
     for (board, format) in measured_in_full() {
+        // Twenty builds on each kind of core.
         plan.test_on("every_core_pays_for_parts_one_by_one", board, format)
-            .in_full()
+            .in_full_if(board == discovery)
             .run(move || core_pays_for_parts_one_by_one(board, format));
     }
     let others = boards().filter(|&(board, _)| board != &WASM);
@@ -22,15 +24,14 @@ pub fn plan(plan: &mut Plan) {
         others.filter(|&(board, format)| board.similar(format) != (board, format))
     {
         plan.test_on("every_board_pays_for_few_parts", board, format)
-            .in_full()
+            .at_length()
             .run(move || board_pays_for_few_parts(board, format));
     }
     for (board, format) in boards().filter(|&(board, _)| board != &WASM) {
         plan.test_on("everything_on_every_board", board, format)
-            .in_full()
+            .in_full_if(board == discovery)
             .run(move || everything_on_a_board(board, format));
     }
-    let discovery = board("stm32vldiscovery");
     plan.test("shapes_and_effects_are_paid_for_one_by_one")
         .on(discovery)
         .in_full()
@@ -122,6 +123,15 @@ fn everything_on_a_board(board: &'static Board, format: Format) {
         for build in [fast(), fast().small()] {
             let elf = build.program_with("bare", &["everything"]).elf();
             linked.add(&build, &["everything"], &scene, &elf);
+        }
+    }
+    if in_full {
+        let placed = parts::combination(&["box", "instances"], &["shadow"]);
+        let fast = || Build::new(board, format, Structure::DualSplit, &placed);
+        for build in [fast(), fast().small()] {
+            let features = ["everything", "instances"];
+            let elf = build.program_with("bare", &features).elf();
+            linked.add(&build, &features, &placed, &elf);
         }
     }
     linked.check();

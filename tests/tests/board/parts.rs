@@ -2,10 +2,13 @@
 //! small scene with and without it.
 
 use crate::scenes::{Compiled, compile_with, small};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use gridel_core::{Kind, Structure};
 use gridel_host::compile::Options;
-use gridel_host::scene::{Camera, Diffuse, Light, Material, Object, Scene, Shape, SourceSpan};
+use gridel_host::scene::{
+    Camera, Diffuse, Instance, Light, Material, Normals, Object, Part, Placement, Scene, Shape,
+    SourceSpan,
+};
 use gridel_host::shape::{Cuboid, Sphere};
 use gridel_tests::shapes::examples;
 
@@ -14,8 +17,11 @@ pub const BASE: &str = "base";
 
 const TRIANGLE: &str = Kind::Triangle.name();
 
+/// Stands for a scene whose objects are placed by an instance.
+const INSTANCES: &str = "instances";
+
 /// A part's name, and how to require it.
-type Effects = [(&'static str, fn(&mut Scene)); 6];
+type Effects = [(&'static str, fn(&mut Scene)); 7];
 
 const EFFECTS: Effects = [
     ("shadow", |scene| scene.render.shadows = true),
@@ -33,6 +39,9 @@ const EFFECTS: Effects = [
             size: 0.5,
             origin: DVec3::splat(0.1),
         }
+    }),
+    ("smooth", |scene| {
+        scene.objects.iter_mut().for_each(make_smooth);
     }),
 ];
 
@@ -69,10 +78,15 @@ pub fn every_shape() -> Compiled {
 /// of core, so the list is short; the memory report bounds what is not on it.
 pub fn combinations() -> impl Iterator<Item = (Vec<&'static str>, Vec<&'static str>)> {
     const EVERY: &str = "shadow highlight mirror glass absorption checker";
+    const EVERY_SMOOTH: &str = "shadow highlight mirror glass absorption checker smooth";
     let programs = [
         ("triangle", "shadow"),
         ("triangle", "shadow highlight"),
         ("triangle", EVERY),
+        ("triangle", "shadow smooth"),
+        ("triangle", "shadow highlight smooth"),
+        ("triangle", EVERY_SMOOTH),
+        ("triangle instances", "shadow"),
         ("sphere", "shadow"),
         ("sphere", "shadow highlight"),
         ("sphere", EVERY),
@@ -123,6 +137,9 @@ pub fn combination(shapes: &[&str], effects: &[&str]) -> Compiled {
     {
         call_for(&mut scene);
     }
+    if shapes.contains(&INSTANCES) {
+        place_a_part(&mut scene);
+    }
     let options = Options {
         lattice_bits: 24,
         ..small()
@@ -135,6 +152,42 @@ pub fn combination(shapes: &[&str], effects: &[&str]) -> Compiled {
         "{features:?}, and not {expected:?}"
     );
     compiled
+}
+
+/// Gives the corners of a mesh normals that lean away from each other.
+fn make_smooth(object: &mut Object) {
+    let Shape::Mesh {
+        vertices,
+        triangles,
+    } = &object.shape
+    else {
+        return;
+    };
+    let center = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
+    let [a, b, c] = triangles[0].map(|it| vertices[it as usize]);
+    let face = (b - a).cross(c - a).normalize();
+    let leaning = vertices.iter().map(|&it| 2.0 * face + (it - center));
+    object.normals = Normals::given(leaning.collect(), triangles.clone(), (vertices, triangles));
+}
+
+/// Moves all objects into a part, and places that.
+fn place_a_part(scene: &mut Scene) {
+    scene.parts.push(Part {
+        name: String::from("part"),
+        objects: std::mem::take(&mut scene.objects),
+        place: SourceSpan::default(),
+    });
+    scene.instances.push(Instance {
+        name: String::from("instance"),
+        part: 0,
+        joint: None,
+        placement: Placement {
+            rotation: DQuat::from_rotation_z(0.5),
+            translation: DVec3::new(0.1, 0.2, 0.3),
+            scale: 0.9,
+        },
+        place: SourceSpan::default(),
+    });
 }
 
 /// The parts of the bar for flash: spheres and triangles, diffuse, with shadows.

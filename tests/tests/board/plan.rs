@@ -73,6 +73,15 @@ impl Planned<'_> {
         self
     }
 
+    /// [`in_full`](Self::in_full) if it is to run often, else [`at_length`](Self::at_length): for a test of many builds
+    /// that runs often on one kind of core.
+    pub fn in_full_if(self, often: bool) -> Self {
+        match often {
+            true => self.in_full(),
+            false => self.at_length(),
+        }
+    }
+
     /// Adds the test.
     pub fn run(self, test: impl FnOnce() + Send + 'static) {
         let is_set = |name: &str| env::var_os(name).is_some_and(|value| value == "1");

@@ -8,12 +8,11 @@ use crate::measured_in_full;
 use crate::parts;
 use crate::plan::Plan;
 use crate::scenes::{self, Compiled, repository};
-use gridel_core::{Format, Structure};
+use gridel_core::{Format, Rgb565, Structure};
 use gridel_host::measure::board::Board;
-use gridel_host::measure::board::programs::{
-    Footprint, Profile, ProgramKey, Programs, parts as all_parts,
-};
+use gridel_host::measure::board::programs::{Footprint, Profile, ProgramKey, Programs, everything};
 use gridel_host::measure::board::{MemoryReport, Target};
+use gridel_host::measure::board_memory;
 use std::path::PathBuf;
 use std::sync::Mutex;
 use std::{env, fs};
@@ -27,17 +26,12 @@ pub fn plan(plan: &mut Plan) {
             // The report holds what was recorded when the host was compiled.
             continue;
         }
-        let within = plan
-            .test_on("memory_report_is_within_5_percent", board, format)
-            .with_scene(CRAMBIN)
-            .with_scene(SUZANNE);
         // Eighteen builds on each kind of core.
-        let within = if board.core == "Cortex-M3" {
-            within.in_full()
-        } else {
-            within.at_length()
-        };
-        within.run(move || memory_report_is_within_5_percent(board, format));
+        plan.test_on("memory_report_is_within_5_percent", board, format)
+            .with_scene(CRAMBIN)
+            .with_scene(SUZANNE)
+            .in_full_if(board.core == "Cortex-M3")
+            .run(move || memory_report_is_within_5_percent(board, format));
         plan.test_on("memory_report_bounds_programs_beyond", board, format)
             .at_length()
             .run(move || memory_report_bounds_programs_beyond(board, format));
@@ -65,8 +59,9 @@ impl Linked {
     pub fn add(&mut self, build: &Build<'_>, features: &[&str], scene: &Compiled, elf: &Elf) {
         let (board, format, structure) = build.place();
         let board = Board::named(board.name).expect("a board of the host's");
-        let parts: Vec<&str> = match features {
-            ["everything"] => all_parts().collect(),
+        let all: Vec<&str> = everything().collect();
+        let parts = match features {
+            ["everything", more @ ..] => [&all, more].concat(),
             _ => features.to_vec(),
         };
         self.0.push(LinkedProgram {
@@ -135,13 +130,22 @@ fn path() -> PathBuf {
     repository().join("host/src/measure/board/programs.json")
 }
 
-/// Flash for code, and the deepest call stack.
+/// Flash for code, the deepest call stack, and RAM for the view of a part.
 pub fn footprint(build: &Build<'_>, elf: &Elf, scene: &Compiled) -> Footprint {
     let path = elf.deepest_path();
     let path = path.unwrap_or_else(|why| panic!("{build}: no bound on its stack: {why}"));
+    let view = scene.blob.scene().expect("the compiler's own blob");
+    let parts = view.parts().len() as u64;
+    let part_view = (parts > 0).then(|| {
+        let (_, format, _) = build.place();
+        let workspace = board_memory(&view, format, view.view().depth).workspace as u64;
+        let row = u64::from(view.view().width) * size_of::<Rgb565>() as u64;
+        (elf.static_bytes() - workspace - row).div_ceil(parts)
+    });
     Footprint {
         code: elf.flash_bytes() - scene.blob.bytes().len() as u64,
         call_stack: path.bytes,
+        part_view,
     }
 }
 

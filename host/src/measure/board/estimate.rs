@@ -2,7 +2,7 @@
 
 use super::Board;
 use super::account::Account;
-use super::programs::{Footprint, Known, Profile, Programs, parts};
+use super::programs::{Footprint, Known, Profile, Programs, everything};
 use gridel_core::{Format, Structure};
 
 /// A program that was built for every board, beside that of all parts.
@@ -78,7 +78,7 @@ impl ProgramEstimate<'_> {
             });
         }
         let known = of(similar, Structure::DualSplit, required)?;
-        let everything: Vec<&str> = parts().collect();
+        let everything: Vec<&str> = everything().collect();
         let mut bytes = known.bytes;
         if structure != Structure::DualSplit {
             let both = [structure, Structure::DualSplit].map(|it| built(similar, it, &everything));

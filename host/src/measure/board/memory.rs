@@ -19,7 +19,7 @@ use crate::blob::best_structures;
 use crate::measure::bytes::{MemoryMap, board_memory};
 use crate::measure::deforming::Deforming;
 use crate::table::grouped;
-use gridel_core::{Effects, Format, Prevalidated, Rgb565, Scene, Structure};
+use gridel_core::{Format, Prevalidated, Rgb565, Scene, Structure};
 use serde::Serialize;
 
 /// Memory of a board that a scene is to fit into.
@@ -140,15 +140,11 @@ impl MemoryReport {
             }
         }
         program.list_code(&mut flash);
-        if scene.effects().contains(Effects::SMOOTH) {
-            // No program with it was recorded.
-            flash.add("code of smooth normals", None);
+        let parts = scene.parts().len() as u64;
+        if parts > 0 {
+            let bytes = programs.part_view().map(|view| parts * view);
+            ram.add(format!("views of {parts} parts, at most"), bytes);
         }
-        if !scene.parts().is_empty() {
-            // Their size on boards is not measured.
-            ram.add("views of parts", None);
-        }
-
         for mesh in Deforming::all(scene) {
             ram.add(
                 format!(
@@ -317,10 +313,12 @@ mod tests {
         Footprint {
             code: 30_000,
             call_stack: 1000,
+            part_view: None,
         },
         Footprint {
             code: 20_000,
             call_stack: 1500,
+            part_view: None,
         },
     ];
 

@@ -12,8 +12,10 @@ use std::collections::BTreeMap;
 
 /// The figures that the tests recorded.
 const RECORDED: &str = include_str!("programs.json");
+/// Placed parts, which scenes of a single blob have no code for.
+const INSTANCES: &str = "instances";
 /// Forms of storage and of colors that programs have code for, or have not.
-const FORMS: [&str; 3] = ["wide-lattice", "wide-indices", "display-values"];
+const FORMS: [&str; 4] = ["wide-lattice", "wide-indices", INSTANCES, "display-values"];
 
 /// Bytes of a linked program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -22,6 +24,9 @@ pub struct Footprint {
     pub code: u64,
     /// The deepest call path.
     pub call_stack: u64,
+    /// RAM for the view of a part, where the program places parts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub part_view: Option<u64>,
 }
 
 /// How a program is built.
@@ -142,6 +147,13 @@ impl Programs {
         })
     }
 
+    /// Returns the RAM for the view of a part, at most; `None` where no program with parts was built.
+    pub fn part_view(&self) -> Option<u64> {
+        let programs = self.0.values().flat_map(Built::values);
+        let footprints = programs.flat_map(|program| [program.fast, program.small]);
+        footprints.flatten().filter_map(|it| it.part_view).max()
+    }
+
     /// Returns the median of what a part adds to programs that were built with and without it; `None` where
     /// there is no such pair.
     pub fn share(&self, program_key: ProgramKey<'_>, part: &str, profile: Profile) -> Option<u64> {
@@ -167,8 +179,12 @@ impl Programs {
 /// All that a program can have code for, in the order of the report.
 pub fn parts() -> impl Iterator<Item = &'static str> {
     let kinds = Kind::ALL.map(Kind::name);
-    let effects = Effects::ALL.without(Effects::SMOOTH);
-    kinds.into_iter().chain(FORMS).chain(effects.names())
+    kinds.into_iter().chain(FORMS).chain(Effects::ALL.names())
+}
+
+/// All of them but instances: what the firmware's feature `everything` has code for.
+pub fn everything() -> impl Iterator<Item = &'static str> {
+    parts().filter(|&part| part != INSTANCES)
 }
 
 /// How a program is called: its parts in their order.
@@ -194,6 +210,7 @@ mod tests {
             let footprint = Footprint {
                 code,
                 call_stack: 100,
+                part_view: None,
             };
             programs.insert(PROGRAM, parts, Profile::Fast, footprint);
         }

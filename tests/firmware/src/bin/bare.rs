@@ -5,11 +5,12 @@
 use core::hint::black_box;
 use gridel_core::{NoCount, Rgb565, Settings};
 use gridel_firmware::program;
-use gridel_firmware::scene::{BLOB, SceneRenderer, Space, WIDTH, load};
+use gridel_firmware::scene::{BLOB, PartViews, SceneRenderer, Space, WIDTH};
 
 struct Memory {
     space: Space,
     row: [Rgb565; WIDTH],
+    parts: PartViews,
 }
 
 impl Memory {
@@ -17,6 +18,7 @@ impl Memory {
         Self {
             space: Space::new(),
             row: [Rgb565(0); WIDTH],
+            parts: PartViews::new(),
         }
     }
 }
@@ -25,12 +27,13 @@ program!(run, Memory);
 
 fn run(memory: &'static mut Memory) {
     loop {
-        render(&mut memory.space, &mut memory.row);
+        render(memory);
     }
 }
 
-fn render(space: &mut Space, row: &mut [Rgb565; WIDTH]) {
-    let Ok(scene) = load(black_box(BLOB)) else {
+fn render(memory: &mut Memory) {
+    let Memory { space, row, parts } = memory;
+    let Ok(scene) = parts.load(black_box(BLOB)) else {
         return;
     };
     let settings = Settings::of(&scene);
