@@ -15,6 +15,7 @@ use std::any::Any;
 pub struct HitBits {
     pub primitive: u32,
     pub object: u32,
+    pub instance: Option<u32>,
     pub front: bool,
     pub t: u64,
     pub point: [u64; 3],
@@ -27,6 +28,7 @@ impl HitBits {
         Self {
             primitive: hit.primitive,
             object: hit.object,
+            instance: hit.instance(),
             front: hit.front,
             t: N::far_to_f64(hit.t).to_bits(),
             point: hit.point.map(|x| x.length_to_f64().to_bits()),

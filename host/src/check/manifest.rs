@@ -9,15 +9,15 @@ pub use named::Named;
 
 use crate::measure::board::{BOARDS, Board as Target};
 use crate::output::place;
-use crate::scene::SceneError;
 use crate::scene::toml::source::{Source, Span};
 use crate::scene::toml::value::{Fields, Value};
+use crate::scene::{Instances, SceneError};
 use gridel_core::format::limits::MAX_SAMPLES;
 use gridel_core::{Format, Structure};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
-use values::{formats, hashes, size, structure, target};
+use values::{formats, hashes, instances, size, structure, target};
 
 /// A manifest, and the text that it was read from.
 #[derive(Clone, Debug)]
@@ -36,6 +36,10 @@ pub struct Check {
     pub lattice_bits: Option<u8>,
     /// Whether the scene file may name files outside of its folder.
     pub allow_outside: bool,
+    /// What becomes of instances; `None` for a blob, which holds them or does not.
+    pub instances: Option<Instances>,
+    /// Which assembly of a PDB or mmCIF file.
+    pub assembly: Option<String>,
     pub formats: Vec<Format>,
     pub size: Option<[u16; 2]>,
     pub samples: Option<u16>,
@@ -188,6 +192,8 @@ impl Check {
             "accel",
             "lattice_bits",
             "allow_outside",
+            "instances",
+            "assembly",
             "formats",
             "size",
             "samples",
@@ -236,6 +242,10 @@ impl Check {
                 Ok(Some(value.integer_in(10..=24)? as u8))
             })?,
             allow_outside: fields.or("allow_outside", false, Value::boolean)?,
+            instances: fields.or("instances", None, |value| instances(value).map(Some))?,
+            assembly: fields.or("assembly", None, |value| {
+                Ok(Some(value.filled()?.to_owned()))
+            })?,
             size: fields.or("size", None, |value| size(value).map(Some))?,
             samples: fields.or("samples", None, |value| {
                 Ok(Some(value.integer_in(1..=MAX_SAMPLES.into())? as u16))

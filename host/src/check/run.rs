@@ -41,6 +41,7 @@ pub fn run(manifest: &Manifest, progress: &dyn Fn()) -> Report {
             check,
             findings: &mut report.findings,
             warnings: &mut report.warnings,
+            posed: false,
         };
         if let Err(why) = run.all(progress) {
             run.push(None, "scene", None, None, Outcome::Failed(why));
@@ -56,6 +57,8 @@ pub(super) struct Run<'r> {
     pub(super) check: &'r Check,
     findings: &'r mut Vec<Finding>,
     warnings: &'r mut Vec<String>,
+    /// Whether instances were copied where they are at the check's time.
+    posed: bool,
 }
 
 /// A figure, and the most that is allowed.
@@ -113,6 +116,9 @@ impl Run<'_> {
         };
         let path = self.check.scene.path.display();
         let tracks = Tracks::from_bytes(blob).map_err(|error| format!("{path}: {error}"))?;
+        if tracks.is_empty() && self.posed {
+            return Ok(None);
+        }
         if tracks.is_empty() {
             return Err(format!("{path}: nothing moves, so there is no `time`"));
         }
@@ -130,9 +136,14 @@ impl Run<'_> {
             explained(&self.manifest.error(&check.scene, cause, remedy))
         };
         if is_blob(path).map_err(unreadable)? {
-            if check.lattice_bits.is_some() {
+            let keys = [
+                ("lattice_bits", check.lattice_bits.is_some()),
+                ("instances", check.instances.is_some()),
+                ("assembly", check.assembly.is_some()),
+            ];
+            if let Some((key, _)) = keys.into_iter().find(|&(_, given)| given) {
                 return Err(format!(
-                    "`lattice_bits` is for scene files, and {} is a blob",
+                    "`{key}` is for scene files, and {} is a blob",
                     path.display()
                 ));
             }
@@ -140,9 +151,19 @@ impl Run<'_> {
         }
         let options = ImportOptions {
             allow_outside: check.allow_outside,
+            instances: check.instances.unwrap_or_default(),
+            assembly: check.assembly.clone(),
+            at: check.time,
             ..ImportOptions::default()
         };
         let imported = scene::load_with(path, &options).map_err(|error| explained(&error))?;
+        if check.assembly.is_some() && !imported.assemblies {
+            return Err(format!(
+                "`assembly` is for PDB and mmCIF files, and {} has none; leave it out",
+                path.display()
+            ));
+        }
+        self.posed = imported.posed;
         for warning in imported.warnings {
             if !self.warnings.contains(&warning) {
                 self.warnings.push(warning);

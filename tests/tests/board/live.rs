@@ -46,8 +46,8 @@ pub fn plan(plan: &mut Plan) {
             .run(move || an_arm_bends(board, format, &scenes::arm()));
     }
     for (board, format, most) in [
-        ("mps2-an386", Format::F32, 1.4),
-        ("mps2-an385", Format::Fixed, 1.72),
+        ("mps2-an386", Format::F32, 1.38),
+        ("mps2-an385", Format::Fixed, 1.69),
     ] {
         let board = firmware::board(board);
         plan.test_on("an_instance_costs_little", board, format)

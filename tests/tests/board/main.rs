@@ -78,7 +78,7 @@ fn pictures(plan: &mut Plan) {
         let test = if is_ordinary { test } else { test.in_full() };
         test.run(move || picture_is_the_hosts(board, format, &scenes::quick()));
         plan.test_on("every_shape_on_every_board", board, format)
-            .in_full()
+            .in_full_if(is_ordinary)
             .run(move || {
                 compare_with_the_hosts(board, format, &parts::every_shape());
             });
@@ -96,7 +96,7 @@ fn pictures(plan: &mut Plan) {
     // With floats or without: `gridel accuracy` compares them.
     for (board, format) in boards.chain([(board("mps2-an386"), Format::Fixed)]) {
         plan.test_on("glass_on_boards", board, format)
-            .in_full()
+            .in_full_if(board.core == "Cortex-M4F")
             .run(move || picture_is_the_hosts(board, format, &scenes::glass_chess()));
     }
 
@@ -289,14 +289,17 @@ fn linked(plan: &mut Plan) {
         let board = board(name);
         let size = if small { "small" } else { structure.name() };
         let test = format!("nothing_panics_with_overflow_checks::{size}");
-        plan.test_on(&test, board, format).in_full().run(move || {
-            let scene = scenes::quick();
-            let build = Build::new(board, format, structure, &scene).with_overflow_checks();
-            let build = if small { build.small() } else { build };
-            let elf = build.program_with("picture", &["everything"]).elf();
-            let panicking = elf.functions(elf::panics);
-            assert!(panicking.is_empty(), "{build} can panic: {panicking:#?}");
-        });
+        let often = structure == Structure::DualSplit || structure == Structure::Bvh;
+        plan.test_on(&test, board, format)
+            .in_full_if(often)
+            .run(move || {
+                let scene = scenes::quick();
+                let build = Build::new(board, format, structure, &scene).with_overflow_checks();
+                let build = if small { build.small() } else { build };
+                let elf = build.program_with("picture", &["everything"]).elf();
+                let panicking = elf.functions(elf::panics);
+                assert!(panicking.is_empty(), "{build} can panic: {panicking:#?}");
+            });
     }
 }
 

@@ -31,10 +31,10 @@ pub fn plan(plan: &mut Plan) {
             .run(move || primary_rays_of_suzanne(board, format));
         plan.test_on("primary_rays_of_suzanne_in_16_bits", board, format)
             .with_scene(scenes::SUZANNE)
-            .in_full()
+            .in_full_if(format == Format::F32)
             .run(move || primary_rays_of_suzanne_in_16_bits(board, format));
         plan.test_on("rays_without_a_camera::torus", board, format)
-            .in_full()
+            .in_full_if(board.core == "Cortex-M0")
             .run(move || rays_without_a_camera(board, format, &scenes::torus_mesh()));
         plan.test_on("rays_without_a_camera::suzanne", board, format)
             .with_scene(scenes::SUZANNE)
@@ -49,11 +49,11 @@ pub fn plan(plan: &mut Plan) {
     for board in ["mps2-an386", "mps2-an385"].map(board) {
         let format = board.format();
         plan.test_on("primary_rays_of_molecules::nanotube", board, format)
-            .in_full()
+            .in_full_if(format == Format::F32)
             .run(move || primary_rays_of_a_molecule(board, &scenes::molecule()));
         plan.test_on("primary_rays_of_molecules::protein", board, format)
             .with_scene(scenes::PROTEIN)
-            .in_full()
+            .in_full_if(format == Format::Fixed)
             .run(move || primary_rays_of_a_molecule(board, &scenes::protein()));
         plan.test_on("primary_rays_of_suzanne_in_16_kib", board, format)
             .with_scene(scenes::SUZANNE)

@@ -1,9 +1,9 @@
 //! Values of a manifest that scene files do not have.
 
 use crate::measure::board::{BOARDS, Board};
-use crate::scene::SceneError;
 use crate::scene::toml::source::nearest;
 use crate::scene::toml::value::Value;
+use crate::scene::{Instances, SceneError};
 use gridel_core::{Format, Structure};
 use std::collections::BTreeMap;
 
@@ -46,6 +46,13 @@ pub(super) fn structure(value: Value<'_>) -> Result<Structure, SceneError> {
             format!("there is no acceleration structure {name:?}"),
             format!("did you mean {near:?}? There are {}", all.join(", ")),
         )
+    })
+}
+
+pub(super) fn instances(value: Value<'_>) -> Result<Instances, SceneError> {
+    Ok(match value.word(&["keep", "flatten"])? {
+        "flatten" => Instances::Flatten,
+        _ => Instances::Keep,
     })
 }
 

@@ -1,6 +1,7 @@
 #[cfg(unix)]
 mod boards;
 mod findings;
+mod instances;
 mod mistakes;
 mod target;
 

@@ -1,0 +1,109 @@
+//! Instances that are kept or copied, and assemblies.
+
+use super::*;
+
+/// Two balls at the ends of a beam that turns.
+const BEAM: &str = r#"
+camera = { eye = [0, 0, 8], target = [0, 0, 0] }
+render = { width = 16, height = 12 }
+light = [{ kind = "point", position = [3, 4, 5] }]
+
+[[object]]
+kind = "sphere"
+center = [0, 0, 0]
+radius = 0.5
+
+[[part]]
+name = "ball"
+object = [{ kind = "sphere", center = [0, 0, 0], radius = 1 }]
+
+[[joint]]
+name = "beam"
+pivot = [0, 0, 0]
+
+[[instance]]
+part = "ball"
+joint = "beam"
+translate = [2, 0, 0]
+
+[[instance]]
+part = "ball"
+joint = "beam"
+translate = [-2, 0, 0]
+
+[[track]]
+target = "joint.beam.rotation"
+axis = [0, 0, 1]
+times = [0, 1]
+values = [0, 90]
+"#;
+
+fn found(report: &Report, check: &str, what: &str) -> Figure {
+    let mut findings = report.findings.iter();
+    let finding = findings.find(|it| it.check == check && it.what == what);
+    finding.and_then(|it| it.found.clone()).expect(what)
+}
+
+#[test]
+fn instances_are_kept_or_copied_where_they_are() {
+    let folder = Folder::new();
+    fs::write(folder.path("beam.toml"), BEAM).unwrap();
+    let check = |name: &str, instances: &str| {
+        let name = format!("[[check]]\nname = \"{name}\"\nscene = \"beam.toml\"\n");
+        format!("{name}time = 0.5\nhash = {{}}\nbudget = {{ blob_bytes = 1 }}\n{instances}\n")
+    };
+    let (_, report) = folder.run(&format!(
+        "{}{}{}",
+        check("as it is", ""),
+        check("kept", "instances = \"keep\""),
+        check("copied", "instances = \"flatten\"")
+    ));
+    let of = |what| ["as it is", "kept", "copied"].map(|check| found(&report, check, what));
+    let [as_it_is, kept, copied] = of("blob_bytes");
+    assert_eq!(as_it_is, kept);
+    assert_ne!(kept, copied);
+    let [as_it_is, kept, copied] = of("hash");
+    assert_eq!(as_it_is, kept);
+    // The balls stand where they are at the time: the picture is the same, and at rest another one.
+    assert_eq!(kept, copied);
+    let (_, report) = folder.run(&check("at rest", "").replace("time = 0.5\n", ""));
+    assert_ne!(found(&report, "at rest", "hash"), kept);
+}
+
+#[test]
+fn what_has_no_instances_to_choose_is_rejected() {
+    let folder = Folder::new();
+    fs::write(folder.path("beam.toml"), BEAM).unwrap();
+    let mistakes = [
+        ("assembly = \"1\"", "`assembly` is for PDB and mmCIF files"),
+        ("instances = \"keep\"", ""),
+    ];
+    for (key, expected) in mistakes {
+        let text = format!("[[check]]\nscene = \"beam.toml\"\nhash = {{}}\n{key}\n");
+        let (_, report) = folder.run(&text);
+        let why = report
+            .findings
+            .iter()
+            .map(why)
+            .find(|it| it.contains(expected));
+        assert!(why.is_some(), "{key}: {:?}", report.findings);
+    }
+    let text = "[[check]]\nscene = \"beam.toml\"\nhash = {}\ninstances = \"copy\"\n";
+    let error = folder.manifest(text).unwrap_err().to_string();
+    assert!(error.contains("`instances` is \"copy\""), "{error}");
+    let scene = crate::scene::load(&folder.path("beam.toml"), &Default::default())
+        .unwrap()
+        .scene;
+    let blob = crate::compile::compile(&scene, &Default::default())
+        .unwrap()
+        .blob;
+    fs::write(folder.path("beam.gridel"), blob.bytes()).unwrap();
+    for key in ["instances = \"flatten\"", "assembly = \"1\""] {
+        let text = format!("[[check]]\nscene = \"beam.gridel\"\nhash = {{}}\n{key}\n");
+        let (_, report) = folder.run(&text);
+        assert!(
+            why(&report.findings[0]).contains("is for scene files"),
+            "{key}"
+        );
+    }
+}
