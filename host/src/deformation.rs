@@ -9,7 +9,7 @@ use std::ops::{Deref, DerefMut};
 /// A [`Deformation`](gridel_core::Deformation) that takes as much memory as its scene needs.
 ///
 /// ```
-/// # let file = "[[object]]\nkind = 'mesh'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\ntriangles = [[0, 1, 2]]";
+/// # let file = "[[object]]\nkind = 'mesh'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[0, 1, 2]]";
 /// # let imported = gridel_host::scene::read("flag.toml".as_ref(), file.into(), &Default::default())?;
 /// use gridel_core::Structure;
 /// use gridel_core::format::record::Vertex24;

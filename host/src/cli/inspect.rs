@@ -1,6 +1,8 @@
 //! `gridel inspect`: what is in a blob, and what it takes to work with it.
 
 mod joints;
+mod parts;
+mod tracks;
 
 use super::arguments::{SceneOptions, TargetOptions};
 use super::effects::CalledFor;
@@ -9,16 +11,17 @@ use super::output::{print, print_json_warned};
 use super::source::Source;
 use clap::Args;
 use glam::DVec3;
-use gridel_core::format::track::{self as record, Timeline};
-use gridel_core::{Format, Kind, Scene, Structure, Tracks};
+use gridel_core::{Format, Kind, Scene, Structure};
 use gridel_host::compile::{self, Names};
 use gridel_host::measure::board::{Account, MemoryReport};
 use gridel_host::measure::{Deforming, MemoryMap, WorkingMemory, working_memory};
 use gridel_host::table::{Align, Table, counted, grouped, power_of_two, printable};
 use joints::JointLine;
+use parts::PartLine;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use tracks::TrackList;
 
 /// Show the memory map of a blob, its limits and the RAM that it needs
 ///
@@ -49,6 +52,9 @@ struct Inspection {
     memory_map: MemoryMap,
     limits: Limits,
     contents: Contents,
+    /// What instances place.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    parts: Vec<PartLine>,
     /// Where something moves.
     #[serde(skip_serializing_if = "Option::is_none")]
     tracks: Option<TrackList>,
@@ -84,74 +90,6 @@ struct Limits {
     coordinate_origin: [f64; 3],
     /// The scene's box in scene units, lowest and highest corner.
     bounds: [[f64; 3]; 2],
-}
-
-/// What moves in a blob.
-#[derive(Serialize)]
-struct TrackList {
-    ticks_per_second: u32,
-    /// Seconds of the first and of the last key.
-    first: f64,
-    last: f64,
-    /// Bytes of their sections.
-    bytes: usize,
-    tracks: Vec<TrackLine>,
-}
-
-#[derive(Serialize)]
-struct TrackLine {
-    target: &'static str,
-    /// The number of the light, material or joint; 0 for the camera.
-    index: u32,
-    interpolation: &'static str,
-    keys: u32,
-}
-
-impl TrackList {
-    fn of(blob: &[u8]) -> Option<Self> {
-        // They were checked with the scene.
-        let tracks = Tracks::from_bytes(blob).ok().filter(|it| !it.is_empty())?;
-        let seconds = |ticks: i32| f64::from(ticks) / f64::from(tracks.ticks_per_second());
-        let [first, last] = tracks.span().map(seconds);
-        let lines = tracks.tracks().iter().filter_map(|track| {
-            Some(TrackLine {
-                target: track.target()?.name(),
-                index: track.index,
-                interpolation: track.interpolation()?.name(),
-                keys: track.keys,
-            })
-        });
-        let words = tracks.tracks().iter().filter_map(|track| {
-            let words = record::Track::words(track.target()?.kind(), track.interpolation()?);
-            Some(track.keys as usize * (1 + words) * size_of::<i32>())
-        });
-        let records = size_of::<Timeline>() + size_of_val(tracks.tracks());
-        Some(Self {
-            ticks_per_second: tracks.ticks_per_second(),
-            first,
-            last,
-            bytes: records + words.sum::<usize>(),
-            tracks: lines.collect(),
-        })
-    }
-}
-
-impl TrackLine {
-    fn text(&self) -> String {
-        let Self {
-            target,
-            index,
-            interpolation,
-            keys,
-        } = self;
-        let keys = counted(*keys as usize, "key");
-        match target.split_once('.') {
-            Some((owner @ ("light" | "material" | "joint"), property)) => {
-                format!("{owner} {index}, {property}: {keys}, {interpolation}")
-            }
-            _ => format!("{target}: {keys}, {interpolation}"),
-        }
-    }
 }
 
 /// The names in a blob, in the order of what they name. An empty one is none.
@@ -222,6 +160,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         memory_map: MemoryMap::of(&scene, source.blob.bytes()),
         limits: limits(&scene),
         contents: contents(&scene),
+        parts: PartLine::all(&scene, source.blob.bytes()),
         tracks: TrackList::of(source.blob.bytes()),
         joints: JointLine::all(&scene, source.blob.bytes()),
         deforming: Deforming::all(&scene),
@@ -383,6 +322,9 @@ impl Inspection {
                     counted(contents.parts, "part")
                 ),
             );
+        }
+        for (number, part) in self.parts.iter().enumerate() {
+            line("part", part.text(number));
         }
         line("materials", contents.materials.to_string());
         line("lights", contents.lights.to_string());

@@ -2,7 +2,7 @@
 
 use crate::program::{Folder, fixture};
 use gridel_core::{Fixed, Format, Stack, Structure, Workspace};
-use gridel_host::measure::board::programs::{Footprint, Programs, parts};
+use gridel_host::measure::board::programs::{Footprint, Programs, everything as all_parts};
 use gridel_host::measure::board::{BOARDS, Board};
 use gridel_host::table::grouped;
 use serde_json::{Value, json};
@@ -68,6 +68,31 @@ fn limits_and_contents_are_in_scene_units() {
     );
     assert_eq!(contents["primitives"], 17);
     assert_eq!(contents["collapsed"], 0);
+}
+
+#[test]
+fn parts_are_listed_with_what_they_take() {
+    let folder = Folder::new();
+    folder.write("arm.toml", &fixture("robot-arm"));
+    let inspection = folder.json(&["inspect", "arm.toml"]);
+    let parts = inspection["parts"].as_array().unwrap();
+    let sum = |key: &str| {
+        parts
+            .iter()
+            .map(|it| it[key].as_u64().unwrap())
+            .sum::<u64>()
+    };
+    assert_eq!(inspection["contents"]["parts"], parts.len());
+    assert_eq!(inspection["contents"]["instances"], sum("instances"));
+    let map = inspection["memory_map"]["parts"].as_array().unwrap();
+    let blobs = map.iter().find(|it| it["kind"] == "part-blobs").unwrap();
+    assert_eq!(blobs["bytes"], sum("bytes"));
+    let text = folder.done(&["inspect", "arm.toml"]);
+    let expected = format!(
+        "{} bytes, stack depth",
+        grouped(parts[0]["bytes"].as_u64().unwrap())
+    );
+    assert!(text.contains(&expected), "{text}");
 }
 
 #[test]
@@ -195,7 +220,7 @@ fn the_memory_report_of_a_board_adds_up() {
 
 /// The recorded figures of a program of all parts: fast, and with the feature `small`.
 fn everything(board: &str, format: &str, accel: &str) -> [Footprint; 2] {
-    program(board, format, accel, &parts().collect::<Vec<_>>())
+    program(board, format, accel, &all_parts().collect::<Vec<_>>())
 }
 
 /// The recorded figures of a program of some parts.
@@ -319,8 +344,8 @@ fn memory_report_lists_the_code_of_the_scenes_program() {
         let listed = sum(&report, "flash", "code");
         assert_eq!(report["memory_report"]["fast"]["code"], listed);
         // Parts that the scene does not require.
-        let others = ["torus", "plane", "wide-indices", "display-values"];
-        let parts: Vec<&str> = parts().filter(|it| !others.contains(it)).collect();
+        let others = ["torus", "plane", "wide-indices", "display-values", "smooth"];
+        let parts: Vec<&str> = all_parts().filter(|it| !others.contains(it)).collect();
         let [fast, _] = program(board, format, "dual-split", &parts);
         assert_eq!(listed, fast.code + fast.code.div_ceil(100), "{board}");
         assert_eq!(report["memory_report"]["measured"], true, "{board}");
