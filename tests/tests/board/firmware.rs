@@ -7,6 +7,7 @@ use gridel_host::measure::board::Board;
 use gridel_host::measure::board::programs::{Profile, ProgramKey};
 use std::collections::BTreeMap;
 use std::fmt;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -266,7 +267,11 @@ impl<'b> Build<'b> {
     /// Where a program lies, what it is made from, and what it writes.
     pub fn folder(&self, name: &str) -> PathBuf {
         let tmp = Path::new(env!("CARGO_TARGET_TMPDIR"));
-        let folder = tmp.join(format!("{name} {self}").replace([' ', ','], "-"));
+        // Scenes of one name differ, and tests run at the same time.
+        let mut hasher = DefaultHasher::new();
+        self.scene.blob.bytes().hash(&mut hasher);
+        let folder = format!("{name} {self} {:016x}", hasher.finish());
+        let folder = tmp.join(folder.replace([' ', ','], "-"));
         fs::create_dir_all(&folder).expect("the target folder can be written to");
         folder
     }
