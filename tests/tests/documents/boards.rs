@@ -191,6 +191,7 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
         ("glass", "base"),
         ("absorption", "glass"),
         ("checker", "base"),
+        ("smooth", "base"),
         ("sphere, triangle, shadow", "base"),
     ];
     let mut table = String::from(
