@@ -4,14 +4,18 @@
 //! strip) into theirs. Colors, normals, textures and elements of other names are ignored, with a
 //! warning each.
 
+mod header;
+mod payload;
+
 use super::importer::{Importer, Input, stem};
 use super::polygon::{self, MAX_CONCAVE};
 use super::text::{Warnings, check_encoding};
 use super::{Imported, Material, Normals, Object, Scene, SceneError, Shape, SourceSpan};
 use glam::DVec3;
 use gridel_core::Up;
-use ply_rs_bw::parser::{ParseError, Parser, Reader};
-use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyAccessResult};
+use payload::{Payload, Skipped};
+use ply_rs_bw::parser::Reader;
+use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 use std::path::Path;
 
 pub(super) const IMPORTER: Importer = Importer {
@@ -36,60 +40,25 @@ pub(super) const IMPORTER: Importer = Importer {
 fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     let Input { path, bytes, .. } = input;
     check_encoding(path, &bytes)?;
-    let broken = |error: ParseError| {
-        let cause = error.to_string();
-        let cause = cause.split_once(": ").filter(|_| error.line().is_some());
-        let cause = cause.map_or_else(|| error.to_string(), |(_, cause)| cause.to_owned());
-        let sentence: Vec<_> = cause.split_whitespace().collect();
-        let error_at = SceneError::new(
-            path,
-            sentence.join(" "),
-            "export the file again; text and both orders of bytes are understood",
-        );
-        match error.line() {
-            Some(line) => error_at.at_line(line),
-            None => error_at,
-        }
-    };
-    let mut rest = &bytes[..];
-    let mut reader = Reader::new(&mut rest);
-    let header = Parser::<Skipped>::new()
-        .read_header(&mut reader)
-        .map_err(broken)?;
-    let (mut vertices, mut faces, mut strips) = (Vec::new(), Vec::new(), Vec::new());
     let mut warnings = Warnings::default();
-    ignored(path, &bytes, &mut warnings);
+    let mut reader = Reader::new(&bytes[..]);
+    let header = header::read(path, &bytes, &mut reader, &mut warnings)?;
+    let mut payload = Payload::new(path, header.encoding, reader);
+    let (mut vertices, mut faces, mut strips) = (Vec::new(), Vec::new(), Vec::new());
     for element in header.elements.values() {
-        announced(path, element, bytes.len())?;
+        header::check(path, element, bytes.len())?;
         match element.name.as_str() {
-            "vertex" => {
-                let parser = Parser::<Vertex>::new();
-                let read = parser.read_payload_for_element(&mut reader, element, &header);
-                vertices = read.map_err(broken)?;
-            }
-            "face" => {
-                let parser = Parser::<Face>::new();
-                let read = parser.read_payload_for_element(&mut reader, element, &header);
-                faces = read.map_err(broken)?;
-            }
-            "tristrips" => {
-                let parser = Parser::<Face>::new();
-                let read = parser.read_payload_for_element(&mut reader, element, &header);
-                strips = read.map_err(broken)?;
-            }
+            "vertex" => vertices = payload.read::<Vertex>(element, &header)?,
+            "face" => faces = payload.read::<Face>(element, &header)?,
+            "tristrips" => strips = payload.read::<Face>(element, &header)?,
             name => {
-                let parser = Parser::<Skipped>::new();
-                let read = parser.read_payload_for_element(&mut reader, element, &header);
-                read.map_err(broken)?;
+                payload.read::<Skipped>(element, &header)?;
                 let sentence = format!("elements {name:?} are ignored");
                 warnings.add_times(SourceSpan::of(path), element.count.max(1), sentence);
             }
         }
     }
-    if !rest.trim_ascii().is_empty() {
-        let sentence = "data behind what the header announces is ignored";
-        warnings.add_times(SourceSpan::of(path), 1, sentence.to_owned());
-    }
+    payload.warn(&mut warnings);
     let (shape, normals) = mesh(path, &vertices, &faces, &strips, &mut warnings)?;
     let scene = Scene {
         materials: vec![Material::default()],
@@ -110,77 +79,6 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         assemblies: false,
         posed: false,
     })
-}
-
-/// Properties that change a picture: what they are, and what the picture lacks.
-const IGNORED: [(&[&str], &str, &str); 1] = [(
-    &[
-        "red",
-        "green",
-        "blue",
-        "diffuse_red",
-        "diffuse_green",
-        "diffuse_blue",
-    ],
-    "color",
-    "the surface has one color",
-)];
-
-/// Warns of what the header announces that changes the picture and is not drawn.
-fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
-    let header = bytes
-        .split(|&byte| byte == b'\n')
-        .map(String::from_utf8_lossy);
-    // The element whose properties follow, how many of it there are, and what it was warned of.
-    let (mut element, mut count, mut is_reported) = (String::new(), 0, [false; IGNORED.len()]);
-    for (number, line) in (1..).zip(header) {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        let place = SourceSpan {
-            line: number,
-            ..SourceSpan::of(path)
-        };
-        match words[..] {
-            ["end_header", ..] => return,
-            ["element", name, number] => {
-                element = name.to_owned();
-                count = number.parse().unwrap_or(0);
-                is_reported = [false; IGNORED.len()];
-            }
-            ["comment", "TextureFile", ..] => {
-                let sentence = "textures are not drawn; the plain colors are used";
-                warnings.add_times(place, 1, sentence);
-            }
-            ["property", .., name] if ["vertex", "face"].contains(&&*element) && count > 0 => {
-                let is_it = |(names, ..): &(&[&str], _, _)| names.contains(&name);
-                let Some(kind) = IGNORED.iter().position(is_it) else {
-                    continue;
-                };
-                if !std::mem::replace(&mut is_reported[kind], true) {
-                    let (_, what, lacking) = IGNORED[kind];
-                    let sentence = format!("the {what} of a {element} is ignored; {lacking}");
-                    warnings.add_times(place, count, sentence);
-                }
-            }
-            _ => {}
-        }
-    }
-}
-
-/// Rejects a number of elements that the file cannot hold: each takes a byte at least.
-fn announced(path: &Path, element: &ElementDef, bytes: usize) -> Result<(), SceneError> {
-    if element.count <= bytes && (!element.properties.is_empty() || element.count == 0) {
-        return Ok(());
-    }
-    Err(SceneError::new(
-        path,
-        format!(
-            "the header announces {} elements {:?} of {} properties, and the file has {bytes} bytes",
-            element.count,
-            element.name,
-            element.properties.len()
-        ),
-        "copy the file again, as binary, or export it again",
-    ))
 }
 
 fn mesh(
@@ -375,15 +273,6 @@ impl PropertyAccess for Face {
             _ => return PropertyAccessResult::UnsupportedType,
         };
         PropertyAccessResult::Set
-    }
-}
-
-/// An element that nothing is taken from.
-struct Skipped;
-
-impl PropertyAccess for Skipped {
-    fn new() -> Self {
-        Self
     }
 }
 

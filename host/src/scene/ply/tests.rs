@@ -83,9 +83,21 @@ fn faults_name_line_vertex_or_face() {
             None,
             "face 0 (from 0) uses vertex 9, and there are 4",
         ),
-        (text("4 0 1 2 3", "4 0 1 2 -1"), Some(18), "-1"),
-        (text("1 0 0 0", "1 nan 0 0"), Some(15), "1 nan 0 0"),
-        (text("1 0 0 0", "1 word 0 0"), Some(15), "word"),
+        (
+            text("4 0 1 2 3", "4 0 1 2 -1"),
+            Some(18),
+            "entry 3 (from 0) of \"vertex_indices\" of face 0 (from 0) is `-1`; the header announces a whole number from 0 to 4294967295",
+        ),
+        (
+            text("1 0 0 0", "1 nan 0 0"),
+            Some(15),
+            "\"y\" of vertex 1 (from 0) is `nan`, which is not a finite",
+        ),
+        (
+            text("1 0 0 0", "1 word 0 0"),
+            Some(15),
+            "\"y\" of vertex 1 (from 0) is `word`, which is not a number",
+        ),
         (
             text("property short z\n", "property short w\n"),
             None,
@@ -101,12 +113,151 @@ fn faults_name_line_vertex_or_face() {
             None,
             "no face and no triangle strip of the file has three vertices",
         ),
-        (text("ply\n", "plx\n"), Some(1), "ply"),
+        (
+            text("ply\n", "plx\n"),
+            Some(1),
+            "the file begins with `plx`; `ply` is required",
+        ),
     ] {
         let error = read(text.as_bytes()).unwrap_err();
         assert!(error.cause.contains(cause), "{cause}: {error}");
         assert_eq!(error.line, line, "{error}");
     }
+}
+
+#[test]
+fn numbers_are_read_as_c_reads_them() {
+    for (number, value) in [
+        (".5", 0.5),
+        ("1.", 1.0),
+        ("+.5e3", 500.0),
+        ("-.25", -0.25),
+        ("2.E-1", 0.2),
+        ("+7", 7.0),
+        ("1e+2", 100.0),
+        ("007.50", 7.5),
+    ] {
+        let text = SQUARE.replacen("1 1.5 0 0", &format!("1\t{number} +0 1\r"), 1);
+        let imported = read(text.as_bytes()).unwrap();
+        let (vertices, _) = mesh(&imported.scene.objects[0]);
+        assert_eq!(vertices[2].y, value, "{number}");
+        // The x coordinate is announced as a `float`.
+        let text = SQUARE.replacen("1 1.5 0 0", &format!("{number} 2 0 1"), 1);
+        let imported = read(text.as_bytes()).unwrap();
+        let (vertices, _) = mesh(&imported.scene.objects[0]);
+        assert_eq!(vertices[2].x, f64::from(value as f32), "{number}");
+    }
+    for word in [
+        ".", "+", "e5", "1.5.2", "1,5", "--1", "1e", "0x", "\u{fffd}",
+    ] {
+        let text = SQUARE.replacen("1 1.5 0 0", &format!("1 {word} 0 0"), 1);
+        let error = read(text.as_bytes()).unwrap_err();
+        assert!(error.cause.contains("which is not a number"), "{error}");
+        assert_eq!(error.line, Some(16), "{error}");
+    }
+}
+
+/// As programs write the normals of points that have none.
+#[test]
+fn normals_that_are_not_numbers_are_none() {
+    let properties = "property float nx\nproperty float ny\nproperty float nz\n";
+    for nan in ["nan", "-nan", "NaN", "inf"] {
+        let vertices = ["0 0 0", "1 0 0", "0 1 0"].map(|at| format!("{at} {nan} {nan} {nan}\n"));
+        let text = with_properties(properties, "") + &vertices.concat() + "3 0 1 2\n";
+        let scene = read(text.as_bytes()).unwrap().scene;
+        assert!(scene.objects[0].normals.is_flat(), "{nan}");
+    }
+}
+
+#[track_caller]
+fn rejects(text: &str, expected: &str) {
+    let error = read(text.as_bytes()).unwrap_err();
+    assert_eq!(error.to_string(), expected);
+    assert!(!error.remedy.is_empty());
+    // Words of the crate that reads headers.
+    for word in ["Couldn't", "Error", "String:", "Unexpected"] {
+        assert!(!expected.contains(word));
+    }
+}
+
+#[test]
+#[rustfmt::skip]
+fn lines_that_cannot_be_read_are_named_with_their_cause() {
+    let text = |from: &str, to: &str| SQUARE.replacen(from, to, 1);
+    for (text, expected) in [
+        (text("1 1.5 0 0", "1 1.5"), "thing.ply:16: the line ends before \"z\" of vertex 2 (from 0)"),
+        (text("1 1.5 0 0\n", "\n"), "thing.ply:16: the line ends before \"x\" of vertex 2 (from 0)"),
+        (text("1 1.5 0 0", "1 1.5 0.5 0"), "thing.ply:16: \"z\" of vertex 2 (from 0) is `0.5`; the header announces a whole number from -32768 to 32767"),
+        (text("1 1.5 0 0", "1 1.5 0 256"), "thing.ply:16: \"red\" of vertex 2 (from 0) is `256`; the header announces a whole number from 0 to 255"),
+        (text("1 1.5 0 0", "1e39 1.5 0 0"), "thing.ply:16: \"x\" of vertex 2 (from 0) is `1e39`, which is not a finite number of the announced type"),
+        (text("1 1.5 0 0", "1 1.5 0 0 # 3"), "thing.ply:16: `#` stands behind the last property"),
+        (text("4 0 1 2 3", "5 0 1 2 3"), "thing.ply:18: the line ends before entry 4 (from 0) of \"vertex_indices\" of face 0 (from 0)"),
+        (text("4 0 1 2 3", "18446744073709551615 0"), "thing.ply:18: the line ends before entry 1 (from 0) of \"vertex_indices\" of face 0 (from 0)"),
+        (text("4 0 1 2 3", "-4 0 1 2 3"), "thing.ply:18: the length of \"vertex_indices\" of face 0 (from 0) is `-4`, which is not a whole number at or above 0"),
+        (text("12\n", ""), "thing.ply: the file ends behind 0 of 1 elements \"wheel\""),
+    ] {
+        rejects(&text, expected);
+    }
+}
+
+#[test]
+#[rustfmt::skip]
+fn headers_that_cannot_be_read_are_named_with_their_cause() {
+    let text = |from: &str, to: &str| SQUARE.replacen(from, to, 1);
+    for (text, expected) in [
+        (String::new(), "thing.ply: the file is empty"),
+        (SQUARE.replace('\n', "\r"), "thing.ply:1: lines of the header end with a carriage return alone"),
+        (String::from("ply\nformat ascii 1.0\n"), "thing.ply: the file ends before the end of its header"),
+        (text("format ascii 1.0\n", ""), "thing.ply: the header has no format"),
+        (text("ascii 1.0", "ascii 99999.0"), "thing.ply: `format ascii 99999.0` has an unknown version"),
+        (text("ascii", "asci"), "thing.ply:2: `format asci 1.0` is not a line of a PLY header"),
+        (text("comment a square", "format binary_little_endian 1.0"), "thing.ply:3: `format binary_little_endian 1.0` differs from the format of a line above"),
+        (text("comment a square", "ply"), "thing.ply:3: `ply` stands in the middle of the header"),
+        (text("comment a square", "property int x"), "thing.ply:3: `property int x` stands above the first element"),
+        (text("vertex 4", "vertex 4.5"), "thing.ply:4: `element vertex 4.5` is not a line of a PLY header"),
+        (text("vertex 4", "vertex 99999999999999999999"), "thing.ply:4: `element vertex 99999999999999999999` announces more elements than a file can hold"),
+        (text("float x", "list uchar float x"), "thing.ply: the header announces a property \"x\" of \"vertex\" that is not a number"),
+        (text("uchar uint", "uchar float"), "thing.ply: the header announces a property \"vertex_indices\" of \"face\" that is not a list of whole numbers"),
+    ] {
+        rejects(&text, expected);
+    }
+    let latin = SQUARE.as_bytes().iter().map(|&byte| if byte == b'q' { 0xe9 } else { byte });
+    let error = read(&latin.collect::<Vec<_>>()).unwrap_err();
+    assert_eq!(error.to_string(), "thing.ply:3: the header is not UTF-8 text");
+}
+
+#[test]
+fn binary_elements_that_are_cut_or_broken_are_named() {
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty uchar x\n\
+                  property uchar y\nproperty uchar z\nelement face 1\n\
+                  property list char uchar vertex_indices\nend_header\n";
+    let whole = [header.as_bytes(), &[0, 0, 0, 1, 0, 0, 0, 1, 0, 3, 0, 1, 2]].concat();
+    assert!(read(&whole).is_ok());
+    let fault = |bytes: &[u8]| read(bytes).unwrap_err().to_string();
+    assert_eq!(
+        fault(&whole[..whole.len() - 1]),
+        "thing.ply: the file ends behind 0 of 1 elements \"face\""
+    );
+    assert_eq!(
+        fault(&whole[..whole.len() - 5]),
+        "thing.ply: the file ends behind 2 of 3 elements \"vertex\""
+    );
+    let mut broken = whole.clone();
+    broken[whole.len() - 4] = 0xff;
+    assert_eq!(
+        fault(&broken),
+        "thing.ply: a list of face 0 (from 0) has a length that is not a whole number at or above 0"
+    );
+}
+
+#[test]
+fn numbers_behind_the_last_property_are_warned_of() {
+    let text = SQUARE.replace("0 0 0 255", "0 0 0 255 7 8");
+    let text = text.replace("1 1.5 0 0", "1 1.5 0 0 .5");
+    let warnings = read(text.as_bytes()).unwrap().warnings;
+    let sentence =
+        "thing.ply:14: numbers behind the last property of a line are ignored (and once more)";
+    assert!(warnings.iter().any(|it| it == sentence), "{warnings:?}");
 }
 
 #[test]

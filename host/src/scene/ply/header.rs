@@ -1,0 +1,189 @@
+//! The header of a PLY file: its errors, and what it announces that is not read.
+
+use super::super::text::Warnings;
+use super::super::{SceneError, SourceSpan};
+use super::payload::{Skipped, range};
+use crate::table::printable;
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
+use ply_rs_bw::ply::{ElementDef, Header, PropertyType};
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// Reads the header, and warns of what it announces that changes the picture and is not drawn.
+pub(super) fn read(
+    path: &Path,
+    bytes: &[u8],
+    reader: &mut Reader<&[u8]>,
+    warnings: &mut Warnings,
+) -> Result<Header, SceneError> {
+    let parser = Parser::<Skipped>::new();
+    let header = parser.read_header(reader);
+    let header = header.map_err(|error| fault(path, bytes, &error))?;
+    ignored(path, bytes, warnings);
+    Ok(header)
+}
+
+fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+    bytes.split(|&byte| byte == b'\n')
+}
+
+/// The error of a header that cannot be read.
+fn fault(path: &Path, bytes: &[u8], error: &ParseError) -> SceneError {
+    let again = "export the file again; text and both orders of bytes are understood";
+    let Some(line) = error.line() else {
+        return fault_without_line(path, bytes, error, again);
+    };
+    if error.kind() == ErrorKind::UnexpectedEof {
+        let cause = "the file ends before the end of its header";
+        return SceneError::new(path, cause, "end the header with the line `end_header`");
+    }
+    let found = lines(bytes).nth(line.saturating_sub(1)).unwrap_or_default();
+    let quoted = quoted(found);
+    let [cause, remedy] = if line == 1 && found.starts_with(b"ply\r") {
+        [
+            String::from("lines of the header end with a carriage return alone"),
+            String::from("export the file again, with a line feed at the end of each line"),
+        ]
+    } else if line == 1 {
+        [
+            format!("the file begins with {quoted}; `ply` is required"),
+            again.to_owned(),
+        ]
+    } else {
+        let text = String::from_utf8_lossy(found);
+        let is_line = Parser::<Skipped>::new().read_header_line(&text).is_ok();
+        let first = text.split_whitespace().next().filter(|_| is_line);
+        let why = match first {
+            Some("ply") => "stands in the middle of the header",
+            Some("format") => "differs from the format of a line above",
+            Some("element") => "announces more elements than a file can hold",
+            Some("property") => "stands above the first element",
+            _ => "is not a line of a PLY header",
+        };
+        let lines = "`format ascii 1.0`, `comment TEXT`, `obj_info TEXT`, `element NAME COUNT`, \
+                     `property TYPE NAME` or `property list TYPE TYPE NAME`";
+        [format!("{quoted} {why}"), format!("write {lines}")]
+    };
+    SceneError::new(path, cause, remedy).at_line(line)
+}
+
+/// The error of a header as a whole.
+fn fault_without_line(path: &Path, bytes: &[u8], error: &ParseError, again: &str) -> SceneError {
+    if error.kind() == ErrorKind::InvalidData {
+        let broken = |line: &[u8]| std::str::from_utf8(line).is_err();
+        let line = 1 + lines(bytes).position(broken).unwrap_or(0);
+        let remedy = "write the header, with its comments, in UTF-8";
+        return SceneError::new(path, "the header is not UTF-8 text", remedy).at_line(line);
+    }
+    let is_format = |line: &&[u8]| line.trim_ascii().starts_with(b"format");
+    let [cause, remedy] = match lines(bytes).find(is_format) {
+        _ if bytes.is_empty() => [String::from("the file is empty"), again.to_owned()],
+        Some(line) => [
+            format!("{} has an unknown version", quoted(line)),
+            String::from("write the version 1.0"),
+        ],
+        None => [
+            String::from("the header has no format"),
+            String::from("write `format ascii 1.0` below `ply`"),
+        ],
+    };
+    SceneError::new(path, cause, remedy)
+}
+
+/// The beginning of a line, as errors quote it.
+fn quoted(line: &[u8]) -> String {
+    format!(
+        "`{}`",
+        printable(&String::from_utf8_lossy(line.trim_ascii()))
+    )
+}
+
+/// Rejects a number of elements that the file cannot hold, each of which takes a byte at least, and
+/// properties that are not what they mean.
+pub(super) fn check(path: &Path, element: &ElementDef, bytes: usize) -> Result<(), SceneError> {
+    if element.count > bytes || (element.properties.is_empty() && element.count > 0) {
+        return Err(SceneError::new(
+            path,
+            format!(
+                "the header announces {} elements {:?} of {} properties, and the file has {bytes} bytes",
+                element.count,
+                element.name,
+                element.properties.len()
+            ),
+            "copy the file again, as binary, or export it again",
+        ));
+    }
+    for property in element.properties.values() {
+        let expected = match (&*element.name, &*property.name, &property.data_type) {
+            ("vertex", "x" | "y" | "z" | "nx" | "ny" | "nz", PropertyType::List(..)) => "a number",
+            ("face" | "tristrips", "vertex_index" | "vertex_indices", found) => match found {
+                PropertyType::List(_, entry) if range(entry).is_some() => continue,
+                _ => "a list of whole numbers",
+            },
+            _ => continue,
+        };
+        return Err(SceneError::new(
+            path,
+            format!(
+                "the header announces a property {:?} of {:?} that is not {expected}",
+                property.name, element.name
+            ),
+            "export the file again, with properties of the usual types",
+        ));
+    }
+    Ok(())
+}
+
+/// Properties that change a picture: what they are, and what the picture lacks.
+const IGNORED: [(&[&str], &str, &str); 1] = [(
+    &[
+        "red",
+        "green",
+        "blue",
+        "diffuse_red",
+        "diffuse_green",
+        "diffuse_blue",
+    ],
+    "color",
+    "the surface has one color",
+)];
+
+/// Warns of what the header announces that changes the picture and is not drawn.
+fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
+    let header = bytes
+        .split(|&byte| byte == b'\n')
+        .map(String::from_utf8_lossy);
+    // The element whose properties follow, how many of it there are, and what it was warned of.
+    let (mut element, mut count, mut is_reported) = (String::new(), 0, [false; IGNORED.len()]);
+    for (number, line) in (1..).zip(header) {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let place = SourceSpan {
+            line: number,
+            ..SourceSpan::of(path)
+        };
+        match words[..] {
+            ["end_header", ..] => return,
+            ["element", name, number] => {
+                element = name.to_owned();
+                count = number.parse().unwrap_or(0);
+                is_reported = [false; IGNORED.len()];
+            }
+            ["comment", "TextureFile", ..] => {
+                let sentence = "textures are not drawn; the plain colors are used";
+                warnings.add_times(place, 1, sentence);
+            }
+            ["property", .., name] if ["vertex", "face"].contains(&&*element) && count > 0 => {
+                let is_it = |(names, ..): &(&[&str], _, _)| names.contains(&name);
+                let Some(kind) = IGNORED.iter().position(is_it) else {
+                    continue;
+                };
+                if !std::mem::replace(&mut is_reported[kind], true) {
+                    let (_, what, lacking) = IGNORED[kind];
+                    let sentence = format!("the {what} of a {element} is ignored; {lacking}");
+                    warnings.add_times(place, count, sentence);
+                }
+            }
+            _ => {}
+        }
+    }
+}
