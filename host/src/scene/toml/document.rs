@@ -38,7 +38,7 @@ const KEYS: &[&str] = &[
 const BLACK: Color = [0.0; 3];
 
 pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, SceneError> {
-    let molecule = input.choices.molecule;
+    let choices = input.choices;
     let source = Source::new(input.path, input.bytes)?;
     let document = source.parse()?;
     let root = Fields::new(
@@ -60,7 +60,8 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     let mut reader = Reader {
         source: &source,
         imports,
-        molecule,
+        molecule: choices.molecule,
+        assembly: choices.assembly,
         palette: &mut palette,
     };
     let groups = root.or("group", BTreeMap::new(), |tables| reader.groups(tables))?;

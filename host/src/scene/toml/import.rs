@@ -1,9 +1,10 @@
 //! Reading other scene files into this one: each once, and none into itself.
 
 use super::source::{Name, Source};
+use super::value::Fields;
 use crate::scene::access::Access;
 use crate::scene::importer::{Choices, Importers, Input};
-use crate::scene::{Choice, MoleculeOptions, Scene, SceneError};
+use crate::scene::{Choice, Imported, MoleculeOptions, Scene, SceneError};
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -26,26 +27,74 @@ pub(super) struct Imports {
     /// How many groups are open inside each other, in all open files together.
     pub(super) nesting: usize,
     /// A scene may import a file many times, but with few different options.
-    done: HashMap<PathBuf, Vec<(Molecules, Rc<Scene>)>>,
+    done: HashMap<PathBuf, Vec<(Molecules, Done)>>,
     pub(super) warnings: Vec<String>,
-    /// Whether a molecule is among the files.
-    pub(super) molecules: bool,
     /// Which cameras and animations are read.
     choice: Choice,
-    /// Whether a file to choose them from is among the files.
-    pub(super) choices: bool,
-    /// The assembly of imports that name none.
-    assembly: Option<String>,
-    /// Whether a file that can hold assemblies is among the files.
-    pub(super) assemblies: bool,
+    /// What is among the files.
+    pub(super) kinds: Kinds,
 }
 
 /// How an import reads molecules.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Molecules {
     pub(super) options: MoleculeOptions,
-    /// `None` for that of the command line.
+    /// `None` for the atoms as a file lists them.
     pub(super) assembly: Option<String>,
+}
+
+/// What a file and those that it imports are, as far as options depend on it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Kinds {
+    pub(super) molecules: bool,
+    /// Files to choose cameras and animations from.
+    pub(super) choices: bool,
+    /// Files that can hold assemblies.
+    pub(super) assemblies: bool,
+}
+
+impl Kinds {
+    fn of(imported: &Imported) -> Self {
+        Self {
+            molecules: imported.molecules,
+            choices: imported.choices,
+            assemblies: imported.assemblies,
+        }
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            molecules: self.molecules || other.molecules,
+            choices: self.choices || other.choices,
+            assemblies: self.assemblies || other.assemblies,
+        }
+    }
+
+    /// Rejects the keys of an import of this file that are for files of other kinds.
+    pub(super) fn check(self, fields: &Fields<'_>, file: &Name) -> Result<(), SceneError> {
+        let molecules = "molecules (PDB, mmCIF and XYZ files)";
+        for (key, is_used, kind) in [
+            ("style", self.molecules, molecules),
+            ("model", self.molecules, molecules),
+            ("altloc", self.molecules, molecules),
+            ("assembly", self.assemblies, "PDB and mmCIF files"),
+        ] {
+            if let Some(value) = fields.get(key).filter(|_| !is_used) {
+                return Err(value.error(
+                    format!("`{key}` is for {kind}, and {} has none", file.text),
+                    "leave the key out",
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A file that was read.
+#[derive(Clone)]
+pub(super) struct Done {
+    pub(super) scene: Rc<Scene>,
+    pub(super) kinds: Kinds,
 }
 
 impl Imports {
@@ -58,11 +107,8 @@ impl Imports {
             nesting: 0,
             done: HashMap::new(),
             warnings: Vec::new(),
-            molecules: false,
             choice: input.choices.choice.clone(),
-            choices: false,
-            assembly: input.choices.assembly.map(str::to_owned),
-            assemblies: false,
+            kinds: Kinds::default(),
         }
     }
 
@@ -86,7 +132,7 @@ impl Imports {
         source: &Source,
         file: &Name,
         molecules: Molecules,
-    ) -> Result<Rc<Scene>, SceneError> {
+    ) -> Result<Done, SceneError> {
         let allowed = self.access.resolve(&source.path, &file.text);
         let path = allowed.map_err(|[cause, remedy]| {
             source.error(&file.span, format!("the import {cause}"), remedy)
@@ -113,38 +159,42 @@ impl Imports {
             ));
         }
         let done = self.done.get(&canonical).into_iter().flatten();
-        if let Some((_, scene)) = done.into_iter().find(|(with, _)| *with == molecules) {
-            return Ok(Rc::clone(scene));
+        if let Some((_, done)) = done.into_iter().find(|(with, _)| *with == molecules) {
+            self.kinds = self.kinds.with(done.kinds);
+            return Ok(done.clone());
         }
         let access = self.access.clone();
         let choice = self.choice.clone();
-        let assembly = molecules.assembly.clone().or(self.assembly.clone());
         let choices = Choices {
             molecule: &molecules.options,
-            assembly: assembly.as_deref(),
+            assembly: molecules.assembly.as_deref(),
             choice: &choice,
         };
+        // What the files below are is counted by itself, and then beside what came before.
+        let before = std::mem::take(&mut self.kinds);
         let opened = self.importers.open(&path, choices, &access);
         let scene = opened.and_then(|(importer, input)| {
             if importer.name == self.own.0 {
                 return self.nested(input, canonical.clone());
             }
             let imported = importer.import(input)?;
+            let kinds = Kinds::of(&imported);
             self.warnings.extend(imported.warnings);
-            self.molecules |= imported.molecules;
-            self.choices |= imported.choices;
-            self.assemblies |= imported.assemblies;
+            self.kinds = kinds;
             Ok(imported.scene)
         });
         let scene = scene.map(Rc::new).map_err(|mut error| {
             error.cause = format!("{} (imported by {})", error.cause, source.place(&file.span));
             error
         })?;
-        self.done
-            .entry(canonical)
-            .or_default()
-            .push((molecules, Rc::clone(&scene)));
-        Ok(scene)
+        let done = Done {
+            scene,
+            kinds: self.kinds,
+        };
+        self.kinds = before.with(done.kinds);
+        let all = self.done.entry(canonical).or_default();
+        all.push((molecules, done.clone()));
+        Ok(done)
     }
 
     /// Describes how the open files from `first` on import each other in a circle.

@@ -64,9 +64,9 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     Ok(Imported {
         scene,
         warnings: imports.warnings,
-        molecules: imports.molecules,
-        choices: imports.choices,
-        assemblies: imports.assemblies,
+        molecules: imports.kinds.molecules,
+        choices: imports.kinds.choices,
+        assemblies: imports.kinds.assemblies,
         posed: false,
     })
 }

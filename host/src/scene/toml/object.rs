@@ -1,7 +1,7 @@
 //! The `[[object]]` and `[group.NAME]` tables, read into a tree that is placed later.
 
 use super::census::{MAX_NESTING, too_deep};
-use super::import::{Imports, Molecules};
+use super::import::{Done, Imports, Molecules};
 use super::item::{Content, Group, Item};
 use super::material::Palette;
 use super::source::Source;
@@ -23,7 +23,9 @@ const KINDS: [&str; 5] = ["triangle", "mesh", "group", "instance", "import"];
 pub(super) struct Reader<'r> {
     pub(super) source: &'r Source,
     pub(super) imports: &'r mut Imports,
+    /// How molecules are read, and which assembly, where an import does not say it.
     pub(super) molecule: &'r MoleculeOptions,
+    pub(super) assembly: Option<&'r str>,
     /// Takes in the materials of imports.
     pub(super) palette: &'r mut Palette,
 }
@@ -140,11 +142,14 @@ impl Reader<'_> {
             })?,
             altloc: fields.or("altloc", self.molecule.altloc, altloc)?,
         };
-        let assembly = fields.or("assembly", None, |value| {
-            value.filled().map(|it| Some(it.to_owned()))
-        })?;
-        let molecules = Molecules { options, assembly };
-        self.imports.import(self.source, &file, molecules)
+        let assembly = fields.or("assembly", self.assembly, |value| value.filled().map(Some))?;
+        let molecules = Molecules {
+            options,
+            assembly: assembly.map(str::to_owned),
+        };
+        let Done { scene, kinds } = self.imports.import(self.source, &file, molecules)?;
+        kinds.check(fields, &file)?;
+        Ok(scene)
     }
 }
 

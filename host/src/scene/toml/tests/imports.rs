@@ -2,7 +2,7 @@
 
 use crate::shape::Sphere;
 use super::{load_in, material_of, named};
-use crate::scene::{Light, Shape};
+use crate::scene::{IMPORTERS, Light, Shape};
 use glam::DVec3;
 use std::path::Path;
 use tempfile::TempDir;
@@ -290,4 +290,82 @@ fn imports_outside_of_the_scenes_folder_are_rejected() {
     };
     let scene = crate::scene::load_with(&path, &allowed).unwrap().scene;
     assert_eq!(scene.objects.len(), 1);
+}
+
+/// The examples of all formats, as `a.EXTENSION` in a folder.
+fn examples() -> TempDir {
+    let files = IMPORTERS.iter();
+    let files = files.map(|it| (format!("a.{}", it.extensions[0]), it.example));
+    let files: Vec<_> = files.collect();
+    let files: Vec<_> = files.iter().map(|(name, it)| (&**name, *it)).collect();
+    folder(&files)
+}
+
+const KEYS_OF_MOLECULES: [&str; 3] = ["style = \"ball-and-stick\"", "model = 1", "altloc = \"A\""];
+
+#[test]
+fn keys_for_molecules_are_rejected_for_formats_without_them() {
+    let folder = examples();
+    for importer in IMPORTERS {
+        let name = format!("a.{}", importer.extensions[0]);
+        let import = |key: &str| {
+            let text = format!("[[object]]\nkind = \"import\"\nfile = \"{name}\"\n{key}\n");
+            load_in(folder.path(), &text)
+        };
+        let holds_molecules = import("").unwrap().molecules;
+        // The names that errors list.
+        let listed = ["PDB", "mmCIF", "XYZ"].contains(&importer.name);
+        assert_eq!(holds_molecules, listed, "{name}");
+        for line in KEYS_OF_MOLECULES {
+            let key = line.split(' ').next().unwrap();
+            let error = import(line).err();
+            if holds_molecules {
+                // The examples have no alternate locations.
+                let cause = error.map_or(String::new(), |it| it.cause);
+                assert!(!cause.contains("is for"), "{name}: {cause}");
+                assert_eq!(cause.is_empty(), key != "altloc", "{name}: {cause}");
+                continue;
+            }
+            let error = error.unwrap();
+            let found = error.to_string();
+            let expected = format!(
+                "scene.toml:4: `{key}` is for molecules (PDB, mmCIF and XYZ files), and {name} has none"
+            );
+            assert!(found.ends_with(&expected), "{found}");
+            assert_eq!(error.remedy, "leave the key out");
+        }
+        // The examples state no assembly.
+        let error = import("assembly = \"1\"").unwrap_err();
+        let expected = match holds_molecules {
+            true => String::from("there is no assembly \"1\": the file states none"),
+            false => format!("`assembly` is for PDB and mmCIF files, and {name} has none"),
+        };
+        assert!(error.cause.contains(&expected), "{error}");
+    }
+}
+
+#[test]
+fn keys_for_molecules_reach_the_imports_of_an_import() {
+    let folder = examples();
+    let import = |file: &str| format!("[[object]]\nkind = \"import\"\nfile = \"{file}\"\n");
+    let both = import("a.pdb") + &import("a.obj");
+    std::fs::write(folder.path().join("both.toml"), both).unwrap();
+    std::fs::write(folder.path().join("mesh.toml"), import("a.obj")).unwrap();
+    std::fs::write(folder.path().join("outer.toml"), import("both.toml")).unwrap();
+    let count = |text: &str| load_in(folder.path(), text).unwrap().scene.objects.len();
+    for key in &KEYS_OF_MOLECULES[..2] {
+        for file in ["both.toml", "outer.toml"] {
+            // Also of a file that was read before, and after others.
+            let text = import(file) + key + "\n" + &import("mesh.toml") + &import(file) + key;
+            assert!(count(&text) > 2, "{key}");
+        }
+        let text = import("both.toml") + &import("mesh.toml") + key;
+        let error = load_in(folder.path(), &text).unwrap_err();
+        assert!(error.cause.ends_with("mesh.toml has none"), "{error}");
+        assert_eq!(error.line, Some(7));
+    }
+    let wanted = import("both.toml") + "assembly = \"7\"";
+    let error = load_in(folder.path(), &wanted).unwrap_err();
+    assert!(error.file.ends_with("a.pdb"), "{error}");
+    assert!(error.cause.contains("there is no assembly \"7\""), "{error}");
 }
