@@ -4,9 +4,14 @@
 //! A second surface at [`FACTOR`] error bounds' distance is met (see
 //! [`Hit::error`](gridel_core::Hit::error)); so an object whose smallest feature is less than that may not
 //! be distinguished from the surface that it touches.
+//!
+//! Objects of parts are looked at where instances place them, and their surfaces have the bounds that they have there:
+//! the maps of instances round as well.
 
-use crate::shape::{Solid, Surface};
-use glam::DVec3;
+mod bound;
+
+use crate::shape::{ExactMap, Solid};
+use bound::{Extent, bound, placed_bound, step};
 use gridel_core::{Format, Kind, Scene};
 use serde::Serialize;
 
@@ -16,10 +21,17 @@ pub const FACTOR: f64 = 8.0;
 /// Surfaces with the largest bounds that objects are held against.
 const MOST_SURFACES: usize = 4096;
 
+/// Placed primitives that are looked at: those of the farthest instances, whose bounds are the largest. The last of these
+/// instances may exceed the number.
+const MOST_PLACED: usize = 1 << 18;
+
 /// An object that some formats do not resolve.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Unresolved {
     pub object: u32,
+    /// The number, in scene-file order, of the instance that places it; `None` for one of the scene's own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instance: Option<u32>,
     /// Its smallest feature, in scene units.
     pub feature: f64,
     pub formats: Vec<Coarse>,
@@ -35,97 +47,200 @@ pub struct Coarse {
     pub bound: f64,
 }
 
-/// A box in units.
-#[derive(Clone, Copy, Debug)]
-struct Extent {
-    lowest: DVec3,
-    highest: DVec3,
+/// The objects of a scene or of a part, and their surfaces, in units of its own.
+#[derive(Default)]
+struct Content {
+    objects: Vec<Object>,
+    surfaces: Vec<(Solid, Extent)>,
 }
 
-impl Extent {
-    const EMPTY: Self = Self {
-        lowest: DVec3::INFINITY,
-        highest: DVec3::NEG_INFINITY,
-    };
-
-    fn of(solid: &Solid) -> Self {
-        if !solid.is_bounded() {
-            // It is near whatever lies in the box of a scene.
-            return Self {
-                lowest: DVec3::splat(f64::from(i16::MIN)),
-                highest: DVec3::splat(f64::from(i16::MAX)),
-            };
-        }
-        let around = |(center, radius): (DVec3, f64)| Self {
-            lowest: center - radius,
-            highest: center + radius,
-        };
-        let [first, last] = solid.ends().map(around);
-        first.with(last)
-    }
-
-    fn with(self, other: Self) -> Self {
-        Self {
-            lowest: self.lowest.min(other.lowest),
-            highest: self.highest.max(other.highest),
-        }
-    }
-
-    /// Returns whether two boxes are no farther apart than a length.
-    fn is_near(&self, other: &Self, length: f64) -> bool {
-        (self.lowest - length).cmple(other.highest).all()
-            && (other.lowest - length).cmple(self.highest).all()
-    }
-
-    fn magnitude(&self) -> f64 {
-        self.lowest.abs().max(self.highest.abs()).max_element()
-    }
+/// An object.
+#[derive(Clone, Copy)]
+struct Object {
+    number: u32,
+    instance: Option<u32>,
+    extent: Extent,
+    feature: f64,
 }
 
-/// Returns the distance of a format's neighboring numbers at a place, in units.
-fn step(format: Format, magnitude: f64) -> f64 {
-    match format {
-        Format::Fixed => f64::powi(2.0, -13),
-        Format::F32 => f64::powi(2.0, -23) * magnitude,
-        Format::F64 => f64::powi(2.0, -52) * magnitude,
-    }
+/// A surface, as it lies in the scene.
+#[derive(Clone, Copy)]
+struct Placed<'c> {
+    /// Its largest error bound.
+    most: f64,
+    extent: Extent,
+    solid: &'c Solid,
+    map: Option<&'c ExactMap>,
 }
 
-/// The error bound of a primitive's surface next to a place, as the table of `Hit::error` has it.
-fn bound(format: Format, solid: &Solid, place: DVec3) -> f64 {
-    let u = 0.5 * step(format, 1.0);
-    let plane = |normal: DVec3, through: DVec3| {
-        let normal = normal.normalize_or_zero();
-        if normal.abs().max_element() == 1.0 {
-            return 0.0;
-        }
-        let relative = (through - place).abs();
-        match format {
-            Format::Fixed => {
-                let sub_step = step(format, 1.0);
-                4.0 * sub_step + relative.element_sum() * f64::powi(2.0, -28)
+impl Content {
+    /// The content of a scene or of one of its parts, whose first primitive is given. The numbers of objects are those
+    /// of the whole scene.
+    fn of(content: &Scene<'_>, whole: &Scene<'_>, first_primitive: u32) -> Self {
+        let first_object = whole.object(first_primitive);
+        let mut surfaces = Vec::new();
+        let mut found: Vec<(Extent, Option<f64>)> = Vec::new();
+        for kind in Kind::ALL {
+            for slot in 0..content.count(kind) {
+                let Some(geometry) = content.geometry(kind, slot) else {
+                    continue;
+                };
+                let solid = Solid::of(geometry);
+                let extent = Extent::of(&solid);
+                let primitive = content.primitive(kind, slot as u32);
+                let object = whole.object(first_primitive.saturating_add(primitive));
+                let object = object.saturating_sub(first_object) as usize;
+                if found.len() <= object {
+                    found.resize(object + 1, (Extent::EMPTY, None));
+                }
+                let (around, smallest) = &mut found[object];
+                *around = around.with(extent);
+                *smallest = match (*smallest, solid.feature()) {
+                    (Some(a), Some(b)) => Some(a.min(b)),
+                    (a, b) => a.or(b),
+                };
+                surfaces.push((solid, extent));
             }
-            _ => u * (16.0 * relative + 4.0 * place.abs()).dot(normal.abs()),
         }
-    };
-    let curved = |size: f64| match format {
-        Format::Fixed => 8.0 * step(format, 1.0),
-        _ => u * (20.0 * size + 4.0 * place.abs().max_element()),
-    };
-    match solid.surface() {
-        Surface::Box => 0.0,
-        Surface::Plane { normal, point } => plane(normal, point),
-        Surface::Sphere { radius, .. } => curved(radius),
-        Surface::Curved => match format {
-            Format::Fixed => 8.0 * step(format, 1.0),
-            _ => 16.0 * u * Extent::of(solid).magnitude(),
-        },
+        let objects = (first_object..).zip(found);
+        let objects = objects.filter(|(_, (extent, _))| extent.lowest.x <= extent.highest.x);
+        let object = |(number, (extent, feature)): (u32, (Extent, Option<f64>))| {
+            // A mesh may be flat: then its other sides count.
+            let mut sides = (extent.highest - extent.lowest).to_array();
+            sides.sort_by(f64::total_cmp);
+            Object {
+                number,
+                instance: None,
+                extent,
+                feature: feature.unwrap_or(sides[1]),
+            }
+        };
+        Self {
+            objects: objects.map(object).collect(),
+            surfaces,
+        }
+    }
+
+    /// The largest error bounds of a surface in each format, without those of an instance.
+    fn bounds((solid, extent): &(Solid, Extent)) -> [f64; Format::ALL.len()] {
+        Format::ALL.map(|format| {
+            let ends = [extent.lowest, extent.highest];
+            let bounds = ends.map(|place| bound(format, solid, place));
+            bounds[0].max(bounds[1])
+        })
     }
 }
 
-/// The objects that `fixed` or `f32` does not resolve, in scene-file order.
+impl Object {
+    /// The smallest error bound that counts where the object lies.
+    fn least(&self, format: Format, map: Option<&ExactMap>) -> f64 {
+        let magnitude = self.extent.magnitude();
+        match map {
+            None => step(format, magnitude),
+            Some(map) => {
+                let reach = self.extent.reach(map);
+                let in_part = step(format, map.own_length(reach));
+                placed_bound(format, map, in_part, [reach, magnitude])
+            }
+        }
+    }
+
+    /// Names the formats that do not resolve the object beside these surfaces, the largest bounds first.
+    fn unresolved(
+        &self,
+        map: Option<&ExactMap>,
+        surfaces: &[Placed<'_>],
+        unit: f64,
+    ) -> Option<Unresolved> {
+        let (feature, extent) = (self.feature, &self.extent);
+        let near = surfaces
+            .iter()
+            .take_while(|it| FACTOR * it.most > feature)
+            .filter(|it| it.extent.is_near(extent, feature));
+        let near: Vec<_> = near.collect();
+        let worst = |format| {
+            let bounds = near.iter().map(|it| it.bound(format, extent));
+            bounds.fold(self.least(format, map), f64::max)
+        };
+        let (coarse, fine): (Vec<_>, Vec<_>) = Format::ALL
+            .into_iter()
+            .map(|format| (format, worst(format)))
+            .partition(|(_, bound)| FACTOR * bound > feature);
+        (!coarse.is_empty()).then(|| Unresolved {
+            object: self.number,
+            instance: self.instance,
+            feature: feature * unit,
+            formats: coarse
+                .into_iter()
+                .map(|(format, bound)| Coarse {
+                    format: format.name(),
+                    bound: bound * unit,
+                })
+                .collect(),
+            resolved_by: fine.into_iter().map(|(format, _)| format.name()).collect(),
+        })
+    }
+}
+
+impl Placed<'_> {
+    /// The error bound next to the middle of a box.
+    fn bound(&self, format: Format, beside: &Extent) -> f64 {
+        let middle = 0.5 * (beside.lowest + beside.highest);
+        let place = middle.clamp(self.extent.lowest, self.extent.highest);
+        let Some(map) = self.map else {
+            return bound(format, self.solid, place);
+        };
+        let in_part = map.point(place.to_array());
+        let own = bound(format, self.solid, in_part.into());
+        let magnitude = in_part.into_iter().fold(0.0, |most, x| x.abs().max(most));
+        let place_in = [map.reach(place.to_array()), place.abs().max_element()];
+        placed_bound(format, map, own.max(step(format, magnitude)), place_in)
+    }
+}
+
+/// An instance, its map, and where it lies.
+struct InstanceExtent {
+    number: u32,
+    part: usize,
+    map: ExactMap,
+    extent: Extent,
+}
+
+/// The instances of a scene that have something in them, the farthest first, until they hold `most` primitives.
+fn farthest(scene: &Scene<'_>, parts: &[Content], most: usize) -> Vec<InstanceExtent> {
+    let instances = scene.instances().iter().filter_map(|instance| {
+        let part = usize::from(instance.part);
+        let objects = parts.get(part)?.objects.iter();
+        let whole = objects.map(|it| it.extent).reduce(Extent::with)?;
+        let map = ExactMap::of(instance);
+        Some(InstanceExtent {
+            number: instance.number,
+            part,
+            extent: whole.placed(&map),
+            map,
+        })
+    });
+    let mut instances: Vec<_> = instances.collect();
+    instances.sort_by(|a, b| {
+        let by_distance = b.extent.magnitude().total_cmp(&a.extent.magnitude());
+        by_distance.then(a.number.cmp(&b.number))
+    });
+    let mut placed = 0;
+    let looked_at = instances.iter().take_while(|it| {
+        let is_in = placed < most;
+        placed += parts[it.part].surfaces.len();
+        is_in
+    });
+    let count = looked_at.count();
+    instances.truncate(count);
+    instances
+}
+
+/// The objects that `fixed` or `f32` does not resolve, in scene-file order: the scene's own ones, then those of each
+/// instance.
 ///
-/// Takes time for every primitive, and more only where features are some 2^-16 of the scene.
+/// Takes time for every primitive, and more only where features are some 2^-16 of the scene. Instances are looked at from
+/// the farthest on, until they hold 2^18 primitives; objects and surfaces of nearer ones are passed over.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};
@@ -137,80 +252,117 @@ fn bound(format: Format, solid: &Solid, place: DVec3) -> f64 {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn unresolved(scene: &Scene<'_>) -> Vec<Unresolved> {
-    let mut objects: Vec<(Extent, Option<f64>)> = Vec::new();
-    let mut surfaces = Vec::new();
-    for kind in Kind::ALL {
-        for slot in 0..scene.count(kind) {
-            let Some(geometry) = scene.geometry(kind, slot) else {
-                continue;
-            };
-            let solid = Solid::of(geometry);
-            let extent = Extent::of(&solid);
-            let object = scene.object(scene.primitive(kind, slot as u32)) as usize;
-            if objects.len() <= object {
-                objects.resize(object + 1, (Extent::EMPTY, None));
+    let own = Content::of(scene, scene, 0);
+    let parts = scene.parts().iter().enumerate();
+    let parts = parts.map(|(number, part)| {
+        let first = scene.first_primitive_of_part(number);
+        first.map_or_else(Content::default, |first| Content::of(part, scene, first))
+    });
+    let parts: Vec<_> = parts.collect();
+    let instances = farthest(scene, &parts, MOST_PLACED);
+    let surfaces = largest(&own, &parts, &instances);
+    let unit = f64::powi(2.0, scene.header().unit_exponent.into());
+    let own = own.objects.iter();
+    let mut found: Vec<_> = own
+        .filter_map(|object| object.unresolved(None, &surfaces, unit))
+        .collect();
+    let own = found.len();
+    for InstanceExtent {
+        number, part, map, ..
+    } in &instances
+    {
+        let objects = parts[*part].objects.iter().map(|object| Object {
+            instance: Some(*number),
+            extent: object.extent.placed(map),
+            feature: map.length(object.feature),
+            ..*object
+        });
+        found.extend(objects.filter_map(|it| it.unresolved(Some(map), &surfaces, unit)));
+    }
+    found[own..].sort_by_key(|it| (it.instance, it.object));
+    found
+}
+
+/// The surfaces with the largest bounds, these first.
+fn largest<'c>(
+    own: &'c Content,
+    parts: &'c [Content],
+    instances: &'c [InstanceExtent],
+) -> Vec<Placed<'c>> {
+    let own = own.surfaces.iter().map(|surface| Placed {
+        most: Content::bounds(surface).into_iter().fold(0.0, f64::max),
+        extent: surface.1,
+        solid: &surface.0,
+        map: None,
+    });
+    let mut surfaces: Vec<_> = own.filter(|it| it.most > 0.0).collect();
+    let by_bound = |a: &Placed<'_>, b: &Placed<'_>| b.most.total_cmp(&a.most);
+    let bounds_of = |part: &Content| part.surfaces.iter().map(Content::bounds).collect();
+    let bounds: Vec<Vec<_>> = parts.iter().map(bounds_of).collect();
+    for InstanceExtent { part, map, .. } in instances {
+        let in_part = parts[*part].surfaces.iter().zip(&bounds[*part]);
+        surfaces.extend(in_part.map(|((solid, own), bounds)| {
+            let extent = own.placed(map);
+            let place = [extent.reach(map), extent.magnitude()];
+            let bounds = Format::ALL.into_iter().zip(bounds).map(|(format, &bound)| {
+                let in_part = bound.max(step(format, own.magnitude()));
+                placed_bound(format, map, in_part, place)
+            });
+            Placed {
+                most: bounds.fold(0.0, f64::max),
+                extent,
+                solid,
+                map: Some(map),
             }
-            let (whole, smallest) = &mut objects[object];
-            *whole = whole.with(extent);
-            *smallest = match (*smallest, solid.feature()) {
-                (Some(a), Some(b)) => Some(a.min(b)),
-                (a, b) => a.or(b),
-            };
-            let most = Format::ALL
-                .into_iter()
-                .flat_map(|format| {
-                    let ends = [extent.lowest, extent.highest];
-                    ends.map(|place| bound(format, &solid, place))
-                })
-                .fold(0.0, f64::max);
-            if most > 0.0 {
-                surfaces.push((most, extent, solid));
-            }
+        }));
+        if surfaces.len() > 16 * MOST_SURFACES {
+            surfaces.select_nth_unstable_by(MOST_SURFACES, by_bound);
+            surfaces.truncate(MOST_SURFACES);
         }
     }
-    surfaces.sort_by(|a, b| b.0.total_cmp(&a.0));
+    surfaces.sort_by(by_bound);
     surfaces.truncate(MOST_SURFACES);
-    let unit = f64::powi(2.0, scene.header().unit_exponent.into());
-    let found = objects
-        .iter()
-        .enumerate()
-        .filter_map(|(object, (whole, feature))| {
-            if whole.lowest.x > whole.highest.x {
-                return None;
-            }
-            // A mesh may be flat: then its other sides count.
-            let mut sides = (whole.highest - whole.lowest).to_array();
-            sides.sort_by(f64::total_cmp);
-            let feature = feature.unwrap_or(sides[1]);
-            let near = surfaces
-                .iter()
-                .take_while(|(most, ..)| FACTOR * most > feature)
-                .filter(|(_, extent, _)| extent.is_near(whole, feature));
-            let near: Vec<_> = near.collect();
-            let place = 0.5 * (whole.lowest + whole.highest);
-            let worst = |format| {
-                near.iter()
-                    .map(|(_, extent, solid)| {
-                        bound(format, solid, place.clamp(extent.lowest, extent.highest))
-                    })
-                    .fold(step(format, whole.magnitude()), f64::max)
-            };
-            let (coarse, fine): (Vec<_>, Vec<_>) = Format::ALL
-                .into_iter()
-                .map(|format| (format, worst(format)))
-                .partition(|(_, bound)| FACTOR * bound > feature);
-            (!coarse.is_empty()).then(|| Unresolved {
-                object: object as u32,
-                feature: feature * unit,
-                formats: coarse
-                    .into_iter()
-                    .map(|(format, bound)| Coarse {
-                        format: format.name(),
-                        bound: bound * unit,
-                    })
-                    .collect(),
-                resolved_by: fine.into_iter().map(|(format, _)| format.name()).collect(),
-            })
-        });
-    found.collect()
+    surfaces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::{Options, compile};
+    use crate::scene::{ImportOptions, read};
+
+    #[test]
+    fn farthest_instances_come_first_and_are_bounded() {
+        let mut file = String::from("[[part]]\nname = 'p'\nobject = [\n");
+        for x in 0..3 {
+            file += &format!("{{ kind = 'sphere', center = [{x}, 0, 0], radius = 0.5 }},\n");
+        }
+        file += "]\n";
+        for x in [20, -90, 5, 60] {
+            file += &format!("[[instance]]\npart = 'p'\ntranslate = [{x}, 0, 0]\n");
+        }
+        // The middle of the lattice is that of the scene's box, here the origin.
+        file += "[[object]]\nkind = 'box'\nmin = [-100, -1, -1]\nmax = [100, 1, 1]\n";
+        let imported = read("a.toml".as_ref(), file.into(), &ImportOptions::default()).unwrap();
+        let blob = compile(&imported.scene, &Options::default()).unwrap().blob;
+        let scene = blob.scene().unwrap();
+        let parts = [Content::of(
+            &scene.parts()[0],
+            &scene,
+            scene.first_primitive_of_part(0).unwrap(),
+        )];
+        assert_eq!(parts[0].objects.len(), 3);
+        for (most, expected) in [
+            (0, &[][..]),
+            (1, &[1]),
+            (3, &[1]),
+            (4, &[1, 3]),
+            (9, &[1, 3, 0]),
+            (100, &[1, 3, 0, 2]),
+        ] {
+            let found = farthest(&scene, &parts, most);
+            let numbers: Vec<u32> = found.iter().map(|it| it.number).collect();
+            assert_eq!(numbers, expected, "{most}");
+        }
+    }
 }

@@ -1,14 +1,16 @@
 //! Objects of size 1 in scenes of 1e2 to 1e6: what a surface's error bound is worth is its own place and
 //! size, not the scene's.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use gridel_core::render::{Pixel, Rgb888};
 use gridel_core::{Format, Settings, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Compiled, Options, compile};
 use gridel_host::render::{Job, render};
-use gridel_host::resolution::unresolved;
-use gridel_host::scene::{Camera, Diffuse, Light, Material, Scene, Shape};
+use gridel_host::resolution::{Unresolved, unresolved};
+use gridel_host::scene::{
+    Camera, Diffuse, Instance, Light, Material, Part, Placement, Scene, Shape, SourceSpan,
+};
 use gridel_host::shape::{Cuboid, Disc, Plane, Sphere};
 use gridel_host::verify::{Property, verify};
 use gridel_tests::scenes;
@@ -265,12 +267,13 @@ fn box_on_a_ball() -> Scene {
     scene
 }
 
+fn unresolved_in(scene: &Scene) -> Vec<Unresolved> {
+    let blob = blob(scene);
+    unresolved(&blob.scene().expect("a scene"))
+}
+
 #[test]
 fn a_box_on_a_large_box_is_resolved_and_on_a_large_ball_it_is_not() {
-    let unresolved_in = |scene: &Scene| {
-        let blob = blob(scene);
-        unresolved(&blob.scene().expect("a scene"))
-    };
     for extent in [1e3, 1e4, 1e5, 1e6] {
         assert_eq!(
             unresolved_in(&box_on(Ground::Slab, extent)),
@@ -285,6 +288,132 @@ fn a_box_on_a_large_box_is_resolved_and_on_a_large_ball_it_is_not() {
     assert!((it.feature - 0.6).abs() < 0.15, "{it:?}");
     assert!(it.formats.iter().any(|it| it.format == "f32"), "{it:?}");
     assert!(it.resolved_by.contains(&"f64"), "{it:?}");
+}
+
+/// Makes a part of an own object, and an instance that moves it. A ball of 20 above it makes the part large enough for
+/// scenes of 1e6.
+fn place(scene: &mut Scene, object: usize, placement: Placement) {
+    let object = scene.objects.remove(object);
+    let ball = Shape::Sphere(Sphere {
+        center: DVec3::new(0.0, 15.0, 0.0) / placement.scale,
+        radius: 10.0 / placement.scale,
+    });
+    let mut objects = vec![object];
+    objects.extend(scenes::of([ball]).objects);
+    scene.parts.push(Part {
+        name: String::from("part"),
+        objects,
+        place: SourceSpan::default(),
+    });
+    scene.instances.push(Instance {
+        name: String::from("placed"),
+        part: scene.parts.len() - 1,
+        placement,
+        joint: None,
+        place: SourceSpan::default(),
+    });
+}
+
+fn shift(x: f64, y: f64, z: f64) -> Placement {
+    Placement {
+        translation: DVec3::new(x, y, z),
+        ..Placement::IDENTITY
+    }
+}
+
+/// The boxes of 0.6 that are not resolved, the instances that place them, and whether `f32` is among the formats.
+fn small_boxes(scene: &Scene) -> Vec<(u32, Option<u32>, bool)> {
+    let mut found = unresolved_in(scene);
+    found.retain(|it| (it.feature - 0.6).abs() < 0.15);
+    let is_f32 = |it: &Unresolved| it.formats.iter().any(|it| it.format == "f32");
+    let found = found.iter().inspect(|it| {
+        assert!(it.resolved_by.contains(&"f64"), "{it:?}");
+    });
+    found
+        .map(|it| (it.object, it.instance, is_f32(it)))
+        .collect()
+}
+
+#[test]
+fn a_box_on_a_large_placed_surface_is_not_resolved() {
+    // As own objects are: the box is the second one.
+    assert_eq!(small_boxes(&box_on_a_ball()), [(1, None, true)]);
+    let mut on_placed_ball = box_on_a_ball();
+    place(&mut on_placed_ball, 0, Placement::IDENTITY);
+    assert_eq!(small_boxes(&on_placed_ball), [(0, None, true)]);
+    let mut both_placed = box_on_a_ball();
+    place(&mut both_placed, 0, Placement::IDENTITY);
+    place(&mut both_placed, 0, Placement::IDENTITY);
+    assert_eq!(small_boxes(&both_placed), [(2, Some(1), true)]);
+    // The instance's own number counts, and not that of its part.
+    both_placed.instances.swap(0, 1);
+    assert_eq!(small_boxes(&both_placed), [(2, Some(0), true)]);
+
+    // A slab's sides are exact; the map of an instance rounds them, the more the farther from its middle.
+    let mut slab = box_on(Ground::Slab, 1e6);
+    place(&mut slab, 0, Placement::IDENTITY);
+    assert_eq!(small_boxes(&slab), [(0, None, false)]);
+    place(&mut slab, 0, Placement::IDENTITY);
+    assert_eq!(small_boxes(&slab), [(2, Some(1), false)]);
+    slab.instances[1].placement = shift(5e5, 0.0, -5e5);
+    assert_eq!(small_boxes(&slab), [(2, Some(1), true)]);
+}
+
+#[test]
+fn a_small_box_placed_far_away_is_not_resolved() {
+    let far = DVec3::new(1e6, 0.0, 0.0);
+    let turned = Placement {
+        rotation: DQuat::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 0.5),
+        translation: far,
+        scale: 1.0,
+    };
+    let scaled = Placement {
+        scale: 1e-3,
+        ..turned
+    };
+    for placement in [shift(1e6, 0.0, 0.0), turned, scaled] {
+        let ball = Shape::Sphere(Sphere {
+            center: DVec3::ZERO,
+            radius: 1.0,
+        });
+        let small = Shape::Box(Cuboid {
+            min: DVec3::splat(-0.3 / placement.scale),
+            max: DVec3::splat(0.3 / placement.scale),
+        });
+        let mut scene = scenes::of([ball, small]);
+        place(&mut scene, 1, placement);
+        assert_eq!(small_boxes(&scene), [(1, Some(0), true)]);
+        let found = serde_json::to_value(unresolved_in(&scene)).expect("JSON");
+        assert_eq!(found[0]["instance"], 0, "{found}");
+        // Near the others it is resolved.
+        scene.instances[0].placement.translation = DVec3::new(0.0, 1.3, 0.0);
+        assert_eq!(unresolved_in(&scene), []);
+    }
+}
+
+#[test]
+fn small_placed_objects_near_the_middle_are_resolved() {
+    for extent in [1e3, 1e4, 1e5] {
+        let mut scene = box_on(Ground::Slab, extent);
+        place(&mut scene, 1, Placement::IDENTITY);
+        assert_eq!(unresolved_in(&scene), [], "{extent:e}");
+        if extent < 1e5 {
+            place(&mut scene, 0, Placement::IDENTITY);
+            assert_eq!(unresolved_in(&scene), [], "{extent:e}");
+        }
+    }
+    assert_eq!(
+        unresolved_in(&scenes::read(
+            &scenes::fixture_folder().join("robot-arm.toml")
+        )),
+        []
+    );
+}
+
+#[test]
+fn reports_of_own_objects_name_no_instance() {
+    let found = serde_json::to_value(unresolved_in(&box_on_a_ball())).expect("JSON");
+    assert!(found[0].get("instance").is_none(), "{found}");
 }
 
 #[test]

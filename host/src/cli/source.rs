@@ -380,12 +380,14 @@ impl Source {
         for it in found.iter().take(NAMED) {
             let name = names.object(it.object);
             let name = name.map_or(String::new(), |name| format!(" `{}`", printable(name)));
+            let instance = it.instance.map(|number| format!(" in instance {number}"));
+            let instance = instance.unwrap_or_default();
             let bounds = it.formats.iter().map(|coarse| {
                 let bound = significant(coarse.bound);
                 format!("{} there ({bound} scene units)", coarse.format)
             });
             warn(format!(
-                "{file}: object {}{name}: its smallest feature, {} scene units, is less than {FACTOR} \
+                "{file}: object {}{name}{instance}: its smallest feature, {} scene units, is less than {FACTOR} \
                  error bounds of {}: contact shadows may be lost; render it with `--format {}`",
                 it.object,
                 significant(it.feature),

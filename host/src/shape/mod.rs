@@ -9,6 +9,7 @@ mod crossing;
 mod direction;
 #[doc(hidden)]
 pub mod exact;
+mod exact_map;
 mod keys;
 mod lattice;
 #[doc(hidden)]
@@ -20,6 +21,7 @@ mod triangle;
 
 pub use analytic::{Analytic, Geometric, Map, Normal, Surface};
 pub(crate) use direction::unit;
+pub(crate) use exact_map::ExactMap;
 pub(crate) use keys::Keys;
 pub(crate) use lattice::{Lattice, exp2};
 pub(crate) use snapped::displacement;

@@ -1,7 +1,7 @@
 //! Which meshes of a scene are closed, so that no ray can leave their inside unseen.
 
-use super::placed::ExactMap;
 use super::rounded::HitId;
+use crate::shape::ExactMap;
 use gridel_core::{Hit, Kind, Number, Scene};
 use std::collections::HashMap;
 use std::fmt;

@@ -1,9 +1,8 @@
 //! Instances by the integers of their maps, for exact arithmetic that shares no code with the kernels.
 
 use super::rounded::{HitId, RoundedRay, step};
-use crate::shape::Solid;
-use crate::shape::exact::{Line, Real, Vector, dot, minus};
-use gridel_core::format::instance::{Instance, MATRIX_BITS};
+use crate::shape::exact::Line;
+use crate::shape::{ExactMap, Solid};
 use gridel_core::format::record::UnitBox;
 use gridel_core::{Format, Hit, Number, Scene};
 
@@ -42,68 +41,6 @@ impl HitId {
             primitive,
             instance: None,
         }
-    }
-}
-
-/// The map of an instance.
-#[derive(Clone, Debug)]
-pub struct ExactMap {
-    rows: [Vector; 3],
-    center: Vector,
-    /// The same in double precision, in which single entries are exact.
-    linear: [[f64; 3]; 3],
-    middle: [f64; 3],
-    /// Units of the part in one of the scene.
-    scale: f64,
-}
-
-impl ExactMap {
-    pub fn of(instance: &Instance) -> Self {
-        let power = f64::powi(2.0, i32::from(instance.exponent) - MATRIX_BITS as i32);
-        let linear = instance.matrix.map(|row| row.map(|x| f64::from(x) * power));
-        let middle = instance.center.map(|x| f64::from(x) / 256.0);
-        let [x, y, z] = linear[0];
-        Self {
-            rows: linear.map(|row| row.map(Real::of)),
-            center: middle.map(Real::of),
-            linear,
-            middle,
-            scale: (x * x + y * y + z * z).sqrt(),
-        }
-    }
-
-    /// A line in the part; its t stays.
-    pub fn line(&self, line: &Line) -> Line {
-        let from_center = minus(&line.origin, &self.center);
-        Line {
-            origin: [0, 1, 2].map(|k| dot(&self.rows[k], &from_center)),
-            slope: [0, 1, 2].map(|k| dot(&self.rows[k], &line.slope)),
-        }
-    }
-
-    /// A place of the scene in the part, in double precision.
-    pub fn point(&self, place: [f64; 3]) -> [f64; 3] {
-        self.direction([0, 1, 2].map(|k| place[k] - self.middle[k]))
-    }
-
-    /// A direction of the scene in the part, with the part's length.
-    pub fn direction(&self, way: [f64; 3]) -> [f64; 3] {
-        self.linear
-            .map(|row| (0..3).map(|k| row[k] * way[k]).sum::<f64>())
-    }
-
-    /// A place of the part in the scene, in double precision.
-    pub fn back(&self, place: [f64; 3]) -> [f64; 3] {
-        let square = self.scale * self.scale;
-        [0, 1, 2].map(|k| {
-            let sum: f64 = (0..3).map(|row| self.linear[row][k] * place[row]).sum();
-            self.middle[k] + sum / square
-        })
-    }
-
-    /// A length of the part in the scene.
-    pub fn length(&self, length: f64) -> f64 {
-        length / self.scale
     }
 }
 
@@ -158,7 +95,7 @@ impl PlacedSolid<'_> {
 
     /// A length of the scene in the shape's coordinates.
     pub fn own_length(&self, length: f64) -> f64 {
-        self.map.map_or(length, |map| length * map.scale)
+        self.map.map_or(length, |map| map.own_length(length))
     }
 
     /// The step of a format where a ray meets the shape, in units of the scene.
@@ -166,8 +103,7 @@ impl PlacedSolid<'_> {
         let Some(map) = self.map else {
             return ray.step(format, t, self.solid);
         };
-        let from_center = [0, 1, 2].map(|k| (ray.start[k] - map.middle[k]).abs());
-        let reach = from_center.into_iter().fold(0.0, f64::max);
+        let reach = map.reach(ray.start);
         let in_scene = step(format, ray.magnitude(t).max(reach + t.abs()));
         let in_part = map.length(step(format, self.solid.extent()));
         PLACED * in_scene.max(in_part)

@@ -1,10 +1,10 @@
 //! Contact shadows: what lies in the dark by `f64`, and what another format says of it.
 
 use super::check::{Fault, Property, ask, depart};
-use super::placed::{ExactMap, PLACED};
+use super::placed::PLACED;
 use super::rounded::{HitId, RoundedRay, step};
-use crate::shape::Solid;
 use crate::shape::random::Random;
+use crate::shape::{ExactMap, Solid};
 use crate::trace::UnitRay;
 use glam::DVec3;
 use gridel_core::format::instance::Instance;
