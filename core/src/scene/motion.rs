@@ -102,6 +102,33 @@ impl Motion {
         }
     }
 
+    /// This motion with the rotation next to its matrix. The rounding of compositions adds up, in chains of some twenty by
+    /// so much that an instance would leave its range.
+    ///
+    /// One step of Newton's method: of an error it leaves the square.
+    #[cold]
+    #[inline(never)]
+    pub(in crate::scene) fn without_drift(&self) -> Self {
+        let rows = self.rotation;
+        let [x, y, z] = rows;
+        let columns = [0, 1, 2].map(|axis: usize| [x[axis], y[axis], z[axis]]);
+        // What the matrix times its transpose lacks of 1, halved. The rotation's error is far below 2^-14.
+        let lack = |i: usize, j: usize| {
+            let one = i64::from(i == j) << 60;
+            (one.wrapping_sub(dot(rows[i], rows[j])) >> 31) as i32
+        };
+        let row = |i: usize| {
+            let lacks = [lack(i, 0), lack(i, 1), lack(i, 2)];
+            let [a, b, c] = columns.map(|column| product(column, lacks));
+            let [x, y, z] = rows[i];
+            [x.wrapping_add(a), y.wrapping_add(b), z.wrapping_add(c)]
+        };
+        Self {
+            rotation: [row(0), row(1), row(2)],
+            ..*self
+        }
+    }
+
     /// Where a place is moved to; one out of the range of coordinates is at its end.
     pub fn position(&self, place: Position) -> Position {
         let coordinate = |fine: i64| {
@@ -149,6 +176,9 @@ impl Motion {
     /// An instance, moved; its numbers may be out of their range.
     pub(in crate::scene) fn place(&self, header: &Header, rest: &Instance) -> Instance {
         let (matrix, exponent) = self.matrix(&rest.matrix);
+        // Rounded rows can be longer than 1, and a turn along an axis shows it.
+        let one = 1 << MATRIX_BITS;
+        let matrix = matrix.map(|row| row.map(|entry| entry.clamp(-one, one)));
         let shift = header.coordinate_shift.min(MAX_COORDINATE_SHIFT);
         let up = (OFFSET_BITS as i32).wrapping_sub(shift.into());
         let [x, y, z] = rest.center;
@@ -191,7 +221,7 @@ impl Motion {
         let [first, _, _] = turned;
         // 46 fraction bits. Below 1/4 the matrix is doubled.
         let over = |square: i64| (square >> 17).wrapping_mul(inverse) >> 12;
-        let doubled = u32::from(over(over(square(first))) < 1 << (2 * MATRIX_BITS - 2));
+        let doubled = u32::from(over(over(dot(first, first))) < 1 << (2 * MATRIX_BITS - 2));
         let down = 29_u32.wrapping_sub(doubled);
         let scaled = |entry: i32| {
             let product = i64::from(entry).wrapping_mul(inverse);
@@ -210,19 +240,17 @@ fn fine(steps: i32) -> i64 {
     i64::from(steps) << OFFSET_BITS
 }
 
-/// The square of a vector's length, with twice its fraction bits.
-fn square(row: [i32; 3]) -> i64 {
-    let [x, y, z] = row.map(|x| i64::from(x).wrapping_mul(x.into()));
-    x.wrapping_add(y).wrapping_add(z)
+/// The product of two vectors, with the fraction bits of both.
+fn dot([a, b, c]: [i32; 3], [x, y, z]: [i32; 3]) -> i64 {
+    let product = |a: i32, b: i32| i64::from(a).wrapping_mul(b.into());
+    product(a, x)
+        .wrapping_add(product(b, y))
+        .wrapping_add(product(c, z))
 }
 
 /// The product of two vectors, the second of which has 30 fraction bits, rounded to nearest.
-fn product([a, b, c]: [i32; 3], [x, y, z]: [i32; 3]) -> i32 {
-    let product = |a: i32, b: i32| i64::from(a).wrapping_mul(b.into());
-    let sum = product(a, x)
-        .wrapping_add(product(b, y))
-        .wrapping_add(product(c, z));
-    (sum.wrapping_add(1 << 29) >> 30) as i32
+fn product(vector: [i32; 3], ratios: [i32; 3]) -> i32 {
+    (dot(vector, ratios).wrapping_add(1 << 29) >> 30) as i32
 }
 
 /// A number times a ratio with so many fraction bits, rounded to nearest.

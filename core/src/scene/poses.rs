@@ -160,13 +160,20 @@ impl<'p> PosesView<'p> {
                 expected: index.saturating_add(1),
             });
         };
-        let placed = motion.place(scene.header(), rest);
         let location = Location::Record(section, index);
-        placed.check_ranges(location)?;
-        check_rotation(&placed.matrix).map_err(|reason| location.invalid(reason))?;
-        *pose = placed;
+        let header = scene.header();
+        let placed = checked(motion.place(header, rest), location);
+        *pose =
+            placed.or_else(|_| checked(motion.without_drift().place(header, rest), location))?;
         Ok(())
     }
+}
+
+/// An instance, if all of it is in range, and its matrix a rotation times a factor.
+fn checked(instance: Instance, location: Location) -> Result<Instance, BlobError> {
+    instance.check_ranges(location)?;
+    check_rotation(&instance.matrix).map_err(|reason| location.invalid(reason))?;
+    Ok(instance)
 }
 
 impl<'a> Scene<'a> {

@@ -1,6 +1,8 @@
 //! Motions against floating point.
 
 use super::*;
+use crate::format::Location;
+use crate::format::range::Ranges;
 use bytemuck::Zeroable;
 use proptest::prelude::*;
 
@@ -110,6 +112,47 @@ proptest! {
         };
         let rest = Instance { matrix: [[1 << 23, 0, 0], [0, 1 << 23, 0], [0, 0, 1 << 23]], center, ..Instance::zeroed() };
         motion.place(&header, &rest);
+        motion.without_drift().place(&header, &rest);
+    }
+
+    /// An instance that is turned by a rounded matrix, and back by a motion, has rows that are longer than 1.
+    #[test]
+    fn turned_back_matrices_keep_their_range(axis in rotations(), angle in any::<u32>()) {
+        let [x, y, z, _] = axis;
+        let turn = |angle| Motion::turn(Position([0; 3]), [x, y, z], Angle(angle));
+        let (Some(first), Some(back)) = (turn(angle), turn(angle.wrapping_neg())) else {
+            return Ok(());
+        };
+        let whole = [[1 << 23, 0, 0], [0, 1 << 23, 0], [0, 0, 1 << 23]];
+        let rest = Instance { matrix: whole, ..Instance::zeroed() };
+        let header = Header::zeroed();
+        let turned = first.place(&header, &rest);
+        for motion in [back, first, Motion::REST] {
+            let placed = motion.place(&header, &turned);
+            prop_assert!(placed.check_ranges(Location::Header).is_ok(), "{:?}", placed.matrix);
+            crate::instances::bounds::check_rotation(&placed.matrix).expect("a rotation");
+        }
+    }
+
+    #[test]
+    fn long_chains_stay_rotations(axis in rotations(), angle in any::<u32>(), length in 20_usize..3000) {
+        let [x, y, z, _] = axis;
+        let Some(turn) = Motion::turn(Position([0; 3]), [x, y, z], Angle(angle)) else {
+            return Ok(());
+        };
+        let chain = (1..length).fold(turn, |chain, _| chain.then(&turn));
+        let whole = [[1 << 23, 0, 0], [0, 1 << 23, 0], [0, 0, 1 << 23]];
+        let rest = Instance { matrix: whole, ..Instance::zeroed() };
+        let straight = chain.without_drift();
+        let placed = straight.place(&Header::zeroed(), &rest);
+        prop_assert!(placed.check_ranges(Location::Header).is_ok(), "{:?}", placed.matrix);
+        crate::instances::bounds::check_rotation(&placed.matrix).expect("a rotation");
+        // As far along as the angles' sum, but for what each composition rounds.
+        let at_once = Motion::turn(Position([0; 3]), [x, y, z], Angle(angle.wrapping_mul(length as u32)));
+        let at_once = at_once.expect("an axis").rotation.into_iter().flatten();
+        for (found, expected) in straight.rotation.into_iter().flatten().zip(at_once) {
+            prop_assert!(found.abs_diff(expected) <= 16 * length as u32, "{} for {}", found, expected);
+        }
     }
 
     #[test]
@@ -119,7 +162,7 @@ proptest! {
         let motion = motion.then(&Motion::scale(Position([0; 3]), scale));
         let (matrix, exponent) = motion.matrix(&rest);
         crate::instances::bounds::check_rotation(&matrix).expect("a rotation");
-        let length = libm::sqrt(square(matrix[0]) as f64) * f64::powi(2.0, exponent.into());
+        let length = libm::sqrt(dot(matrix[0], matrix[0]) as f64) * f64::powi(2.0, exponent.into());
         let expected = f64::from(factor) / (f64::from(scale) / f64::powi(2.0, 24));
         prop_assert!((length / expected - 1.0).abs() < 1e-6, "{} for {}", length, expected);
     }
