@@ -56,6 +56,7 @@ pub mod compile;
 pub mod deformation;
 pub mod emit;
 pub mod explain;
+pub mod layer;
 mod live;
 pub mod measure;
 pub mod merge;

@@ -1,9 +1,10 @@
-//! Rays and hits as NumPy's array files.
+//! NumPy's array files: rays, hits, and pictures.
 //!
 //! Rays are an array of shape (N, 8), float32 or float64: origin x y z, tmin, direction x y z,
 //! tmax, in scene units. Either byte order and either memory order is read. Hits are a packed
 //! structured array, little-endian, with the fields of [`HIT_FIELDS`].
 
+use crate::render::Values;
 use crate::trace::{SceneHit, SceneRay};
 use glam::DVec3;
 use std::io::{self, Write};
@@ -231,18 +232,10 @@ pub fn write_hits(out: &mut dyn Write, hits: &[SceneHit], with_instances: bool) 
     } else {
         ""
     };
-    let mut header = format!(
-        "{{'descr': [('t', '<f8'), ('object', '<u4'), ('primitive', '<u4'), {instance}\
-         ('normal', '<f4', (3,)), ], 'fortran_order': False, 'shape': ({}, ), }}",
-        hits.len()
+    let fields = format!(
+        "[('t', '<f8'), ('object', '<u4'), ('primitive', '<u4'), {instance}('normal', '<f4', (3,)), ]"
     );
-    // The data begin at a multiple of 64 bytes.
-    let before = 10 + header.len() + 1;
-    header += &" ".repeat(before.next_multiple_of(64) - before);
-    header.push('\n');
-    out.write_all(b"\x93NUMPY\x01\x00")?;
-    out.write_all(&(header.len() as u16).to_le_bytes())?;
-    out.write_all(header.as_bytes())?;
+    write_header(out, &fields, &[hits.len()])?;
     for hit in hits {
         out.write_all(&hit.t.to_le_bytes())?;
         out.write_all(&hit.object.to_le_bytes())?;
@@ -257,193 +250,60 @@ pub fn write_hits(out: &mut dyn Write, hits: &[SceneHit], with_instances: bool) 
     Ok(())
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A file as `numpy.save` writes it.
-    fn file(header: &str, data: &[u8]) -> Vec<u8> {
-        let mut file = b"\x93NUMPY\x01\x00".to_vec();
-        let text = format!("{header:<117}\n");
-        file.extend((text.len() as u16).to_le_bytes());
-        file.extend(text.as_bytes());
-        file.extend(data);
-        file
-    }
-
-    fn header(element: &str, fortran: &str, shape: &str) -> String {
-        format!("{{'descr': {element}, 'fortran_order': {fortran}, 'shape': {shape}, }}")
-    }
-
-    fn expected() -> Vec<SceneRay> {
-        let ray = |first: f64| SceneRay {
-            origin: DVec3::new(first, first + 1.0, first + 2.0),
-            tmin: first + 3.0,
-            direction: DVec3::new(first + 4.0, first + 5.0, first + 6.0),
-            tmax: first + 7.0,
-        };
-        vec![ray(0.0), ray(8.0)]
-    }
-
-    #[test]
-    fn all_orders_and_types_read_alike() {
-        let c_order: Vec<f64> = (0..16).map(f64::from).collect();
-        let fortran: Vec<f64> = (0..16).map(|k| f64::from(8 * (k % 2) + k / 2)).collect();
-        let bytes = |values: &[f64], to: fn(f64) -> Vec<u8>| -> Vec<u8> {
-            values.iter().flat_map(|&value| to(value)).collect()
-        };
-        type ToBytes = fn(f64) -> Vec<u8>;
-        let types: [(&str, ToBytes); 4] = [
-            ("'<f8'", |x| x.to_le_bytes().to_vec()),
-            ("'>f8'", |x| x.to_be_bytes().to_vec()),
-            ("'<f4'", |x| (x as f32).to_le_bytes().to_vec()),
-            ("'>f4'", |x| (x as f32).to_be_bytes().to_vec()),
-        ];
-        for (element, to) in types {
-            for (order, values) in [("False", &c_order), ("True", &fortran)] {
-                let file = file(&header(element, order, "(2, 8)"), &bytes(values, to));
-                assert_eq!(read_rays(&file).unwrap(), expected(), "{element} {order}");
-            }
+/// Writes the values of a picture's pixels, little-endian: an array of shape (height, width, 3) for vectors, else
+/// (height, width).
+///
+/// # Errors
+/// If `out` has one.
+///
+/// ```
+/// use gridel_host::render::Values;
+///
+/// let mut file = Vec::new();
+/// let numbers = Values::Numbers(vec![1, 2, 3, 4, 5, 6]);
+/// gridel_host::npy::write_pixels(&mut file, [3, 2], &numbers)?;
+/// assert!(file.ends_with(&6_u32.to_le_bytes()));
+/// # Ok::<(), std::io::Error>(())
+/// ```
+pub fn write_pixels(
+    out: &mut dyn Write,
+    [width, height]: [usize; 2],
+    values: &Values,
+) -> io::Result<()> {
+    let floats = |out: &mut dyn Write, floats: &[f32]| {
+        let mut floats = floats.iter();
+        floats.try_for_each(|x| out.write_all(&x.to_le_bytes()))
+    };
+    match values {
+        Values::Lengths(lengths) => {
+            write_header(out, "'<f4'", &[height, width])?;
+            floats(out, lengths)
         }
-    }
-
-    #[test]
-    fn headers_read_in_any_form_that_python_writes() {
-        for text in [
-            "{'descr': '<f4', 'fortran_order': False, 'shape': (0, 8)}",
-            "{\"shape\":[0,8,],\"descr\":\"<f4\",\"fortran_order\":True}",
-            " { 'fortran_order' : False , 'shape' : ( 0 , 8 , ) , 'descr' : '<f4' , } ",
-        ] {
-            assert_eq!(read_rays(&file(text, &[])).unwrap(), [], "{text}");
+        Values::Vectors(vectors) => {
+            write_header(out, "'<f4'", &[height, width, 3])?;
+            floats(out, vectors.as_flattened())
         }
-    }
-
-    #[test]
-    fn no_rays_are_an_array_too() {
-        let file = file(&header("'<f4'", "False", "(0, 8)"), &[]);
-        assert_eq!(read_rays(&file).unwrap(), []);
-    }
-
-    #[test]
-    fn foreign_arrays_are_named() {
-        let read = |element: &str, shape: &str| {
-            let file = file(&header(element, "False", shape), &[0; 128]);
-            read_rays(&file).unwrap_err().to_string()
-        };
-        let types = ["'<i8'", "'<f2'", "'<c16'", "'|O'", "'<f16'"];
-        for element in types {
-            let message = read(element, "(2, 8)");
-            let name = element.trim_matches('\'');
-            assert_eq!(
-                message,
-                format!("its elements are of type {name}, not float32 or float64")
-            );
+        Values::Numbers(numbers) => {
+            write_header(out, "'<u4'", &[height, width])?;
+            let mut numbers = numbers.iter();
+            numbers.try_for_each(|x| out.write_all(&x.to_le_bytes()))
         }
-        for shape in [
-            "(16,)",
-            "(8, 2)",
-            "(2, 8, 1)",
-            "()",
-            "(4294967296, 4294967296)",
-        ] {
-            assert!(read("'<f8'", shape).contains("not (N, 8)"), "{shape}");
-        }
-        assert!(read("[('a', '<f8')]", "(16,)").contains("no array of plain numbers"));
-        assert_eq!(
-            read("'<f8'", "(3, 8)"),
-            "it has 128 bytes of rays where its header promises 192"
-        );
-        assert!(read("'<f8'", "(1, 8)").contains("promises 64"));
-    }
-
-    #[test]
-    fn hostile_headers_are_rejected() {
-        let nested = format!("{}1{}", "(".repeat(5000), ")".repeat(5000));
-        for shape in [
-            nested.as_str(),
-            "(0xffffffffffff, 0xffffffffffff, 8)",
-            "(99999999999999999999999, 8)",
-            "(-1, 8)",
-            "(None, 8)",
-            "8",
-        ] {
-            let file = file(&header("'<f8'", "False", shape), &[]);
-            let error = read_rays(&file).unwrap_err();
-            assert!(matches!(error, RaysError::Header { .. }), "{error}");
-        }
-        let whole = header("'<f8'", "False", "(0, 8)");
-        for text in [
-            whole.replace("'shape'", "'form'"),
-            whole.replace("'shape': (0, 8), ", ""),
-            whole.replace("'shape'", "'descr': '<f8', 'shape'"),
-            whole.replace("False", "0"),
-            whole.replace("(0, 8), ", "(0, 8) 1"),
-            whole.replace("(0, 8)", "(0,, 8)"),
-            whole.replace("(0, 8)", "(0, 8"),
-            whole.replace("(0, 8)", "(0, +8)"),
-            whole.replace("'<f8'", "'<f8"),
-            whole.replace("'<f8'", "'<f\\x38'"),
-            whole.clone() + "1",
-            String::new(),
-        ] {
-            let error = read_rays(&file(&text, &[])).unwrap_err();
-            assert!(matches!(error, RaysError::Header { .. }), "{text}: {error}");
-        }
-        // 2^60 rays would be 2^66 bytes.
-        let file = file(&header("'<f8'", "False", "(1152921504606846976, 8)"), &[]);
-        assert!(read_rays(&file).is_err());
-    }
-
-    #[test]
-    fn every_truncation_is_an_error() {
-        let whole = file(&header("'<f8'", "False", "(2, 8)"), &[0; 128]);
-        assert!(read_rays(&whole).is_ok());
-        for length in 0..whole.len() {
-            assert!(read_rays(&whole[..length]).is_err(), "{length} bytes");
-        }
-        for version in [0_u8, 4, 9, 255] {
-            let mut other = whole.clone();
-            other[6] = version;
-            assert!(read_rays(&other).is_err(), "version {version}");
-        }
-        // Lengths of 32 bits that promise gigabytes.
-        let mut long = b"\x93NUMPY\x02\x00\xff\xff\xff\xff".to_vec();
-        long.extend(&whole[10..]);
-        assert!(read_rays(&long).is_err());
-    }
-
-    #[test]
-    fn hits_are_packed() {
-        let hit = SceneHit {
-            t: 1.5,
-            object: 2,
-            primitive: 3,
-            instance: 7,
-            normal: [0.0, -1.0, 0.5],
-        };
-        let mut file = Vec::new();
-        write_hits(&mut file, &[hit, SceneHit::MISS], false).unwrap();
-        let data = &file[file.len() - 56..];
-        assert_eq!(data[..8], 1.5_f64.to_le_bytes());
-        assert_eq!(data[8..12], 2_u32.to_le_bytes());
-        assert_eq!(data[12..16], 3_u32.to_le_bytes());
-        assert_eq!(data[20..24], (-1.0_f32).to_le_bytes());
-        assert_eq!(data[28..36], f64::INFINITY.to_le_bytes());
-        assert_eq!(data[36..44], [0xff; 8]);
-        let header = String::from_utf8_lossy(&file[10..file.len() - 56]);
-        for field in ["'t', '<f8'", "'object', '<u4'", "'primitive', '<u4'"] {
-            assert!(header.contains(field), "{header}");
-        }
-        assert!(header.contains("'normal', '<f4', (3,)"), "{header}");
-        assert!(header.contains("'shape': (2, )"), "{header}");
-        assert_eq!((file.len() - 56) % 16, 0);
-        let mut placed = Vec::new();
-        write_hits(&mut placed, &[hit], true).unwrap();
-        let header = String::from_utf8_lossy(&placed[..placed.len() - 32]).into_owned();
-        assert!(
-            header.contains("('primitive', '<u4'), ('instance', '<u4'), ('normal'"),
-            "{header}"
-        );
-        assert_eq!(placed[placed.len() - 16..][..4], 7_u32.to_le_bytes());
     }
 }
+
+/// Writes what stands before the data of an array.
+fn write_header(out: &mut dyn Write, element: &str, shape: &[usize]) -> io::Result<()> {
+    let shape: String = shape.iter().map(|extent| format!("{extent}, ")).collect();
+    let mut header =
+        format!("{{'descr': {element}, 'fortran_order': False, 'shape': ({shape}), }}");
+    // The data begin at a multiple of 64 bytes.
+    let before = 10 + header.len() + 1;
+    header += &" ".repeat(before.next_multiple_of(64) - before);
+    header.push('\n');
+    out.write_all(b"\x93NUMPY\x01\x00")?;
+    out.write_all(&(header.len() as u16).to_le_bytes())?;
+    out.write_all(header.as_bytes())
+}
+
+#[cfg(test)]
+mod tests;

@@ -3,6 +3,12 @@
 //! Rows are spread over threads; a pixel depends on nothing but the blob, the number format and the
 //! settings, so a picture is the same bit for bit with any number of threads.
 
+mod aov;
+mod linear;
+
+pub use aov::{Aov, Values, render_aovs};
+pub use linear::{LinearPicture, render_linear};
+
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
 use gridel_core::render::RenderError;

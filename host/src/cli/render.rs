@@ -1,25 +1,22 @@
 //! `gridel render`: a picture of a scene, or those of one that moves.
 
 mod frames;
+mod outputs;
 
 use super::arguments::TargetPoint;
 use super::arguments::{self, PictureOptions, SceneOptions, TraceOptions};
 use super::failure::Failure;
-use super::input::is_standard;
-use super::output::{
-    Content, Warned, check_writable, json, print_about, reject_same, unsupported, write_files,
-};
+use super::output::{Warned, json, print_about};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
 use frames::{Output, Shot, TimeOptions, rejected};
 use gridel_core::{Counters, Scene, Settings, Structure};
-use gridel_host::output::place;
-use gridel_host::picture::{Moment, PictureFormat, RenderMetadata};
-use gridel_host::render::{Job, Picture, render};
-use gridel_host::report::HeatMap;
+use gridel_host::picture::{Moment, RenderMetadata};
+use gridel_host::render::{Aov, Job, Picture};
 use gridel_host::resolution::Unresolved;
 use gridel_host::table::{Align, Table, counted, grouped};
+use outputs::{AovFile, Outputs};
 use serde::Serialize;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -37,7 +34,9 @@ pub struct Arguments {
     input: PathBuf,
 
     /// Picture to write: .png, .ppm, or .rgb565 (two bytes per pixel, little-endian, without a
-    /// header). With `-` a PNG goes to standard output, and the report to standard error
+    /// header); or linear radiance, 1 being display white and no value limited: .npy (float32, shape
+    /// (height, width, 3)) or .exr (with the feature `exr`). With `-` a PNG goes to standard output,
+    /// and the report to standard error
     #[arg(short, long, value_name = "PICTURE")]
     output: PathBuf,
 
@@ -72,6 +71,13 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     heat_map: Option<PathBuf>,
 
+    /// Write properties of the surfaces too that the rays through the middles of pixels hit first:
+    /// depth, normal, albedo, object, primitive, instance, with commas between them. As channels of
+    /// an .exr, else to NumPy files named after the picture, such as out.depth.npy
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = arguments::aov(),
+        conflicts_with = "frames")]
+    aov: Vec<Aov>,
+
     /// Print the results as JSON
     #[arg(long)]
     json: bool,
@@ -82,9 +88,6 @@ pub struct Arguments {
     #[command(flatten)]
     target_point: TargetPoint,
 }
-
-/// Pixels that are held at once.
-const MOST_PIXELS: usize = 1 << 26;
 
 /// The report of `render`.
 #[derive(Serialize)]
@@ -103,6 +106,8 @@ struct Rendered {
     stats: Option<Stats>,
     #[serde(skip_serializing_if = "Option::is_none")]
     heat_map: Option<HeatMapFile>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    aovs: Vec<AovFile>,
     /// Objects that the format does not resolve.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     unresolved: Vec<Unresolved>,
@@ -129,23 +134,34 @@ struct HeatMapFile {
     maximum: u32,
 }
 
+/// What is written.
+enum Target<'a> {
+    Frames(Output, Range<u32>),
+    Picture(Outputs<'a>),
+}
+
+impl<'a> Target<'a> {
+    /// What was asked for; an error for names that cannot be written to.
+    fn of(arguments: &'a Arguments) -> Result<Self, Failure> {
+        let Some(frames) = &arguments.time.frames else {
+            return Ok(Self::Picture(Outputs::of(arguments)?));
+        };
+        let output = Output::of(&arguments.time, frames, &arguments.input, &arguments.output)?;
+        Ok(Self::Frames(output, frames.clone()))
+    }
+
+    /// Pixels that are held at once.
+    fn most_pixels(&self) -> usize {
+        match self {
+            Self::Frames(..) => 1 << 26,
+            Self::Picture(outputs) => outputs.most_pixels(),
+        }
+    }
+}
+
 /// Renders a picture, or frames, and writes them.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let frames = arguments.time.frames.clone();
-    let frames = frames.map(|frames| {
-        let output = Output::of(
-            &arguments.time,
-            &frames,
-            &arguments.input,
-            &arguments.output,
-        )?;
-        Ok((output, frames))
-    });
-    let frames = frames.transpose()?;
-    let format = match frames {
-        Some(_) => PictureFormat::Png,
-        None => check_outputs(arguments)?,
-    };
+    let target = Target::of(arguments)?;
     let source = Source::to_trace(
         &arguments.input,
         &arguments
@@ -159,7 +175,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let scene = source.scene()?;
     source.warn_of_collapsed();
     let unresolved = source.warn_of_unresolved(&scene, Some(arguments.with.format));
-    let job = job(arguments, &source, &scene)?;
+    let job = job(arguments, (&source, &scene), target.most_pixels())?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads.unwrap_or(0))
         .build()
@@ -170,43 +186,34 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             )
         })?;
 
-    if let Some((output, frames)) = frames {
-        let shot = Shot {
-            options: &arguments.time,
-            output: &arguments.output,
-            as_json: arguments.json,
-            source: &source,
-            scene: &scene,
-            job: &job,
-            pool: &pool,
-            unresolved,
-        };
-        return frames::run(shot, frames, &output);
-    }
-    let progress = Progress::steps("rendering", job.rows.len() as u64);
-    let begun = Instant::now();
-    let rendered = pool.install(|| render(&scene, &job, &|| progress.step()));
-    let time = begun.elapsed();
-    drop(progress);
-    let picture = rendered.map_err(|error| rejected(&error))?;
-
-    let metadata = RenderMetadata::of(&scene, &job).at(source.time().map(Moment::Time));
-    let write_picture: Content<'_> = &|out| format.write(out, &picture, &metadata);
-    let heat_map = match &arguments.heat_map {
-        Some(path) => {
-            let map = HeatMap::of(&picture);
-            let write_map: Content<'_> = &|out| map.write(out);
-            write_files(&[(&arguments.output, write_picture), (path, write_map)])?;
-            Some(HeatMapFile {
-                file: path.display().to_string(),
-                maximum: map.maximum,
-            })
-        }
-        None => {
-            write_files(&[(&arguments.output, write_picture)])?;
-            None
+    let outputs = match target {
+        Target::Picture(outputs) => outputs,
+        Target::Frames(output, frames) => {
+            let shot = Shot {
+                options: &arguments.time,
+                output: &arguments.output,
+                as_json: arguments.json,
+                source: &source,
+                scene: &scene,
+                job: &job,
+                pool: &pool,
+                unresolved,
+            };
+            return frames::run(shot, frames, &output);
         }
     };
+    let progress = Progress::steps("rendering", job.rows.len() as u64);
+    let begun = Instant::now();
+    let rendered = pool.install(|| outputs.render(&scene, &job, &|| progress.step()));
+    let time = begun.elapsed();
+    drop(progress);
+    let rendering = rendered.map_err(|error| rejected(&error))?;
+
+    let shown = rendering.shown();
+    let stats = shown.and_then(|picture| stats(arguments, picture, time));
+    let metadata = RenderMetadata::of(&scene, &job).at(source.time().map(Moment::Time));
+    let written = pool.install(|| outputs.write((&scene, &job), &rendering, &metadata));
+    let (heat_map, aovs) = written?;
     let rendered = Rendered {
         picture: arguments.output.display().to_string(),
         width: job.settings.width,
@@ -218,8 +225,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         depth: job.settings.depth,
         threads: pool.current_num_threads(),
         seconds: time.as_secs_f64(),
-        stats: stats(arguments, &picture, time),
+        stats,
         heat_map,
+        aovs,
         unresolved,
     };
     let report = match arguments.json {
@@ -232,33 +240,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     print_about(&arguments.output, report)
 }
 
-/// The picture's format; an error for names that cannot be written to.
-fn check_outputs(arguments: &Arguments) -> Result<PictureFormat, Failure> {
-    let output = &arguments.output;
-    let stream = is_standard(output).then_some(PictureFormat::Png);
-    let format = stream
-        .or(PictureFormat::of(output))
-        .ok_or_else(|| unsupported(output, "image", ".png, .ppm or .rgb565"))?;
-    reject_same(&arguments.input, output)?;
-    if let Some(heat_map) = &arguments.heat_map {
-        if PictureFormat::of(heat_map) != Some(PictureFormat::Png) {
-            return Err(unsupported(heat_map, "heat map", ".png"));
-        }
-        reject_same(&arguments.input, heat_map)?;
-        if place(heat_map) == place(output) {
-            return Err(Failure::usage(
-                format!("picture and heat map are both {}", output.display()),
-                "give the heat map another name",
-            ));
-        }
-    }
-    for path in [output].into_iter().chain(&arguments.heat_map) {
-        check_writable(path)?;
-    }
-    Ok(format)
-}
-
-fn job(arguments: &Arguments, source: &Source, scene: &Scene<'_>) -> Result<Job, Failure> {
+/// How the picture is rendered; an error for rows that it does not have, and for too many pixels at once.
+fn job(
+    arguments: &Arguments,
+    (source, scene): (&Source, &Scene<'_>),
+    most_pixels: usize,
+) -> Result<Job, Failure> {
     let settings = Settings {
         dither: arguments.dither,
         ..arguments.picture.settings(scene)
@@ -275,13 +262,13 @@ fn job(arguments: &Arguments, source: &Source, scene: &Scene<'_>) -> Result<Job,
         ));
     }
     let pixels = usize::from(width) * rows.len();
-    if pixels > MOST_PIXELS {
-        let most = MOST_PIXELS / usize::from(width);
+    if pixels > most_pixels {
+        let most = most_pixels / usize::from(width);
         return Err(Failure::usage(
             format!(
                 "{} pixels exceed the {} that fit in memory at once",
                 grouped(pixels),
-                grouped(MOST_PIXELS)
+                grouped(most_pixels)
             ),
             format!("render at most {most} rows at a time, with `--rows 0..{most}` and so on"),
         ));
@@ -346,6 +333,9 @@ impl Rendered {
                 map.file,
                 grouped(map.maximum)
             ));
+        }
+        for aov in &self.aovs {
+            text.push_str(&format!("{}: {}\n", aov.file.display(), aov.name));
         }
         if let Some(stats) = &self.stats {
             text.push_str(&format!("\n{}", stats.table()));

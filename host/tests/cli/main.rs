@@ -12,6 +12,7 @@ mod help;
 mod import;
 mod inspect;
 mod joints;
+mod linear;
 mod live;
 mod merge;
 mod names;

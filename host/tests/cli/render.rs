@@ -168,7 +168,7 @@ fn wrong_numbers_are_usage_errors() {
         folder.fails(
             2,
             &["render", "quick.gridel", "-o", output],
-            &[".png, .ppm or .rgb565"],
+            &[".png, .ppm, .rgb565, .npy or .exr"],
         );
     }
     folder.fails(

@@ -4,6 +4,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use gridel_core::{Format, Structure};
 use gridel_host::compile::Builder;
+use gridel_host::render::Aov;
 use std::ops::Range;
 
 /// The name of the first option that was given.
@@ -77,6 +78,14 @@ pub fn format() -> impl TypedValueParser<Value = Format> {
         let mut all = Format::ALL.into_iter();
         all.find(|format| format.name() == name)
             .ok_or("no such number format")
+    })
+}
+
+/// The name of an AOV.
+pub fn aov() -> impl TypedValueParser<Value = Aov> {
+    PossibleValuesParser::new(Aov::ALL.map(Aov::name)).try_map(|name| {
+        let mut all = Aov::ALL.into_iter();
+        all.find(|aov| aov.name() == name).ok_or("no such AOV")
     })
 }
 

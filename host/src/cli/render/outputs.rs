@@ -1,0 +1,279 @@
+//! The files that `gridel render` writes of one picture.
+
+use super::frames::rejected;
+use super::{Arguments, HeatMapFile};
+use crate::cli::arguments::distinct;
+use crate::cli::failure::Failure;
+use crate::cli::input::is_standard;
+use crate::cli::output::{Content, check_writable, reject_same, unsupported, write_files};
+use gridel_core::Scene;
+use gridel_core::render::RenderError;
+use gridel_host::layer::{Layer, LinearFormat, Window, write_exr, write_npy};
+use gridel_host::output::place;
+use gridel_host::picture::{PictureFormat, RenderMetadata};
+use gridel_host::render::{
+    Aov, Job, LinearPicture, Picture, Values, render, render_aovs, render_linear,
+};
+use gridel_host::report::HeatMap;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// The formats of pictures, as messages list them.
+pub const FORMATS: &str = ".png, .ppm, .rgb565, .npy or .exr";
+
+/// How the picture is stored.
+#[derive(Clone, Copy, PartialEq)]
+enum Stored {
+    /// As a display shows it.
+    Shown(PictureFormat),
+    /// As linear radiance.
+    Linear(LinearFormat),
+}
+
+/// An AOV and its file.
+#[derive(Clone, Debug, Serialize)]
+pub struct AovFile {
+    pub name: &'static str,
+    /// That of the picture itself, if it holds layers.
+    pub file: PathBuf,
+    #[serde(skip)]
+    aov: Aov,
+}
+
+/// Where a picture goes, and what is written beside it.
+pub struct Outputs<'a> {
+    picture: &'a Path,
+    stored: Stored,
+    heat_map: Option<&'a Path>,
+    aovs: Vec<AovFile>,
+}
+
+/// What was rendered.
+pub enum Rendering {
+    Shown(Picture),
+    Linear(LinearPicture),
+}
+
+impl Rendering {
+    /// The picture with what was counted, if it is one for displays.
+    pub fn shown(&self) -> Option<&Picture> {
+        match self {
+            Self::Shown(picture) => Some(picture),
+            Self::Linear(_) => None,
+        }
+    }
+}
+
+impl<'a> Outputs<'a> {
+    /// The files that were asked for; an error for names that cannot be written to.
+    pub fn of(arguments: &'a Arguments) -> Result<Self, Failure> {
+        let picture = &*arguments.output;
+        let stored = stored(picture)?;
+        if let Stored::Linear(_) = stored {
+            reject_options_of_displays(arguments)?;
+        }
+        let aovs = distinct(&arguments.aov).into_iter().map(|aov| {
+            let file = match stored {
+                Stored::Linear(LinearFormat::Exr) => picture.to_owned(),
+                _ => picture.with_extension(format!("{}.npy", aov.name())),
+            };
+            let name = aov.name();
+            AovFile { name, file, aov }
+        });
+        let outputs = Self {
+            picture,
+            stored,
+            heat_map: arguments.heat_map.as_deref(),
+            aovs: aovs.collect(),
+        };
+        outputs.check(&arguments.input)?;
+        Ok(outputs)
+    }
+
+    /// Proves that no file is written over another one, and that each can be written.
+    fn check(&self, input: &Path) -> Result<(), Failure> {
+        if let Some(heat_map) = self.heat_map
+            && PictureFormat::of(heat_map) != Some(PictureFormat::Png)
+        {
+            return Err(unsupported(heat_map, "heat map", ".png"));
+        }
+        if is_standard(self.picture) && !self.aovs.is_empty() {
+            return Err(Failure::usage(
+                "AOVs go to files named after the picture, and it goes to standard output",
+                "name a file with `-o`",
+            ));
+        }
+        let heat_map = self.heat_map.map(|path| ("heat map", path));
+        let own_files = self.own_files();
+        let aovs = own_files.iter().map(|it| (it.name, &*it.file));
+        let mut before: Vec<(&str, &Path)> = Vec::new();
+        for (what, path) in [("picture", self.picture)]
+            .into_iter()
+            .chain(heat_map)
+            .chain(aovs)
+        {
+            reject_same(input, path)?;
+            if let Some((other, _)) = before.iter().find(|it| place(it.1) == place(path)) {
+                return Err(Failure::usage(
+                    format!("{other} and {what} are both {}", path.display()),
+                    format!(
+                        "give the {} another name",
+                        if what == "heat map" { what } else { other }
+                    ),
+                ));
+            }
+            check_writable(path)?;
+            before.push((what, path));
+        }
+        Ok(())
+    }
+
+    /// The AOVs that have files of their own.
+    fn own_files(&self) -> &[AovFile] {
+        match self.stored {
+            Stored::Linear(LinearFormat::Exr) => &[],
+            _ => &self.aovs,
+        }
+    }
+
+    /// Pixels that are held at once.
+    pub fn most_pixels(&self) -> usize {
+        match self.stored {
+            Stored::Shown(_) if self.aovs.is_empty() => 1 << 26,
+            // Some ten times as many bytes each.
+            _ => 1 << 23,
+        }
+    }
+
+    /// Renders the picture.
+    pub fn render(
+        &self,
+        scene: &Scene<'_>,
+        job: &Job,
+        progress: &(dyn Fn() + Sync),
+    ) -> Result<Rendering, RenderError> {
+        match self.stored {
+            Stored::Shown(_) => render(scene, job, progress).map(Rendering::Shown),
+            Stored::Linear(_) => render_linear(scene, job, progress).map(Rendering::Linear),
+        }
+    }
+
+    /// Writes all files or none. Returns the heat map and the AOVs that were written.
+    pub fn write(
+        &self,
+        (scene, job): (&Scene<'_>, &Job),
+        rendering: &Rendering,
+        metadata: &RenderMetadata,
+    ) -> Result<(Option<HeatMapFile>, Vec<AovFile>), Failure> {
+        let asked: Vec<Aov> = self.aovs.iter().map(|it| it.aov).collect();
+        let mut layers = layers(scene, job, &asked)?;
+        let map = self.heat_map.zip(rendering.shown());
+        let map = map.map(|(path, picture)| (path, HeatMap::of(picture)));
+        let heat_map = map.as_ref().map(|(path, map)| HeatMapFile {
+            file: path.display().to_string(),
+            maximum: map.maximum,
+        });
+        let window = Window {
+            width: job.settings.width,
+            height: job.settings.height,
+            rows: job.rows.clone(),
+        };
+        if let Rendering::Linear(picture) = rendering {
+            let picture = Layer {
+                name: None,
+                values: Values::Vectors(picture.pixels.clone()),
+            };
+            layers.insert(0, picture);
+        }
+        let write_picture: Content<'_> = &|out| match (self.stored, rendering) {
+            (Stored::Shown(format), Rendering::Shown(picture)) => {
+                format.write(out, picture, metadata)
+            }
+            (Stored::Linear(LinearFormat::Exr), _) => {
+                write_exr(out, &window, &layers, &metadata.to_string())
+            }
+            _ => layers
+                .iter()
+                .filter(|layer| layer.name.is_none())
+                .try_for_each(|layer| write_npy(out, &window, layer)),
+        };
+        let write_map = map.as_ref().map(|(path, map)| {
+            let write = move |out: &mut dyn std::io::Write| map.write(out);
+            (*path, write)
+        });
+        let named = layers.iter().filter(|layer| layer.name.is_some());
+        let write_aovs: Vec<_> = self
+            .own_files()
+            .iter()
+            .zip(named)
+            .map(|(it, layer)| {
+                let window = &window;
+                let write = move |out: &mut dyn std::io::Write| write_npy(out, window, layer);
+                (&*it.file, write)
+            })
+            .collect();
+        let mut files = vec![(self.picture, write_picture)];
+        files.extend(
+            write_map
+                .iter()
+                .map(|(path, write)| (*path, write as Content<'_>)),
+        );
+        files.extend(
+            write_aovs
+                .iter()
+                .map(|(path, write)| (*path, write as Content<'_>)),
+        );
+        write_files(&files)?;
+        Ok((heat_map, self.aovs.clone()))
+    }
+}
+
+/// The layers of AOVs.
+fn layers(scene: &Scene<'_>, job: &Job, aovs: &[Aov]) -> Result<Vec<Layer>, Failure> {
+    if aovs.is_empty() {
+        return Ok(Vec::new());
+    }
+    let values = render_aovs(scene, job, aovs).map_err(|error| rejected(&error))?;
+    let layers = aovs.iter().zip(values).map(|(aov, values)| Layer {
+        name: Some(aov.name()),
+        values,
+    });
+    Ok(layers.collect())
+}
+
+/// The format that a picture's name asks for.
+fn stored(output: &Path) -> Result<Stored, Failure> {
+    if is_standard(output) {
+        return Ok(Stored::Shown(PictureFormat::Png));
+    }
+    if let Some(format) = PictureFormat::of(output) {
+        return Ok(Stored::Shown(format));
+    }
+    let format = LinearFormat::of(output).ok_or_else(|| unsupported(output, "image", FORMATS))?;
+    if !format.is_available() {
+        return Err(Failure::usage(
+            format!("{}: this build does not write .exr", output.display()),
+            "write .npy, or install with `cargo install --features exr`",
+        ));
+    }
+    Ok(Stored::Linear(format))
+}
+
+/// Rejects what only pictures for displays have.
+fn reject_options_of_displays(arguments: &Arguments) -> Result<(), Failure> {
+    let given = [
+        (arguments.dither, "--dither"),
+        (arguments.stats, "--stats"),
+        (arguments.heat_map.is_some(), "--heat-map"),
+    ];
+    match given.into_iter().find(|(is_given, _)| *is_given) {
+        Some((_, option)) => Err(Failure::usage(
+            format!(
+                "{}: `{option}` is for pictures of displays, and this one is linear radiance",
+                arguments.output.display()
+            ),
+            format!("leave out `{option}`, or write .png, .ppm or .rgb565"),
+        )),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,108 @@
+//! Linear pictures and AOVs as files: NumPy's arrays, and OpenEXR with the feature `exr`.
+
+#[cfg(feature = "exr")]
+mod openexr;
+
+use crate::npy;
+use crate::render::Values;
+use std::io::{self, Write};
+use std::ops::Range;
+use std::path::Path;
+
+/// How linear values are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LinearFormat {
+    /// NumPy's array file: one layer.
+    Npy,
+    /// OpenEXR with 32 bits per channel, compressed without loss: any number of layers. Needs the feature `exr`.
+    Exr,
+}
+
+impl LinearFormat {
+    /// The format that a file's extension names: `npy` or `exr`.
+    ///
+    /// ```
+    /// use gridel_host::layer::LinearFormat;
+    ///
+    /// assert_eq!(LinearFormat::of("a.exr".as_ref()), Some(LinearFormat::Exr));
+    /// assert_eq!(LinearFormat::of("a.png".as_ref()), None);
+    /// ```
+    pub fn of(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+        match extension.as_str() {
+            "npy" => Some(Self::Npy),
+            "exr" => Some(Self::Exr),
+            _ => None,
+        }
+    }
+
+    /// Whether this build writes the format.
+    pub fn is_available(self) -> bool {
+        self == Self::Npy || cfg!(feature = "exr")
+    }
+}
+
+/// Values of the pixels of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layer {
+    /// `None` for the picture itself, else the name of an [AOV](crate::render::Aov).
+    pub name: Option<&'static str>,
+    pub values: Values,
+}
+
+/// The place of some rows in a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Window {
+    pub width: u16,
+    /// Height of the whole picture.
+    pub height: u16,
+    pub rows: Range<u16>,
+}
+
+/// Writes layers as OpenEXR: the picture in the channels `R`, `G` and `B`, depth in `Z`, colors and vectors in channels
+/// such as `albedo.R` and `normal.X`, numbers in channels of their own. Rows of a picture keep their place in it. `comments`
+/// says how the picture was made.
+///
+/// # Errors
+/// If `out` has one, or this build lacks the feature `exr`.
+///
+/// ```
+/// use gridel_host::layer::{Layer, LinearFormat, Window, write_exr};
+/// use gridel_host::render::Values;
+///
+/// let layer = Layer {
+///     name: None,
+///     values: Values::Vectors(vec![[0.0, 0.5, 2.0]; 6]),
+/// };
+/// let window = Window {
+///     width: 3,
+///     height: 2,
+///     rows: 0..2,
+/// };
+/// let mut file = Vec::new();
+/// let written = write_exr(&mut file, &window, &[layer], "by hand");
+/// assert_eq!(written.is_ok(), LinearFormat::Exr.is_available());
+/// ```
+pub fn write_exr(
+    out: &mut dyn Write,
+    window: &Window,
+    layers: &[Layer],
+    comments: &str,
+) -> io::Result<()> {
+    #[cfg(feature = "exr")]
+    return openexr::write(out, window, layers, comments);
+    #[cfg(not(feature = "exr"))]
+    {
+        let _ = (out, window, layers, comments);
+        Err(io::ErrorKind::Unsupported.into())
+    }
+}
+
+/// Writes one layer as NumPy's array file: see [`npy::write_pixels`].
+///
+/// # Errors
+/// If `out` has one.
+pub fn write_npy(out: &mut dyn Write, window: &Window, layer: &Layer) -> io::Result<()> {
+    let size = [window.width.into(), window.rows.len()];
+    npy::write_pixels(out, size, &layer.values)
+}

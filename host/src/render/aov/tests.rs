@@ -1,0 +1,182 @@
+//! AOVs against what scenes state.
+
+use super::*;
+use crate::blob::Blob;
+use crate::compile::{Options, compile};
+use crate::scene;
+use gridel_core::Structure;
+
+fn blob(text: &str) -> Blob {
+    let read = scene::read("test.toml".as_ref(), text.into(), &Default::default());
+    let options = Options {
+        structures: vec![Structure::DualSplit, Structure::Wide, Structure::Flagged],
+        ..Options::default()
+    };
+    compile(&read.expect("a scene").scene, &options)
+        .expect("a blob")
+        .blob
+}
+
+const SIZE: [u16; 2] = [33, 25];
+
+fn job(scene: &Scene<'_>, format: Format) -> Job {
+    let settings = Settings {
+        width: SIZE[0],
+        height: SIZE[1],
+        samples: 4,
+        ..Settings::of(scene)
+    };
+    Job::whole(format, Structure::DualSplit, settings)
+}
+
+/// The place of the pixel in the middle.
+const MIDDLE: usize = (SIZE[0] as usize) * (SIZE[1] as usize) / 2;
+
+fn all(scene: &Scene<'_>, job: &Job) -> [Values; 6] {
+    let values = render_aovs(scene, job, &Aov::ALL).expect("AOVs");
+    values.try_into().expect("as many as were asked for")
+}
+
+fn lengths(values: &Values) -> &[f32] {
+    match values {
+        Values::Lengths(lengths) => lengths,
+        _ => panic!("{values:?}"),
+    }
+}
+
+fn vectors(values: &Values) -> &[[f32; 3]] {
+    match values {
+        Values::Vectors(vectors) => vectors,
+        _ => panic!("{values:?}"),
+    }
+}
+
+fn numbers(values: &Values) -> &[u32] {
+    match values {
+        Values::Numbers(numbers) => numbers,
+        _ => panic!("{values:?}"),
+    }
+}
+
+/// A ball before a wall of two materials, which a mirror and lights do not change.
+const WALL: &str = "
+    [camera]
+    eye = [0, 0, 5]
+    target = [0, 0, 0]
+    fov = 60
+    [[light]]
+    kind = 'point'
+    position = [1, 2, 3]
+    color = [7, 7, 7]
+    [material.red]
+    diffuse = [0.75, 0.25, 0.125]
+    mirror = [0.2, 0.2, 0.2]
+    [material.board]
+    checker = { even = 0.5, odd = 0.25, size = 2, origin = [0, 0, -9] }
+    [[object]]
+    kind = 'box'
+    min = [-2, -2, -2]
+    max = [2, 2, -1]
+    material = 'board'
+    [[object]]
+    kind = 'sphere'
+    center = [0, 0, 0]
+    radius = 0.5
+    material = 'red'";
+
+#[test]
+fn values_are_those_of_the_scene() {
+    let blob = blob(WALL);
+    let scene = blob.scene().expect("a scene");
+    for format in Format::ALL {
+        let [depth, normal, albedo, object, primitive, instance] =
+            all(&scene, &job(&scene, format));
+        let near = |found: f32, expected: f32| {
+            let apart = (found - expected).abs();
+            assert!(apart < 2e-3, "{format:?}: {found} for {expected}");
+        };
+        near(lengths(&depth)[MIDDLE], 4.5);
+        near(vectors(&normal)[MIDDLE][2], 1.0);
+        for (found, expected) in vectors(&albedo)[MIDDLE]
+            .into_iter()
+            .zip([0.75, 0.25, 0.125])
+        {
+            near(found, expected);
+        }
+        assert_eq!(numbers(&object)[MIDDLE], 1);
+        assert_eq!(numbers(&primitive)[MIDDLE], 1);
+        // The wall to the right of the ball, by how far its pixel's middle is from the picture's.
+        let right = MIDDLE + 7;
+        let aside = 7.0 / 12.5 * 30_f32.to_radians().tan();
+        near(lengths(&depth)[right], 6.0 * (1.0 + aside * aside).sqrt());
+        assert_eq!(numbers(&object)[right], 0);
+        let cells = [MIDDLE - 7, right].map(|pixel| vectors(&albedo)[pixel][0]);
+        assert!(cells.contains(&0.5) && cells.contains(&0.25), "{cells:?}");
+        // Nothing is in the corner.
+        assert_eq!(lengths(&depth)[0], f32::INFINITY);
+        assert_eq!([vectors(&normal)[0], vectors(&albedo)[0]], [[0.0; 3]; 2]);
+        assert_eq!(
+            [&object, &primitive].map(|it| numbers(it)[0]),
+            [u32::MAX; 2]
+        );
+        assert!(numbers(&instance).iter().all(|&number| number == u32::MAX));
+    }
+}
+
+#[test]
+fn bits_depend_on_neither_structure_nor_rows() {
+    let blob = blob(WALL);
+    let scene = blob.scene().expect("a scene");
+    for format in Format::ALL {
+        let whole = job(&scene, format);
+        let expected = all(&scene, &whole);
+        for structure in [Structure::List, Structure::Wide, Structure::Flagged] {
+            let other = Job {
+                structure,
+                ..whole.clone()
+            };
+            assert!(all(&scene, &other) == expected, "{structure:?}");
+        }
+        let part = Job {
+            rows: 3..7,
+            ..whole
+        };
+        let rows = 3 * usize::from(SIZE[0])..7 * usize::from(SIZE[0]);
+        let [depth, .., object, _, _] = all(&scene, &part);
+        assert_eq!(lengths(&depth), &lengths(&expected[0])[rows.clone()]);
+        assert_eq!(numbers(&object), &numbers(&expected[3])[rows]);
+    }
+}
+
+#[test]
+fn instances_are_numbered_in_scene_file_order() {
+    let scene = "
+        [camera]
+        eye = [0, 0, 9]
+        target = [0, 0, 0]
+        fov = 40
+        [[part]]
+        name = 'ball'
+        [[part.object]]
+        kind = 'sphere'
+        center = [0, 0, 0]
+        radius = 1
+        [[instance]]
+        part = 'ball'
+        translate = [1.5, 0, 0]
+        [[instance]]
+        part = 'ball'
+        translate = [-1.5, 0, 0]";
+    let blob = blob(scene);
+    let scene = blob.scene().expect("a scene");
+    assert_eq!(scene.instances().len(), 2);
+    for format in Format::ALL {
+        let [depth, .., instance] = all(&scene, &job(&scene, format));
+        let row = 12 * usize::from(SIZE[0])..13 * usize::from(SIZE[0]);
+        let mut seen: Vec<u32> = numbers(&instance)[row].to_vec();
+        seen.dedup();
+        assert_eq!(seen, [u32::MAX, 1, u32::MAX, 0, u32::MAX], "{format:?}");
+        let nearest = lengths(&depth).iter().fold(f32::INFINITY, |a, &b| a.min(b));
+        assert!((nearest - 8.1).abs() < 0.1, "{nearest}");
+    }
+}
