@@ -9,7 +9,7 @@ use crate::blob::{Blob, best_structures, is_blob};
 use crate::compile::{self, Options};
 use crate::measure::{Rendered, board_memory};
 use crate::picture::hash;
-use crate::scene::{self, ImportOptions};
+use crate::scene::{self, ImportOptions, Posed};
 use crate::state::{State, ticks};
 use gridel_core::{Format, Scene, Settings, Structure, Tracks};
 use std::io;
@@ -41,7 +41,7 @@ pub fn run(manifest: &Manifest, progress: &dyn Fn()) -> Report {
             check,
             findings: &mut report.findings,
             warnings: &mut report.warnings,
-            posed: false,
+            posed: None,
         };
         if let Err(why) = run.all(progress) {
             run.push(None, "scene", None, None, Outcome::Failed(why));
@@ -57,8 +57,8 @@ pub(super) struct Run<'r> {
     pub(super) check: &'r Check,
     findings: &'r mut Vec<Finding>,
     warnings: &'r mut Vec<String>,
-    /// Whether instances were copied where they are at the check's time.
-    posed: bool,
+    /// Where instances that move were copied, if they were.
+    posed: Option<Posed>,
 }
 
 /// A figure, and the most that is allowed.
@@ -116,7 +116,7 @@ impl Run<'_> {
         };
         let path = self.check.scene.path.display();
         let tracks = Tracks::from_bytes(blob).map_err(|error| format!("{path}: {error}"))?;
-        if tracks.is_empty() && self.posed {
+        if tracks.is_empty() && self.posed == Some(Posed::AtTime) {
             return Ok(None);
         }
         if tracks.is_empty() {

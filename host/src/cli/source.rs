@@ -14,7 +14,7 @@ use gridel_host::blob::{self, Blob};
 use gridel_host::compile::{self, CompileError, Compiled, Names};
 use gridel_host::measure::board::{Fit, MemoryReport};
 use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
-use gridel_host::scene::{self, Imported, Track};
+use gridel_host::scene::{self, Imported, Posed, Track};
 use gridel_host::state::{self, State, StateError};
 use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::Path;
@@ -35,7 +35,7 @@ pub struct Source {
     /// The names of a scene file.
     names: Option<Names>,
     /// Whether instances were copied where they are at the time that is shown.
-    posed: bool,
+    posed: Option<Posed>,
     /// How a scene file was read and compiled.
     made_by: Option<(scene::ImportOptions, compile::Options)>,
 }
@@ -131,7 +131,7 @@ impl Source {
             changes: None,
             for_pictures: None,
             names: None,
-            posed: false,
+            posed: None,
             made_by: None,
         })
     }
@@ -192,7 +192,7 @@ impl Source {
             changes: None,
             for_pictures: None,
             names: Some(names),
-            posed: imported.posed,
+            copied: imported.posed,
             made_by: Some((options.for_import(), compiling)),
         })
     }
@@ -228,19 +228,41 @@ impl Source {
 
     /// Whether a time concerns more than instances that were copied where they are at it.
     fn moves_otherwise(&self) -> bool {
-        !self.posed || self.tracks().is_ok()
+        self.posed != Some(Posed::AtTime) || self.tracks().is_ok()
     }
 
     /// The tracks of a scene that moves.
     pub fn tracks(&self) -> Result<Tracks<'_>, Failure> {
-        // They were checked with the scene.
-        let tracks = Tracks::from_bytes(self.blob.bytes()).ok();
-        tracks.filter(|tracks| !tracks.is_empty()).ok_or_else(|| {
-            Failure::usage(
-                format!("nothing in {} moves: it has no tracks", self.input.path().display()),
+        let tracks = Tracks::from_bytes(self.blob.bytes()).map_err(|error| self.invalid(error))?;
+        if !tracks.is_empty() {
+            return Ok(tracks);
+        }
+        let file = self.input.path().display();
+        Err(match self.posed {
+            None => Failure::usage(
+                format!("nothing in {file} moves: it has no tracks"),
                 "leave the time out, or add a `[[track]]` to the scene file: see `gridel help scene`",
-            )
+            ),
+            Some(_) => Failure::usage(
+                format!("instances alone move in {file}, and copies of them do not"),
+                "leave out `--instances flatten`, or ask for one picture after the other with `--time`",
+            ),
         })
+    }
+
+    /// The error of a blob that is not valid.
+    fn invalid(&self, error: BlobError) -> Failure {
+        let remedy = match (&self.report, error) {
+            (Some(_), _) => "this is a fault of gridel: report it with the scene file",
+            (None, BlobError::Truncated { .. } | BlobError::Checksum { .. }) => {
+                "copy the file again, as binary, or build it again with `gridel build`"
+            }
+            (None, BlobError::Magic) => {
+                "blobs are made by `gridel build`; a scene file must have the extension of its format"
+            }
+            (None, _) => "build it again with `gridel build`",
+        };
+        Failure::failed(format!("{}: {error}", self.input.path().display()), remedy)
     }
 
     /// Joints on which instances of the blob hang.
@@ -297,19 +319,7 @@ impl Source {
                 None => Ok(scene),
             }
         });
-        checked.map_err(|error| {
-            let remedy = match (&self.report, error) {
-                (Some(_), _) => "this is a fault of gridel: report it with the scene file",
-                (None, BlobError::Truncated { .. } | BlobError::Checksum { .. }) => {
-                    "copy the file again, as binary, or build it again with `gridel build`"
-                }
-                (None, BlobError::Magic) => {
-                    "blobs are made by `gridel build`; a scene file must have the extension of its format"
-                }
-                (None, _) => "build it again with `gridel build`",
-            };
-            Failure::failed(format!("{}: {error}", self.input.path().display()), remedy)
-        })
+        checked.map_err(|error| self.invalid(error))
     }
 
     /// The names of a scene file, or those in the blob.

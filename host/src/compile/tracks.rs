@@ -206,21 +206,12 @@ fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, CompileE
             Some(values[number]),
             spline.then(|| change(key.leaving, behind)),
         ];
-        for group in groups.into_iter().flatten() {
-            for word in &group[..components] {
+        for (group, is_value) in groups.into_iter().zip([false, true, false]) {
+            for word in &group.unwrap_or_default()[..group.map_or(0, |_| components)] {
                 let rounded = word.round();
                 if rounded.is_nan() || rounded.abs() > f64::from(i32::MAX) {
-                    let cause = match kind {
-                        ValueKind::Position => format!(
-                            "at {} s it leads beyond the range of scene coordinates",
-                            key.seconds
-                        ),
-                        _ => format!("at {} s a value is too large", key.seconds),
-                    };
-                    return Err(error(
-                        cause,
-                        "use smaller values, or move them nearer to the scene",
-                    ));
+                    let (cause, remedy) = too_large(kind, is_value);
+                    return Err(error(format!("at {} s {cause}", key.seconds), remedy));
                 }
                 words.push(rounded as i32);
             }
@@ -232,6 +223,21 @@ fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, CompileE
         all.push((time, words));
     }
     Ok(all)
+}
+
+/// What is too large at a key: a value, or the change that a tangent stands for. And what helps.
+fn too_large(kind: ValueKind, is_value: bool) -> (&'static str, &'static str) {
+    match (kind, is_value) {
+        (_, false) => (
+            "the tangent is too large for the time to the next key",
+            "use a smaller tangent, or more keys",
+        ),
+        (ValueKind::Position, _) => (
+            "it leads beyond the range of scene coordinates",
+            "use smaller values, or move them nearer to the scene",
+        ),
+        _ => ("a value is too large", "use smaller values"),
+    }
 }
 
 /// The angle between two quaternions as a part of a turn with 32 bits.

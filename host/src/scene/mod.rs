@@ -41,7 +41,9 @@ pub use model::{
     Camera, Color, Diffuse, Instance, Joint, Light, Material, Object, Part, RenderSettings, Scene,
 };
 pub use normals::{Normals, NormalsChoice};
-pub use options::{Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle};
+pub use options::{
+    Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, Posed,
+};
 pub use placement::Placement;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
@@ -137,12 +139,15 @@ fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, S
             (None, _) => {}
             (Some(_), Some(seconds)) => {
                 scene.instances = scene.instances_at(seconds);
-                imported.posed = true;
+                imported.posed = Some(Posed::AtTime);
             }
-            (Some(instance), None) => imported.warnings.push(format!(
-                "{}: instances are copied where they are at rest, and do not move",
-                instance.place
-            )),
+            (Some(instance), None) => {
+                imported.posed = Some(Posed::AtRest);
+                imported.warnings.push(format!(
+                    "{}: instances are copied where they are at rest, and do not move",
+                    instance.place
+                ));
+            }
         }
         imported.scene = imported.scene.into_flattened()?;
     }

@@ -43,8 +43,17 @@ pub struct Imported {
     pub choices: bool,
     /// Whether a file that can hold assemblies was read, which [`ImportOptions::assembly`] is for.
     pub assemblies: bool,
-    /// Whether instances that move were copied where they are at [a time](ImportOptions::at).
-    pub posed: bool,
+    /// Where instances that move were copied, if they were.
+    pub posed: Option<Posed>,
+}
+
+/// Where [copies](Instances::Flatten) of instances that move stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Posed {
+    /// Where the instances are at rest.
+    AtRest,
+    /// Where they are at [a time](ImportOptions::at).
+    AtTime,
 }
 
 /// Which of a glTF file's cameras and animations is read.

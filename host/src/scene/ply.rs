@@ -77,7 +77,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         molecules: false,
         choices: false,
         assemblies: false,
-        posed: false,
+        posed: None,
     })
 }
 

@@ -215,7 +215,7 @@ fn scene(path: &Path, objects: Vec<Object>, warnings: Vec<String>) -> Result<Imp
         molecules: false,
         choices: false,
         assemblies: false,
-        posed: false,
+        posed: None,
     })
 }
 

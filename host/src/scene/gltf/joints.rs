@@ -8,7 +8,9 @@ use super::Importer;
 use super::animation::{Motion, Way};
 use super::place::{parts, transform};
 use super::shared::Placed;
-use crate::scene::{Joint, LARGEST_SCALE, Placement, Track, TrackTarget};
+use crate::scene::{
+    Interpolation, Joint, Key, LARGEST_SCALE, Placement, Track, TrackTarget,
+};
 use crate::table::printable;
 use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 use gltf::Node;
@@ -175,6 +177,23 @@ impl Own {
     }
 }
 
+/// The least of the first component between two keys of a cubic.
+fn least_between(first: &Key, second: &Key) -> f64 {
+    let duration = second.seconds - first.seconds;
+    let [from, to] = [first, second].map(|key| key.value[0]);
+    let [out, into] = [first.leaving[0], second.entering[0]].map(|change| change * duration);
+    // From + out s + b s^2 + c s^3 for s from 0 to 1.
+    let b = 3.0 * (to - from) - 2.0 * out - into;
+    let c = 2.0 * (from - to) + out + into;
+    let at = |s: f64| from + s * (out + s * (b + s * c));
+    // Where the slope is 0.
+    let half = -b;
+    let root = (half * half - 3.0 * c * out).sqrt();
+    let turns = [(half + root) / (3.0 * c), (half - root) / (3.0 * c), out / (-2.0 * b)];
+    let inside = turns.into_iter().filter(|s| (0.0..=1.0).contains(s));
+    inside.map(at).fold(from.min(to), f64::min)
+}
+
 /// The even scale of a way of scales, relative to that at rest, and whether it was 0 at some key; `None` if it is none.
 fn even(way: &Way, rest: DVec3) -> Option<(Way, bool)> {
     let inverse = rest.recip();
@@ -200,6 +219,12 @@ fn even(way: &Way, rest: DVec3) -> Option<(Way, bool)> {
         if !is_even || !(0.0..=LARGEST_SCALE).contains(&x) {
             return None;
         }
+    }
+    let mut segments = ratios.keys.windows(2);
+    if way.interpolation == Interpolation::Cubic
+        && segments.any(|keys| least_between(&keys[0], &keys[1]) < -TOLERANCE * largest)
+    {
+        return None;
     }
     let mut mapped = ratios.map(|[x, ..]| [x, 0.0, 0.0, 0.0]);
     for key in &mut mapped.keys {

@@ -123,7 +123,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         molecules: false,
         choices: true,
         assemblies: false,
-        posed: false,
+        posed: None,
     })
 }
 

@@ -79,7 +79,7 @@ pub(super) fn import(
         molecules: true,
         choices: false,
         assemblies: true,
-        posed: false,
+        posed: None,
     })
 }
 

@@ -279,7 +279,7 @@ impl<'a> Importer<'a> {
             molecules: false,
             choices: false,
             assemblies: false,
-            posed: false,
+            posed: None,
         })
     }
 }

@@ -101,7 +101,7 @@ fn import(source: &Source, access: &Access) -> Result<Imported, SceneError> {
         molecules: false,
         choices: false,
         assemblies: false,
-        posed: false,
+        posed: None,
     })
 }
 

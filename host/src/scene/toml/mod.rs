@@ -67,6 +67,6 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         molecules: imports.kinds.molecules,
         choices: imports.kinds.choices,
         assemblies: imports.kinds.assemblies,
-        posed: false,
+        posed: None,
     })
 }

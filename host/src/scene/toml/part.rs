@@ -57,19 +57,16 @@ pub(super) fn instances(
             };
             part.error(format!("there is no part {text:?}"), remedy)
         })?;
-        let name = match fields.get("name") {
-            None => format!("{text} {}", instances.len() + 1),
-            Some(value) => {
-                let name = value.filled()?;
-                if !names.insert(name) {
-                    return Err(value.error(
-                        format!("there are two instances {name:?}"),
-                        "give one of them another name",
-                    ));
-                }
-                name.to_owned()
-            }
+        let (name, named) = match fields.get("name") {
+            None => (format!("{text} {}", instances.len() + 1), part),
+            Some(value) => (value.filled()?.to_owned(), value),
         };
+        if !names.insert(name.clone()) {
+            return Err(named.error(
+                format!("there are two instances {name:?}"),
+                "give one of them another name; one without a name has that of its part and its number",
+            ));
+        }
         instances.push(InstanceItem {
             name,
             part: number,

@@ -250,7 +250,8 @@ fn keys(fields: &Fields<'_>, target: TrackTarget) -> Result<Vec<Key>, SceneError
             ValueKind::FieldOfView => DVec3::X * field_of_view(value)?,
             ValueKind::Turns | ValueKind::Rotation => DVec3::X * value.number()?,
             ValueKind::Scale => DVec3::X * scale(value)?,
-            ValueKind::Radiance | ValueKind::Ratios => DVec3::from_array(value.color()?),
+            ValueKind::Radiance => DVec3::from_array(value.radiance()?),
+            ValueKind::Ratios => DVec3::from_array(value.reflectance()?),
             ValueKind::Position | ValueKind::Shift => value.vector()?,
         };
         *key = Key::of_vector(key.seconds, vector);

@@ -78,7 +78,7 @@ fn broken_documents() {
 fn a_million_instances_are_rejected() {
     let mut document = document();
     let count = 100_000;
-    // Copied, because their scale is uneven.
+    // Posed, because their scale is uneven.
     document["nodes"] = json!(vec![json!({"mesh": 0, "scale": [1, 2, 1]}); count]);
     document["scenes"][0]["nodes"] = json!((0..count).collect::<Vec<_>>());
     document["meshes"][0]["primitives"] =
