@@ -144,6 +144,7 @@ fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, S
                 instance.place
             )),
         }
+        imported.copied = scene.instances.len();
         imported.scene = imported.scene.into_flattened()?;
     }
     Ok(imported)

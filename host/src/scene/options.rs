@@ -2,6 +2,7 @@
 
 use super::model::Scene;
 use super::normals::NormalsChoice;
+use serde::{Deserialize, Serialize};
 
 /// Choices that a molecule file leaves to a person.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +46,8 @@ pub struct Imported {
     pub assemblies: bool,
     /// Whether instances that move were copied where they are at [a time](ImportOptions::at).
     pub posed: bool,
+    /// Number of instances that were copied, as [`ImportOptions::instances`] asks.
+    pub copied: usize,
 }
 
 /// Which of a glTF file's cameras and animations is read.
@@ -57,7 +60,8 @@ pub struct Choice {
 }
 
 /// What becomes of instances.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Instances {
     /// Parts are held once, and instances place them.
     #[default]

@@ -109,6 +109,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         choices: false,
         assemblies: false,
         posed: false,
+        copied: 0,
     })
 }
 

@@ -68,5 +68,6 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         choices: imports.choices,
         assemblies: imports.assemblies,
         posed: false,
+        copied: 0,
     })
 }
