@@ -26,10 +26,15 @@ pub struct Table {
 
 impl Table {
     /// A table with a line of titles.
-    pub fn new<const N: usize>(columns: [(&str, Align); N]) -> Self {
-        let mut table = Self::untitled(columns.map(|(_, align)| align));
-        table.row(columns.map(|(title, _)| title.to_owned()));
-        table
+    pub fn new<'c>(columns: impl IntoIterator<Item = (&'c str, Align)>) -> Self {
+        let columns = columns.into_iter();
+        let (titles, columns) = columns
+            .map(|(title, align)| (title.to_owned(), align))
+            .unzip();
+        Self {
+            columns,
+            rows: vec![titles],
+        }
     }
 
     /// A table of nothing but rows.
@@ -41,8 +46,8 @@ impl Table {
     }
 
     /// Adds a row; cells beyond the columns line up on the left.
-    pub fn row<const N: usize>(&mut self, cells: [String; N]) {
-        self.rows.push(cells.to_vec());
+    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(cells.into_iter().collect());
     }
 }
 

@@ -22,6 +22,7 @@ fn swept(name: &str) -> Results {
     }
     Results {
         key: String::new(),
+        instances: bench.instances().expect("a blob"),
         base: bench.base(),
         reference,
         points,
@@ -131,4 +132,38 @@ fn boards_are_the_recorded_ones() {
             );
         }
     }
+}
+
+/// A ray through the arm, whose links are instances, takes as many instructions as one of pictures without instances.
+#[test]
+fn boards_estimate_instances_of_the_arm() {
+    let text = std::fs::read_to_string(scenes::fixture_folder().join("recorded/board.json"));
+    let recorded: serde_json::Value = serde_json::from_str(&text.expect("a file")).expect("JSON");
+    let scene = scenes::read(&scenes::fixture_folder().join("robot-arm.toml"));
+    let mut bench = Bench::new(&scene, Structure::DualSplit, [64, 64]);
+    let instances = bench.instances().expect("a blob").expect("instances");
+    assert!(instances.are_kept());
+    let reference = bench.reference(1).expect("a reference");
+    let mut measured = 0;
+    for board in PICTURE_COSTS {
+        let (machine, format) = (board.machine, board.format.name());
+        let build = format!("arm robot-arm {machine} {format} dual-split");
+        let Some(instructions) = recorded[&build]["picture-instructions"].as_f64() else {
+            continue;
+        };
+        let setting = gridel_host::accuracy::Setting {
+            format: board.format,
+            ..bench.base()
+        };
+        let (point, _) = bench.measure(&setting, &reference).expect("a point");
+        let found = instructions / point.cost.rays as f64;
+        eprintln!("{build}: {found:.0} instructions per ray");
+        let [least, most] = board.per_ray;
+        assert!(
+            0.9 * least < found && found < most,
+            "{build}: {found} {least} {most}"
+        );
+        measured += 1;
+    }
+    assert_eq!(measured, 2);
 }

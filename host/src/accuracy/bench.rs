@@ -4,7 +4,7 @@ use super::setting::Setting;
 use crate::blob::Blob;
 use crate::compile::{self, CompileError, Quality};
 use crate::measure::board::instructions;
-use crate::measure::{Errors, FirstHit, Rendered, board_memory, first_hits, time};
+use crate::measure::{Errors, FirstHit, InstanceCount, Rendered, board_memory, first_hits, time};
 use crate::scene::Scene;
 use gridel_core::format::checksum;
 use gridel_core::format::limits::MAX_RAY_DEPTH;
@@ -81,8 +81,8 @@ pub struct Reference {
     pub samples: u16,
     /// Linear, 65535 being white.
     pub pixels: Vec<[u16; 3]>,
-    /// One value per pixel.
-    hits: Vec<FirstHit>,
+    /// One value per pixel; `None` on a miss.
+    hits: Vec<Option<FirstHit>>,
 }
 
 /// Why something cannot be measured.
@@ -121,8 +121,10 @@ pub struct Bench<'s> {
     /// Build quality of the structure `wide`.
     pub quality: Quality,
     pub size: [u16; 2],
+    /// Instances of the scene file that were [copied](crate::scene::Imported::copied), for the report.
+    pub copied: usize,
     blobs: HashMap<(u8, u64), Blob>,
-    hits: HashMap<(u8, u64, &'static str), Vec<FirstHit>>,
+    hits: HashMap<(u8, u64, &'static str), Vec<Option<FirstHit>>>,
 }
 
 /// How the reference is made: double precision, the finest lattice, all reflections that a picture
@@ -144,6 +146,7 @@ impl<'s> Bench<'s> {
             structure,
             quality: Quality::default(),
             size,
+            copied: 0,
             blobs: HashMap::new(),
             hits: HashMap::new(),
         }
@@ -165,6 +168,12 @@ impl<'s> Bench<'s> {
     pub fn checksum(&mut self) -> Result<u32, MeasureError> {
         let base = self.base();
         Ok(checksum(self.blob(&base)?.bytes()))
+    }
+
+    /// Returns what became of the scene's instances; `None` without any.
+    pub fn instances(&mut self) -> Result<Option<InstanceCount>, MeasureError> {
+        let (base, copied) = (self.base(), self.copied);
+        Ok(InstanceCount::of(&self.blob(&base)?.scene()?, copied))
     }
 
     /// Returns whether anything in the scene reflects or refracts.
@@ -244,7 +253,7 @@ impl<'s> Bench<'s> {
     }
 
     /// Returns the first hits of the rays through the middles of pixels.
-    fn first_hits(&mut self, setting: &Setting) -> Result<Vec<FirstHit>, MeasureError> {
+    fn first_hits(&mut self, setting: &Setting) -> Result<Vec<Option<FirstHit>>, MeasureError> {
         let name = setting.format.name();
         let key = (setting.lattice_bits, setting.cutoff.to_bits(), name);
         if let Some(hits) = self.hits.get(&key) {

@@ -1,16 +1,20 @@
 //! The cost of accuracy in time: settings are swept, their pictures measured against a reference, and
 //! the results are printed as a table, as sentences and as plots.
 //!
-//! `setting.rs` says what is swept, `bench.rs` renders and compares, `page.rs` draws.
+//! `setting.rs` says what is swept, `bench.rs` renders and compares, `page.rs` draws, `instances.rs` says what became of
+//! instances.
 
 mod bench;
+mod instances;
 mod page;
 mod setting;
 
 pub use bench::{Bench, Cost, MeasureError, Point, Reference, reference_setting};
+pub use instances::instance_notes;
 pub use page::{Comparison, page};
 pub use setting::{Parameter, Setting, least_reference_samples, sweep};
 
+use crate::measure::InstanceCount;
 use crate::table::significant;
 use serde::{Deserialize, Serialize};
 
@@ -20,6 +24,9 @@ pub struct Results {
     /// Identifies the sweep: the program's version, the scene, the picture's size, the structure, the reference.
     pub key: String,
     pub base: Setting,
+    /// What became of the scene's instances; `None` without any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub instances: Option<InstanceCount>,
     pub reference: Reference,
     pub points: Vec<Point>,
 }

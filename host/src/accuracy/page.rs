@@ -1,6 +1,6 @@
 //! A page that holds everything: plots, sentences, table, pictures. It loads nothing from anywhere.
 
-use super::{Point, Results, frontier, frontier_by, sentences};
+use super::{Point, Results, frontier, frontier_by, instance_notes, sentences};
 use crate::measure::board::core_names;
 use crate::picture::write_png;
 use crate::table::{counted, grouped, significant};
@@ -43,11 +43,16 @@ pub fn page(
     let mut body = format!(
         "<title>Accuracy and time of {name}</title>\n<h1>What accuracy costs in time: {name}</h1>\n\
          <p>{} x {} pixels, one thread. The reference: f64, 24 lattice bits, ray depth 16, {} per \
-         pixel.</p>\n<ul>\n",
+         pixel.</p>\n",
         size[0],
         size[1],
         counted(results.reference.samples.into(), "sample")
     );
+    if let Some(instances) = &results.instances {
+        let notes = instance_notes(instances).join(" ");
+        let _ = writeln!(body, "<p>{}</p>", code(&escape(&notes)));
+    }
+    body.push_str("<ul>\n");
     for sentence in sentences(&results.base, &results.points) {
         let _ = writeln!(body, "<li>{}</li>", code(&escape(&sentence)));
     }

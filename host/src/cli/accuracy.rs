@@ -17,6 +17,7 @@ use folder::{CSV, PAGE, comparisons, kept};
 use gridel_host::accuracy::{
     Bench, MeasureError, Point, frontier, least_reference_samples, page, sentences, sweep,
 };
+use gridel_host::measure::InstanceCount;
 use gridel_host::table::{counted, grouped, significant};
 use measure::measure;
 use report::{csv, text};
@@ -31,6 +32,8 @@ const MOST_PIXELS: usize = 1 << 22;
 struct Printed<'t> {
     folder: String,
     size: [u16; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    instances: Option<InstanceCount>,
     points: &'t [Point],
     /// Which points nothing beats in cost and RMSE.
     frontier: Vec<bool>,
@@ -48,7 +51,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         geometry: GeometryOptions {
             lattice_bits: None,
             room: None,
-            import: arguments.import.flattened()?,
+            import: arguments.import.clone(),
         },
         ..SceneOptions::default()
     };
@@ -76,6 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let failed = |error: MeasureError| Failure::in_file(path, error);
     let mut bench = Bench::new(&imported.scene, arguments.accel, size);
     bench.quality = arguments.quality.unwrap_or_default();
+    bench.copied = imported.copied;
     let settings = sweep(bench.base(), bench.is_secondary().map_err(failed)?);
     let least = least_reference_samples(&settings);
     if arguments.reference_samples < least {
@@ -112,6 +116,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let printed = Printed {
             folder: folder.display().to_string(),
             size,
+            instances: results.instances,
             points: &results.points,
             frontier: frontier(&results.points),
             sentences: sentences(&results.base, &results.points),

@@ -17,6 +17,7 @@ use gridel_host::blob::is_blob;
 use gridel_host::compile::{self, Builder, Figures, KeptNames, LeftOut, Report, TableStats};
 use gridel_host::emit::{self, Emitted};
 use gridel_host::measure::Deforming;
+use gridel_host::measure::InstanceCount;
 use gridel_host::measure::board::Board;
 use gridel_host::measure::board::{Account, MemoryReport};
 use gridel_host::resolution::Unresolved;
@@ -106,6 +107,8 @@ struct Built<'r> {
     bytes_per_primitive: Option<f64>,
     objects: u32,
     primitives: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    instances: Option<InstanceCount>,
     structures: Vec<&'static str>,
     stack_depth: usize,
     longest_leaf: u16,
@@ -244,6 +247,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let built = Built {
         memory: memory.as_ref(),
         unresolved: &unresolved,
+        instances: InstanceCount::of(&scene, source.copied),
         ..Built::new(&name, &scene, report, &source.warnings)
     };
     let report = match arguments.json {
@@ -288,6 +292,7 @@ impl<'r> Built<'r> {
                 .then(|| report.bytes as f64 / f64::from(header.primitives)),
             objects: header.objects,
             primitives: header.primitives,
+            instances: None,
             structures: Structure::ALL
                 .into_iter()
                 .filter(|&structure| scene.holds(structure))
@@ -315,14 +320,15 @@ impl<'r> Built<'r> {
         let mut table = Table::untitled([Align::Left, Align::Left]);
         let mut line = |what: &str, value: String| table.row([what.to_owned(), value]);
         line("blob", self.blob.to_owned());
-        let each = self.bytes_per_primitive;
-        line(
-            "bytes",
-            match each {
-                Some(each) => format!("{}, {each:.1} per primitive", grouped(self.bytes)),
-                None => grouped(self.bytes),
-            },
-        );
+        let each = match (&self.instances, self.bytes_per_primitive) {
+            (Some(instances), _) if instances.are_kept() => {
+                let each = self.bytes as f64 / instances.placed_primitives.max(1) as f64;
+                format!(", {each:.1} per placed primitive")
+            }
+            (_, Some(each)) => format!(", {each:.1} per primitive"),
+            (_, None) => String::new(),
+        };
+        line("bytes", grouped(self.bytes) + &each);
         line(
             "holds",
             format!(
@@ -331,6 +337,9 @@ impl<'r> Built<'r> {
                 counted(self.objects as usize, "object")
             ),
         );
+        if let Some(instances) = &self.instances {
+            line("instances", instances.text());
+        }
         line("structures", self.structures.join(", "));
         line(
             "limits",

@@ -27,6 +27,10 @@ use std::path::PathBuf;
 /// not measured, and the exit code is 1.
 ///
 /// Times are medians on one thread; the structures take turns. Compare times within one run only.
+///
+/// Instances are kept as `gridel render` keeps them, or copied with --instances flatten. Kept ones lie in a
+/// hierarchy of boxes, which all structures share and which is counted with each; brute force tests every primitive
+/// of a part that a ray enters. The charts of growth are made of copies.
 #[derive(Args)]
 #[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {
@@ -100,13 +104,11 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         room: arguments.scene_options.geometry.room.unwrap_or(0.0),
         ..default.compiling
     })?;
-    let mut scene_options = arguments.scene_options.clone();
-    scene_options.geometry = scene_options.geometry.flattened()?;
     let imported = import(
         path,
         &arguments
             .target_point
-            .with_target(&scene_options)
+            .with_target(&arguments.scene_options)
             .sized(Some(arguments.size)),
     )?;
     if let Some(folder) = &arguments.plot {
@@ -116,6 +118,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         structures,
         format: arguments.format,
         size: arguments.size,
+        copied: imported.copied,
         builders: match &arguments.builder[..] {
             [] => default.builders.clone(),
             asked => distinct(asked),
@@ -127,7 +130,8 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
     };
     let mut steps = options.steps();
     if arguments.plot.is_some() {
-        steps += growth_steps(&imported.scene, &options);
+        steps += growth_steps(&imported.scene, &options)
+            .map_err(|error| Failure::in_file(path, error))?;
     }
     let progress = Progress::steps("comparing", steps);
     let show = |what: &str| {
@@ -203,6 +207,9 @@ fn text(report: &Report<'_>) -> String {
         grouped(rays.bounced),
         grouped(comparison.listed),
     );
+    if let Some(instances) = &comparison.instances {
+        text.insert_str(text.len() - 1, &format!("{}\n", instances.text()));
+    }
     let mut makes = Table::new([
         ("building and memory", Align::Left),
         ("SAH cost", Align::Right),
@@ -246,15 +253,19 @@ fn text(report: &Report<'_>) -> String {
 
 /// The table of what rays of one sort take.
 fn tests(title: &str, comparison: &Comparison, of: fn(&Works) -> Option<Work>) -> String {
-    let mut table = Table::new([
+    let with_instances = comparison.keeps_instances();
+    let columns = [
         (title, Align::Left),
         ("planes", Align::Right),
         ("boxes", Align::Right),
         ("cells", Align::Right),
         ("objects", Align::Right),
+        ("instances", Align::Right),
         ("M rays/s", Align::Right),
         ("answers", Align::Left),
-    ]);
+    ];
+    let is_shown = |name: &str| with_instances || name != "instances";
+    let mut table = Table::new(columns.into_iter().filter(|(name, _)| is_shown(name)));
     for row in &comparison.rows {
         let work = row.work.as_ref().and_then(of);
         let figure = |of: fn(&Work) -> f64| {
@@ -262,18 +273,22 @@ fn tests(title: &str, comparison: &Comparison, of: fn(&Works) -> Option<Work>) -
                 .map_or(String::from("-"), |work| format!("{:.2}", of(work)))
         };
         let rate = work.and_then(|work| work.rays_per_second);
-        table.row([
+        let instances = with_instances.then(|| figure(|work| work.instances.unwrap_or(0.0)));
+        let tested = [
             row.name.clone(),
             figure(|work| work.planes),
             figure(|work| work.boxes),
             figure(|work| work.cells),
             figure(|work| work.objects),
+        ];
+        let outcome = [
             rate.map_or(String::from("-"), |rate| format!("{:.3}", rate / 1e6)),
             match &row.wrong {
                 None => String::from("equal"),
                 Some(wrong) => format!("WRONG for {}: {}", counted(wrong.rays, "ray"), wrong.first),
             },
-        ]);
+        ];
+        table.row(tested.into_iter().chain(instances).chain(outcome));
     }
     format!("{table}\n")
 }

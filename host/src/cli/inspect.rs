@@ -400,7 +400,7 @@ fn memory_table(report: &MemoryReport) -> String {
         "{}, {}, {}, {}",
         report.board, report.core, report.format, report.structure
     );
-    let mut table = Table::new([(&title, Align::Left), ("bytes", Align::Right)]);
+    let mut table = Table::new([(title.as_str(), Align::Left), ("bytes", Align::Right)]);
     let mut account = |name: &str, account: &Account| {
         let bytes = |bytes: Option<u64>| bytes.map_or(String::from("unknown"), grouped);
         for item in &account.items {

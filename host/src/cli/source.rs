@@ -34,8 +34,10 @@ pub struct Source {
     for_pictures: Option<SceneOptions>,
     /// The names of a scene file.
     names: Option<Names>,
-    /// Whether instances were copied where they are at the time that is shown.
+    /// Where instances that move were copied, if they were.
     posed: Option<Posed>,
+    /// Number of instances of a scene file that were copied.
+    pub copied: usize,
     /// How a scene file was read and compiled.
     made_by: Option<(scene::ImportOptions, compile::Options)>,
 }
@@ -132,6 +134,7 @@ impl Source {
             for_pictures: None,
             names: None,
             posed: None,
+            copied: 0,
             made_by: None,
         })
     }
@@ -192,7 +195,8 @@ impl Source {
             changes: None,
             for_pictures: None,
             names: Some(names),
-            copied: imported.posed,
+            posed: imported.posed,
+            copied: imported.copied,
             made_by: Some((options.for_import(), compiling)),
         })
     }

@@ -18,12 +18,15 @@ pub fn charts(
         name: name.to_owned(),
         values: comparison.rows.iter().map(of).collect(),
     };
-    let tests = [
+    let mut tests = vec![
         bar("planes", &|row| Some(row.work?.all.planes)),
         bar("boxes", &|row| Some(row.work?.all.boxes)),
         bar("cells", &|row| Some(row.work?.all.cells)),
         bar("objects", &|row| Some(row.work?.all.objects)),
     ];
+    if comparison.keeps_instances() {
+        tests.push(bar("instances entered", &|row| row.work?.all.instances));
+    }
     let rates = [
         bar("primary", &primary_rate),
         bar("shadow", &shadow_rate),
@@ -45,6 +48,11 @@ pub fn charts(
         groups.iter().map(curve).collect()
     };
     let title = |what: &str| format!("{name}: {what}");
+    let copied = match growth.instances {
+        Some(_) => ", instances copied",
+        None => "",
+    };
+    let grown = |what: &str| title(&format!("{what}, over parts of the scene{copied}"));
     let objects = "primitives";
     Ok(vec![
         (
@@ -63,7 +71,7 @@ pub fn charts(
         (
             "growth-rates.svg",
             curves(
-                &title("primary rays per second on one thread, over parts of the scene"),
+                &grown("primary rays per second on one thread"),
                 objects,
                 "rays per second",
                 &curve(primary_rate),
@@ -72,7 +80,7 @@ pub fn charts(
         (
             "growth-bytes.svg",
             curves(
-                &title("bytes of the structure, over parts of the scene"),
+                &grown("bytes of the structure"),
                 objects,
                 "bytes",
                 &curve(|row| Some(row.own_bytes as f64)),
@@ -81,7 +89,7 @@ pub fn charts(
         (
             "growth-peak.svg",
             curves(
-                &title("most memory while building, over parts of the scene"),
+                &grown("most memory while building"),
                 objects,
                 "bytes",
                 &curve(|row| row.peak_bytes.map(|bytes| bytes as f64)),
@@ -90,7 +98,7 @@ pub fn charts(
         (
             "growth-setup.svg",
             curves(
-                &title("seconds to set up, over parts of the scene"),
+                &grown("seconds to set up"),
                 objects,
                 "seconds",
                 &curve(|row| Some(row.setup_seconds)),

@@ -1,6 +1,7 @@
 //! How contenders compare.
 
 use super::judge::Mismatch;
+use crate::measure::InstanceCount;
 use crate::measure::rays::Works;
 use serde::Serialize;
 
@@ -12,7 +13,11 @@ pub struct Comparison {
     pub size: [u16; 2],
     /// How often everything was timed.
     pub repeats: usize,
+    /// Primitives of the blobs.
     pub primitives: usize,
+    /// `None` where the scene file has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instances: Option<InstanceCount>,
     pub rays: RayCounts,
     /// Rays about which the plain list was asked; on the others the contenders were compared with
     /// each other, and the list was asked where they differed.
@@ -20,6 +25,13 @@ pub struct Comparison {
     pub rows: Vec<Row>,
     /// Structures whose tables do not fit their budget.
     pub rejected: Vec<Rejected>,
+}
+
+impl Comparison {
+    /// Returns whether the scene has instances, and the blobs have them as well.
+    pub fn keeps_instances(&self) -> bool {
+        self.instances.is_some_and(|it| it.are_kept())
+    }
 }
 
 /// A structure that was not built.
@@ -46,7 +58,8 @@ pub struct Row {
     pub structure: &'static str,
     /// `None` where there is no hierarchy.
     pub builder: Option<&'static str>,
-    /// Cost of the hierarchy's boxes by the surface area heuristic.
+    /// Cost of the hierarchy's boxes by the surface area heuristic; `None` without one, and where a scene and its parts
+    /// have one each.
     pub sah_cost: Option<f64>,
     /// Time to build the structure, from primitives on the lattice to records.
     pub setup_seconds: f64,

@@ -1,14 +1,19 @@
 //! How structures fare as a scene grows: the same comparison on ever larger parts of it.
+//!
+//! A scene grows by single primitives, so its instances are copied.
 
 use super::{CompareError, Options, Row, compare};
-use crate::compile::CompileError;
-use crate::scene::{Object, Scene, Shape};
+use crate::scene::{Instances, Object, Scene, Shape};
 use glam::DVec3;
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// The comparison at several sizes, the whole scene's last.
 #[derive(Clone, Debug, Serialize)]
 pub struct Growth {
+    /// `flatten` where the comparison keeps instances, which are copied here.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instances: Option<Instances>,
     pub steps: Vec<Step>,
 }
 
@@ -26,13 +31,14 @@ const SMALLEST: usize = 100;
 /// middle, and all of them. The compiler frames each part, so that it fills the picture.
 ///
 /// # Errors
-/// As [`compare`].
+/// As [`compare`], or if the instances of the scene are too many to be copied.
 pub fn growth(
     scene: &Scene,
     options: &Options<'_>,
     progress: &dyn Fn(&str),
 ) -> Result<Growth, CompareError> {
-    let scene = &*scene.flattened().map_err(CompileError::from)?;
+    let instances = (!scene.instances.is_empty()).then_some(Instances::Flatten);
+    let scene = &*copied(scene)?;
     let nearest = by_distance(scene);
     let mut steps = Vec::new();
     for size in sizes(nearest.len()) {
@@ -44,15 +50,21 @@ pub fn growth(
             rows: comparison.rows,
         });
     }
-    Ok(Growth { steps })
+    Ok(Growth { instances, steps })
 }
 
 /// How often [`growth`] reports its next step.
-pub fn growth_steps(scene: &Scene, options: &Options<'_>) -> u64 {
-    // Without its instances where these cannot be flattened; the comparison says why.
-    let flat = scene.flattened();
-    let scene = flat.as_deref().unwrap_or(scene);
-    sizes(by_distance(scene).len()).len() as u64 * options.steps()
+///
+/// # Errors
+/// If the instances of the scene are too many to be copied.
+pub fn growth_steps(scene: &Scene, options: &Options<'_>) -> Result<u64, CompareError> {
+    let scene = &*copied(scene)?;
+    Ok(sizes(by_distance(scene).len()).len() as u64 * options.steps())
+}
+
+/// The scene with objects in place of instances.
+fn copied(scene: &Scene) -> Result<Cow<'_, Scene>, CompareError> {
+    scene.flattened().map_err(CompareError::Growth)
 }
 
 /// About three sizes in every two powers of ten, and the whole.

@@ -1,9 +1,13 @@
-//! Compares the contenders' answers with brute force: primitive, and t to the last bit.
+//! Compares the contenders' answers with brute force: primitive, instance, and t to the last bit.
 //!
 //! The list tests every primitive, which takes long where there are many. So it is asked about as
 //! many rays as fit a budget, spread evenly over the picture, and about every ray on which two
 //! contenders differ. What all of them have in common on the other rays is not doubted.
+//!
+//! All contenders find instances by the same hierarchy above them. Brute force tests every primitive of a part that a
+//! ray enters.
 
+use crate::measure::primitives;
 use crate::measure::rays::{Answer, Question, Questions, ask, stride};
 use gridel_core::{Number, Ray, Scene, Structure};
 use rayon::prelude::*;
@@ -46,11 +50,8 @@ pub fn judge<N: Number>(
         })
         .collect();
     let asked: Vec<&Vec<Answer>> = answers.iter().filter(|all| !all.is_empty()).collect();
-    let primitives = gridel_core::Kind::ALL
-        .iter()
-        .map(|&kind| list.count(kind))
-        .sum();
-    let step = stride(Structure::List, rays.len(), primitives, tests);
+    let [_, placed] = primitives(list);
+    let step = stride(Structure::List, rays.len(), placed, tests);
     let doubtful = |ray: &usize| {
         ray.is_multiple_of(step) || asked.windows(2).any(|pair| pair[0][*ray] != pair[1][*ray])
     };
@@ -93,7 +94,8 @@ fn all_answers<N: Number>(
     // Runs of one question.
     for run in rays.chunk_by(|a, b| a.0 == b.0) {
         let mut same = run.iter().map(|&(_, ray)| ray);
-        ask(contender, run[0].0, &mut same, &mut |answer| {
+        let question = run[0].0.of_scene(contender.0);
+        ask(contender, question, &mut same, &mut |answer| {
             answers.push(answer);
         });
     }

@@ -4,6 +4,8 @@
 //! the scene's own picture, as the ray loop casts them, with all that mirrors, glass and shadows
 //! cause. Their answers are compared to the last bit before anything is measured (see `judge.rs`).
 //! Times are medians of repeats in which the contenders take turns, on one thread.
+//!
+//! Instances are kept as the scene has them: each part is compiled for the contender's structure, too.
 
 mod charts;
 mod comparison;
@@ -21,8 +23,8 @@ pub use judge::Mismatch;
 pub use options::{CompareError, Options};
 
 use crate::compile::{self, Builder, CompileError, Compiled, compile};
-use crate::measure::board_memory;
 use crate::measure::rays::{self, Amount, Question, Questions};
+use crate::measure::{InstanceCount, board_memory, primitives};
 use crate::picture_rays::PictureRays;
 use crate::render::OPAQUE;
 use crate::scene;
@@ -109,10 +111,8 @@ fn compare_in<N: Number>(
         .map(|built| built.compiled.blob.scene())
         .collect::<Result<Vec<_>, _>>()?;
     let list_scene = list.compiled.blob.scene()?;
-    let primitives = gridel_core::Kind::ALL
-        .iter()
-        .map(|&kind| list_scene.count(kind))
-        .sum();
+    let [stored, placed] = primitives(&list_scene);
+    let instances = InstanceCount::of(&list_scene, options.copied);
     let is_opaque = Effects(OPAQUE).contains(list_scene.effects());
     let questions = Questions {
         rays: &picture_rays,
@@ -134,7 +134,7 @@ fn compare_in<N: Number>(
         .collect();
     let amount = Amount {
         repeats: options.repeats,
-        primitives,
+        primitives: placed,
         tests: options.tests,
     };
     let mut works = rays::measure(&questions, &sound, &amount, progress).into_iter();
@@ -151,7 +151,8 @@ fn compare_in<N: Number>(
         format: options.format.name(),
         size: options.size,
         repeats: options.repeats,
-        primitives,
+        primitives: stored,
+        instances,
         rays: RayCounts {
             primary: picture_rays.primary.len(),
             shadow: picture_rays.shadow.len(),
@@ -230,7 +231,12 @@ impl Built {
             },
             structure: self.structure.name(),
             builder,
-            sah_cost: self.compiled.report.sah_cost,
+            // The compiler reports that of the scene's own objects.
+            sah_cost: self
+                .compiled
+                .report
+                .sah_cost
+                .filter(|_| scene.instances().is_empty()),
             setup_seconds: self.setup.as_secs_f64(),
             peak_bytes: self.peak_bytes,
             own_bytes: blob_bytes.saturating_sub(list.compiled.blob.bytes().len()),
@@ -242,3 +248,6 @@ impl Built {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -2,6 +2,7 @@
 
 use crate::compile::{self, Builder, CompileError, takes_hierarchy};
 use crate::picture_rays::PictureRaysError;
+use crate::scene::SceneError;
 use gridel_core::{BlobError, Format, Structure};
 use peak_alloc::PeakAlloc;
 
@@ -16,6 +17,8 @@ pub struct Options<'o> {
     pub format: Format,
     /// Width and height of the picture whose rays are traced; one sample per pixel.
     pub size: [u16; 2],
+    /// Instances of the scene file that were [copied](crate::scene::Imported::copied), for the report.
+    pub copied: usize,
     /// How often everything is timed; 0 for counts alone.
     pub repeats: usize,
     /// Tests of primitives that a row may spend on one pass over the rays. A row that would take
@@ -33,6 +36,7 @@ impl Default for Options<'_> {
             compiling: compile::Options::default(),
             format: Format::F32,
             size: [256, 256],
+            copied: 0,
             repeats: 5,
             tests: 400_000_000,
             memory: None,
@@ -75,6 +79,9 @@ pub enum CompareError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Rays(#[from] PictureRaysError),
+    #[error("the growth charts need copies of all instances")]
+    #[diagnostic(help("leave `--plot` out, or place fewer instances"))]
+    Growth(#[source] SceneError),
     #[error("the compiled blob is rejected: {0}")]
     #[diagnostic(help("this is a fault of gridel: report it with the scene file"))]
     Blob(#[from] BlobError),

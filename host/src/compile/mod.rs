@@ -202,7 +202,8 @@ fn compile_as(
     if let Role::Whole(parts) = role {
         bounds = parts.reach.box_around(bounds, &lattice);
     }
-    if structures.contains(&Structure::Octree) {
+    // Where rays start in a part depends on its box, so that is the same through all structures.
+    if structures.contains(&Structure::Octree) && matches!(role, Role::Whole(_)) {
         let boxes: Vec<_> = order.iter().map(|primitive| primitive.bounds).collect();
         bounds = octree::bounds(&bounds, &boxes);
     }

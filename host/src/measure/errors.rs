@@ -21,7 +21,7 @@ pub struct Errors {
     pub ssim: f64,
     /// Mean of FLIP: 0 is the same, 1 as different as can be.
     pub flip: f64,
-    /// Rays through the middles of pixels that meet another object than in the reference.
+    /// Rays through the middles of pixels that meet another object than in the reference, or another instance.
     pub other_objects: usize,
     /// For rays that hit the same object: the median and the largest error of the distance, in
     /// units of its last place in single precision.
@@ -42,8 +42,8 @@ impl Errors {
     /// Compares the pixels and the first hits of a picture of some width with those of a reference.
     pub fn of(
         width: u16,
-        reference: (&[[u16; 3]], &[FirstHit]),
-        (pixels, hits): (&[[u16; 3]], &[FirstHit]),
+        reference: (&[[u16; 3]], &[Option<FirstHit>]),
+        (pixels, hits): (&[[u16; 3]], &[Option<FirstHit>]),
     ) -> Self {
         let [expected, found] = [reference.0, pixels]
             .map(|p| -> Vec<[f64; 3]> { p.iter().map(|pixel| pixel.map(display)).collect() });
@@ -72,9 +72,10 @@ impl Errors {
         let mut ulps = Vec::new();
         for (expected, found) in reference.1.iter().zip(hits) {
             match (expected, found) {
-                (Some((a, at)), Some((b, found))) if a == b => {
+                (Some(expected), Some(found)) if expected.is_on(found) => {
+                    let at = expected.distance;
                     let ulp = f64::powi(2.0, at.abs().log2().floor() as i32 - 23);
-                    ulps.push((at - found).abs() / ulp);
+                    ulps.push((at - found.distance).abs() / ulp);
                 }
                 (None, None) => {}
                 _ => other_objects += 1,

@@ -10,6 +10,7 @@
 //! | `deforming.rs` | the memory of deforming meshes |
 //! | `errors.rs` | pictures and first hits against a reference; `flip.rs` and `ssim.rs` compare as eyes do |
 //! | `first_hits.rs` | what the rays through the middles of pixels hit |
+//! | `instances.rs` | what became of instances: primitives as stored and as placed |
 //! | `board/` | boards, as data: memory, code, call stack, instructions per ray |
 
 pub mod board;
@@ -18,6 +19,7 @@ mod deforming;
 mod errors;
 mod first_hits;
 mod flip;
+mod instances;
 mod picture;
 pub mod rays;
 mod ssim;
@@ -27,4 +29,5 @@ pub use bytes::{MemoryMap, Part, WorkingMemory, board_memory, working_memory};
 pub use deforming::Deforming;
 pub use errors::{Errors, difference_picture};
 pub use first_hits::{FirstHit, first_hits};
+pub use instances::{InstanceCount, primitives};
 pub use picture::Rendered;

@@ -5,8 +5,8 @@ use crate::picture_rays::PictureRays;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
-    Accel, Counters, NoCount, Number, Observer, Ray, Scene, Stack, Structure, StructureVisitor,
-    any_hit, closest_primitive,
+    Accel, Counters, Event, NoCount, Number, Observer, PrimitiveHit, Ray, Scene, Stack, Structure,
+    StructureVisitor, any_hit, closest_primitive,
 };
 use serde::Serialize;
 use std::hint::black_box;
@@ -17,6 +17,8 @@ use std::time::Instant;
 pub enum Question {
     /// The closest hit.
     Closest,
+    /// The closest hit, and the instance that has it, which takes longer to say.
+    ClosestPlaced,
     /// Any hit.
     Any,
 }
@@ -31,10 +33,62 @@ pub struct Questions<'q, N: Number> {
 /// Rays that are measured together, and what they are asked.
 type Group<'r, N> = (Question, &'r [Ray<N>]);
 
-/// An answer to the last bit: the primitive and t, or whether anything was met.
-pub type Answer = (u32, u64);
-/// Nothing was met.
-const NOTHING: Answer = (u32::MAX, 0);
+impl Question {
+    /// The question by which answers are compared in a scene.
+    pub fn of_scene(self, scene: &Scene<'_>) -> Self {
+        match self {
+            Self::Closest if !scene.instances().is_empty() => Self::ClosestPlaced,
+            other => other,
+        }
+    }
+}
+
+/// An answer to the last bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Answer {
+    /// The primitive, or whether anything was met.
+    primitive: u32,
+    /// The number of its instance, where that was asked for and there is one.
+    instance: u32,
+    /// The bits of t.
+    t: u64,
+}
+
+/// Stands for the instance of what is in none.
+const NO_INSTANCE: u32 = u32::MAX;
+
+impl Answer {
+    /// Nothing was met.
+    const NOTHING: Self = Self {
+        primitive: u32::MAX,
+        instance: NO_INSTANCE,
+        t: 0,
+    };
+
+    fn any(met: bool) -> Self {
+        Self {
+            primitive: met.into(),
+            ..Self::NOTHING
+        }
+    }
+
+    fn closest<N: Number>(hit: &PrimitiveHit<N>, instance: u32) -> Self {
+        Self {
+            primitive: hit.primitive,
+            instance,
+            t: N::far_to_f64(hit.t).to_bits(),
+        }
+    }
+}
+
+/// The number of a hit's instance, by its surface: out of line, because timed queries ask for none.
+#[cold]
+#[inline(never)]
+fn instance_of<N: Number>(scene: &Scene<'_>, ray: &Ray<N>, hit: &PrimitiveHit<N>) -> u32 {
+    let index = hit.hit(scene, ray).and_then(|hit| hit.instance());
+    let instance = index.and_then(|index| scene.instances().get(index as usize));
+    instance.map_or(NO_INSTANCE, |instance| instance.number)
+}
 
 impl<N: Number> Questions<'_, N> {
     /// Rays from the camera, those to lights, and those that mirrors and glass send on.
@@ -95,19 +149,62 @@ fn ask_through<N: Number, A: Accel, C: Observer>(
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
     for ray in rays {
         sink(match question {
-            Question::Closest => closest_primitive::<N, A, C>(scene, ray, stack.as_view(), count)
-                .map_or(NOTHING, |found| {
-                    (found.primitive, N::far_to_f64(found.t).to_bits())
-                }),
-            Question::Any => {
-                let any = any_hit::<N, A, C>(scene, ray, stack.as_view(), count);
-                (u32::from(any), 0)
+            Question::Closest | Question::ClosestPlaced => {
+                let found = closest_primitive::<N, A, C>(scene, ray, stack.as_view(), count);
+                found.map_or(Answer::NOTHING, |found| {
+                    let instance = match question {
+                        Question::ClosestPlaced => instance_of(scene, ray, &found),
+                        _ => NO_INSTANCE,
+                    };
+                    Answer::closest(&found, instance)
+                })
             }
+            Question::Any => Answer::any(any_hit::<N, A, C>(scene, ray, stack.as_view(), count)),
         });
     }
 }
 
-/// Tests and times of some rays.
+/// Counts tests, and the instances that rays enter.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tally {
+    tests: Counters,
+    instances: u64,
+}
+
+impl Observer for Tally {
+    const ENABLED: bool = true;
+
+    fn planes(&mut self, number: u32) {
+        self.tests.planes(number);
+    }
+
+    fn boxes(&mut self, number: u32) {
+        self.tests.boxes(number);
+    }
+
+    fn objects(&mut self, number: u32) {
+        self.tests.objects(number);
+    }
+
+    fn cells(&mut self, number: u32) {
+        self.tests.cells(number);
+    }
+
+    fn event(&mut self, event: Event) {
+        self.instances += u64::from(matches!(event, Event::InstanceEntered { .. }));
+    }
+}
+
+impl Tally {
+    fn plus(&self, other: &Self) -> Self {
+        Self {
+            tests: self.tests.plus(&other.tests),
+            instances: self.instances + other.instances,
+        }
+    }
+}
+
+/// Tests and times of some rays. Those in parts count, and those of the hierarchy above instances.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Work {
     /// Rays that were traced.
@@ -120,19 +217,24 @@ pub struct Work {
     pub cells: f64,
     /// Primitives tested a ray.
     pub objects: f64,
+    /// Instances entered a ray; `None` where the scene has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instances: Option<f64>,
     /// On one thread; `None` where nothing was timed.
     pub rays_per_second: Option<f64>,
 }
 
 impl Work {
-    fn of(rays: usize, counters: &Counters, seconds: Option<f64>) -> Self {
+    fn of(scene: &Scene<'_>, (tally, rays): (&Tally, usize), seconds: Option<f64>) -> Self {
         let each = |count: u64| count as f64 / rays.max(1) as f64;
+        let Tally { tests, instances } = tally;
         Self {
             rays,
-            planes: each(counters.planes),
-            boxes: each(counters.boxes),
-            cells: each(counters.cells),
-            objects: each(counters.objects),
+            planes: each(tests.planes),
+            boxes: each(tests.boxes),
+            cells: each(tests.cells),
+            objects: each(tests.objects),
+            instances: (!scene.instances().is_empty()).then(|| each(*instances)),
             rays_per_second: seconds.map(|seconds| rays as f64 / seconds.max(1e-9)),
         }
     }
@@ -154,7 +256,7 @@ pub struct Works {
 pub struct Amount {
     /// How often everything is timed; 0 for counts alone.
     pub repeats: usize,
-    /// Primitives of the scene.
+    /// Primitives of the scene, with those of a part once per instance.
     pub primitives: usize,
     /// Most primitives that the list tests: see [`stride`].
     pub tests: u64,
@@ -183,7 +285,7 @@ pub fn measure<N: Number>(
     for (&(scene, &structure), &stride) in contenders.iter().zip(&strides) {
         progress(&format!("counting {}", structure.name()));
         counts.push(groups.map(|(question, all)| {
-            let mut counters = Counters::default();
+            let mut tally = Tally::default();
             let mut some = all.iter().step_by(stride);
             let rays = some.len();
             // The work is the same as through the structure's own code.
@@ -192,13 +294,13 @@ pub fn measure<N: Number>(
                     &scene,
                     question,
                     &mut some,
-                    &mut counters,
+                    &mut tally,
                     &mut |answer| {
                         black_box(answer);
                     },
                 );
             }
-            (counters, rays)
+            (tally, rays)
         }));
     }
     let mut seconds = vec![[const { Vec::new() }; 3]; contenders.len()];
@@ -222,22 +324,23 @@ pub fn measure<N: Number>(
             }
         }
     }
-    let works = counts.into_iter().zip(seconds).map(|(counts, seconds)| {
+    let measured = contenders.iter().zip(counts).zip(seconds);
+    let works = measured.map(|((&(scene, _), counts), seconds)| {
         let seconds = seconds.map(|repeats| median(&repeats));
         let work = |group: usize| {
-            let (counters, rays) = &counts[group];
-            Work::of(*rays, counters, seconds[group])
+            let (tally, rays) = &counts[group];
+            Work::of(scene, (tally, *rays), seconds[group])
         };
         let some = |work: Work| (work.rays > 0).then_some(work);
         let all = counts
             .iter()
-            .fold(Counters::default(), |all, (one, _)| all.plus(one));
+            .fold(Tally::default(), |all, (one, _)| all.plus(one));
         let rays = counts.iter().map(|(_, rays)| rays).sum();
         Works {
             primary: work(0),
             shadow: some(work(1)),
             bounced: some(work(2)),
-            all: Work::of(rays, &all, seconds.into_iter().sum()),
+            all: Work::of(scene, (&all, rays), seconds.into_iter().sum()),
         }
     });
     works.collect()
@@ -252,3 +355,6 @@ pub fn stride(structure: Structure, rays: usize, primitives: usize, tests: u64) 
         1
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -149,6 +149,7 @@ fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, S
                 ));
             }
         }
+        imported.copied = scene.instances.len();
         imported.scene = imported.scene.into_flattened()?;
     }
     Ok(imported)

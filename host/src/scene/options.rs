@@ -2,6 +2,7 @@
 
 use super::model::Scene;
 use super::normals::NormalsChoice;
+use serde::{Deserialize, Serialize};
 
 /// Choices that a molecule file leaves to a person.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +46,8 @@ pub struct Imported {
     pub assemblies: bool,
     /// Where instances that move were copied, if they were.
     pub posed: Option<Posed>,
+    /// Number of instances that were copied, as [`ImportOptions::instances`] asks.
+    pub copied: usize,
 }
 
 /// Where [copies](Instances::Flatten) of instances that move stand.
@@ -66,7 +69,8 @@ pub struct Choice {
 }
 
 /// What becomes of instances.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Instances {
     /// Parts are held once, and instances place them.
     #[default]

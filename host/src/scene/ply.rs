@@ -78,6 +78,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         choices: false,
         assemblies: false,
         posed: None,
+        copied: 0,
     })
 }
 

@@ -216,6 +216,7 @@ fn scene(path: &Path, objects: Vec<Object>, warnings: Vec<String>) -> Result<Imp
         choices: false,
         assemblies: false,
         posed: None,
+        copied: 0,
     })
 }
 

@@ -11,6 +11,7 @@ mod frames;
 mod help;
 mod import;
 mod inspect;
+mod instances;
 mod joints;
 mod linear;
 mod live;

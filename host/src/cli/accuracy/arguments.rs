@@ -29,7 +29,10 @@ use std::path::PathBuf;
 ///   time           milliseconds per frame on one thread: the median of the runs, and their spread
 ///   rays, tests    rays per pixel; boxes and primitives tested per ray
 ///   bytes          of the blob, and of the workspace on a 32-bit board
-///   instructions   per pixel on boards, estimated from the rays and a recorded picture
+///   instructions   per pixel on boards, estimated from the rays and a recorded picture, which has no instances
+///
+/// Instances are kept as `gridel render` keeps them, or copied with --instances flatten, in the reference as well. A
+/// hit of another instance counts as another object. Each part has as many lattice bits as the scene.
 ///
 /// A star marks a setting that no other one beats: no other has a smaller error at a cost that is
 /// surely not higher. A cost is higher if every run takes longer than every run of the other setting.

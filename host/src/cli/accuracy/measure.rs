@@ -22,11 +22,16 @@ pub fn measure(
     let file = folder.join(RESULTS);
     let repeats = usize::from(arguments.repeat);
     let progress = Progress::steps("measuring", (settings.len() * (repeats + 1)) as u64 + 1);
+    let instances = bench.instances().map_err(failed)?;
     let mut results = match kept {
-        Some(results) => results,
+        Some(results) => Results {
+            instances,
+            ..results
+        },
         None => Results {
             key,
             base: bench.base(),
+            instances,
             reference: bench
                 .reference(arguments.reference_samples)
                 .map_err(failed)?,

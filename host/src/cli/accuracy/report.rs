@@ -1,7 +1,7 @@
 //! The results as text and as a table of comma-separated values.
 
 use super::choice::Choice;
-use gridel_host::accuracy::{Point, Results, frontier, sentences};
+use gridel_host::accuracy::{Point, Results, frontier, instance_notes, sentences};
 use gridel_host::measure::board as boards;
 use gridel_host::table::{Align, Table, counted, grouped, significant};
 use std::fmt::Write;
@@ -54,6 +54,9 @@ pub fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Ch
         size[1]
     );
     // Writing to a string cannot fail.
+    for note in results.instances.iter().flat_map(instance_notes) {
+        let _ = writeln!(text, "{note}");
+    }
     for sentence in sentences(&results.base, &results.points) {
         let _ = writeln!(text, "{sentence}");
     }

@@ -1,6 +1,5 @@
 //! How a scene file is read and compiled.
 
-use super::super::failure::Failure;
 use super::light::{LightChange, light};
 use super::values::{cutoff, first_given, quoted, vector};
 use super::view::ViewOptions;
@@ -95,10 +94,6 @@ pub struct ImportOptions {
     #[arg(long, value_name = "file|flat|smooth=DEG", value_parser = normals)]
     normals: Option<NormalsChoice>,
 
-    /// Whether the command works on flattened scenes.
-    #[arg(skip)]
-    flattens: bool,
-
     /// Biological assembly of a PDB or mmCIF file, by its number or name [default: the asymmetric unit]
     #[arg(long, value_name = "ID")]
     assembly: Option<String>,
@@ -141,14 +136,6 @@ impl SceneOptions {
 }
 
 impl GeometryOptions {
-    /// [`ImportOptions::flattened`].
-    pub fn flattened(&self) -> Result<Self, Failure> {
-        Ok(Self {
-            import: self.import.flattened()?,
-            ..self.clone()
-        })
-    }
-
     /// The name of an option that was given, if one was.
     pub fn given(&self) -> Option<&'static str> {
         first_given([
@@ -238,33 +225,13 @@ impl ImportOptions {
         first_given([(self.assembly.is_some(), "--assembly")])
     }
 
-    /// The options for commands that explain or compare single objects: instances are copied.
-    ///
-    /// # Errors
-    /// If they are to be kept.
-    pub fn flattened(&self) -> Result<Self, Failure> {
-        if self.instances == Some(Instances::Keep) {
-            return Err(Failure::usage(
-                "this command works on flattened scenes, and --instances keep was given",
-                "leave the option out, or use `gridel render` or `gridel trace`",
-            ));
-        }
-        Ok(Self {
-            flattens: true,
-            ..self.clone()
-        })
-    }
-
     /// The options for importers.
     fn for_import(&self) -> scene::ImportOptions {
         scene::ImportOptions {
             at: None,
             molecule: self.molecule.for_import(),
             assembly: self.assembly.clone(),
-            instances: match self.flattens {
-                true => Instances::Flatten,
-                false => self.instances.unwrap_or_default(),
-            },
+            instances: self.instances.unwrap_or_default(),
             choice: scene::Choice {
                 camera: self.camera.clone(),
                 animation: self.animation.clone(),

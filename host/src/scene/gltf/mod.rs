@@ -124,6 +124,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         choices: true,
         assemblies: false,
         posed: None,
+        copied: 0,
     })
 }
 

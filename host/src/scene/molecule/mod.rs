@@ -80,6 +80,7 @@ pub(super) fn import(
         choices: false,
         assemblies: true,
         posed: None,
+        copied: 0,
     })
 }
 

@@ -280,6 +280,7 @@ impl<'a> Importer<'a> {
             choices: false,
             assemblies: false,
             posed: None,
+            copied: 0,
         })
     }
 }

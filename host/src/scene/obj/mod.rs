@@ -102,6 +102,7 @@ fn import(source: &Source, access: &Access) -> Result<Imported, SceneError> {
         choices: false,
         assemblies: false,
         posed: None,
+        copied: 0,
     })
 }
 

@@ -68,5 +68,6 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         choices: imports.kinds.choices,
         assemblies: imports.kinds.assemblies,
         posed: None,
+        copied: 0,
     })
 }
