@@ -112,19 +112,42 @@ pub enum CompileError {
     #[diagnostic(help("place it by a rotation of length 1, a scale above 0 and a translation"))]
     Instance { instance: String },
     #[error("the joint {name} {cause}")]
-    #[diagnostic(help("hang joints on joints before them, with pivots near the scene"))]
-    Joint { name: String, cause: String },
+    #[diagnostic(help("{remedy}"))]
+    Joint {
+        name: String,
+        cause: String,
+        remedy: &'static str,
+    },
     #[error("{object} has no box, so it cannot be in the part {part}, whose instances have one")]
     #[diagnostic(help("make it an object of the scene itself"))]
     UnboundedPart { object: String, part: String },
     #[error(
-        "the instance {instance} is too small for the scene, or too large for its part's lattice"
+        "the instance {instance} is too small for the scene, which is {size:.1e} wide with all that moves and its `room`"
     )]
     #[diagnostic(help(
-        "place it at a size of at least {least:.1e} of the scene's, or flatten the scene with \
-         `--instances flatten`"
+        "place it at a size of at least {least:.1e} of the scene's, or bring nearer what is far away: an object, \
+         another instance, a track or the `room`"
     ))]
-    InstanceSize { instance: String, least: f64 },
+    SmallInstance {
+        instance: String,
+        size: f64,
+        least: f64,
+    },
+    #[error("the instance {instance} {cause}")]
+    #[diagnostic(help(
+        "keep the scales of tracks smaller, and the objects of the part near the part's origin"
+    ))]
+    LargeInstance {
+        instance: String,
+        cause: &'static str,
+    },
+    #[error("the part {part}: {source}")]
+    #[diagnostic(help("move its objects nearer to the part's origin"))]
+    FarPart {
+        part: String,
+        #[source]
+        source: Box<CompileError>,
+    },
     #[error("the compiled blob is invalid: {0}")]
     #[diagnostic(help("this is a fault of gridel: report it with the scene file"))]
     Blob(#[from] BlobError),

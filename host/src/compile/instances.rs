@@ -82,7 +82,13 @@ impl Parts {
         let mut primitives = 0_u32;
         parts.first_primitive.push(0);
         for part in &scene.parts {
-            let (blob, displacement) = compile(&alone(part)?)?;
+            let (blob, displacement) = compile(&alone(part)?).map_err(|error| match error {
+                CompileError::TooFar { .. } => CompileError::FarPart {
+                    part: printable(&part.name),
+                    source: error.into(),
+                },
+                error => error,
+            })?;
             let header = *blob.header();
             parts.lattices.push(Lattice {
                 bits: header.lattice_bits,
@@ -184,11 +190,19 @@ impl Parts {
         let [least, most] = INSTANCE_EXPONENT;
         let [smallest, largest] = scales.map(libm::log2);
         let [lowest, highest] = [exponent as f64 - largest, exponent as f64 - smallest];
-        if lowest < least as f64 || highest > most as f64 {
-            return Err(CompileError::InstanceSize {
+        if highest > most as f64 {
+            return Err(CompileError::SmallInstance {
                 instance: instance_name(instance),
+                size: lattice.unit() * exp2(16),
                 least: exp2(-(most as i32)),
             });
+        }
+        let large = |cause| CompileError::LargeInstance {
+            instance: instance_name(instance),
+            cause,
+        };
+        if lowest < least as f64 {
+            return Err(large("is too large for its part's lattice"));
         }
         let factor = stretch * exp2(MATRIX_BITS as i32 - exponent as i32);
         // The columns of a rotation are the rows of its inverse.
@@ -197,10 +211,7 @@ impl Parts {
         let middle = placement.point(part.origin);
         let center = (lattice.in_fine(middle)).round();
         if center.abs().max_element() > LARGEST_CENTER as f64 || !center.is_finite() {
-            return Err(CompileError::InstanceSize {
-                instance: instance_name(instance),
-                least: exp2(-(most as i32)),
-            });
+            return Err(large("lies beyond the scene's lattice"));
         }
         Ok(instance::Instance {
             matrix: [

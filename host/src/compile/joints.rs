@@ -20,6 +20,7 @@ pub fn check(scene: &Scene) -> Result<(), CompileError> {
     let error = |name: &str, cause: String| CompileError::Joint {
         name: printable(name),
         cause,
+        remedy: "hang joints on joints before them, in shorter chains, with pivots near the scene",
     };
     for joint in &scene.joints {
         let Joint {
@@ -94,6 +95,7 @@ pub fn sections(scene: &Scene, header: &Header) -> Result<Vec<Section>, CompileE
         let far = || CompileError::Joint {
             name: printable(&joint.name),
             cause: String::from("has a pivot beyond the range of scene coordinates"),
+            remedy: "move the pivot nearer to the scene",
         };
         Ok(records::Joint {
             pivot: position(header, joint.pivot).ok_or_else(far)?.0,

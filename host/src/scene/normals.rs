@@ -61,7 +61,8 @@ impl Normals {
         for (normals, triangle) in corners.iter_mut().zip(triangles) {
             let found = normals.map(|it| vectors.get(it as usize).copied().unwrap_or(DVec3::ZERO));
             let face = face_normal(vertices, triangle);
-            let is_face = found.iter().all(|it| (*it - face).length() <= SAME);
+            let are = |normal: DVec3| found.iter().all(|it| (*it - normal).length() <= SAME);
+            let is_face = are(face) || are(-face);
             if is_face || found.contains(&DVec3::ZERO) || face == DVec3::ZERO {
                 *normals = Self::FLAT;
             } else if found.iter().all(|it| it.dot(face) < 0.0) {

@@ -92,3 +92,98 @@ fn inspect_lists_joints_and_modules_count_them() {
         assert!(module.contains(words), "{module}");
     }
 }
+
+/// Joints that each turn by the same angle, on each other, with an instance on the last.
+fn chain(joints: usize) -> String {
+    let mut scene = String::from(
+        "[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\n[[part]]\nname = 'box'\n\
+         object = [{ kind = 'box', min = [0, -0.1, -0.1], max = [2, 0.1, 0.1] }]\n",
+    );
+    for joint in 0..joints {
+        let parent = match joint.checked_sub(1) {
+            Some(parent) => format!("parent = 'j{parent}'\n"),
+            None => String::new(),
+        };
+        scene += &format!(
+            "[[joint]]\nname = 'j{joint}'\n{parent}[[track]]\ntarget = 'joint.j{joint}.rotation'\n\
+             axis = [0, 0, 1]\ntimes = [0, 1]\nvalues = [0, 360]\n"
+        );
+    }
+    scene + &format!("[[instance]]\npart = 'box'\njoint = 'j{}'\n", joints - 1)
+}
+
+/// What compositions round adds up; all of a chain's joints turn the box by a multiple of 90 degrees here.
+#[test]
+fn long_chains_of_joints_keep_their_instances() {
+    let folder = Folder::new();
+    for (joints, times) in [(20, ["0.5", "0.525", "0.9"]), (1024, ["0.125", "0.5", "1"])] {
+        folder.write("chain.toml", chain(joints).as_bytes());
+        for time in times {
+            let render = ["render", "chain.toml", "-o", "a.ppm", "--size", "32x24"];
+            let render = [&render[..], &["--time", time]].concat();
+            folder.done(&render);
+            let kept = folder.read("a.ppm");
+            folder.done(&[&render[..], &["--instances", "flatten"]].concat());
+            let differing = folder.read("a.ppm");
+            let differing = kept
+                .iter()
+                .zip(&differing)
+                .filter(|(a, b)| a.abs_diff(**b) > 8);
+            // Pixels at edges.
+            assert!(differing.count() < 3 * 32, "{joints} joints at {time} s");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_move_says_why() {
+    let folder = folder();
+    let frames = ["render", "a.toml", "--frames", "0..3", "-o", "a.apng"];
+    folder.fails(
+        2,
+        &[&frames[..], &["--instances", "flatten"]].concat(),
+        &["copies of them do not", "leave out `--instances flatten`"],
+    );
+    let scene = SCENE.replace(
+        "times = [0, 2]\nvalues = [[0, 0, 0], [4, 0, 0]]",
+        "interpolation = 'cubic'\ntimes = [0, 2]\nvalues = [[0, 0, 0], [4, 0, 0]]\ntangents = [1e30, 0]",
+    );
+    folder.write("b.toml", scene.as_bytes());
+    let build = ["build", "b.toml", "-o", "b.gridel"];
+    folder.fails(
+        1,
+        &build,
+        &["the tangent is too large", "a smaller tangent"],
+    );
+}
+
+/// A track whose interpolation is none, in a blob with a valid checksum.
+#[test]
+fn broken_tracks_are_not_taken_for_none() {
+    let folder = folder();
+    let mut blob = folder.read("a.gridel");
+    // The record of the shift's track: its target, its interpolation and the joint's number.
+    let target = gridel_core::format::track::TrackTarget::JointShift as u16;
+    let record = [target, 1, 0, 0].map(u16::to_le_bytes).concat();
+    let mut places = blob.windows(record.len());
+    let place = places.position(|bytes| bytes == record).expect("the track");
+    blob[place + 2] = 9;
+    let sum = gridel_core::format::checksum(&blob).to_le_bytes();
+    let field = std::mem::offset_of!(gridel_core::format::record::Header, checksum);
+    blob[field..field + 4].copy_from_slice(&sum);
+    folder.write("b.gridel", &blob);
+    for command in [
+        &["render", "b.gridel", "-o", "a.ppm", "--time", "1"][..],
+        &[
+            "explain",
+            "b.gridel",
+            "--ray",
+            "2,-4,0,0,1,0",
+            "--time",
+            "1",
+        ],
+        &["inspect", "b.gridel"],
+    ] {
+        folder.fails(1, command, &["interpolation is 9"]);
+    }
+}

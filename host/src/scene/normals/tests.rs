@@ -87,8 +87,11 @@ fn normals_of_the_faces_call_for_nothing() {
         .iter()
         .map(|it| face_normal(&vertices, it) * 3.0)
         .collect();
-    let corners = (0..12).map(|number| [number; 3]).collect();
-    assert!(Normals::given(faces, corners, (&vertices, &triangles)).is_flat());
+    let backs = faces.iter().map(|it| -*it).collect();
+    for normals in [faces, backs] {
+        let corners = (0..12).map(|number| [number; 3]).collect();
+        assert!(Normals::given(normals, corners, (&vertices, &triangles)).is_flat());
+    }
 }
 
 #[test]

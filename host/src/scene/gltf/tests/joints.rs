@@ -314,6 +314,18 @@ fn what_would_bend_or_shear_stays_and_is_named() {
             two_keys(1, "scale", [&[1.0, 1.0, 1.0], &[-1.0, -1.0, -1.0]]),
             "grows unevenly",
         ),
+        // Above 0 at both keys, and below it between them.
+        (
+            json!({}),
+            Channel {
+                node: 1,
+                path: "scale",
+                interpolation: "CUBICSPLINE",
+                times: vec![0.0, 1.0],
+                values: [0.0, 1.0, -15.0, 0.0, 2.0, 0.0].map(|x| vec![x; 3]).to_vec(),
+            },
+            "grows unevenly",
+        ),
     ] {
         let imported = below(outer, &[channel]);
         let [warning] = &imported.warnings[..] else {
