@@ -25,7 +25,7 @@ impl Deforming {
     /// The meshes of a blob that were built with room to move.
     ///
     /// ```
-    /// # let file = "[[object]]\nkind = 'mesh'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\ntriangles = [[0, 1, 2]]";
+    /// # let file = "[[object]]\nkind = 'mesh'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[0, 1, 2]]";
     /// # let imported = gridel_host::scene::read("flag.toml".as_ref(), file.into(), &Default::default())?;
     /// use gridel_core::Structure;
     /// use gridel_host::compile::{Options, compile};
