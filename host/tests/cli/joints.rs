@@ -144,11 +144,9 @@ fn what_cannot_move_says_why() {
         &[&frames[..], &["--instances", "flatten"]].concat(),
         &["copies of them do not", "leave out `--instances flatten`"],
     );
-    let scene = SCENE.replace(
-        "times = [0, 2]\nvalues = [[0, 0, 0], [4, 0, 0]]",
-        "interpolation = 'cubic'\ntimes = [0, 2]\nvalues = [[0, 0, 0], [4, 0, 0]]\ntangents = [1e30, 0]",
-    );
-    folder.write("b.toml", scene.as_bytes());
+    let tangents = "[[track]]\ntarget = 'material.default.diffuse'\ninterpolation = 'cubic'\n\
+                    times = [0, 1]\nvalues = [0.5, 1]\ntangents = [9, 9]\n";
+    folder.write("b.toml", (SCENE.to_owned() + tangents).as_bytes());
     let build = ["build", "b.toml", "-o", "b.gridel"];
     folder.fails(
         1,

@@ -133,10 +133,15 @@ fn what_does_not_go_together_is_rejected() {
     }
     fails(&["-o", "a.png", "--aov", "colour"], &["depth, normal"]);
     fails(&["-o", "-", "--aov", "depth"], &["standard output", "-o"]);
-    fails(
-        &["-o", "a.npy", "--aov", "depth", "--size", "65535x65535"],
-        &["--rows 0..128"],
-    );
+    let large = [
+        "render",
+        "quick.gridel",
+        "-o",
+        "a.npy",
+        "--size",
+        "65535x65535",
+    ];
+    folder.fails(2, &large, &["--rows 0..128"]);
     let frames = ["-o", "a.apng", "--frames", "0..2", "--aov", "depth"];
     fails(&frames, &["--aov"]);
     let heat_map = ["-o", "a.png", "--aov", "depth", "--heat-map", "a.png"];
@@ -144,10 +149,13 @@ fn what_does_not_go_together_is_rejected() {
     if cfg!(not(feature = "exr")) {
         fails(&["-o", "a.exr"], &["does not write .exr", "--features exr"]);
     }
-    assert_eq!(folder.names(), ["quick.gridel"]);
+    assert_eq!(folder.names(), ["quick.gridel", "quick.toml"]);
     // A folder where an AOV must go.
     std::fs::create_dir(folder.path("a.depth.npy")).expect("a folder");
     let command = [&RENDER[..], &["-o", "a.png", "--aov", "depth"]].concat();
     folder.fails(1, &command, &["a.depth.npy cannot be written"]);
-    assert_eq!(folder.names(), ["a.depth.npy", "quick.gridel"]);
+    assert_eq!(
+        folder.names(),
+        ["a.depth.npy", "quick.gridel", "quick.toml"]
+    );
 }

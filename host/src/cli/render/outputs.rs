@@ -113,9 +113,9 @@ impl<'a> Outputs<'a> {
             .chain(aovs)
         {
             reject_same(input, path)?;
-            if let Some((other, _)) = before.iter().find(|it| place(it.1) == place(path)) {
+            if let Some((other, first)) = before.iter().find(|it| place(it.1) == place(path)) {
                 return Err(Failure::usage(
-                    format!("{other} and {what} are both {}", path.display()),
+                    format!("{other} and {what} are both {}", first.display()),
                     format!(
                         "give the {} another name",
                         if what == "heat map" { what } else { other }
