@@ -20,10 +20,9 @@ pub enum Aov {
     Normal,
     /// Diffuse reflectance, linear, of the cell where there is a checkerboard; 0 where nothing is hit.
     Albedo,
-    /// The object's number in scene-file order, `u32::MAX` where nothing is hit. Of an instance it is the number in its
-    /// part.
+    /// The object's number in scene-file order, `u32::MAX` where nothing is hit. Objects of parts follow the scene's own.
     Object,
-    /// The primitive's number in scene-file order, `u32::MAX` where nothing is hit.
+    /// The primitive's number in scene-file order, `u32::MAX` where nothing is hit. Those of parts follow the scene's own.
     Primitive,
     /// The instance's number in scene-file order, `u32::MAX` for the scene's own objects and where nothing is hit.
     Instance,
