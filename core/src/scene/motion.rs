@@ -102,33 +102,6 @@ impl Motion {
         }
     }
 
-    /// This motion with the rotation next to its matrix. The rounding of compositions adds up, in chains of some twenty by
-    /// so much that an instance would leave its range.
-    ///
-    /// One step of Newton's method: of an error it leaves the square.
-    #[cold]
-    #[inline(never)]
-    pub(in crate::scene) fn without_drift(&self) -> Self {
-        let rows = self.rotation;
-        let [x, y, z] = rows;
-        let columns = [0, 1, 2].map(|axis: usize| [x[axis], y[axis], z[axis]]);
-        // What the matrix times its transpose lacks of 1, halved. The rotation's error is far below 2^-14.
-        let lack = |i: usize, j: usize| {
-            let one = i64::from(i == j) << 60;
-            (one.wrapping_sub(dot(rows[i], rows[j])) >> 31) as i32
-        };
-        let row = |i: usize| {
-            let lacks = [lack(i, 0), lack(i, 1), lack(i, 2)];
-            let [a, b, c] = columns.map(|column| product(column, lacks));
-            let [x, y, z] = rows[i];
-            [x.wrapping_add(a), y.wrapping_add(b), z.wrapping_add(c)]
-        };
-        Self {
-            rotation: [row(0), row(1), row(2)],
-            ..*self
-        }
-    }
-
     /// Where a place is moved to; one out of the range of coordinates is at its end.
     pub fn position(&self, place: Position) -> Position {
         let coordinate = |fine: i64| {
@@ -176,9 +149,6 @@ impl Motion {
     /// An instance, moved; its numbers may be out of their range.
     pub(in crate::scene) fn place(&self, header: &Header, rest: &Instance) -> Instance {
         let (matrix, exponent) = self.matrix(&rest.matrix);
-        // Rounded rows can be longer than 1, and a turn along an axis shows it.
-        let one = 1 << MATRIX_BITS;
-        let matrix = matrix.map(|row| row.map(|entry| entry.clamp(-one, one)));
         let shift = header.coordinate_shift.min(MAX_COORDINATE_SHIFT);
         let up = (OFFSET_BITS as i32).wrapping_sub(shift.into());
         let [x, y, z] = rest.center;
@@ -201,6 +171,45 @@ impl Motion {
             ],
             exponent: rest.exponent.wrapping_add(exponent),
             ..*rest
+        }
+    }
+
+    /// As [`place`](Self::place), with the matrix within its range: for what rounding takes out of it.
+    ///
+    /// That of compositions adds up, in chains of some twenty by so much. And rounded rows of the instance can be longer
+    /// than 1, which a turn along an axis shows.
+    #[cold]
+    #[inline(never)]
+    pub(in crate::scene) fn place_rounded(&self, header: &Header, rest: &Instance) -> Instance {
+        let placed = self.without_drift().place(header, rest);
+        let one = 1 << MATRIX_BITS;
+        Instance {
+            matrix: placed
+                .matrix
+                .map(|row| row.map(|entry| entry.clamp(-one, one))),
+            ..placed
+        }
+    }
+
+    /// This motion with the rotation next to its matrix: one step of Newton's method, which leaves the square of an error.
+    fn without_drift(&self) -> Self {
+        let rows = self.rotation;
+        let [x, y, z] = rows;
+        let columns = [0, 1, 2].map(|axis: usize| [x[axis], y[axis], z[axis]]);
+        // What the matrix times its transpose lacks of 1, halved. The rotation's error is far below 2^-14.
+        let lack = |i: usize, j: usize| {
+            let one = i64::from(i == j) << 60;
+            (one.wrapping_sub(dot(rows[i], rows[j])) >> 31) as i32
+        };
+        let row = |i: usize| {
+            let lacks = [lack(i, 0), lack(i, 1), lack(i, 2)];
+            let [a, b, c] = columns.map(|column| product(column, lacks));
+            let [x, y, z] = rows[i];
+            [x.wrapping_add(a), y.wrapping_add(b), z.wrapping_add(c)]
+        };
+        Self {
+            rotation: [row(0), row(1), row(2)],
+            ..*self
         }
     }
 

@@ -162,18 +162,21 @@ impl<'p> PosesView<'p> {
         };
         let location = Location::Record(section, index);
         let header = scene.header();
-        let placed = checked(motion.place(header, rest), location);
-        *pose =
-            placed.or_else(|_| checked(motion.without_drift().place(header, rest), location))?;
+        let mut placed = motion.place(header, rest);
+        if check(&placed, location).is_err() {
+            placed = motion.place_rounded(header, rest);
+            check(&placed, location)?;
+        }
+        *pose = placed;
         Ok(())
     }
 }
 
-/// An instance, if all of it is in range, and its matrix a rotation times a factor.
-fn checked(instance: Instance, location: Location) -> Result<Instance, BlobError> {
+/// Proves that all of an instance is in range, and its matrix a rotation times a factor.
+#[inline(never)]
+fn check(instance: &Instance, location: Location) -> Result<(), BlobError> {
     instance.check_ranges(location)?;
-    check_rotation(&instance.matrix).map_err(|reason| location.invalid(reason))?;
-    Ok(instance)
+    check_rotation(&instance.matrix).map_err(|reason| location.invalid(reason))
 }
 
 impl<'a> Scene<'a> {

@@ -112,7 +112,7 @@ proptest! {
         };
         let rest = Instance { matrix: [[1 << 23, 0, 0], [0, 1 << 23, 0], [0, 0, 1 << 23]], center, ..Instance::zeroed() };
         motion.place(&header, &rest);
-        motion.without_drift().place(&header, &rest);
+        motion.place_rounded(&header, &rest);
     }
 
     /// An instance that is turned by a rounded matrix, and back by a motion, has rows that are longer than 1.
@@ -128,7 +128,7 @@ proptest! {
         let header = Header::zeroed();
         let turned = first.place(&header, &rest);
         for motion in [back, first, Motion::REST] {
-            let placed = motion.place(&header, &turned);
+            let placed = motion.place_rounded(&header, &turned);
             prop_assert!(placed.check_ranges(Location::Header).is_ok(), "{:?}", placed.matrix);
             crate::instances::bounds::check_rotation(&placed.matrix).expect("a rotation");
         }
@@ -144,7 +144,7 @@ proptest! {
         let whole = [[1 << 23, 0, 0], [0, 1 << 23, 0], [0, 0, 1 << 23]];
         let rest = Instance { matrix: whole, ..Instance::zeroed() };
         let straight = chain.without_drift();
-        let placed = straight.place(&Header::zeroed(), &rest);
+        let placed = chain.place_rounded(&Header::zeroed(), &rest);
         prop_assert!(placed.check_ranges(Location::Header).is_ok(), "{:?}", placed.matrix);
         crate::instances::bounds::check_rotation(&placed.matrix).expect("a rotation");
         // As far along as the angles' sum, but for what each composition rounds.
