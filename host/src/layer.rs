@@ -1,7 +1,4 @@
-//! Linear pictures and AOVs as files: NumPy's arrays, and OpenEXR with the feature `exr`.
-
-#[cfg(feature = "exr")]
-mod openexr;
+//! Linear pictures and AOVs, and the files that they go to.
 
 use crate::npy;
 use crate::render::Values;
@@ -57,45 +54,6 @@ pub struct Window {
     /// Height of the whole picture.
     pub height: u16,
     pub rows: Range<u16>,
-}
-
-/// Writes layers as OpenEXR: the picture in the channels `R`, `G` and `B`, depth in `Z`, colors and vectors in channels
-/// such as `albedo.R` and `normal.X`, numbers in channels of their own. Rows of a picture keep their place in it. `comments`
-/// says how the picture was made.
-///
-/// # Errors
-/// If `out` has one, or this build lacks the feature `exr`.
-///
-/// ```
-/// use gridel_host::layer::{Layer, LinearFormat, Window, write_exr};
-/// use gridel_host::render::Values;
-///
-/// let layer = Layer {
-///     name: None,
-///     values: Values::Vectors(vec![[0.0, 0.5, 2.0]; 6]),
-/// };
-/// let window = Window {
-///     width: 3,
-///     height: 2,
-///     rows: 0..2,
-/// };
-/// let mut file = Vec::new();
-/// let written = write_exr(&mut file, &window, &[layer], "by hand");
-/// assert_eq!(written.is_ok(), LinearFormat::Exr.is_available());
-/// ```
-pub fn write_exr(
-    out: &mut dyn Write,
-    window: &Window,
-    layers: &[Layer],
-    comments: &str,
-) -> io::Result<()> {
-    #[cfg(feature = "exr")]
-    return openexr::write(out, window, layers, comments);
-    #[cfg(not(feature = "exr"))]
-    {
-        let _ = (out, window, layers, comments);
-        Err(io::ErrorKind::Unsupported.into())
-    }
 }
 
 /// Writes one layer as NumPy's array file: see [`npy::write_pixels`].

@@ -13,10 +13,10 @@ use clap::Args;
 use frames::{Output, Shot, TimeOptions, rejected};
 use gridel_core::{Counters, Scene, Settings, Structure};
 use gridel_host::picture::{Moment, RenderMetadata};
-use gridel_host::render::{Aov, Job, Picture};
+use gridel_host::render::{Job, Picture};
 use gridel_host::resolution::Unresolved;
 use gridel_host::table::{Align, Table, counted, grouped};
-use outputs::{AovFile, Outputs};
+use outputs::{AovFile, HeatMapFile, OutputOptions, Outputs};
 use serde::Serialize;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -33,12 +33,8 @@ pub struct Arguments {
     #[arg(value_name = "BLOB|SCENE")]
     input: PathBuf,
 
-    /// Picture to write: .png, .ppm, or .rgb565 (two bytes per pixel, little-endian, without a
-    /// header); or linear radiance, 1 being display white and no value limited: .npy (float32, shape
-    /// (height, width, 3)) or .exr (with the feature `exr`). With `-` a PNG goes to standard output,
-    /// and the report to standard error
-    #[arg(short, long, value_name = "PICTURE")]
-    output: PathBuf,
+    #[command(flatten)]
+    files: OutputOptions,
 
     #[command(flatten)]
     time: TimeOptions,
@@ -56,27 +52,6 @@ pub struct Arguments {
     /// Render only rows A to B - 1, counted from 0 at the top
     #[arg(long, value_name = "A..B", value_parser = arguments::rows, allow_hyphen_values = true)]
     rows: Option<Range<u16>>,
-
-    /// Dither, to hide steps between the colors of a display
-    #[arg(long)]
-    dither: bool,
-
-    /// Count rays and tests; the time then includes the counting
-    #[arg(long)]
-    stats: bool,
-
-    /// Write the work per pixel as a PNG too: the square root of the boxes and primitives tested,
-    /// from black (none) over blue, red and yellow to white (the maximum, which is printed and
-    /// stored in the file)
-    #[arg(long, value_name = "FILE")]
-    heat_map: Option<PathBuf>,
-
-    /// Write properties of the surfaces too that the rays through the middles of pixels hit first:
-    /// depth, normal, albedo, object, primitive, instance, with commas between them. As channels of
-    /// an .exr, else to NumPy files named after the picture, such as out.depth.npy
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = arguments::aov(),
-        conflicts_with = "frames")]
-    aov: Vec<Aov>,
 
     /// Print the results as JSON
     #[arg(long)]
@@ -127,13 +102,6 @@ struct Stats {
     rays_per_second: f64,
 }
 
-#[derive(Serialize)]
-struct HeatMapFile {
-    file: String,
-    /// Boxes and primitives tested for the pixel with the most.
-    maximum: u32,
-}
-
 /// What is written.
 enum Target<'a> {
     Frames(Output, Range<u32>),
@@ -144,9 +112,17 @@ impl<'a> Target<'a> {
     /// What was asked for; an error for names that cannot be written to.
     fn of(arguments: &'a Arguments) -> Result<Self, Failure> {
         let Some(frames) = &arguments.time.frames else {
-            return Ok(Self::Picture(Outputs::of(arguments)?));
+            return Ok(Self::Picture(Outputs::of(
+                &arguments.input,
+                &arguments.files,
+            )?));
         };
-        let output = Output::of(&arguments.time, frames, &arguments.input, &arguments.output)?;
+        let output = Output::of(
+            &arguments.time,
+            frames,
+            &arguments.input,
+            &arguments.files.output,
+        )?;
         Ok(Self::Frames(output, frames.clone()))
     }
 
@@ -191,7 +167,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Target::Frames(output, frames) => {
             let shot = Shot {
                 options: &arguments.time,
-                output: &arguments.output,
+                output: &arguments.files.output,
                 as_json: arguments.json,
                 source: &source,
                 scene: &scene,
@@ -215,7 +191,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let written = pool.install(|| outputs.write((&scene, &job), &rendering, &metadata));
     let (heat_map, aovs) = written?;
     let rendered = Rendered {
-        picture: arguments.output.display().to_string(),
+        picture: arguments.files.output.display().to_string(),
         width: job.settings.width,
         height: job.settings.height,
         rows: [job.rows.start, job.rows.end],
@@ -237,7 +213,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         })?,
         false => rendered.text(),
     };
-    print_about(&arguments.output, report)
+    print_about(&arguments.files.output, report)
 }
 
 /// How the picture is rendered; an error for rows that it does not have, and for too many pixels at once.
@@ -247,7 +223,7 @@ fn job(
     most_pixels: usize,
 ) -> Result<Job, Failure> {
     let settings = Settings {
-        dither: arguments.dither,
+        dither: arguments.files.dither,
         ..arguments.picture.settings(scene)
     };
     let Settings { width, height, .. } = settings;
@@ -278,12 +254,12 @@ fn job(
         structure: source.structure(scene, arguments.with.accel)?,
         settings,
         rows,
-        count: arguments.stats || arguments.heat_map.is_some(),
+        count: arguments.files.stats || arguments.files.heat_map.is_some(),
     })
 }
 
 fn stats(arguments: &Arguments, picture: &Picture, time: Duration) -> Option<Stats> {
-    let counters = picture.counters.filter(|_| arguments.stats)?;
+    let counters = picture.counters.filter(|_| arguments.files.stats)?;
     let Counters {
         planes,
         boxes,

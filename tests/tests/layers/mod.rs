@@ -29,7 +29,7 @@ const HOST: Layers = Layers {
     order: &[
         "output simd table blob picture_rays shape deformation",
         "scene sample compile",
-        "live state render trace npy picture layer animation merge resolution report",
+        "live state render trace npy picture layer openexr animation merge resolution report",
         "measure emit",
         "accuracy compare verify explain view check",
         "cli main",

@@ -1,14 +1,15 @@
 //! The files that `gridel render` writes of one picture.
 
 use super::frames::rejected;
-use super::{Arguments, HeatMapFile};
-use crate::cli::arguments::distinct;
+use crate::cli::arguments::{self, distinct};
 use crate::cli::failure::Failure;
 use crate::cli::input::is_standard;
 use crate::cli::output::{Content, check_writable, reject_same, unsupported, write_files};
+use clap::Args;
 use gridel_core::Scene;
 use gridel_core::render::RenderError;
-use gridel_host::layer::{Layer, LinearFormat, Window, write_exr, write_npy};
+use gridel_host::layer::{Layer, LinearFormat, Window, write_npy};
+use gridel_host::openexr;
 use gridel_host::output::place;
 use gridel_host::picture::{PictureFormat, RenderMetadata};
 use gridel_host::render::{
@@ -20,6 +21,46 @@ use std::path::{Path, PathBuf};
 
 /// The formats of pictures, as messages list them.
 pub const FORMATS: &str = ".png, .ppm, .rgb565, .npy or .exr";
+
+/// What is written.
+#[derive(Args)]
+pub struct OutputOptions {
+    /// Picture to write: .png, .ppm, or .rgb565 (two bytes per pixel, little-endian, without a
+    /// header); or linear radiance, 1 being display white and no value limited: .npy (float32, shape
+    /// (height, width, 3)) or .exr (with the feature `exr`). With `-` a PNG goes to standard output,
+    /// and the report to standard error
+    #[arg(short, long, value_name = "PICTURE")]
+    pub output: PathBuf,
+
+    /// Write properties of the surfaces too that the rays through the middles of pixels hit first:
+    /// depth, normal, albedo, object, primitive, instance, with commas between them. As channels of
+    /// an .exr, else to NumPy files named after the picture, such as out.depth.npy
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = arguments::aov(),
+        conflicts_with = "frames")]
+    aov: Vec<Aov>,
+
+    /// Dither, to hide steps between the colors of a display
+    #[arg(long)]
+    pub dither: bool,
+
+    /// Count rays and tests; the time then includes the counting
+    #[arg(long)]
+    pub stats: bool,
+
+    /// Write the work per pixel as a PNG too: the square root of the boxes and primitives tested,
+    /// from black (none) over blue, red and yellow to white (the maximum, which is printed and
+    /// stored in the file)
+    #[arg(long, value_name = "FILE")]
+    pub heat_map: Option<PathBuf>,
+}
+
+/// The heat map that was written.
+#[derive(Serialize)]
+pub struct HeatMapFile {
+    pub file: String,
+    /// Boxes and primitives tested for the pixel with the most.
+    pub maximum: u32,
+}
 
 /// How the picture is stored.
 #[derive(Clone, Copy, PartialEq)]
@@ -66,13 +107,13 @@ impl Rendering {
 
 impl<'a> Outputs<'a> {
     /// The files that were asked for; an error for names that cannot be written to.
-    pub fn of(arguments: &'a Arguments) -> Result<Self, Failure> {
-        let picture = &*arguments.output;
+    pub fn of(input: &Path, options: &'a OutputOptions) -> Result<Self, Failure> {
+        let picture = &*options.output;
         let stored = stored(picture)?;
         if let Stored::Linear(_) = stored {
-            reject_options_of_displays(arguments)?;
+            reject_options_of_displays(options)?;
         }
-        let aovs = distinct(&arguments.aov).into_iter().map(|aov| {
+        let aovs = distinct(&options.aov).into_iter().map(|aov| {
             let file = match stored {
                 Stored::Linear(LinearFormat::Exr) => picture.to_owned(),
                 _ => picture.with_extension(format!("{}.npy", aov.name())),
@@ -83,10 +124,10 @@ impl<'a> Outputs<'a> {
         let outputs = Self {
             picture,
             stored,
-            heat_map: arguments.heat_map.as_deref(),
+            heat_map: options.heat_map.as_deref(),
             aovs: aovs.collect(),
         };
-        outputs.check(&arguments.input)?;
+        outputs.check(input)?;
         Ok(outputs)
     }
 
@@ -190,7 +231,7 @@ impl<'a> Outputs<'a> {
                 format.write(out, picture, metadata)
             }
             (Stored::Linear(LinearFormat::Exr), _) => {
-                write_exr(out, &window, &layers, &metadata.to_string())
+                openexr::write(out, &window, &layers, &metadata.to_string())
             }
             _ => layers
                 .iter()
@@ -260,17 +301,17 @@ fn stored(output: &Path) -> Result<Stored, Failure> {
 }
 
 /// Rejects what only pictures for displays have.
-fn reject_options_of_displays(arguments: &Arguments) -> Result<(), Failure> {
+fn reject_options_of_displays(options: &OutputOptions) -> Result<(), Failure> {
     let given = [
-        (arguments.dither, "--dither"),
-        (arguments.stats, "--stats"),
-        (arguments.heat_map.is_some(), "--heat-map"),
+        (options.dither, "--dither"),
+        (options.stats, "--stats"),
+        (options.heat_map.is_some(), "--heat-map"),
     ];
     match given.into_iter().find(|(is_given, _)| *is_given) {
         Some((_, option)) => Err(Failure::usage(
             format!(
                 "{}: `{option}` is for pictures of displays, and this one is linear radiance",
-                arguments.output.display()
+                options.output.display()
             ),
             format!("leave out `{option}`, or write .png, .ppm or .rgb565"),
         )),

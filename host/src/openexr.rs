@@ -1,15 +1,59 @@
-//! Layers as OpenEXR.
+//! Layers as OpenEXR, with the feature `exr`.
 
-use super::{Layer, Window};
+use crate::layer::{Layer, Window};
+#[cfg(feature = "exr")]
 use crate::render::{Aov, Values};
+#[cfg(feature = "exr")]
 use exr::error::Error;
+#[cfg(feature = "exr")]
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds,
     LayerAttributes, Text, Vec2, WritableImage,
 };
-use std::io::{self, Cursor, Write};
+use std::io::{self, Write};
 
-pub(super) fn write(
+/// Writes layers as OpenEXR: the picture in the channels `R`, `G` and `B`, depth in `Z`, colors and vectors in channels
+/// such as `albedo.R` and `normal.X`, numbers in channels of their own. Rows of a picture keep their place in it. `comments`
+/// says how the picture was made.
+///
+/// # Errors
+/// If `out` has one, or this build lacks the feature `exr`.
+///
+/// ```
+/// use gridel_host::layer::{Layer, LinearFormat, Window};
+/// use gridel_host::openexr;
+/// use gridel_host::render::Values;
+///
+/// let layer = Layer {
+///     name: None,
+///     values: Values::Vectors(vec![[0.0, 0.5, 2.0]; 6]),
+/// };
+/// let window = Window {
+///     width: 3,
+///     height: 2,
+///     rows: 0..2,
+/// };
+/// let mut file = Vec::new();
+/// let written = openexr::write(&mut file, &window, &[layer], "by hand");
+/// assert_eq!(written.is_ok(), LinearFormat::Exr.is_available());
+/// ```
+pub fn write(
+    out: &mut dyn Write,
+    window: &Window,
+    layers: &[Layer],
+    comments: &str,
+) -> io::Result<()> {
+    #[cfg(feature = "exr")]
+    return encode(out, window, layers, comments);
+    #[cfg(not(feature = "exr"))]
+    {
+        let _ = (out, window, layers, comments);
+        Err(io::ErrorKind::Unsupported.into())
+    }
+}
+
+#[cfg(feature = "exr")]
+fn encode(
     out: &mut dyn Write,
     window: &Window,
     layers: &[Layer],
@@ -30,7 +74,7 @@ pub(super) fn write(
         exr::prelude::Layer::new(size, about, Encoding::SMALL_LOSSLESS, channels),
     );
     // It goes back to its tables, which streams cannot.
-    let mut file = Cursor::new(Vec::new());
+    let mut file = io::Cursor::new(Vec::new());
     let written = image.write().to_buffered(&mut file);
     written.map_err(|error| match error {
         Error::Io(error) => error,
@@ -40,6 +84,7 @@ pub(super) fn write(
 }
 
 /// The channels of a layer.
+#[cfg(feature = "exr")]
 fn channels(layer: &Layer) -> Vec<AnyChannel<FlatSamples>> {
     let channel = |name: &str, samples| AnyChannel::new(name, samples);
     let name = layer.name.unwrap_or_default();
