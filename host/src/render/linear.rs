@@ -20,7 +20,7 @@ pub struct LinearPicture {
 
 /// Renders some rows in linear radiance. Calls `progress` after every row, from any thread.
 ///
-/// Samples are averaged as they are, where [`render`](super::render::render) limits each to display white first. Where
+/// Samples are averaged as they are, where [`render`](super::render()) limits each to display white first. Where
 /// colors are display values (see `View::display_values`), their mean is decoded by the curve of sRGB, continued above 1.
 /// Work is not counted.
 ///
