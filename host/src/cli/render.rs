@@ -16,7 +16,7 @@ use gridel_host::picture::{Moment, RenderMetadata};
 use gridel_host::render::{Job, Picture};
 use gridel_host::resolution::Unresolved;
 use gridel_host::table::{Align, Table, counted, grouped};
-use outputs::{AovFile, HeatMapFile, OutputOptions, Outputs};
+use outputs::{AovFile, HeatMapFile, MOST_PIXELS, OutputOptions, Outputs};
 use serde::Serialize;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -129,7 +129,7 @@ impl<'a> Target<'a> {
     /// Pixels that are held at once.
     fn most_pixels(&self) -> usize {
         match self {
-            Self::Frames(..) => 1 << 26,
+            Self::Frames(..) => MOST_PIXELS,
             Self::Picture(outputs) => outputs.most_pixels(),
         }
     }

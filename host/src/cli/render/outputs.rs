@@ -19,6 +19,9 @@ use gridel_host::report::HeatMap;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
+/// Pixels of pictures for displays that are held at once.
+pub const MOST_PIXELS: usize = 1 << 26;
+
 /// The formats of pictures, as messages list them.
 pub const FORMATS: &str = ".png, .ppm, .rgb565, .npy or .exr";
 
@@ -180,9 +183,9 @@ impl<'a> Outputs<'a> {
     /// Pixels that are held at once.
     pub fn most_pixels(&self) -> usize {
         match self.stored {
-            Stored::Shown(_) if self.aovs.is_empty() => 1 << 26,
+            Stored::Shown(_) if self.aovs.is_empty() => MOST_PIXELS,
             // Some ten times as many bytes each.
-            _ => 1 << 23,
+            _ => MOST_PIXELS / 8,
         }
     }
 
