@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 pub const MOST_PIXELS: usize = 1 << 26;
 
 /// The formats of pictures, as messages list them.
-pub const FORMATS: &str = ".png, .ppm, .rgb565, .npy or .exr";
+const FORMATS: &str = ".png, .ppm, .rgb565, .npy or .exr";
 
 /// What is written.
 #[derive(Args)]
