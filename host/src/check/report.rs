@@ -86,6 +86,16 @@ pub struct Evidence {
     pub expected: Option<Image>,
 }
 
+impl Evidence {
+    pub(super) fn new(name: &str, rendered: &Image, expected: Option<Image>) -> Self {
+        Self {
+            name: name.to_owned(),
+            rendered: rendered.clone(),
+            expected,
+        }
+    }
+}
+
 impl Report {
     fn count(&self, kind: impl Fn(&Outcome) -> bool) -> usize {
         self.findings

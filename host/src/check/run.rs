@@ -223,7 +223,7 @@ impl Run<'_> {
                 .and_then(|(_, image)| image.as_ref().ok().cloned());
             let recorded = hashes.get(format.name()).cloned().map(Figure::Hash);
             let found = Figure::Hash(hash(&picture.pixels));
-            let evidence = evidence(name, &image, expected);
+            let evidence = Evidence::new(name, &image, expected);
             self.hash(format, found, recorded, evidence);
         }
         if let Some((reference, expected)) = reference {
@@ -320,7 +320,7 @@ impl Run<'_> {
             }
         };
         let broken = outcome != Outcome::Passed;
-        let evidence = evidence(name, &image, expected.ok());
+        let evidence = Evidence::new(name, &image, expected.ok());
         let (on, allowed) = (
             Some(format.name().to_owned()),
             Some(Figure::Count(reference.pixels)),
@@ -409,7 +409,7 @@ impl Run<'_> {
                 let rendered = Image { size, pixels };
                 let why = "the board's picture is not the host's";
                 let name = &check.evidence[check.formats.len() + number];
-                let evidence = evidence(name, &rendered, Some(expected));
+                let evidence = Evidence::new(name, &rendered, Some(expected));
                 (String::from(why), Some(evidence))
             }
             Ok(pixels) => {
@@ -496,13 +496,5 @@ fn structure(check: &Check, scene: &Scene<'_>) -> Result<Structure, String> {
             check.scene.path.display(),
             name = structure.name()
         )),
-    }
-}
-
-fn evidence(name: &str, rendered: &Image, expected: Option<Image>) -> Evidence {
-    Evidence {
-        name: name.to_owned(),
-        rendered: rendered.clone(),
-        expected,
     }
 }
