@@ -4,9 +4,11 @@
 //! settings, so a picture is the same bit for bit with any number of threads.
 
 mod aov;
+mod first_hits;
 mod linear;
 
 pub use aov::{Aov, Values, render_aovs};
+pub(crate) use first_hits::{PixelHit, first_hits};
 pub use linear::{LinearPicture, render_linear};
 
 use gridel_core::accel::DynAccel;
@@ -239,5 +241,7 @@ fn render_row<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
     }
 }
 
+#[cfg(test)]
+mod test_pictures;
 #[cfg(test)]
 mod tests;

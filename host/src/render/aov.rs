@@ -1,14 +1,12 @@
 //! What the surfaces are like that a picture shows: depth, normals, colors and numbers, pixel by pixel. Renderers call
 //! these arbitrary output variables, AOVs.
 
+use super::Job;
+use super::first_hits::{PixelHit, first_hits};
 use super::linear::render_linear;
-use super::{ALL, Job, chosen};
-use gridel_core::accel::DynAccel;
-use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::format::record::View;
 use gridel_core::render::RenderError;
-use gridel_core::{Fixed, Format, NoCount, Number, Renderer, Scene, Settings, Stack, closest_hit};
-use rayon::prelude::*;
+use gridel_core::{Scene, Settings};
 
 /// An arbitrary output variable: a property of the surface that the ray through the middle of a pixel hits first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -62,26 +60,6 @@ pub enum Values {
     Numbers(Vec<u32>),
 }
 
-/// What a ray hits first.
-#[derive(Clone, Copy)]
-struct FirstHit {
-    depth: f32,
-    normal: [f32; 3],
-    object: u32,
-    primitive: u32,
-    instance: u32,
-}
-
-impl FirstHit {
-    const NONE: Self = Self {
-        depth: f32::INFINITY,
-        normal: [0.0; 3],
-        object: u32::MAX,
-        primitive: u32::MAX,
-        instance: u32::MAX,
-    };
-}
-
 /// Computes AOVs of some rows of a picture, in the order in which they are asked for. Of a job's settings, samples and
 /// ray depth do not count: there is one ray through the middle of each pixel.
 ///
@@ -120,52 +98,29 @@ pub fn render_aovs(scene: &Scene<'_>, job: &Job, aovs: &[Aov]) -> Result<Vec<Val
         },
         ..job.clone()
     };
-    let scene = &chosen(scene, job.structure)?;
-    let hits = match job.format {
-        Format::Fixed => first_hits::<Fixed>(scene, job),
-        Format::F32 => first_hits::<f32>(scene, job),
-        Format::F64 => first_hits::<f64>(scene, job),
-    }?;
-    let numbers = |of: fn(&FirstHit) -> u32| Values::Numbers(hits.iter().map(of).collect());
+    let hits = first_hits(scene, job)?;
+    let all = |of: fn(&PixelHit) -> u32| {
+        let numbers = hits.iter().map(|hit| hit.as_ref().map_or(u32::MAX, of));
+        Values::Numbers(numbers.collect())
+    };
     let values = aovs.iter().map(|aov| {
         Ok(match aov {
-            Aov::Depth => Values::Lengths(hits.iter().map(|hit| hit.depth).collect()),
-            Aov::Normal => Values::Vectors(hits.iter().map(|hit| hit.normal).collect()),
+            Aov::Depth => {
+                let depth =
+                    |hit: &Option<PixelHit>| hit.map_or(f32::INFINITY, |it| it.distance as f32);
+                Values::Lengths(hits.iter().map(depth).collect())
+            }
+            Aov::Normal => {
+                let normal = |hit: &Option<PixelHit>| hit.map_or([0.0; 3], |it| it.normal);
+                Values::Vectors(hits.iter().map(normal).collect())
+            }
             Aov::Albedo => Values::Vectors(albedo(scene, job)?),
-            Aov::Object => numbers(|hit| hit.object),
-            Aov::Primitive => numbers(|hit| hit.primitive),
-            Aov::Instance => numbers(|hit| hit.instance),
+            Aov::Object => all(|hit| hit.object),
+            Aov::Primitive => all(|hit| hit.primitive),
+            Aov::Instance => all(|hit| hit.instance.unwrap_or(u32::MAX)),
         })
     });
     values.collect()
-}
-
-fn first_hits<N: Number>(scene: &Scene<'_>, job: &Job) -> Result<Vec<FirstHit>, RenderError> {
-    let renderer = Renderer::<N, DynAccel, ALL>::with_settings(scene, job.settings)?;
-    let unit = f64::powi(2.0, scene.header().unit_exponent.into());
-    let first = |x: u16, y: u16, stack: &mut Stack<MAX_STACK_DEPTH>| {
-        let ray = renderer.primary_ray(x, y).ok()?;
-        let hit = closest_hit::<N, DynAccel, _>(scene, &ray, stack.as_view(), &mut NoCount)?;
-        let slope = ray.slope().map(N::ratio_to_f64);
-        let norm = slope.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let instance = hit
-            .instance()
-            .and_then(|index| scene.instances().get(index as usize));
-        Some(FirstHit {
-            depth: (N::far_to_f64(hit.t) * norm * unit) as f32,
-            normal: hit.shading_normal(scene).map(|x| x.ratio_to_f64() as f32),
-            object: hit.object,
-            primitive: hit.primitive,
-            instance: instance.map_or(u32::MAX, |instance| instance.number),
-        })
-    };
-    let rows = job.rows.clone().into_par_iter().map(|y| {
-        let mut stack = Stack::new();
-        let row = (0..job.settings.width).map(|x| first(x, y, &mut stack));
-        let row = row.map(|hit| hit.unwrap_or(FirstHit::NONE));
-        row.collect::<Vec<_>>()
-    });
-    Ok(rows.flatten_iter().collect())
 }
 
 /// The picture under white ambient light alone, on black.

@@ -1,36 +1,8 @@
 //! AOVs against what scenes state.
 
 use super::*;
-use crate::blob::Blob;
-use crate::compile::{Options, compile};
-use crate::scene;
-use gridel_core::Structure;
-
-fn blob(text: &str) -> Blob {
-    let read = scene::read("test.toml".as_ref(), text.into(), &Default::default());
-    let options = Options {
-        structures: vec![Structure::DualSplit, Structure::Wide, Structure::Flagged],
-        ..Options::default()
-    };
-    compile(&read.expect("a scene").scene, &options)
-        .expect("a blob")
-        .blob
-}
-
-const SIZE: [u16; 2] = [33, 25];
-
-fn job(scene: &Scene<'_>, format: Format) -> Job {
-    let settings = Settings {
-        width: SIZE[0],
-        height: SIZE[1],
-        samples: 4,
-        ..Settings::of(scene)
-    };
-    Job::whole(format, Structure::DualSplit, settings)
-}
-
-/// The place of the pixel in the middle.
-const MIDDLE: usize = (SIZE[0] as usize) * (SIZE[1] as usize) / 2;
+use crate::render::test_pictures::{MIDDLE, OTHERS, WIDTH, blob, job};
+use gridel_core::Format;
 
 fn all(scene: &Scene<'_>, job: &Job) -> [Values; 6] {
     let values = render_aovs(scene, job, &Aov::ALL).expect("AOVs");
@@ -86,11 +58,11 @@ const WALL: &str = "
 
 #[test]
 fn values_are_those_of_the_scene() {
-    let blob = blob(WALL);
+    let blob = blob("test.toml", WALL);
     let scene = blob.scene().expect("a scene");
     for format in Format::ALL {
         let [depth, normal, albedo, object, primitive, instance] =
-            all(&scene, &job(&scene, format));
+            all(&scene, &job(&scene, format, 4));
         let near = |found: f32, expected: f32| {
             let apart = (found - expected).abs();
             assert!(apart < 2e-3, "{format:?}: {found} for {expected}");
@@ -125,12 +97,12 @@ fn values_are_those_of_the_scene() {
 
 #[test]
 fn bits_depend_on_neither_structure_nor_rows() {
-    let blob = blob(WALL);
+    let blob = blob("test.toml", WALL);
     let scene = blob.scene().expect("a scene");
     for format in Format::ALL {
-        let whole = job(&scene, format);
+        let whole = job(&scene, format, 4);
         let expected = all(&scene, &whole);
-        for structure in [Structure::List, Structure::Wide, Structure::Flagged] {
+        for structure in OTHERS {
             let other = Job {
                 structure,
                 ..whole.clone()
@@ -141,7 +113,7 @@ fn bits_depend_on_neither_structure_nor_rows() {
             rows: 3..7,
             ..whole
         };
-        let rows = 3 * usize::from(SIZE[0])..7 * usize::from(SIZE[0]);
+        let rows = 3 * usize::from(WIDTH)..7 * usize::from(WIDTH);
         let [depth, .., object, _, _] = all(&scene, &part);
         assert_eq!(lengths(&depth), &lengths(&expected[0])[rows.clone()]);
         assert_eq!(numbers(&object), &numbers(&expected[3])[rows]);
@@ -167,12 +139,12 @@ fn instances_are_numbered_in_scene_file_order() {
         [[instance]]
         part = 'ball'
         translate = [-1.5, 0, 0]";
-    let blob = blob(scene);
+    let blob = blob("test.toml", scene);
     let scene = blob.scene().expect("a scene");
     assert_eq!(scene.instances().len(), 2);
     for format in Format::ALL {
-        let [depth, .., instance] = all(&scene, &job(&scene, format));
-        let row = 12 * usize::from(SIZE[0])..13 * usize::from(SIZE[0]);
+        let [depth, .., instance] = all(&scene, &job(&scene, format, 4));
+        let row = 12 * usize::from(WIDTH)..13 * usize::from(WIDTH);
         let mut seen: Vec<u32> = numbers(&instance)[row].to_vec();
         seen.dedup();
         assert_eq!(seen, [u32::MAX, 1, u32::MAX, 0, u32::MAX], "{format:?}");
