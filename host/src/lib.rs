@@ -61,6 +61,7 @@ mod live;
 pub mod measure;
 pub mod merge;
 pub mod npy;
+mod observed;
 pub mod openexr;
 #[doc(hidden)]
 pub mod output;

@@ -1,10 +1,10 @@
 //! The rays of a scene's own picture, as the ray loop casts them.
 
+use crate::observed::Observed;
+use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
 use gridel_core::render::RenderError;
-use gridel_core::{
-    Effects, Flagged, Number, Observer, Ray, RayKind, Renderer, Scene, Settings, Workspace,
-};
+use gridel_core::{Effects, Number, Ray, RayKind, Renderer, Scene, Settings, Structure, Workspace};
 use rayon::prelude::*;
 use std::any::Any;
 
@@ -33,10 +33,10 @@ pub struct PictureRays<N: Number> {
     pub bounced: Vec<Ray<N>>,
 }
 
-/// Keeps every ray that is cast.
-impl<N: Number> Observer for PictureRays<N> {
-    fn ray<R: Any>(&mut self, kind: RayKind, ray: &R) {
-        let Some(&ray) = (ray as &dyn Any).downcast_ref::<Ray<N>>() else {
+impl<N: Number> PictureRays<N> {
+    /// Keeps a ray that is cast.
+    fn keep(&mut self, kind: RayKind, ray: &dyn Any) {
+        let Some(&ray) = ray.downcast_ref::<Ray<N>>() else {
             return;
         };
         match kind {
@@ -45,9 +45,7 @@ impl<N: Number> Observer for PictureRays<N> {
             RayKind::Reflected | RayKind::Refracted => self.bounced.push(ray),
         }
     }
-}
 
-impl<N: Number> PictureRays<N> {
     /// Casts the rays of a picture. The scene must hold flagged pairs.
     ///
     /// Through glass a shadow ray goes on behind every surface as a new one; each is kept.
@@ -55,7 +53,9 @@ impl<N: Number> PictureRays<N> {
     /// # Errors
     /// If there are more than [`MOST_RAYS`], or the settings are out of their range.
     pub fn of(scene: &Scene<'_>, settings: Settings) -> Result<Self, PictureRaysError> {
-        let renderer = Renderer::<N, Flagged, { Effects::ALL.0 }>::with_settings(scene, settings)?;
+        let lacks = RenderError::Structure(Structure::Flagged);
+        let scene = &scene.choose(Structure::Flagged).ok_or(lacks)?;
+        let renderer = Renderer::with_settings(scene, settings)?;
         let pixels = usize::from(settings.width) * usize::from(settings.height);
         let mut rays = Self::default();
         // So many rows at a time that what they cast cannot exceed memory before it is counted.
@@ -83,12 +83,16 @@ impl<N: Number> PictureRays<N> {
         Ok(rays)
     }
 
-    fn of_row(renderer: &Renderer<'_, '_, N, Flagged, { Effects::ALL.0 }>, y: u16) -> Self {
+    fn of_row(renderer: &Renderer<'_, '_, N, DynAccel, { Effects::ALL.0 }>, y: u16) -> Self {
         let mut rays = Self::default();
         let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
         let mut space = space.as_view();
         for x in 0..renderer.settings().width {
-            renderer.linear(x, y, &mut space, &mut rays);
+            let mut observed = Observed {
+                sink: Some(&mut |kind, ray| rays.keep(kind, ray)),
+                ..Observed::default()
+            };
+            renderer.linear(x, y, &mut space, &mut observed);
         }
         rays
     }

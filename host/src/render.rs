@@ -11,6 +11,7 @@ pub use aov::{Aov, Values, render_aovs};
 pub(crate) use first_hits::{PixelHit, first_hits};
 pub use linear::{LinearPicture, render_linear};
 
+use crate::observed::Observed;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
 use gridel_core::render::RenderError;
@@ -216,11 +217,11 @@ fn counted_row<N: Number, A: Accel, const EFFECTS: u32>(
 ) -> Cost {
     let mut work = Vec::with_capacity(pixels.len());
     let mut total = Counters::default();
-    let counted = |counters: Counters| {
+    let counted = |Observed { counters, .. }: Observed<'_>| {
         work.push((counters.boxes + counters.objects).min(u32::MAX.into()) as u32);
         total = total.plus(&counters);
     };
-    render_row(renderer, first, pixels, Counters::default, counted);
+    render_row(renderer, first, pixels, Observed::default, counted);
     (total, work)
 }
 

@@ -9,6 +9,7 @@ pub use direction_scale::DirectionScale;
 pub use rejection::{Rejection, Rejections};
 pub use unit_ray::UnitRay;
 
+use crate::observed::Observed;
 use glam::DVec3;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
@@ -158,11 +159,14 @@ pub fn trace_counted(
         return Rejections::default();
     };
     let any = query.any;
-    match query.format {
-        Format::Fixed => through::<Fixed, DynAccel, _>(&scene, rays, any, hits, counters),
-        Format::F32 => through::<f32, DynAccel, _>(&scene, rays, any, hits, counters),
-        Format::F64 => through::<f64, DynAccel, _>(&scene, rays, any, hits, counters),
-    }
+    let mut observed = Observed::default();
+    let rejections = match query.format {
+        Format::Fixed => through::<Fixed, DynAccel, _>(&scene, rays, any, hits, &mut observed),
+        Format::F32 => through::<f32, DynAccel, _>(&scene, rays, any, hits, &mut observed),
+        Format::F64 => through::<f64, DynAccel, _>(&scene, rays, any, hits, &mut observed),
+    };
+    *counters = counters.plus(&observed.counters);
+    rejections
 }
 
 fn with_format<N: Number>(

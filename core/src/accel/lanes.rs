@@ -2,6 +2,8 @@
 //!
 //! Rule and margins are those of `single.rs`.
 
+#![allow(dead_code, reason = "targets without SIMD registers cull in integers")]
+
 use crate::accel::cull;
 use crate::accel::cull::{Cull, Culling, PairCulling};
 use crate::accel::cull_axis::CullArithmetic;

@@ -46,6 +46,12 @@ pub trait Observer {
     /// Cells of a subdivision of space were entered.
     #[inline(always)]
     fn cells(&mut self, _: u32) {}
+    /// Instances were entered.
+    #[inline(always)]
+    fn instances(&mut self, _: u32) {}
+    /// A ray brought radiance to its sample: red, green and blue, 1 being display white.
+    #[inline(always)]
+    fn radiance(&mut self, _: [f64; 3]) {}
     /// A ray was cast: a [`Ray`](crate::Ray) of some number format.
     #[inline(always)]
     fn ray<R: Any>(&mut self, _: RayKind, _: &R) {}
@@ -71,6 +77,8 @@ pub struct Counters {
     pub objects: u64,
     /// Cells of a subdivision of space that were entered.
     pub cells: u64,
+    /// Instances that were entered.
+    pub instances: u64,
     /// Rays from the camera.
     pub primary: u64,
     /// Rays towards lights.
@@ -106,6 +114,7 @@ impl Counters {
             boxes: self.boxes + other.boxes,
             objects: self.objects + other.objects,
             cells: self.cells + other.cells,
+            instances: self.instances + other.instances,
             primary: self.primary + other.primary,
             shadow: self.shadow + other.shadow,
             reflected: self.reflected + other.reflected,
@@ -129,6 +138,10 @@ impl Observer for Counters {
 
     fn cells(&mut self, number: u32) {
         self.cells = self.cells.wrapping_add(number.into());
+    }
+
+    fn instances(&mut self, number: u32) {
+        self.instances = self.instances.wrapping_add(number.into());
     }
 
     fn ray<R: Any>(&mut self, kind: RayKind, _: &R) {

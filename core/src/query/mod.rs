@@ -21,8 +21,9 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::target::{InstancesOnly, inline_on_hosts, inline_on_hosts_hint_on_boards};
-use search::{Candidate, search_structure};
+use crate::target::{InstancesOnly, WIDE, inline_on_hosts, inline_on_hosts_hint_on_boards};
+use placed::SearchPart;
+use search::{Candidate, search_apart, search_structure};
 
 inline_on_hosts_hint_on_boards!(
     /// The primitive that a ray meets first in its interval, found through the structure `A`.
@@ -88,13 +89,23 @@ fn search_own<N: Number, A: Accel, C: Observer, const ANY: bool>(
     if UNBOUNDED && scene.has_unbounded {
         return search_all::<N, A, C, ANY>(scene, ray, stack, count, any);
     }
-    let best = search_structure::<N, A, C, ANY>(scene, ray, None, stack, count, any)?;
-    Some(PrimitiveHit {
+    let best = if A::ONE_COPY {
+        search_apart::<N, A, C, ANY>(scene, ray, None, stack, count, any)
+    } else {
+        search_structure::<N, A, C, ANY>(scene, ray, None, stack, count, any)
+    };
+    Some(found(scene, ray, best?))
+}
+
+/// The hit of a candidate among the scene's own objects.
+#[inline(always)]
+fn found<N: Number>(scene: &Scene<'_>, ray: &Ray<N>, best: Candidate<N>) -> PrimitiveHit<N> {
+    PrimitiveHit {
         t: best.t.widen() + ray.start_t,
         primitive: scene.primitive_at(best.place),
         best,
         placed: InstancesOnly::new(|| None),
-    })
+    }
 }
 
 /// The nearest primitive on a ray in a scene with instances; see [`search`].
@@ -107,15 +118,27 @@ fn search_placed<N: Number, A: Accel, C: Observer, const ANY: bool>(
     count: &mut C,
     any: bool,
 ) -> Option<PrimitiveHit<N>> {
-    let own = if scene.has_own() {
-        search_own::<N, A, C, ANY>(scene, ray, stack, count, any)
-    } else {
+    let own = if !scene.has_own() {
         None
+    } else if UNBOUNDED && scene.has_unbounded {
+        search_all::<N, A, C, ANY>(scene, ray, stack, count, any)
+    } else {
+        let best = search_apart::<N, A, C, ANY>(scene, ray, None, stack, count, any);
+        best.map(|best| found(scene, ray, best))
     };
     if any && own.is_some() {
         return own;
     }
-    placed::nearest::<N, A, C, ANY>(scene, ray, own, stack, count, any)
+    let mut search = |part: &Scene<'_>, ray: &Ray<N>, stack: &mut StackView, count: &mut C| {
+        search_apart::<N, A, C, ANY>(part, ray, None, stack, count, any)
+    };
+    if WIDE {
+        // Hosts hold one copy for all structures.
+        let search: SearchPart<'_, N, C> = &mut search;
+        placed::nearest(scene, ray, own, stack, count, any, search)
+    } else {
+        placed::nearest(scene, ray, own, stack, count, any, search)
+    }
 }
 
 /// The nearest primitive on a ray in a scene with unbounded shapes; see [`search`].
@@ -138,18 +161,15 @@ fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(
     let best = if any && first.is_some() {
         first?
     } else {
-        search_structure::<N, A, C, ANY>(scene, &end, first, stack, count, any)?
+        search_apart::<N, A, C, ANY>(scene, &end, first, stack, count, any)?
     };
-    let t = match far {
-        Some((t, place)) if place == best.place => t,
-        _ => best.t.widen() + ray.start_t,
-    };
-    Some(PrimitiveHit {
-        t,
-        primitive: scene.primitive_at(best.place),
-        best,
-        placed: InstancesOnly::new(|| None),
-    })
+    let mut hit = found(scene, ray, best);
+    if let Some((t, place)) = far
+        && place == best.place
+    {
+        hit.t = t;
+    }
+    Some(hit)
 }
 
 /// The first hit of a ray in its interval: [`closest_primitive`] with its surface.

@@ -1,89 +1,97 @@
 //! The search through instances: each ray is mapped into the parts that it can meet.
 
-use crate::accel::{Accel, Number, StackView};
+use crate::accel::{Number, StackView};
 use crate::instances::map::{Map, beyond};
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::query::hit::{InInstance, PrimitiveHit};
-use crate::query::search::search_structure;
+use crate::query::search::Candidate;
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::target::InstancesOnly;
+use crate::target::{InstancesOnly, inline_on_boards};
 
-/// The nearest hit, given that of the scene's own objects.
-///
-/// A part has no hit before a mapped begin of the ray's interval or behind its mapped end, whatever is rounded: so both
-/// kinds of queries agree, and the t in the scene is limited to the interval.
-#[inline(always)]
-pub(super) fn nearest<N: Number, A: Accel, C: Observer, const ANY: bool>(
-    scene: &Scene<'_>,
-    ray: &Ray<N>,
-    own: Option<PrimitiveHit<N>>,
-    stack: &mut StackView,
-    count: &mut C,
-    any: bool,
-) -> Option<PrimitiveHit<N>> {
-    let Some(placed) = scene.placed.get() else {
-        return own;
-    };
-    if ray.tmax < ray.tmin {
-        return own;
-    }
-    let mut nearest = own;
-    // The t of the nearest hit, and number and place of its instance: none for the scene's own objects.
-    let mut best: Option<(N, Option<[u32; 2]>)> = own.map(|own| (own.best.t, None));
-    placed.top.walk(
-        ray,
-        best.map_or(ray.tmax, |best| best.0),
-        count,
-        |index, instance, count| {
-            let tmax = best.map_or(ray.tmax, |(t, _)| t);
-            let Some((part, first)) = placed.part(instance) else {
-                return Some(tmax);
-            };
-            let mut chosen;
-            let part = if part.space.same_choice(&scene.space) {
-                part
-            } else {
-                chosen = *part;
-                chosen.space.choose_as(&scene.space);
-                &chosen
-            };
-            let end = best.map_or(ray.tmax, |(t, _)| ray.tmax.min(beyond(t)));
-            let Some(mapped) = Map::new(instance).ray(part.bounds(), ray, end) else {
-                return Some(tmax);
-            };
-            if C::ENABLED {
-                count.event(mapped.entered(index, first));
-            }
-            let met = search_structure::<N, A, C, ANY>(part, &mapped.ray, None, stack, count, any);
-            let Some(met) = met else {
+/// A search through a part, by whatever structure.
+pub(super) type SearchPart<'f, N, C> =
+    &'f mut dyn FnMut(&Scene<'_>, &Ray<N>, &mut StackView, &mut C) -> Option<Candidate<N>>;
+
+inline_on_boards!(
+    /// The nearest hit, given that of the scene's own objects and a search through a part, which with `any` may end at the
+    /// first hit.
+    ///
+    /// A part has no hit before a mapped begin of the ray's interval or behind its mapped end, whatever is rounded: so both
+    /// kinds of queries agree, and the t in the scene is limited to the interval.
+    pub(super) fn nearest<N: Number, C: Observer>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        own: Option<PrimitiveHit<N>>,
+        stack: &mut StackView,
+        count: &mut C,
+        any: bool,
+        mut search: impl FnMut(&Scene<'_>, &Ray<N>, &mut StackView, &mut C) -> Option<Candidate<N>>,
+    ) -> Option<PrimitiveHit<N>> {
+        let Some(placed) = scene.placed.get() else {
+            return own;
+        };
+        if ray.tmax < ray.tmin {
+            return own;
+        }
+        let mut nearest = own;
+        // The t of the nearest hit, and number and place of its instance: none for the scene's own objects.
+        let mut best: Option<(N, Option<[u32; 2]>)> = own.map(|own| (own.best.t, None));
+        placed.top.walk(
+            ray,
+            best.map_or(ray.tmax, |best| best.0),
+            count,
+            |index, instance, count| {
+                let tmax = best.map_or(ray.tmax, |(t, _)| t);
+                let Some((part, first)) = placed.part(instance) else {
+                    return Some(tmax);
+                };
+                let mut chosen;
+                let part = if part.space.same_choice(&scene.space) {
+                    part
+                } else {
+                    chosen = *part;
+                    chosen.space.choose_as(&scene.space);
+                    &chosen
+                };
+                let end = best.map_or(ray.tmax, |(t, _)| ray.tmax.min(beyond(t)));
+                let Some(mapped) = Map::new(instance).ray(part.bounds(), ray, end) else {
+                    return Some(tmax);
+                };
+                count.instances(1);
                 if C::ENABLED {
-                    count.event(Event::InstanceLeft { nearest: false });
+                    count.event(mapped.entered(index, first));
                 }
-                return Some(tmax);
-            };
-            let t = mapped.t_in_scene(met.t.widen() + mapped.ray.start_t);
-            let t = ray.tmax.min(ray.tmin.max(t));
-            let number = [instance.number, index];
-            let is_nearer = best.is_none_or(|(least, holder)| {
-                t < least || t == least && holder.is_some_and(|holder| number < holder)
-            });
-            if C::ENABLED {
-                count.event(Event::InstanceLeft { nearest: is_nearer });
-            }
-            if !is_nearer {
-                return Some(tmax);
-            }
-            best = Some((t, Some(number)));
-            nearest = Some(PrimitiveHit {
-                t: t.widen() + ray.start_t,
-                primitive: first.wrapping_add(part.primitive_at(met.place)),
-                best: met,
-                placed: InstancesOnly::new(|| Some(InInstance { index, t })),
-            });
-            (!any).then_some(t)
-        },
-    );
-    nearest
-}
+                let met = search(part, &mapped.ray, stack, count);
+                let Some(met) = met else {
+                    if C::ENABLED {
+                        count.event(Event::InstanceLeft { nearest: false });
+                    }
+                    return Some(tmax);
+                };
+                let t = mapped.t_in_scene(met.t.widen() + mapped.ray.start_t);
+                let t = ray.tmax.min(ray.tmin.max(t));
+                let number = [instance.number, index];
+                let is_nearer = best.is_none_or(|(least, holder)| {
+                    t < least || t == least && holder.is_some_and(|holder| number < holder)
+                });
+                if C::ENABLED {
+                    count.event(Event::InstanceLeft { nearest: is_nearer });
+                }
+                if !is_nearer {
+                    return Some(tmax);
+                }
+                best = Some((t, Some(number)));
+                nearest = Some(PrimitiveHit {
+                    t: t.widen() + ray.start_t,
+                    primitive: first.wrapping_add(part.primitive_at(met.place)),
+                    best: met,
+                    placed: InstancesOnly::new(|| Some(InInstance { index, t })),
+                });
+                (!any).then_some(t)
+            },
+        );
+        nearest
+    }
+);

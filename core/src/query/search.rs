@@ -381,6 +381,21 @@ pub(super) fn search_structure<N: Number, A: Accel, C: Observer, const ANY: bool
     search.best
 }
 
+inline_on_boards!(
+    /// [`search_structure`] for scenes with instances or unbounded shapes, which search in several places: hosts hold it
+    /// once for all of those.
+    pub(super) fn search_apart<N: Number, A: Accel, C: Observer, const ANY: bool>(
+        scene: &Scene<'_>,
+        ray: &Ray<N>,
+        first: Option<Candidate<N>>,
+        stack: &mut StackView,
+        count: &mut C,
+        any: bool,
+    ) -> Option<Candidate<N>> {
+        search_structure::<N, A, C, ANY>(scene, ray, first, stack, count, any)
+    }
+);
+
 /// The records of a leaf's slots, with the slots.
 #[inline(always)]
 fn numbered<T>(leaf: Leaf, records: Option<&[T]>) -> impl Iterator<Item = (u32, &T)> {

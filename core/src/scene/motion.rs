@@ -16,7 +16,7 @@ const SCALE_BITS: u32 = 24;
 /// A rotation, a uniform scale and a shift in scene coordinates: an instance's place at rest is led to its new one.
 ///
 /// In integers alone, the same bits in every number format and on every machine. Coordinates are multiples of
-/// the scene's step, as a [`Position`] has them. Each composition rounds a rotation by at most 2^-29.
+/// the scene's step, as a [`Position`] has them. Each composition rounds the numbers of a rotation's matrix to 30 fraction bits.
 ///
 /// ```
 /// use gridel_core::{Angle, Motion, Position};
@@ -51,7 +51,7 @@ impl Motion {
     pub const SCALES: [i32; 2] = SCALES;
 
     /// A turn about an axis of any length through a place, counterclockwise as seen from the axis' tip; `None` if the
-    /// axis has no length.
+    /// axis has no length. Each number of its matrix is within 2^-25.
     pub fn turn(pivot: Position, axis: [i32; 3], angle: Angle) -> Option<Self> {
         Self::rotation(pivot, about(axis, angle)?)
     }

@@ -99,6 +99,8 @@ struct Stats {
     boxes: u64,
     cells: u64,
     objects: u64,
+    /// Instances that rays entered.
+    instances: u64,
     rays_per_second: f64,
 }
 
@@ -265,6 +267,7 @@ fn stats(arguments: &Arguments, picture: &Picture, time: Duration) -> Option<Sta
         boxes,
         objects,
         cells,
+        instances,
         primary,
         shadow,
         reflected,
@@ -280,6 +283,7 @@ fn stats(arguments: &Arguments, picture: &Picture, time: Duration) -> Option<Sta
         boxes,
         cells,
         objects,
+        instances,
         rays_per_second: counters.rays() as f64 / time.as_secs_f64(),
     })
 }
@@ -338,6 +342,7 @@ impl Stats {
             ("boxes tested", self.boxes),
             ("cells entered", self.cells),
             ("primitives tested", self.objects),
+            ("instances entered", self.instances),
         ] {
             table.row([what.to_owned(), grouped(count), a_ray(count)]);
         }

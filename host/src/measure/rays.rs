@@ -1,11 +1,12 @@
 //! Tracing with counters, and tracing against the clock.
 
 use super::time::median;
+use crate::observed::Observed;
 use crate::picture_rays::PictureRays;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
-    Accel, Counters, Event, NoCount, Number, Observer, PrimitiveHit, Ray, Scene, Stack, Structure,
+    Accel, Counters, NoCount, Number, Observer, PrimitiveHit, Ray, Scene, Stack, Structure,
     StructureVisitor, any_hit, closest_primitive,
 };
 use serde::Serialize;
@@ -164,46 +165,6 @@ fn ask_through<N: Number, A: Accel, C: Observer>(
     }
 }
 
-/// Counts tests, and the instances that rays enter.
-#[derive(Clone, Copy, Debug, Default)]
-struct Tally {
-    tests: Counters,
-    instances: u64,
-}
-
-impl Observer for Tally {
-    const ENABLED: bool = true;
-
-    fn planes(&mut self, number: u32) {
-        self.tests.planes(number);
-    }
-
-    fn boxes(&mut self, number: u32) {
-        self.tests.boxes(number);
-    }
-
-    fn objects(&mut self, number: u32) {
-        self.tests.objects(number);
-    }
-
-    fn cells(&mut self, number: u32) {
-        self.tests.cells(number);
-    }
-
-    fn event(&mut self, event: Event) {
-        self.instances += u64::from(matches!(event, Event::InstanceEntered { .. }));
-    }
-}
-
-impl Tally {
-    fn plus(&self, other: &Self) -> Self {
-        Self {
-            tests: self.tests.plus(&other.tests),
-            instances: self.instances + other.instances,
-        }
-    }
-}
-
 /// Tests and times of some rays. Those in parts count, and those of the hierarchy above instances.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Work {
@@ -225,16 +186,15 @@ pub struct Work {
 }
 
 impl Work {
-    fn of(scene: &Scene<'_>, (tally, rays): (&Tally, usize), seconds: Option<f64>) -> Self {
+    fn of(scene: &Scene<'_>, (tests, rays): (&Counters, usize), seconds: Option<f64>) -> Self {
         let each = |count: u64| count as f64 / rays.max(1) as f64;
-        let Tally { tests, instances } = tally;
         Self {
             rays,
             planes: each(tests.planes),
             boxes: each(tests.boxes),
             cells: each(tests.cells),
             objects: each(tests.objects),
-            instances: (!scene.instances().is_empty()).then(|| each(*instances)),
+            instances: (!scene.instances().is_empty()).then(|| each(tests.instances)),
             rays_per_second: seconds.map(|seconds| rays as f64 / seconds.max(1e-9)),
         }
     }
@@ -285,7 +245,7 @@ pub fn measure<N: Number>(
     for (&(scene, &structure), &stride) in contenders.iter().zip(&strides) {
         progress(&format!("counting {}", structure.name()));
         counts.push(groups.map(|(question, all)| {
-            let mut tally = Tally::default();
+            let mut observed = Observed::default();
             let mut some = all.iter().step_by(stride);
             let rays = some.len();
             // The work is the same as through the structure's own code.
@@ -294,13 +254,13 @@ pub fn measure<N: Number>(
                     &scene,
                     question,
                     &mut some,
-                    &mut tally,
+                    &mut observed,
                     &mut |answer| {
                         black_box(answer);
                     },
                 );
             }
-            (tally, rays)
+            (observed.counters, rays)
         }));
     }
     let mut seconds = vec![[const { Vec::new() }; 3]; contenders.len()];
@@ -328,13 +288,13 @@ pub fn measure<N: Number>(
     let works = measured.map(|((&(scene, _), counts), seconds)| {
         let seconds = seconds.map(|repeats| median(&repeats));
         let work = |group: usize| {
-            let (tally, rays) = &counts[group];
-            Work::of(scene, (tally, *rays), seconds[group])
+            let (tests, rays) = &counts[group];
+            Work::of(scene, (tests, *rays), seconds[group])
         };
         let some = |work: Work| (work.rays > 0).then_some(work);
         let all = counts
             .iter()
-            .fold(Tally::default(), |all, (one, _)| all.plus(one));
+            .fold(Counters::default(), |all, (one, _)| all.plus(one));
         let rays = counts.iter().map(|(_, rays)| rays).sum();
         Works {
             primary: work(0),

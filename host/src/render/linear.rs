@@ -1,10 +1,11 @@
 //! Pictures in linear radiance, which no display's range limits.
 
 use super::{ALL, Job, chosen};
+use crate::observed::Observed;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
 use gridel_core::render::RenderError;
-use gridel_core::{Event, Fixed, Format, Number, Observer, Renderer, Scene, Workspace};
+use gridel_core::{Fixed, Format, Number, Renderer, Scene, Workspace};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -67,23 +68,6 @@ pub fn render_linear(
     })
 }
 
-/// The sum of what rays bring to the samples of a pixel.
-#[derive(Default)]
-struct Radiance([f64; 3]);
-
-impl Observer for Radiance {
-    const ENABLED: bool = true;
-
-    #[inline(always)]
-    fn event(&mut self, event: Event) {
-        if let Event::Added { radiance, .. } = event {
-            for (sum, brought) in self.0.iter_mut().zip(radiance) {
-                *sum += brought;
-            }
-        }
-    }
-}
-
 fn rows<N: Number>(
     scene: &Scene<'_>,
     job: &Job,
@@ -99,9 +83,9 @@ fn rows<N: Number>(
             let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
             let mut space = space.as_view();
             for (x, pixel) in (0..width).zip(row) {
-                let mut sum = Radiance::default();
-                renderer.linear(x, y, &mut space, &mut sum);
-                *pixel = sum.0.map(|sum| {
+                let mut observed = Observed::default();
+                renderer.linear(x, y, &mut space, &mut observed);
+                *pixel = observed.radiance.map(|sum| {
                     let mean = sum / samples;
                     let linear = if is_display_value {
                         decoded(mean)

@@ -12,8 +12,17 @@ type Vector = [f64; 3];
 fn moved(place: Vector, pivot: Vector, rotation: [i32; 4], scale: f64, shift: Vector) -> Vector {
     let q = rotation.map(f64::from);
     let norm = libm::sqrt(q.iter().map(|x| x * x).sum());
-    let [x, y, z, w] = q.map(|x| x / norm);
-    let matrix = [
+    let matrix = matrix(q.map(|x| x / norm));
+    let way: Vector = core::array::from_fn(|axis| place[axis] - pivot[axis]);
+    core::array::from_fn(|axis| {
+        let turned: f64 = (0..3).map(|k| matrix[axis][k] * way[k]).sum();
+        pivot[axis] + scale * turned + shift[axis]
+    })
+}
+
+/// The matrix of a quaternion of length 1.
+fn matrix([x, y, z, w]: [f64; 4]) -> [Vector; 3] {
+    [
         [
             1.0 - 2.0 * (y * y + z * z),
             2.0 * (x * y - z * w),
@@ -29,12 +38,7 @@ fn moved(place: Vector, pivot: Vector, rotation: [i32; 4], scale: f64, shift: Ve
             2.0 * (y * z + x * w),
             1.0 - 2.0 * (x * x + y * y),
         ],
-    ];
-    let way: Vector = core::array::from_fn(|axis| place[axis] - pivot[axis]);
-    core::array::from_fn(|axis| {
-        let turned: f64 = (0..3).map(|k| matrix[axis][k] * way[k]).sum();
-        pivot[axis] + scale * turned + shift[axis]
-    })
+    ]
 }
 
 fn coordinates() -> impl Strategy<Value = [i32; 3]> {
@@ -47,7 +51,29 @@ fn rotations() -> impl Strategy<Value = [i32; 4]> {
     rotation.prop_filter("a length", |rotation| *rotation != [0; 4])
 }
 
+/// The error of a turn that [`Motion::turn`] states: 2^-25, with 30 fraction bits.
+const TURN_ERROR: u32 = 32;
+
 proptest! {
+    #[test]
+    fn turns_are_those_of_real_numbers(
+        axis in rotations(),
+        angle in prop_oneof![any::<u32>(), 0_u32..4096, (0_u32..4096).prop_map(u32::wrapping_neg)],
+    ) {
+        let [x, y, z, _] = axis;
+        let Some(turn) = Motion::turn(Position([0; 3]), [x, y, z], Angle(angle)) else {
+            return Ok(());
+        };
+        let length = libm::sqrt([x, y, z].iter().map(|&x| f64::from(x) * f64::from(x)).sum());
+        let half = f64::from(angle) * f64::powi(2.0, -32) * core::f64::consts::PI;
+        let [x, y, z] = [x, y, z].map(|x| f64::from(x) / length * libm::sin(half));
+        let expected = matrix([x, y, z, libm::cos(half)]);
+        for (found, expected) in turn.rotation.into_iter().zip(expected).flat_map(|(a, b)| a.into_iter().zip(b)) {
+            let error = (f64::from(found) - expected * f64::powi(2.0, 30)).abs();
+            prop_assert!(error <= f64::from(TURN_ERROR), "{} for {}", found, expected);
+        }
+    }
+
     #[test]
     fn motions_are_those_of_real_numbers(
         place in coordinates(),
@@ -147,11 +173,12 @@ proptest! {
         let placed = chain.place_rounded(&Header::zeroed(), &rest);
         prop_assert!(placed.check_ranges(Location::Header).is_ok(), "{:?}", placed.matrix);
         crate::instances::bounds::check_rotation(&placed.matrix).expect("a rotation");
-        // As far along as the angles' sum, but for what each composition rounds.
+        // As far along as the angles' sum, but for what each turn and each composition rounds: errors of matrices add
+        // up, and as a vector's stretch an error of all nine entries is three times as large.
         let at_once = Motion::turn(Position([0; 3]), [x, y, z], Angle(angle.wrapping_mul(length as u32)));
         let at_once = at_once.expect("an axis").rotation.into_iter().flatten();
         for (found, expected) in straight.rotation.into_iter().flatten().zip(at_once) {
-            prop_assert!(found.abs_diff(expected) <= 16 * length as u32, "{} for {}", found, expected);
+            prop_assert!(found.abs_diff(expected) <= 3 * (TURN_ERROR + 1) * length as u32, "{} for {}", found, expected);
         }
     }
 

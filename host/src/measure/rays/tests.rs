@@ -1,11 +1,11 @@
 //! Counts of tests in scenes with instances.
 
-use super::{Answer, Question, Tally, ask, ask_through};
+use super::{Answer, Question, ask, ask_through};
 use crate::compile::{Options, compile};
 use crate::picture_rays::PictureRays;
 use crate::scene::read;
 use gridel_core::accel::DynAccel;
-use gridel_core::{Accel, Ray, Scene, Settings, Structure, StructureVisitor};
+use gridel_core::{Accel, Counters, Ray, Scene, Settings, Structure, StructureVisitor};
 
 const SCENE: &str = "[camera]\neye = [1, 2, 12]\ntarget = [1, 0, 0]\n\
     [[object]]\nkind = 'sphere'\ncenter = [0, -2, 0]\nradius = 0.8\n\
@@ -28,14 +28,14 @@ const STRUCTURES: [Structure; 5] = [
 struct Count<'a>(&'a Scene<'a>, Question, &'a [Ray<f32>]);
 
 impl StructureVisitor for Count<'_> {
-    type Output = Tally;
+    type Output = Counters;
 
-    fn visit<A: Accel>(self) -> Tally {
+    fn visit<A: Accel>(self) -> Counters {
         let Self(scene, question, rays) = self;
-        let mut tally = Tally::default();
+        let mut counters = Counters::default();
         let rays = &mut rays.iter();
-        ask_through::<f32, A, _>(scene, question, rays, &mut tally, &mut |_| ());
-        tally
+        ask_through::<f32, A, _>(scene, question, rays, &mut counters, &mut |_| ());
+        counters
     }
 }
 
@@ -61,18 +61,14 @@ fn chosen_structures_count_what_their_own_code_does() {
     with_scene(|scene, rays| {
         for structure in STRUCTURES {
             let chosen = scene.choose(structure).expect("a structure");
-            let mut tally = Tally::default();
+            let mut counters = Counters::default();
             let some = &mut rays.primary.iter();
             let question = Question::Closest;
-            ask_through::<f32, DynAccel, _>(&chosen, question, some, &mut tally, &mut |_| ());
+            ask_through::<f32, DynAccel, _>(&chosen, question, some, &mut counters, &mut |_| ());
             let own = structure.visit(Count(scene, question, &rays.primary));
             let name = structure.name();
-            assert_eq!(
-                (tally.tests, tally.instances),
-                (own.tests, own.instances),
-                "{name}"
-            );
-            assert!(tally.instances > 0 && tally.tests.objects > 0, "{name}");
+            assert_eq!(counters, own, "{name}");
+            assert!(counters.instances > 0 && counters.objects > 0, "{name}");
         }
     });
 }
