@@ -22,7 +22,7 @@ use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::target::{InstancesOnly, WIDE, inline_on_hosts, inline_on_hosts_hint_on_boards};
-use placed::SearchPart;
+use placed::{PartSearch, SearchPart};
 use search::{Candidate, search_apart, search_structure};
 
 inline_on_hosts_hint_on_boards!(
@@ -135,9 +135,9 @@ fn search_placed<N: Number, A: Accel, C: Observer, const ANY: bool>(
     if WIDE {
         // Hosts hold one copy for all structures.
         let search: SearchPart<'_, N, C> = &mut search;
-        placed::nearest(scene, ray, own, stack, count, any, search)
+        placed::nearest(scene, ray, own, stack, count, PartSearch { any, search })
     } else {
-        placed::nearest(scene, ray, own, stack, count, any, search)
+        placed::nearest(scene, ray, own, stack, count, PartSearch { any, search })
     }
 }
 

@@ -14,9 +14,15 @@ use crate::target::{InstancesOnly, inline_on_boards};
 pub(super) type SearchPart<'f, N, C> =
     &'f mut dyn FnMut(&Scene<'_>, &Ray<N>, &mut StackView, &mut C) -> Option<Candidate<N>>;
 
+/// What finds the hits in parts.
+pub(super) struct PartSearch<F> {
+    /// Whether the first hit will do.
+    pub(super) any: bool,
+    pub(super) search: F,
+}
+
 inline_on_boards!(
-    /// The nearest hit, given that of the scene's own objects and a search through a part, which with `any` may end at the
-    /// first hit.
+    /// The nearest hit, given that of the scene's own objects and a search through parts.
     ///
     /// A part has no hit before a mapped begin of the ray's interval or behind its mapped end, whatever is rounded: so both
     /// kinds of queries agree, and the t in the scene is limited to the interval.
@@ -26,9 +32,11 @@ inline_on_boards!(
         own: Option<PrimitiveHit<N>>,
         stack: &mut StackView,
         count: &mut C,
-        any: bool,
-        mut search: impl FnMut(&Scene<'_>, &Ray<N>, &mut StackView, &mut C) -> Option<Candidate<N>>,
+        parts: PartSearch<
+            impl FnMut(&Scene<'_>, &Ray<N>, &mut StackView, &mut C) -> Option<Candidate<N>>,
+        >,
     ) -> Option<PrimitiveHit<N>> {
+        let PartSearch { any, mut search } = parts;
         let Some(placed) = scene.placed.get() else {
             return own;
         };
