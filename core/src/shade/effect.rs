@@ -30,6 +30,14 @@ pub(crate) trait Tracer<'s, N: Number> {
 
     fn count(&mut self) -> &mut Self::Observer;
 
+    /// A random point of the unit square, with 32 fraction bits, for the ray that is followed: see
+    /// [`Sampler::point`](crate::shade::sampler::Sampler::point), which says what a dimension is.
+    #[allow(
+        dead_code,
+        reason = "the first effect that draws points is yet to come"
+    )]
+    fn point(&self, dimension: u16) -> [u32; 2];
+
     fn any_hit(&mut self, ray: &Ray<N>) -> bool;
 
     fn closest_hit(&mut self, ray: &Ray<N>) -> Option<Hit<N>>;

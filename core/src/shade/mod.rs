@@ -21,6 +21,7 @@ mod color;
 pub(crate) mod effect;
 pub(crate) mod light;
 mod material;
+pub(crate) mod sampler;
 pub(crate) mod surface;
 
 use crate::format::effects::{Effects, effects};

@@ -3,6 +3,7 @@
 use super::value::Value;
 use crate::scene::{Camera, Light, RenderSettings, SceneError};
 use glam::DVec3;
+use gridel_core::format::limits::MAX_SAMPLES;
 
 /// The largest width and height of a picture.
 const MAX_SIDE: u32 = 65_535;
@@ -73,7 +74,7 @@ pub(super) fn render(table: Value<'_>) -> Result<RenderSettings, SceneError> {
         width,
         height,
         samples: fields.or("samples", default.samples, |value| {
-            Ok(value.integer_in(1..=256)? as u16)
+            Ok(value.integer_in(1..=MAX_SAMPLES.into())? as u16)
         })?,
         depth: fields.or("depth", default.depth, |value| {
             Ok(value.integer_in(0..=16)? as u8)

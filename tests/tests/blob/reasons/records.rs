@@ -23,7 +23,7 @@ pub(super) fn shading_data() -> Errors {
         (Field::Width, &|it| it.width = 0),
         (Field::Height, &|it| it.height = 0),
         (Field::Samples, &|it| it.samples = 0),
-        (Field::Samples, &|it| it.samples = 257),
+        (Field::Samples, &|it| it.samples = 4097),
         (Field::RayDepth, &|it| it.depth = 17),
         (Field::DisplayValues, &|it| it.display_values = 2),
     ];
