@@ -22,7 +22,7 @@ use crate::ray::{Ray, RayError};
 use crate::scene::Scene;
 use crate::shade::effect::{EffectList, Tracer};
 use crate::shade::sampler::Sampler;
-use crate::shade::surface::{Bounce, Filter, Lighting, Secondary, Surface, depart, secondary_ray};
+use crate::shade::surface::{Aim, Bounce, Filter, Lighting, Secondary, Surface, depart, secondary_ray};
 use crate::shade::{All, Color};
 use core::marker::PhantomData;
 use heapless::{Vec, VecView};
@@ -269,6 +269,9 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         let mut state = self.state;
         let origin = depart(self.scene, surface.hit, surface.hit.front, true);
         let (way, distance) = light.seen_from(origin);
+        let mut aim = Aim { way, distance };
+        All::aim::<EFFECTS, N, _>(self, &mut state, number, light, &mut aim);
+        let Aim { way, distance } = aim;
         let Some((slopes, _)) = N::slopes(way) else {
             return Color::BLACK;
         };
