@@ -22,7 +22,9 @@ use crate::ray::{Ray, RayError};
 use crate::scene::Scene;
 use crate::shade::effect::{EffectList, Tracer};
 use crate::shade::sampler::Sampler;
-use crate::shade::surface::{Aim, Bounce, Filter, Lighting, Secondary, Surface, depart, secondary_ray};
+use crate::shade::surface::{
+    Aim, Bounce, Filter, Lighting, Secondary, Surface, depart, secondary_ray,
+};
 use crate::shade::{All, Color};
 use core::marker::PhantomData;
 use heapless::{Vec, VecView};

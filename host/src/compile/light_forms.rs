@@ -23,7 +23,12 @@ pub fn form_record(
     let limited = |what: &'static str, length: f64, most: f64| {
         let fits = units(length) <= most;
         let most = most * lattice.unit();
-        fits.then_some(()).ok_or(CompileError::LightForm { number, what, length, most })
+        fits.then_some(()).ok_or(CompileError::LightForm {
+            number,
+            what,
+            length,
+            most,
+        })
     };
     let q13 = |length: f64| (units(length) * 8192.0).round() as i32;
     let (shape, normal, edges, mut reference) = match form.shape {
@@ -32,12 +37,20 @@ pub fn form_record(
             let reference = if form.falls_off { 1.0 } else { 0.0 };
             (0, direction, [DVec3::ZERO; 2], reference)
         }
-        LightShape::Sphere { radius } => {
-            (Record::SPHERE, DVec3::ZERO, [DVec3::X * radius, DVec3::ZERO], radius)
-        }
+        LightShape::Sphere { radius } => (
+            Record::SPHERE,
+            DVec3::ZERO,
+            [DVec3::X * radius, DVec3::ZERO],
+            radius,
+        ),
         LightShape::Rectangle { edges } => {
             let across = edges[0].cross(edges[1]);
-            (Record::RECTANGLE, unit(across), edges, (across.length() / PI).sqrt())
+            (
+                Record::RECTANGLE,
+                unit(across),
+                edges,
+                (across.length() / PI).sqrt(),
+            )
         }
         LightShape::Disc { normal, radius } => {
             let normal = unit(normal);
@@ -59,7 +72,9 @@ pub fn form_record(
     limited("range", form.range.unwrap_or(0.0), LONGEST)?;
     let q30 = |ratio: f64| (ratio * f64::from(1 << 30)).round() as i32;
     let cosine = |degrees: f64| degrees.to_radians().cos();
-    let cone = form.spot.map(|spot| [cosine(spot.outer), cosine(spot.inner)]);
+    let cone = form
+        .spot
+        .map(|spot| [cosine(spot.outer), cosine(spot.inner)]);
     let record = Record {
         shape,
         // A light that is there is never without a distance.

@@ -1,5 +1,6 @@
 //! The scene as data.
 
+use super::light_form::LightForm;
 use super::normals::{Normals, NormalsChoice};
 use super::placement::Placement;
 use super::source_span::SourceSpan;

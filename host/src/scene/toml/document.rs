@@ -12,7 +12,7 @@ use super::place::Placer;
 use super::source::Source;
 use super::track::{self, Targets};
 use super::value::Fields;
-use super::view;
+use super::{light, view};
 use crate::scene::importer::Input;
 use crate::scene::{Camera, Color, Light, Scene, SceneError};
 use crate::table::printable;
@@ -50,7 +50,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     )?;
     let camera = root.or("camera", None, |table| view::camera(table).map(Some))?;
     let render = root.or("render", None, |table| view::render(table).map(Some))?;
-    let lights = root.or("light", Vec::new(), view::lights)?;
+    let lights = root.or("light", Vec::new(), light::lights)?;
     let mut names = Vec::with_capacity(lights.len());
     let mut forms = Vec::with_capacity(lights.len());
     let mut plain = Vec::with_capacity(lights.len());
