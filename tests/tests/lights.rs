@@ -15,7 +15,7 @@ fn scene(lights: &str, eye: &str, target: &str, objects: &str) -> Blob {
     let text = format!(
         "[camera]\neye = {eye}\ntarget = {target}\nup = [0.3, 0.2, 1]\nfov = 0.2\n\
          [render]\nwidth = 4\nheight = 4\nsamples = 1\n\
-         [[material]]\nname = 'white'\ndiffuse = 1\n{objects}\n{lights}"
+         [material.white]\ndiffuse = 1\n{objects}\n{lights}"
     );
     let imported =
         gridel_host::scene::read("light.toml".as_ref(), text.into(), &Default::default());
@@ -61,11 +61,11 @@ fn check(name: &str, blob: &Blob, exact: f64) {
             vec![16, 256]
         } {
             let (mean, error) = measured(blob, format, samples);
-            eprintln!("{name} {format} {samples}: {mean:.6} +- {error:.6}, exact {exact:.6}");
+            eprintln!("{name} {format:?} {samples}: {mean:.6} +- {error:.6}, exact {exact:.6}");
             let off = (mean - exact).abs();
             assert!(
                 off <= 3.0 * error + ROUNDING + 2e-4 * exact,
-                "{name} {format} {samples}"
+                "{name} {format:?} {samples}"
             );
             let most = if format == Format::Fixed {
                 0.005
@@ -74,7 +74,7 @@ fn check(name: &str, blob: &Blob, exact: f64) {
             };
             assert!(
                 samples < 4096 || off <= most * exact + ROUNDING,
-                "{name} {format}"
+                "{name} {format:?}"
             );
         }
     }
@@ -123,7 +123,7 @@ fn rectangles_and_discs_shine_to_one_side() {
         let light = format!("[[light]]\n{light}\nradiance = 50");
         let blob = scene(&light, "[10, 30, 10]", "[10, 0, 10]", FLOOR);
         for format in Format::ALL {
-            assert_eq!(measured(&blob, format, 4), (0.0, 0.0), "{light} {format}");
+            assert_eq!(measured(&blob, format, 4), (0.0, 0.0), "{light} {format:?}");
         }
     }
 }

@@ -56,8 +56,10 @@ pub(super) fn check_light(index: usize, light: &Light, forms: usize) -> Result<(
     let at = At { section, index };
     light.check_ranges(at.location())?;
     match light.form() {
-        Some(form) => at.within(Field::LightForm, form.into(), 0, forms as i64 - 1)?,
-        None => at.within(Field::Kind, light.directional.into(), 0, 1)?,
+        Some(form) if forms > 0 => {
+            at.within(Field::LightForm, form.into(), 0, forms as i64 - 1)?;
+        }
+        _ => at.within(Field::Kind, light.directional.into(), 0, 1)?,
     }
     let most = if light.directional == 1 {
         ONE

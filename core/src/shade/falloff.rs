@@ -52,7 +52,9 @@ impl Effect for Falloff {
 
 /// The cosine between the light's direction and the way to a surface, given the way back.
 fn cosine<N: Number>(form: &LightForm, to_light: [N; 3]) -> N {
-    -N::from_wide(N::dot(form.normal.map(N::ratio), to_light))
+    let cos = -N::from_wide(N::dot(form.normal.map(N::ratio), to_light));
+    // Nothing proves the length of the normal.
+    cos.max(-N::ONE).min(N::ONE)
 }
 
 /// Whether a light shines towards a surface.
@@ -93,7 +95,8 @@ fn falling<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>, color: Color
     match form.shape {
         LightForm::SPHERE => {
             // A cone around a sphere takes 2 s² / (1 + cos) of π, where s is the sine of its angle.
-            let sine = length::<N>(form.edges[0][0]).half().div(half).min(N::ONE);
+            let sine = length::<N>(form.edges[0][0]).half().div(half);
+            let sine = sine.max(N::ZERO).min(N::ONE);
             let cos = (N::ONE - sine * sine).sqrt();
             let one = N::ONE.half();
             let arriving = arriving.scaled(one.div(one + cos.half()));
