@@ -38,7 +38,7 @@ records! {
         /// The direction of a spot, or the side on which a rectangle or disc shines: length 1, 30 fraction bits.
         #[valid(Normal: -ONE..=ONE)]
         pub normal: [i32; 3],
-        /// The edges of a rectangle, or two perpendicular radii of a disc, lengths with 13 fraction bits. The
+        /// `[edge][axis]`: the edges of a rectangle, or two perpendicular radii of a disc, lengths with 13 fraction bits. The
         /// first number is the radius of a sphere.
         #[valid(LightEdge: -EDGE..=EDGE)]
         pub edges: [[i32; 3]; 2],
