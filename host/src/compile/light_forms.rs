@@ -12,12 +12,14 @@ const LONGEST: f64 = (1 << 17) as f64;
 /// The longest edge, in units.
 const LONGEST_EDGE: f64 = (1 << 15) as f64;
 
-/// The record of a form, and the light's color in it.
+/// The record of a form, and the light's color in it: brought to the range where it is most precise, unless a track
+/// gives the light other colors.
 pub fn form_record(
     form: &LightForm,
     color: Color,
     lattice: &Lattice,
     number: usize,
+    has_color_track: bool,
 ) -> Result<(Record, Color), CompileError> {
     let units = |length: f64| length / lattice.unit();
     let limited = |what: &'static str, length: f64, most: f64| {
@@ -65,9 +67,11 @@ pub fn form_record(
     // The color is as precise as it can be, and the distance at which the light has it makes up for that.
     let (peak, mut color) = (color.into_iter().fold(0.0, f64::max), color);
     if reference > 0.0 && peak > 0.0 {
-        reference *= peak.sqrt();
-        color = color.map(|channel| channel / peak);
-        limited("distance at which it is white", reference, LONGEST)?;
+        if !has_color_track {
+            reference *= peak.sqrt();
+            color = color.map(|channel| channel / peak);
+        }
+        limited("distance at which it has its color", reference, LONGEST)?;
     }
     limited("range", form.range.unwrap_or(0.0), LONGEST)?;
     let q30 = |ratio: f64| (ratio * f64::from(1 << 30)).round() as i32;

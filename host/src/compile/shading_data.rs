@@ -18,6 +18,7 @@ use gridel_core::Effects;
 use gridel_core::format::light_form::LightForm;
 use gridel_core::format::limits::FARTHEST;
 use gridel_core::format::record::{self, View};
+use gridel_core::format::track::TrackTarget;
 
 /// The ambient light that is supplied with a light, so that shadows are not black.
 const AMBIENT: f64 = 0.15;
@@ -114,7 +115,11 @@ impl ShadingData {
                 let (Some(form), Light::Point { position, color }) = (form, *light) else {
                     return light_record(light, lattice, size, number);
                 };
-                let (form, color) = form_record(&form, color, lattice, number)?;
+                let has_color_track = scene
+                    .tracks
+                    .iter()
+                    .any(|track| (track.target, track.index) == (TrackTarget::LightColor, number));
+                let (form, color) = form_record(&form, color, lattice, number, has_color_track)?;
                 let light = Light::Point { position, color };
                 let directional =
                     record::Light::with_form(light_forms.len() as u32, form.shape != 0);
