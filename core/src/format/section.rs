@@ -196,6 +196,8 @@ macro_rules! sections {
             Joints = 73, "joints", [track::Joint], "joint" of "tracks";
             /// For each instance, the joint on which it hangs, or `u32::MAX`. Absent where there are no joints.
             InstanceJoints = 74, "instance-joints", [u32], "instance" of "tracks";
+            /// [`LightForm`](crate::format::light_form::LightForm)s: what makes lights more than points.
+            LightForms = 75, "light-forms", [light_form::LightForm], "form" of "lights";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

@@ -16,6 +16,7 @@ mod flatten;
 mod gzip;
 mod importer;
 mod joint;
+mod light_form;
 mod model;
 pub(crate) mod molecule;
 mod normals;
@@ -37,6 +38,7 @@ pub use error::SceneError;
 pub use importer::Importer;
 pub(crate) use joint::JointTracks;
 pub use joint::{LARGEST_SCALE, LEAST_SCALE};
+pub use light_form::{LightForm, LightShape, Spot};
 pub use model::{
     Camera, Color, Diffuse, Instance, Joint, Light, Material, Object, Part, RenderSettings, Scene,
 };
