@@ -1,9 +1,11 @@
 //! Queries: the first hit of a ray, and any hit.
 //!
 //! `search` tests the primitives to which a structure leads, `clusters` those in leaves of eight, `unbounded`
-//! those that lie in no structure; `hit` is the answer, and `smooth` its normal for shading.
+//! those that lie in no structure; `hit` is the answer, `smooth` its normal for shading, and `distance` what range
+//! finders make of it.
 
 mod clusters;
+mod distance;
 #[cfg(feature = "all-structures")]
 mod dynamic;
 mod hit;

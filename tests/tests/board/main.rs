@@ -31,7 +31,7 @@ mod structures;
 mod waves;
 
 use figures::Figures;
-use firmware::{AARCH64, Build, Program, S390X, WASM, board};
+use firmware::{AARCH64, Build, Program, RV32IMC, S390X, WASM, board};
 use gridel_core::{Format, Structure};
 use gridel_host::measure::board::{BOARDS, Board};
 use libtest_mimic::Arguments;
@@ -42,7 +42,10 @@ use std::fs;
 
 /// Every board in every number format that it computes itself.
 fn boards() -> impl Iterator<Item = (&'static Board, Format)> {
-    let boards = BOARDS.iter().chain([&WASM]);
+    let boards = BOARDS
+        .iter()
+        .filter(|board| board.is_emulated())
+        .chain([&WASM]);
     boards.flat_map(|board| board.formats.iter().map(move |&format| (board, format)))
 }
 
@@ -83,6 +86,13 @@ fn pictures(plan: &mut Plan) {
                 compare_with_the_hosts(board, format, &parts::every_shape());
             });
     }
+
+    plan.test("every_effect_without_atomic_instructions::rv32imc")
+        .on(&RV32IMC)
+        .in_full()
+        .run(|| {
+            compare_with_the_hosts(&RV32IMC, Format::Fixed, &scenes::quick());
+        });
 
     let names = [
         "microbit",
@@ -305,7 +315,7 @@ fn linked(plan: &mut Plan) {
 
 /// The linker knows the boards that the host knows.
 fn memory_maps_are_the_boards() {
-    for board in &BOARDS {
+    for board in BOARDS.iter().filter(|board| board.is_emulated()) {
         let path = format!("tests/firmware/src/board/memory/{}.x", board.name);
         let map = fs::read_to_string(scenes::repository().join(&path)).expect(&path);
         let region = |name: &str| {
