@@ -7,9 +7,11 @@ mod apex;
 #[path = "blob/main.rs"]
 mod blob;
 mod boxes;
+mod c_header;
 mod cylinder_cube;
 #[path = "deform/main.rs"]
 mod deform;
+mod distances;
 #[path = "documents/main.rs"]
 mod documents;
 mod explain;

@@ -19,6 +19,6 @@ set -- $cpu -std=c99 -Wall -Wextra -Werror -O2 -ffunction-sections -fdata-sectio
 if [ "$board" = host ]; then
   set -- "$@" "$library" -Wl,--gc-sections -lm -lpthread -ldl
 else
-  set -- "$@" example/start.c "$library" --specs=rdimon.specs -Texample/board.ld -Wl,--gc-sections
+  set -- "$@" example/start.c "$library" --specs=nano.specs --specs=rdimon.specs -Texample/board.ld -Wl,--gc-sections
 fi
 "$cc" "$@" -o "$program"

@@ -11,7 +11,11 @@
 //!
 //! The header is written from these files, so names are C's.
 #![cfg_attr(target_os = "none", no_std)]
-#![deny(missing_docs, unsafe_op_in_unsafe_fn, clippy::undocumented_unsafe_blocks)]
+#![deny(
+    missing_docs,
+    unsafe_op_in_unsafe_fn,
+    clippy::undocumented_unsafe_blocks
+)]
 #![allow(non_camel_case_types)]
 
 mod cast;

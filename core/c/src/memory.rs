@@ -66,7 +66,10 @@ pub unsafe fn bytes<'m>(first: *const u8, length: usize) -> Result<&'m [u8], gri
 ///
 /// # Safety
 /// As [`output`], for all bytes of the buffer. Any bytes are a `T`.
-pub unsafe fn elements<'m, T>(buffer: gridel_buffer, count: usize) -> Result<&'m mut [T], gridel_status> {
+pub unsafe fn elements<'m, T>(
+    buffer: gridel_buffer,
+    count: usize,
+) -> Result<&'m mut [T], gridel_status> {
     let first = buffer.memory.cast::<T>();
     check(first)?;
     let needed = count.checked_mul(size_of::<T>());
@@ -103,7 +106,10 @@ unsafe fn place<'m, T>(buffer: gridel_buffer, value: T) -> Result<&'m mut T, gri
 pub unsafe fn store(to: *mut gridel_scene, scene: Scene<'static>) -> Result<(), gridel_status> {
     // SAFETY: the caller's promise; a `Loaded` takes no more than a `gridel_scene`, and no other alignment.
     let memory = unsafe { output(to.cast::<Loaded>()) }?;
-    memory.write(Loaded { mark: LOADED, scene });
+    memory.write(Loaded {
+        mark: LOADED,
+        scene,
+    });
     Ok(())
 }
 
@@ -252,8 +258,7 @@ pub unsafe fn workspace<'m, N: Number>(
 }
 
 const _: () = assert!(size_of::<Stack<160>>() <= crate::GRIDEL_STACK_BYTES_MAX);
-const _: () =
-    assert!(size_of::<Workspace<f32, 160, 17>>() <= crate::GRIDEL_WORKSPACE_BYTES_MAX);
+const _: () = assert!(size_of::<Workspace<f32, 160, 17>>() <= crate::GRIDEL_WORKSPACE_BYTES_MAX);
 const _: () = assert!(
     size_of::<Workspace<gridel_core::Fixed, 160, 17>>() <= crate::GRIDEL_WORKSPACE_BYTES_MAX
 );

@@ -189,7 +189,10 @@ unsafe fn render<N: Number>(
         1 => Target::Rgb565(unsafe { elements(pixels, count) }?),
         _ => return Err(gridel_status::PictureFormat),
     };
-    let rows = Rows { renderer, rectangle };
+    let rows = Rows {
+        renderer,
+        rectangle,
+    };
     match target {
         Target::Rgb888(pixels) => rows.fill::<Rgb888>(pixels, &mut space),
         Target::Rgb565(pixels) => rows.fill::<Rgb565>(pixels, &mut space),

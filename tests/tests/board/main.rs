@@ -9,6 +9,7 @@
 
 #[path = "../../firmware/src/arm.rs"]
 mod arm;
+mod c_library;
 #[path = "../../firmware/src/casts.rs"]
 mod casts;
 mod costs;
@@ -16,6 +17,8 @@ mod deform;
 mod elf;
 mod emitted;
 mod figures;
+#[path = "../../firmware/src/finder.rs"]
+mod finder;
 mod firmware;
 mod live;
 #[path = "../../firmware/src/orbit.rs"]
@@ -58,6 +61,7 @@ fn main() {
     programs::plan(&mut plan);
     emitted::plan(&mut plan);
     rays::plan(&mut plan);
+    c_library::plan(&mut plan);
     live::plan(&mut plan);
     deform::plan(&mut plan);
     structures::plan(&mut plan);

@@ -6,7 +6,8 @@ use std::{env, fs};
 
 fn main() -> ExitCode {
     let library = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let config = cbindgen::Config::from_file(library.join("cbindgen.toml")).expect("cbindgen.toml is valid");
+    let config =
+        cbindgen::Config::from_file(library.join("cbindgen.toml")).expect("cbindgen.toml is valid");
     let bindings = cbindgen::Builder::new()
         .with_config(config)
         .with_src(library.join("src/lib.rs"))
@@ -24,7 +25,9 @@ fn main() -> ExitCode {
         if fs::read(&header).is_ok_and(|committed| committed == text) {
             return ExitCode::SUCCESS;
         }
-        eprintln!("include/gridel.h is not that of the declarations: run `cargo run` in core/c/header");
+        eprintln!(
+            "include/gridel.h is not that of the declarations: run `cargo run` in core/c/header"
+        );
         return ExitCode::FAILURE;
     }
     fs::write(&header, text).expect("the header can be written to");
