@@ -21,16 +21,16 @@
 #define GRIDEL_NONE 4294967295
 
 // Words of a `gridel_scene`.
-#define GRIDEL_SCENE_WORDS 160
+#define GRIDEL_SCENE_WORDS 64
 
 // Bytes of a stack that is deep enough for every scene.
 #define GRIDEL_STACK_BYTES_MAX 1928
 
 // Bytes of a workspace that is large enough for every scene, in `fixed` and in `f32`.
-#define GRIDEL_WORKSPACE_BYTES_MAX 4096
+#define GRIDEL_WORKSPACE_BYTES_MAX 3072
 
 // Bytes of a workspace that is large enough for every scene, in `f64`.
-#define GRIDEL_WORKSPACE_BYTES_MAX_F64 6144
+#define GRIDEL_WORKSPACE_BYTES_MAX_F64 4096
 
 // What a function returns: 0, or why it did nothing. `gridel_text` gives the sentence.
 enum gridel_status
