@@ -183,9 +183,10 @@ unsafe fn render<N: Number>(
     renderer.check_workspace(&space)?;
     let [width, height] = [rectangle.width, rectangle.height].map(usize::from);
     let count = width.saturating_mul(height);
-    // SAFETY: the caller's promise; any bytes are pixels.
     let target = match picture.pixel_format {
+        // SAFETY: the caller's promise; any bytes are pixels.
         0 => Target::Rgb888(unsafe { elements(pixels, count) }?),
+        // SAFETY: the caller's promise; any bytes are pixels.
         1 => Target::Rgb565(unsafe { elements(pixels, count) }?),
         _ => return Err(gridel_status::PictureFormat),
     };
