@@ -164,7 +164,7 @@ fn hit_along_an_axis_is_at_the_difference_of_the_coordinates() {
 }
 
 fn hit_along_an_axis<N: Number>() {
-    let shape = Shape::Cuboid(gridel_host::shape::Cuboid {
+    let shape = Shape::Box(gridel_host::shape::Cuboid {
         min: DVec3::splat(-1.0),
         max: DVec3::splat(1.0),
     });
