@@ -91,7 +91,7 @@ fn memory_page_names_all_boards() {
             board.core,
             formats.collect::<Vec<_>>().join(", "),
             grouped(board.flash >> 10),
-            board.ram >> 10
+            grouped(board.ram >> 10)
         )
         .expect("a string");
     }
