@@ -414,11 +414,9 @@ fn microcontrollers_have_the_figures_of_their_cores_kind() {
         assert_eq!(chip["ram"]["available"], ram, "{name}");
         let shown = folder.done(&["inspect", "quick.toml", "--target", name]);
         assert!(
-            shown
-                .stdout
-                .contains(&format!("The figures are those of {measured}")),
+            shown.contains(&format!("The figures are those of {measured}")),
             "{}",
-            shown.stdout
+            shown
         );
     }
 }
