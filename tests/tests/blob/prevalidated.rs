@@ -150,8 +150,11 @@ fn tables_cannot_be_prevalidated() {
 /// the work that the order allows, and so do pictures.
 #[test]
 fn nothing_depends_on_unproved_sections() {
-    // Numbers that nobody proves leave their ranges.
-    let_numbers_wrap(spoil_unproved_sections);
+    // Numbers that nobody proves leave their ranges. One thread, so that rows of pictures are rendered on it as well.
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    threads
+        .expect("a thread")
+        .install(|| let_numbers_wrap(spoil_unproved_sections));
 }
 
 fn spoil_unproved_sections() {
