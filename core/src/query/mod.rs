@@ -1,9 +1,14 @@
-//! Queries: the first hit of a ray, and any hit.
+//! Queries: the first hit of a ray, any hit, and all hits.
 //!
 //! `search` tests the primitives to which a structure leads, `clusters` those in leaves of eight, `unbounded`
-//! those that lie in no structure; `hit` is the answer, and `smooth` its normal for shading.
+//! those that lie in no structure. `collect` is what a search does with what it finds; `all_hits` lists all hits, and
+//! `contains` counts them; `hit` is the answer, and `smooth` its normal for shading.
 
+mod all_hits;
+mod barycentric;
 mod clusters;
+mod collect;
+mod contains;
 #[cfg(feature = "all-structures")]
 mod dynamic;
 mod hit;
@@ -12,6 +17,8 @@ mod search;
 mod smooth;
 mod unbounded;
 
+pub use all_hits::{HitList, all_hits, count_hits};
+pub use contains::{Solid, containment_ray, contains};
 pub use hit::{Hit, PrimitiveHit};
 
 use crate::accel::stack::StackView;
@@ -92,7 +99,7 @@ fn search_own<N: Number, A: Accel, C: Observer, const ANY: bool>(
     let best = if A::ONE_COPY {
         search_apart::<N, A, C, ANY>(scene, ray, None, stack, count, any)
     } else {
-        search_structure::<N, A, C, ANY>(scene, ray, None, stack, count, any)
+        search_structure::<N, A, C, _, ANY>(scene, ray, None, stack, count, any)
     };
     Some(found(scene, ray, best?))
 }
