@@ -7,7 +7,7 @@ use gridel_core::{
     Fixed, Format, HitList, Kind, Number, Ray, Scene, Solid, Stack, Structure, containment_ray,
 };
 use gridel_host::scene::{self, Shape};
-use gridel_host::shape::{Cuboid, Disc, Sphere, Torus};
+use gridel_host::shape::{Cuboid, Disc, Plane, Sphere, Torus};
 use gridel_host::verify::rays::rays;
 use gridel_tests::effort::{part_of, third_of};
 use gridel_tests::every_format;
@@ -40,11 +40,11 @@ fn list<N: Number, const SIZE: usize>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Li
 }
 
 fn every_structure(scene: &scene::Scene) -> gridel_host::blob::Blob {
-    scenes::compact_blob(scene, 24)
+    scenes::blob_with_gridels(scene, 24, 1)
 }
 
 /// Compares the lists of all structures, and of lists of several sizes; returns the number of hits.
-fn all_agree<N: Number>(name: &str, scene: &Scene<'_>, ray: &UnitRay) -> usize {
+pub(crate) fn all_agree<N: Number>(name: &str, scene: &Scene<'_>, ray: &UnitRay) -> usize {
     let ready = ray.ready::<N>(scene).expect("a ray");
     let brute = scene.choose(Structure::List).expect("the list");
     let expected = list::<N, 64>(&brute, &ready);
@@ -84,8 +84,14 @@ fn every_structure_lists_the_same_hits_in_lists_of_any_size() {
         triangles,
     };
     let mut soup = scenes::soup(3, 80, 0.6);
-    soup.objects
-        .extend(scenes::of((0..6_u32).map(torus)).objects);
+    let planes = [DVec3::X, DVec3::new(1.0, 2.0, -1.0)].map(|normal| {
+        Shape::Plane(Plane {
+            point: 0.3 * normal,
+            normal,
+        })
+    });
+    let others = (0..6_u32).map(torus).chain(planes);
+    soup.objects.extend(scenes::of(others).objects);
     for (name, scene) in [("soup", soup), ("ball", scenes::of([ball]))] {
         let blob = every_structure(&scene);
         let scene = blob.scene().expect("a scene");
@@ -96,10 +102,10 @@ fn every_structure_lists_the_same_hits_in_lists_of_any_size() {
 fn torus(number: u32) -> Shape {
     let turn = f64::from(number);
     Shape::Torus(Torus {
-        center: DVec3::new(turn.sin(), turn.cos(), 0.3 * turn - 1.0),
+        center: DVec3::new(turn.sin(), turn.cos(), (3.0 * turn).sin()),
         axis: DVec3::new(1.0, turn, -0.5 * turn),
         major_radius: 0.5,
-        minor_radius: 0.1 + 0.1 * turn,
+        minor_radius: 0.05 + 0.02 * turn,
     })
 }
 
@@ -350,7 +356,7 @@ fn closed_meshes_are_crossed_an_even_number_of_times() {
             };
             // The list takes long.
             let (_, chosen) = match &structures[number % structures.len()] {
-                (Structure::List, _) if number % 8 != 0 => &structures[1],
+                (Structure::List, _) if number % 64 != 0 => &structures[1],
                 other => other,
             };
             let crossed = chosen.count_hits(&ready, stack.as_view());
@@ -372,12 +378,21 @@ fn closed_meshes_are_crossed_an_even_number_of_times() {
             triangles,
         };
         for bits in [16, 24] {
-            let blob = scenes::compact_blob(&scenes::of([shape.clone()]), bits);
+            let blob = scenes::blob_with_gridels(&scenes::of([shape.clone()]), bits, 1);
             let scene = blob.scene().expect("a scene");
             let name = format!("{name}, {bits}");
-            every_format!(parity(&name, &scene, part_of(third_of(18_000), 1_250_000)));
+            every_format!(parity(&name, &scene, part_of(third_of(12_000), 1_250_000)));
         }
     }
+}
+
+/// The axis along which t is counted.
+fn major_axis(slope: [i64; 3]) -> usize {
+    // The first of equal ones, as the core chooses.
+    (0..3)
+        .rev()
+        .max_by_key(|&k| slope[k].abs())
+        .expect("an axis")
 }
 
 /// What a line crosses, by integers alone: a place of the half-open rule is moved by so little that no sign changes but
@@ -388,7 +403,7 @@ fn crossed_exactly(
     slope: [i64; 3],
     moved: [i128; 2],
 ) -> Vec<(i64, i64, usize)> {
-    let major = (0..3).max_by_key(|&k| slope[k].abs()).expect("an axis");
+    let major = major_axis(slope);
     let (first, second) = ((major + 1) % 3, (major + 2) % 3);
     let scale = slope[major];
     // Times 2^40, in which the moved place is a whole number.
@@ -490,13 +505,6 @@ fn triangles_are_listed_as_exact_arithmetic_finds_them() {
         }
         hits
     }
-    fn major_axis(slope: [i64; 3]) -> usize {
-        // The first of equal ones, as the core chooses.
-        (0..3)
-            .rev()
-            .max_by_key(|&k| slope[k].abs())
-            .expect("an axis")
-    }
     let mut random = Random(0xe4ac7);
     for seed in 0..part_of(third_of(12), 200) as u64 {
         let vertices: Vec<DVec3> = (0..30)
@@ -519,7 +527,8 @@ fn triangles_are_listed_as_exact_arithmetic_finds_them() {
             vertices: vertices[..30].to_vec(),
             triangles,
         };
-        let blob = scenes::compact_blob(&scenes::of(std::iter::once(shape).chain(ends)), 24);
+        let blob =
+            scenes::blob_with_gridels(&scenes::of(std::iter::once(shape).chain(ends)), 24, 1);
         let scene = blob.scene().expect("a scene");
         assert_eq!(
             (scene.header().unit_exponent, scene.header().origin),
@@ -642,6 +651,13 @@ fn barycentric_coordinates_lead_back_to_the_point() {
             let Some((weights, slot)) = hit.barycentric(scene).zip(slot) else {
                 continue;
             };
+            // Where a ray runs along a triangle, the point may lie beside it.
+            let across: f64 = (0..3)
+                .map(|k| hit.normal[k].ratio_to_f64() * ready.slope()[k].ratio_to_f64())
+                .sum();
+            if across.abs() < 0.1 {
+                continue;
+            }
             let weights = weights.map(N::ratio_to_f64);
             let corners = scene.triangle(slot).expect("a triangle");
             assert!(

@@ -80,7 +80,10 @@ impl NativeScene {
         let mut next = 0;
         let firsts = model.iter().flat_map(scene::Scene::all_objects).map(|object| {
             let first = next;
-            next += object.shape.primitives() as u32;
+            next += match &object.shape {
+                Shape::Mesh { triangles, .. } => triangles.len() as u32,
+                _ => 1,
+            };
             first
         });
         let firsts = firsts.collect();
