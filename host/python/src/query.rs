@@ -293,13 +293,8 @@ fn each_hit<N: Number, A: Accel>(
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
     let mut list = HitList::<N, LISTED>::new();
     loop {
-        let more = all_hits::<N, A, _, LISTED>(
-            scene,
-            ray,
-            stack.as_view(),
-            &mut list,
-            &mut NoCount,
-        );
+        let more =
+            all_hits::<N, A, _, LISTED>(scene, ray, stack.as_view(), &mut list, &mut NoCount);
         list.iter().for_each(&mut hit);
         if !more {
             return;
@@ -317,7 +312,9 @@ pub fn all(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<Vec<(usize, Found
     if how.threads == 1 || chunks == 1 {
         return (0..chunks).map(chunk).collect();
     }
-    with_threads(how.threads, || (0..chunks).into_par_iter().map(chunk).collect())
+    with_threads(how.threads, || {
+        (0..chunks).into_par_iter().map(chunk).collect()
+    })
 }
 
 fn all_chunk<N: Number, A: Accel>(
@@ -349,7 +346,12 @@ pub fn contains(
     how: How,
 ) -> Vec<bool> {
     fill(how, points.len(), false, |start, answers| {
-        dispatch!(how, contains_chunk, [], (scene, points, closed, start, answers));
+        dispatch!(
+            how,
+            contains_chunk,
+            [],
+            (scene, points, closed, start, answers)
+        );
     })
 }
 

@@ -36,7 +36,8 @@ impl<'py> Array<'py> {
 
     /// The numbers, and how many make a row.
     pub fn rows(&self, what: &str) -> PyResult<(Values<'_>, usize)> {
-        let contiguous = || PyValueError::new_err(format!("{what}: the array must be C-contiguous"));
+        let contiguous =
+            || PyValueError::new_err(format!("{what}: the array must be C-contiguous"));
         let (values, shape) = match self {
             Self::F32(array) => (
                 Values::F32(array.as_slice().map_err(|_| contiguous())?),
@@ -48,7 +49,8 @@ impl<'py> Array<'py> {
             ),
         };
         let width = shape.last().copied();
-        let width = width.ok_or_else(|| PyValueError::new_err(format!("{what}: a number is no array")))?;
+        let width =
+            width.ok_or_else(|| PyValueError::new_err(format!("{what}: a number is no array")))?;
         Ok((values, width))
     }
 }

@@ -51,21 +51,32 @@ fn structure(name: &str) -> PyResult<Structure> {
     let found = Structure::ALL.into_iter().find(|it| it.name() == name);
     found.ok_or_else(|| {
         let names = Structure::ALL.map(Structure::name).join(", ");
-        invalid(format!("unknown structure `{name}`; the structures are {names}"))
+        invalid(format!(
+            "unknown structure `{name}`; the structures are {names}"
+        ))
     })
 }
 
 fn format(name: &str) -> PyResult<Format> {
     let found = Format::ALL.into_iter().find(|it| it.name() == name);
-    found.ok_or_else(|| invalid(format!("unknown number format `{name}`; use fixed, f32 or f64")))
+    found.ok_or_else(|| {
+        invalid(format!(
+            "unknown number format `{name}`; use fixed, f32 or f64"
+        ))
+    })
 }
 
 fn options(accel: &[String], lattice_bits: u8) -> PyResult<Options> {
     if !(16..=24).contains(&lattice_bits) {
-        return Err(invalid(format!("lattice_bits is {lattice_bits}; it must be 16 to 24")));
+        return Err(invalid(format!(
+            "lattice_bits is {lattice_bits}; it must be 16 to 24"
+        )));
     }
     Ok(Options {
-        structures: accel.iter().map(|name| structure(name)).collect::<PyResult<_>>()?,
+        structures: accel
+            .iter()
+            .map(|name| structure(name))
+            .collect::<PyResult<_>>()?,
         lattice_bits,
         ..Options::default()
     })
@@ -78,14 +89,17 @@ impl NativeScene {
             return Err(invalid(format!("invalid scene blob: {error}")));
         }
         let mut next = 0;
-        let firsts = model.iter().flat_map(scene::Scene::all_objects).map(|object| {
-            let first = next;
-            next += match &object.shape {
-                Shape::Mesh { triangles, .. } => triangles.len() as u32,
-                _ => 1,
-            };
-            first
-        });
+        let firsts = model
+            .iter()
+            .flat_map(scene::Scene::all_objects)
+            .map(|object| {
+                let first = next;
+                next += match &object.shape {
+                    Shape::Mesh { triangles, .. } => triangles.len() as u32,
+                    _ => 1,
+                };
+                first
+            });
         let firsts = firsts.collect();
         Ok(Self {
             held,
@@ -162,8 +176,8 @@ impl NativeScene {
         let normal = to_b.cross(to_c);
         let approach = normal.dot(ray.direction);
         // Steeper than one in a thousand.
-        let is_steep = approach * approach
-            > 1e-6 * normal.length_squared() * ray.direction.length_squared();
+        let is_steep =
+            approach * approach > 1e-6 * normal.length_squared() * ray.direction.length_squared();
         let (t, place) = if is_steep {
             let t = normal.dot(a - ray.origin) / approach;
             (t, ray.origin + ray.direction * t)
@@ -202,7 +216,9 @@ fn rows<'py, T: numpy::Element, const WIDTH: usize>(
     rows: Vec<[T; WIDTH]>,
 ) -> PyResult<Bound<'py, PyArray2<T>>> {
     let length = rows.len();
-    rows.into_flattened().into_pyarray(py).reshape([length, WIDTH])
+    rows.into_flattened()
+        .into_pyarray(py)
+        .reshape([length, WIDTH])
 }
 
 #[pymethods]
@@ -211,7 +227,10 @@ impl NativeScene {
     #[pyo3(signature = (path, accel, lattice_bits))]
     fn load(py: Python<'_>, path: PathBuf, accel: Vec<String>, lattice_bits: u8) -> PyResult<Self> {
         if !path.is_file() {
-            return Err(PyFileNotFoundError::new_err(format!("{}: no such file", path.display())));
+            return Err(PyFileNotFoundError::new_err(format!(
+                "{}: no such file",
+                path.display()
+            )));
         }
         let options = options(&accel, lattice_bits)?;
         py.detach(|| {
@@ -244,15 +263,23 @@ impl NativeScene {
                 let (rows, _) = values.as_chunks::<3>();
                 rows.iter().map(|&row| DVec3::from_array(row)).collect()
             };
-            let (vertices, faces) = (vertices.as_slice().map_err(invalid)?, faces.as_slice().map_err(invalid)?);
+            let (vertices, faces) = (
+                vertices.as_slice().map_err(invalid)?,
+                faces.as_slice().map_err(invalid)?,
+            );
             let vertices = rows(vertices);
             let (faces, _) = faces.as_chunks::<3>();
             if let Some(place) = vertices.iter().position(|vertex| !vertex.is_finite()) {
-                return Err(invalid(format!("mesh {number}: vertex {place} is not finite")));
+                return Err(invalid(format!(
+                    "mesh {number}: vertex {place} is not finite"
+                )));
             }
             let count = vertices.len();
             let corner = |(place, face): (usize, &[i64; 3])| -> PyResult<[u32; 3]> {
-                if face.iter().any(|&corner| corner < 0 || corner >= count as i64) {
+                if face
+                    .iter()
+                    .any(|&corner| corner < 0 || corner >= count as i64)
+                {
                     return Err(invalid(format!(
                         "mesh {number}: face {place} is {face:?}; vertices are numbered 0 to {}",
                         count as i64 - 1
@@ -260,7 +287,11 @@ impl NativeScene {
                 }
                 Ok(face.map(|corner| corner as u32))
             };
-            let triangles = faces.iter().enumerate().map(corner).collect::<PyResult<Vec<_>>>()?;
+            let triangles = faces
+                .iter()
+                .enumerate()
+                .map(corner)
+                .collect::<PyResult<Vec<_>>>()?;
             objects.push(Object {
                 name: format!("mesh {number}"),
                 material: 0,
@@ -290,7 +321,10 @@ impl NativeScene {
         accel: Option<&str>,
         threads: usize,
     ) -> PyResult<HitArrays<'py>> {
-        let (how, array) = (self.how(format, accel, threads)?, Array::borrow(rays, "rays")?);
+        let (how, array) = (
+            self.how(format, accel, threads)?,
+            Array::borrow(rays, "rays")?,
+        );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
         let (hits, uvs) = py.detach(|| {
             let mut hits = query::ask::<Closest>(&scene, rays, how);
@@ -308,7 +342,10 @@ impl NativeScene {
             hits.iter().map(number).collect::<Vec<_>>().into_pyarray(py)
         };
         Ok((
-            hits.iter().map(|hit| hit.t).collect::<Vec<_>>().into_pyarray(py),
+            hits.iter()
+                .map(|hit| hit.t)
+                .collect::<Vec<_>>()
+                .into_pyarray(py),
             each(|hit| hit.object),
             each(|hit| hit.primitive),
             each(|hit| hit.instance),
@@ -327,7 +364,10 @@ impl NativeScene {
         threads: usize,
     ) -> PyResult<Arrays<'py, i32>> {
         let how = self.how(format, None, threads)?;
-        let arrays = [Array::borrow(origins, "origins")?, Array::borrow(directions, "directions")?];
+        let arrays = [
+            Array::borrow(origins, "origins")?,
+            Array::borrow(directions, "directions")?,
+        ];
         let rays = Rays::two(arrays[0].rows("origins")?, arrays[1].rows("directions")?)?;
         let scene = self.chosen(how)?;
         Ok(py
@@ -345,10 +385,15 @@ impl NativeScene {
         threads: usize,
     ) -> PyResult<Arrays<'py, bool>> {
         let how = self.how(format, None, threads)?;
-        let arrays = [Array::borrow(origins, "origins")?, Array::borrow(directions, "directions")?];
+        let arrays = [
+            Array::borrow(origins, "origins")?,
+            Array::borrow(directions, "directions")?,
+        ];
         let rays = Rays::two(arrays[0].rows("origins")?, arrays[1].rows("directions")?)?;
         let scene = self.chosen(how)?;
-        Ok(py.detach(|| query::ask::<Any>(&scene, rays, how)).into_pyarray(py))
+        Ok(py
+            .detach(|| query::ask::<Any>(&scene, rays, how))
+            .into_pyarray(py))
     }
 
     /// Whether each ray meets anything.
@@ -360,9 +405,14 @@ impl NativeScene {
         accel: Option<&str>,
         threads: usize,
     ) -> PyResult<Arrays<'py, bool>> {
-        let (how, array) = (self.how(format, accel, threads)?, Array::borrow(rays, "rays")?);
+        let (how, array) = (
+            self.how(format, accel, threads)?,
+            Array::borrow(rays, "rays")?,
+        );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
-        Ok(py.detach(|| query::ask::<Any>(&scene, rays, how)).into_pyarray(py))
+        Ok(py
+            .detach(|| query::ask::<Any>(&scene, rays, how))
+            .into_pyarray(py))
     }
 
     /// The number of hits of each ray.
@@ -374,9 +424,14 @@ impl NativeScene {
         accel: Option<&str>,
         threads: usize,
     ) -> PyResult<Arrays<'py, u32>> {
-        let (how, array) = (self.how(format, accel, threads)?, Array::borrow(rays, "rays")?);
+        let (how, array) = (
+            self.how(format, accel, threads)?,
+            Array::borrow(rays, "rays")?,
+        );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
-        Ok(py.detach(|| query::count(&scene, rays, how)).into_pyarray(py))
+        Ok(py
+            .detach(|| query::count(&scene, rays, how))
+            .into_pyarray(py))
     }
 
     /// All hits: ray, t, object, primitive, instance, leaves, normal, uv.
@@ -389,7 +444,10 @@ impl NativeScene {
         accel: Option<&str>,
         threads: usize,
     ) -> PyResult<(Arrays<'py, i64>, HitArrays<'py>, Arrays<'py, bool>)> {
-        let (how, array) = (self.how(format, accel, threads)?, Array::borrow(rays, "rays")?);
+        let (how, array) = (
+            self.how(format, accel, threads)?,
+            Array::borrow(rays, "rays")?,
+        );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
         let (hits, uvs) = py.detach(|| {
             let mut hits = query::all(&scene, rays, how).concat();
@@ -428,9 +486,16 @@ impl NativeScene {
         max_hits: Option<usize>,
         format: &str,
         threads: usize,
-    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Arrays<'py, i64>, Arrays<'py, i64>)> {
+    ) -> PyResult<(
+        Bound<'py, PyArray2<f64>>,
+        Arrays<'py, i64>,
+        Arrays<'py, i64>,
+    )> {
         let how = self.how(format, None, threads)?;
-        let arrays = [Array::borrow(origins, "origins")?, Array::borrow(directions, "directions")?];
+        let arrays = [
+            Array::borrow(origins, "origins")?,
+            Array::borrow(directions, "directions")?,
+        ];
         let rays = Rays::two(arrays[0].rows("origins")?, arrays[1].rows("directions")?)?;
         let scene = self.chosen(how)?;
         let (places, numbers, triangles) = py.detach(|| {
@@ -438,7 +503,11 @@ impl NativeScene {
                 self.place(ray, hit).1.to_array()
             })
         });
-        Ok((rows(py, places)?, numbers.into_pyarray(py), triangles.into_pyarray(py)))
+        Ok((
+            rows(py, places)?,
+            numbers.into_pyarray(py),
+            triangles.into_pyarray(py),
+        ))
     }
 
     /// Whether each point lies in a closed object, or with `closed_only` false in any object by parity.
@@ -451,7 +520,10 @@ impl NativeScene {
         accel: Option<&str>,
         threads: usize,
     ) -> PyResult<Arrays<'py, bool>> {
-        let (how, array) = (self.how(format, accel, threads)?, Array::borrow(points, "points")?);
+        let (how, array) = (
+            self.how(format, accel, threads)?,
+            Array::borrow(points, "points")?,
+        );
         let (scene, points) = (self.chosen(how)?, Points::rows(array.rows("points")?)?);
         let closed = closed_only.then(|| self.closed.get_or_init(|| py.detach(|| closed(&scene))));
         if closed.is_some_and(|closed| !closed.contains(&true)) {
