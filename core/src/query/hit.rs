@@ -7,7 +7,7 @@ use crate::format::{Kind, Leaf};
 use crate::geometry::{LEAVING, is_flat};
 use crate::instances::map::{Map, PlacedSurface};
 use crate::observe::event::QueryHit;
-use crate::query::search::Candidate;
+use crate::query::candidate::Candidate;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::target::{InstancesOnly, inline_on_hosts};

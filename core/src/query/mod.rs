@@ -1,14 +1,16 @@
 //! Queries: the first hit of a ray, any hit, and all hits.
 //!
 //! `search` tests the primitives to which a structure leads, `clusters` those in leaves of eight, `unbounded`
-//! those that lie in no structure. `collect` is what a search does with what it finds; `all_hits` lists all hits, and
-//! `contains` counts them; `hit` is the answer, and `smooth` its normal for shading.
+//! those that lie in no structure. `collect` is what a search does with what it finds. `all_hits` lists all hits, for
+//! which `crossings` is the search, and `contains` counts them; `hit` is the answer, and `smooth` its normal for shading.
 
 mod all_hits;
 mod barycentric;
+mod candidate;
 mod clusters;
 mod collect;
 mod contains;
+mod crossings;
 #[cfg(feature = "all-structures")]
 mod dynamic;
 mod hit;
@@ -29,8 +31,9 @@ use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::target::{InstancesOnly, WIDE, inline_on_hosts, inline_on_hosts_hint_on_boards};
+use candidate::Candidate;
 use placed::{PartSearch, SearchPart};
-use search::{Candidate, search_apart, search_structure};
+use search::{search_apart, search_structure};
 
 inline_on_hosts_hint_on_boards!(
     /// The primitive that a ray meets first in its interval, found through the structure `A`.

@@ -15,18 +15,11 @@ use crate::geometry::triangle::{self, Triangles, Vertices};
 use crate::geometry::{Crossing, Part, PrimitiveId, accept};
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
+use crate::query::candidate::Candidate;
 use crate::query::collect::Collect;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::target::{SMALL, WideOnly, inline_on_boards};
-
-/// The best hit so far.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Candidate<N> {
-    pub(super) t: N,
-    pub(super) place: PrimitiveId,
-    pub(super) part: Part,
-}
 
 /// The search for hits, one leaf at a time: for the best of them, or for whatever `F` collects.
 pub(super) struct Search<'s, 'a, N: Number, K, F> {
