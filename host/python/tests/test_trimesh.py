@@ -28,11 +28,17 @@ def random_rays():
     return rng.uniform(-1.5, 1.5, (20_000, 3)), rng.normal(size=(20_000, 3))
 
 
+def signature(of, name):
+    """The parameters of a method, behind the decorator by which trimesh logs times."""
+    method = getattr(of, name)
+    inner = inspect.getclosurevars(method).nonlocals.get("method", method)
+    return list(inspect.signature(inner).parameters)
+
+
 def test_signatures_are_those_of_trimesh():
     for name in ["intersects_location", "intersects_id", "intersects_first", "intersects_any", "contains_points"]:
-        mine = inspect.signature(getattr(gridel.trimesh.RayMeshIntersector, name)).parameters
-        theirs = inspect.signature(getattr(embree.RayMeshIntersector, name)).parameters
-        assert list(mine) == list(theirs), name
+        mine = signature(gridel.trimesh.RayMeshIntersector, name)
+        assert mine == signature(embree.RayMeshIntersector, name), name
 
 
 def test_answers_are_those_of_trimesh_with_its_types(ball, random_rays):
