@@ -158,7 +158,7 @@ fn rays_leave_each_solid_as_often_as_they_enter_it() {
                 let in_turn: Vec<bool> = (0..leaves.len()).map(|it| it % 2 == 1).collect();
                 assert_eq!(leaves, in_turn, "{object}: {ray:?}");
                 assert!(
-                    leaves.len() % 2 == 0 && leaves.len() <= 4,
+                    leaves.len().is_multiple_of(2) && leaves.len() <= 4,
                     "{object}: {ray:?}"
                 );
                 four += usize::from(leaves.len() == 4);
@@ -242,8 +242,11 @@ fn stacked_and_nested_surfaces_are_all_listed() {
     every_format!(nested(&blob.scene().expect("a scene")));
 }
 
+/// Vertices and triangles.
+type Mesh = (Vec<DVec3>, Vec<[u32; 3]>);
+
 /// The closed meshes of the tests of parity.
-fn closed_meshes() -> Vec<(&'static str, Vec<DVec3>, Vec<[u32; 3]>)> {
+fn closed_meshes() -> Vec<(&'static str, Mesh)> {
     let (ball, faces) = scenes::icosphere(3);
     let turned = |v: &DVec3| {
         let turn = glam::DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.5, 0.7);
@@ -252,16 +255,18 @@ fn closed_meshes() -> Vec<(&'static str, Vec<DVec3>, Vec<[u32; 3]>)> {
     let bumpy = ball.iter().enumerate();
     let bumpy = bumpy.map(|(i, &v)| v * if i % 3 == 0 { 0.7 } else { 1.0 });
     let (cube, sides) = cube(6);
+    let bumpy = bumpy.collect();
+    let flat = ball.iter().map(turned).collect();
     vec![
-        ("ball", ball.clone(), faces.clone()),
-        ("bumpy ball", bumpy.collect(), faces.clone()),
-        ("flat ball", ball.iter().map(turned).collect(), faces),
-        ("cube", cube, sides),
+        ("ball", (ball, faces.clone())),
+        ("bumpy ball", (bumpy, faces.clone())),
+        ("flat ball", (flat, faces)),
+        ("cube", (cube, sides)),
     ]
 }
 
 /// A cube whose faces are cut into squares of two triangles, all of one mesh of shared vertices.
-fn cube(n: i32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+fn cube(n: i32) -> Mesh {
     let mut numbers = std::collections::HashMap::new();
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     let mut vertex = |at: [i32; 3]| {
@@ -360,7 +365,7 @@ fn closed_meshes_are_crossed_an_even_number_of_times() {
                 other => other,
             };
             let crossed = chosen.count_hits(&ready, stack.as_view());
-            if crossed % 2 != 0 {
+            if !crossed.is_multiple_of(2) {
                 odd += 1;
                 eprintln!("{name}: {crossed} crossings of {ray:?}");
             }
@@ -372,7 +377,7 @@ fn closed_meshes_are_crossed_an_even_number_of_times() {
         );
         assert_eq!(odd, 0, "{name}, {}", N::FORMAT.name());
     }
-    for (name, vertices, triangles) in closed_meshes() {
+    for (name, (vertices, triangles)) in closed_meshes() {
         let shape = Shape::Mesh {
             vertices,
             triangles,

@@ -31,7 +31,7 @@ pub(crate) fn encloses_origin<N: Project>(a: [N; 2], b: [N; 2], c: [N; 2]) -> bo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::{Convert, Fixed};
+    use crate::number::Fixed;
 
     /// Triangles of a fan around a vertex that enclose a place.
     fn fan<N: Project>(at: [i16; 2]) -> usize {

@@ -435,7 +435,6 @@ impl NativeScene {
     }
 
     /// All hits: ray, t, object, primitive, instance, leaves, normal, uv.
-    #[expect(clippy::type_complexity, reason = "a tuple of arrays")]
     fn all<'py>(
         &self,
         py: Python<'py>,
@@ -511,6 +510,7 @@ impl NativeScene {
     }
 
     /// Whether each point lies in a closed object, or with `closed_only` false in any object by parity.
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn contains<'py>(
         &self,
         py: Python<'py>,

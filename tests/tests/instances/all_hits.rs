@@ -52,7 +52,7 @@ fn placed_closed_meshes_are_crossed_an_even_number_of_times() {
             let ready = ray.ready::<N>(scene).expect("a ray");
             let hits = scene.count_hits(&ready, stack.as_view());
             assert!(
-                hits % 2 == 0,
+                hits.is_multiple_of(2),
                 "{}: {hits} hits of {ray:?}",
                 N::FORMAT.name()
             );
