@@ -669,11 +669,11 @@ fn barycentric_coordinates_lead_back_to_the_point() {
                 weights.iter().all(|it| (0.0..=1.0).contains(it)),
                 "{weights:?}"
             );
-            for k in 0..3 {
+            for (k, point) in hit.point.into_iter().enumerate() {
                 let place: f64 = (0..3)
                     .map(|it| weights[it] * f64::from(corners[it][k]) / 256.0)
                     .sum();
-                let point = hit.point[k].length_to_f64();
+                let point = point.length_to_f64();
                 assert!(
                     (place - point).abs() < 0.5,
                     "{place} {point} {}",
