@@ -3,6 +3,7 @@
 //! own.
 
 mod accuracy;
+mod all_hits;
 mod apex;
 #[path = "blob/main.rs"]
 mod blob;
