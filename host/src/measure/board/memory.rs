@@ -13,7 +13,7 @@
 
 use super::Board;
 use super::account::Account;
-use super::estimate::{PROFILES, ProgramEstimate};
+use super::estimate::{CODE, PROFILES, ProgramEstimate};
 use super::programs::{Known, Profile, Programs};
 use crate::blob::best_structures;
 use crate::measure::bytes::{MemoryMap, board_memory};
@@ -70,6 +70,9 @@ pub enum Fit {
     /// The parts that are not known.
     Undecided(String),
 }
+
+/// The item of places for waiting rays.
+pub const WORK_LIST: &str = "work list";
 
 /// A structure of which nothing was measured on boards.
 #[derive(Clone, Copy, Debug)]
@@ -161,7 +164,7 @@ impl MemoryReport {
             format!("traversal stack, {} entries", scene.stack_depth()),
             Some(need.stack as u64),
         );
-        ram.add("work list", Some((need.workspace - need.stack) as u64));
+        ram.add(WORK_LIST, Some((need.workspace - need.stack) as u64));
         let width = scene.view().width;
         let row = u64::from(width) * size_of::<Rgb565>() as u64;
         ram.add(format!("row of {width} pixels, RGB565"), Some(row));
@@ -195,6 +198,14 @@ impl MemoryReport {
             fast,
             small,
         })
+    }
+
+    /// Bytes of the code of one part, such as an effect, in the fast program; `None` where no programs were built with
+    /// and without it.
+    pub fn code_of(&self, part: &str) -> Option<u64> {
+        let name = format!("{CODE}{part}");
+        let item = self.flash.items.iter().find(|item| item.what == name);
+        item.and_then(|item| item.bytes)
     }
 
     /// The builds that the figures hold for.

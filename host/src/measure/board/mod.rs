@@ -21,7 +21,7 @@ pub mod programs;
 
 pub use account::{Account, Item};
 pub use instructions::{PICTURE_COSTS, PictureCost, core_names, instructions, names};
-pub use memory::{Fit, MemoryReport, NotMeasured, Sizes, Target};
+pub use memory::{Fit, MemoryReport, NotMeasured, Sizes, Target, WORK_LIST};
 
 use gridel_core::Format;
 
