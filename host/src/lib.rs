@@ -50,6 +50,7 @@
 pub mod accuracy;
 pub mod animation;
 pub mod blob;
+pub mod certify;
 pub mod check;
 pub mod compare;
 pub mod compile;
