@@ -3,8 +3,8 @@
 //! With `q` a point as seen from the base, `w` the axis, `h = w.w` and `a = q.w`, the mantle is where
 //! `h (h q.q - a^2) = (r0 h + (r1 - r0) a)^2`, of which only the nappe counts where the right side's root is positive.
 
+use super::crossing::{Crossing, Grazes, Ray, compare, exact, flat_normal};
 use super::number::*;
-use super::shapes::{Crossing, Grazes, Ray, compare, exact};
 use super::world::Form;
 use std::cmp::Ordering;
 
@@ -272,8 +272,8 @@ pub fn normal<N: Enclosure>(form: &Form, part: u8, point: Three<N>) -> Option<Th
     };
     let w = exact::<N>(axis);
     match part {
-        BASE => return super::shapes::flat_normal(axis.map(|x| -x)),
-        APEX => return super::shapes::flat_normal(axis),
+        BASE => return flat_normal(axis.map(|x| -x)),
+        APEX => return flat_normal(axis),
         _ => {}
     }
     let q = minus(point, exact(base));

@@ -2,9 +2,10 @@
 
 use super::deep::{self, Ball};
 use super::interval::Interval;
+use super::crossing::{Ray, Start, exact};
 use super::number::*;
-use super::shapes::{Ray, Start, exact};
-use super::trace::{Open, Reason, Step, Tracer};
+use super::reason::Reason;
+use super::trace::{Open, Step, Tracer};
 use super::world::{NONE, World};
 use bytemuck::{Pod, Zeroable};
 use gridel_core::render::Pixel as _;

@@ -1,9 +1,9 @@
 //! The rules of effects, in exact arithmetic.
 
+use super::crossing::exact;
+use super::hit::{Hit, Seen, ratio_of};
 use super::number::*;
-use super::shapes::exact;
-use super::trace::{Hit, Seen, Stop, Tracer, ratio_of};
-use super::world::Form;
+use super::world::{Form, World};
 use gridel_core::format::limits::MAX_RAY_DEPTH;
 use gridel_core::format::record::Material;
 use gridel_core::geometry::smooth::LARGEST;
@@ -216,101 +216,99 @@ fn corner_normal<N: Enclosure>(stored: [i16; 2]) -> Three<N> {
     scale(v, root * step)
 }
 
-impl Tracer<'_, '_> {
-    /// The triangle of a hit that has normals, and the point in its space.
-    fn smooth<N: Enclosure>(&self, hit: &Hit<N>) -> Option<Smooth<N>> {
-        let solid = &self.world.space(hit.instance).solids[hit.solid as usize];
-        let Form::Triangle {
-            corners,
-            normal,
-            smooth: Some(normals),
-        } = solid.form
-        else {
-            return None;
-        };
-        let placed = self.world.placed.get(hit.instance as usize);
-        let point = placed.map_or(hit.point, |placed| placed.point(hit.point));
-        // Weights are areas, as they are seen along the largest component of the normal.
-        let size = normal.map(i64::abs);
-        let (i, j, across) = if size[0] >= size[1] && size[0] >= size[2] {
-            (1, 2, normal[0])
-        } else if size[1] >= size[2] {
-            (2, 0, normal[1])
-        } else {
-            (0, 1, normal[2])
-        };
-        let seen = corners.map(|corner| [N::int(corner[i]) - point[i], N::int(corner[j]) - point[j]]);
-        let area = |p: [N; 2], q: [N; 2]| p[0] * q[1] - p[1] * q[0];
-        let [a, b, c] = seen;
-        let areas = [area(b, c), area(c, a), area(a, b)];
-        let mut weights = [N::zero(); 3];
-        for (weight, area) in weights.iter_mut().zip(areas) {
-            *weight = area.over(N::int(across))?;
-        }
-        Some(Smooth {
-            corners,
-            normals,
-            point,
-            weights,
-        })
+/// The triangle of a hit that has normals, and the point in its space.
+fn smooth<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<Smooth<N>> {
+    let solid = &world.space(hit.instance).solids[hit.solid as usize];
+    let Form::Triangle {
+        corners,
+        normal,
+        smooth: Some(normals),
+    } = solid.form
+    else {
+        return None;
+    };
+    let placed = world.placed.get(hit.instance as usize);
+    let point = placed.map_or(hit.point, |placed| placed.point(hit.point));
+    // Weights are areas, as they are seen along the largest component of the normal.
+    let size = normal.map(i64::abs);
+    let (i, j, across) = if size[0] >= size[1] && size[0] >= size[2] {
+        (1, 2, normal[0])
+    } else if size[1] >= size[2] {
+        (2, 0, normal[1])
+    } else {
+        (0, 1, normal[2])
+    };
+    let seen = corners.map(|corner| [N::int(corner[i]) - point[i], N::int(corner[j]) - point[j]]);
+    let area = |p: [N; 2], q: [N; 2]| p[0] * q[1] - p[1] * q[0];
+    let [a, b, c] = seen;
+    let areas = [area(b, c), area(c, a), area(a, b)];
+    let mut weights = [N::zero(); 3];
+    for (weight, area) in weights.iter_mut().zip(areas) {
+        *weight = area.over(N::int(across))?;
     }
+    Some(Smooth {
+        corners,
+        normals,
+        point,
+        weights,
+    })
+}
 
-    /// The interpolated normal on the side of the ray; `None` of what is not smooth.
-    pub(super) fn smooth_normal<N: Enclosure>(
-        &self,
-        hit: &Hit<N>,
-        facing: Three<N>,
-    ) -> Result<Option<Three<N>>, Stop> {
-        let _ = facing;
-        let Some(smooth) = self.smooth(hit) else {
-            return Ok(None);
-        };
-        let mut sum = [N::zero(); 3];
-        for (stored, weight) in smooth.normals.into_iter().zip(smooth.weights) {
-            sum = along(sum, weight, corner_normal(stored));
-        }
-        let mut normal = unit(sum).ok_or(Stop)?;
-        if let Some(placed) = self.world.placed.get(hit.instance as usize) {
-            normal = unit(placed.normal(normal)).ok_or(Stop)?;
-        }
-        Ok(Some(if hit.front { normal } else { opposite(normal) }))
+/// The interpolated normal on the side of the ray; `None` of what is not smooth.
+///
+/// `None` outside where the normals may cancel out.
+pub fn smooth_normal<N: Enclosure>(
+    world: &World<'_>,
+    hit: &Hit<N>,
+) -> Option<Option<Three<N>>> {
+    let Some(smooth) = smooth(world, hit) else {
+        return Some(None);
+    };
+    let mut sum = [N::zero(); 3];
+    for (stored, weight) in smooth.normals.into_iter().zip(smooth.weights) {
+        sum = along(sum, weight, corner_normal(stored));
     }
+    let mut normal = unit(sum)?;
+    if let Some(placed) = world.placed.get(hit.instance as usize) {
+        normal = unit(placed.normal(normal))?;
+    }
+    Some(Some(if hit.front { normal } else { opposite(normal) }))
+}
 
-    /// The way from a hit out to the curved surface that its triangle stands for, and whether that lies above it.
-    pub(super) fn lift<N: Enclosure>(
-        &self,
-        hit: &Hit<N>,
-    ) -> Result<(Option<bool>, Three<N>), Stop> {
-        let nowhere = [N::zero(); 3];
-        let Some(smooth) = self.smooth(hit) else {
-            return Ok((Some(false), nowhere));
-        };
-        let mut way = nowhere;
-        for k in 0..3 {
-            let stored = exact::<N>(unfolded(smooth.normals[k]));
-            let mut normal = unit(stored).ok_or(Stop)?;
-            if !hit.front {
-                normal = opposite(normal);
-            }
-            let below = minus(exact(smooth.corners[k]), smooth.point);
-            let depth = dot(below, normal).at_least(N::zero());
-            way = along(way, depth * smooth.weights[k].at_least(N::zero()), normal);
+/// The way from a hit out to the curved surface that its triangle stands for, and whether that lies above it.
+pub fn lift<N: Enclosure>(
+    world: &World<'_>,
+    hit: &Hit<N>,
+) -> Option<(Option<bool>, Three<N>)> {
+    let nowhere = [N::zero(); 3];
+    let Some(smooth) = smooth(world, hit) else {
+        return Some((Some(false), nowhere));
+    };
+    let mut way = nowhere;
+    for k in 0..3 {
+        let stored = exact::<N>(unfolded(smooth.normals[k]));
+        let mut normal = unit(stored)?;
+        if !hit.front {
+            normal = opposite(normal);
         }
-        let facing = hit.facing();
-        if let Some(placed) = self.world.placed.get(hit.instance as usize) {
-            if way.iter().all(|x| x.bounds() == [0.0, 0.0]) {
-                return Ok((Some(false), nowhere));
-            }
-            // The transposed matrix serves as the inverse, as it does in the kernels.
-            let length = norm2(way).sqrt();
-            let direction = unit(way).ok_or(Stop)?;
-            let mapped = placed.normal(direction);
-            let stretch = norm2(mapped).sqrt();
-            let mapped = unit(mapped).ok_or(Stop)?;
-            way = scale(mapped, length.over(stretch).ok_or(Stop)?);
-        }
-        Ok((positive(dot(way, facing)), way))
+        let below = minus(exact(smooth.corners[k]), smooth.point);
+        let depth = dot(below, normal).at_least(N::zero());
+        way = along(way, depth * smooth.weights[k].at_least(N::zero()), normal);
     }
+    let facing = hit.facing();
+    if let Some(placed) = world.placed.get(hit.instance as usize) {
+        if way.iter().all(|x| x.bounds() == [0.0, 0.0]) {
+            return Some((Some(false), nowhere));
+        }
+        // The transposed matrix serves as the inverse, as it does in the kernels.
+        let length = norm2(way).sqrt();
+        let direction = unit(way)?;
+        let mapped = placed.normal(direction);
+        let stretch = norm2(mapped).sqrt();
+        let mapped = unit(mapped)?;
+        way = scale(mapped, length.over(stretch)?);
+    }
+    Some((positive(dot(way, facing)), way))
 }
 
 /// A triangle with normals at a hit, in its own space.

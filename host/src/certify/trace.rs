@@ -4,78 +4,19 @@
 //! and why is recorded. The kernels of the core are not used: their answers depend on what their numbers round (where
 //! a ray starts beside a surface, what is culled), and here nothing is rounded away.
 
+use super::crossing::{Crossing, Ray, Start, compare, exact};
+use super::hit::{Hit, Seen, radiance_of, ratio_of};
 use super::interval::Interval;
 use super::number::*;
-use super::shapes::{self, Crossing, Ray, Start, compare, exact};
+use super::reason::Reason;
 use super::shade;
+use super::shapes;
 use super::world::{Form, Item, NONE, Slabs, Space, World};
 use gridel_core::Effects;
 use gridel_core::format::record::{Light, Material};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::cell::{Cell, RefCell};
 use std::cmp::Ordering;
-
-/// Why something is open.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[repr(u8)]
-pub enum Reason {
-    /// Which surface a ray hits: at an edge, or where surfaces meet.
-    Hit = 1,
-    /// Whether a surface is in a shadow.
-    Shadow,
-    /// On which side of a surface a light is that it faces edge on.
-    Terminator,
-    /// Whether light is totally reflected.
-    CriticalAngle,
-    /// Which cell of a checkerboard a point lies in.
-    Checker,
-    /// Whether a ray brings enough to be traced.
-    Cutoff,
-    /// To which side of a triangle a ray leaves that its smooth normal sends.
-    Smooth,
-    /// Where a ray crosses a surface that it runs along.
-    Grazing,
-    /// Too many outcomes to follow.
-    Branches,
-    /// Which of two 8-bit values is nearer, though everything else is known.
-    Rounding,
-}
-
-impl Reason {
-    pub const ALL: [Self; 10] = [
-        Self::Hit,
-        Self::Shadow,
-        Self::Terminator,
-        Self::CriticalAngle,
-        Self::Checker,
-        Self::Cutoff,
-        Self::Smooth,
-        Self::Grazing,
-        Self::Branches,
-        Self::Rounding,
-    ];
-
-    pub fn of_number(number: u8) -> Option<Self> {
-        Self::ALL.into_iter().find(|&it| it as u8 == number)
-    }
-
-    /// The reason in words.
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::Hit => "edge of a hit, or surfaces that meet",
-            Self::Shadow => "edge of a shadow",
-            Self::Terminator => "light at a right angle to the normal",
-            Self::CriticalAngle => "critical angle of total reflection",
-            Self::Checker => "boundary of a checkerboard's cells",
-            Self::Cutoff => "cutoff of secondary rays",
-            Self::Smooth => "ray level with a smooth triangle",
-            Self::Grazing => "ray along a surface",
-            Self::Branches => "too many open comparisons",
-            Self::Rounding => "rounding to 8 bits",
-        }
-    }
-}
 
 /// An open comparison: why, and where.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -104,44 +45,6 @@ pub struct Step {
     pub object: Option<u32>,
     /// What the event is about, each number between two.
     pub values: Vec<(&'static str, Vec<[f64; 2]>)>,
-}
-
-/// A hit: where, and the surface there.
-#[derive(Clone, Copy, Debug)]
-pub struct Hit<N> {
-    pub t: N,
-    pub point: Three<N>,
-    /// Geometric, of length 1, as the primitive has it.
-    pub normal: Three<N>,
-    pub front: bool,
-    pub object: u32,
-    pub primitive: u32,
-    pub instance: u32,
-    pub solid: u32,
-    part: u8,
-    plane: u32,
-}
-
-impl<N: Enclosure> Hit<N> {
-    /// The normal on the side from which the ray came.
-    pub fn facing(&self) -> Three<N> {
-        if self.front {
-            self.normal
-        } else {
-            opposite(self.normal)
-        }
-    }
-
-    /// What a ray starts on that goes on from here.
-    pub fn start(&self, outward: bool) -> Start {
-        Start::On {
-            instance: self.instance,
-            solid: self.solid,
-            part: self.part,
-            plane: self.plane,
-            inward: !outward,
-        }
-    }
 }
 
 /// A crossing of a primitive somewhere in the scene.
@@ -274,13 +177,21 @@ impl Tracer<'_, '_> {
         let primitive = |it: &Candidate<N>| (solid(it).primitive, it.solid);
         // What lies in one plane is met at one t, and the first in the scene file counts.
         let order = |a: &Candidate<N>, b: &Candidate<N>| {
-            if plane(a).is_some() && plane(a) == plane(b) {
+            let twins = a.instance == b.instance
+                && solid(a).twin == solid(b).twin
+                && a.crossing.part == b.crossing.part
+                && a.crossing.leaves == b.crossing.leaves;
+            if twins || plane(a).is_some() && plane(a) == plane(b) {
                 Some(Ordering::Equal)
             } else {
                 compare(&a.crossing, &b.crossing)
             }
         };
         let beats = |a: &Candidate<N>, b: &Candidate<N>| {
+            if (a.instance, a.solid) == (b.instance, b.solid) && b.crossing.leaves && !a.crossing.leaves {
+                // A solid is entered before it is left.
+                return a.crossing.sure;
+            }
             a.crossing.sure
                 && match order(a, b) {
                     Some(Ordering::Less) => true,
@@ -490,7 +401,7 @@ impl Tracer<'_, '_> {
         let direction = unit(ray.direction).ok_or(Stop)?;
         let facing = hit.facing();
         let mut normal = facing;
-        if self.has(Effects::SMOOTH) && let Some(smooth) = self.smooth_normal(&hit, facing)? {
+        if self.has(Effects::SMOOTH) && let Some(smooth) = shade::smooth_normal(self.world, &hit).ok_or(Stop)? {
             normal = smooth;
             if is_glass || material.mirror != [0; 3] {
                 normal = shade::turned_to_ray(normal, direction).ok_or(Stop)?;
@@ -672,7 +583,7 @@ impl Tracer<'_, '_> {
         if self.has(Effects::SMOOTH.with(Effects::SHADOW)) {
             let geometric = dot(hit.facing(), to_light);
             let lifted = |ways: &mut Vec<_>| -> Result<(), Stop> {
-                let (reached, step) = self.lift(hit)?;
+                let (reached, step) = shade::lift(self.world, hit).ok_or(Stop)?;
                 let from = plus(hit.point, step);
                 if reached != Some(false) {
                     ways.push(Some((from, way_to(light, from).0, Start::Free)));
@@ -780,6 +691,7 @@ impl Tracer<'_, '_> {
         if surfaces.len() > shade::SURFACES {
             return Ok(black);
         }
+        self.reject_coincident(&surfaces, ray, depth)?;
         for (index, candidate) in surfaces.iter().enumerate() {
             let hit = self.hit(candidate, ray, depth)?;
             let Some(material) = scene.material(hit.object) else {
@@ -813,6 +725,28 @@ impl Tracer<'_, '_> {
         Ok(if is_open { hull(black, left) } else { left })
     }
 
+    /// Ends the evaluation where glass touches glass in one plane: light passes one of the surfaces then, not both.
+    fn reject_coincident<N: Enclosure>(
+        &self,
+        all: &[Candidate<N>],
+        ray: &Ray<N>,
+        depth: u8,
+    ) -> Result<(), Stop> {
+        let solid = |it: &Candidate<N>| &self.world.space(it.instance).solids[it.solid as usize];
+        let plane = |it: &Candidate<N>| solid(it).planes[usize::from(it.crossing.part)];
+        for (index, a) in all.iter().enumerate() {
+            for b in &all[..index] {
+                let twins = solid(a).twin == solid(b).twin && a.solid != b.solid;
+                let same_plane = plane(a) != NONE && plane(a) == plane(b);
+                if a.instance == b.instance && (twins || same_plane) {
+                    self.note(Reason::Shadow, depth, solid(a).primitive, ray.origin);
+                    return Err(Stop);
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// The t from the surface before one of several to that one.
     fn since<N: Enclosure>(&self, all: &[Candidate<N>], index: usize) -> Result<N, Stop> {
         let t = all[index].crossing.t;
@@ -837,16 +771,6 @@ impl Tracer<'_, '_> {
     }
 }
 
-/// A surface as it is shaded.
-pub struct Seen<'h, N> {
-    pub hit: &'h Hit<N>,
-    pub material: &'h Material,
-    pub normal: Three<N>,
-    pub direction: Three<N>,
-    pub diffuse: Three<N>,
-    pub depth: u8,
-}
-
 /// The way to a light, and whether it is infinitely far.
 fn way_to<N: Enclosure>(light: &Light, point: Three<N>) -> (Three<N>, bool) {
     if light.directional == 1 {
@@ -855,14 +779,4 @@ fn way_to<N: Enclosure>(light: &Light, point: Three<N>) -> (Three<N>, bool) {
         // 13 fraction bits of a unit are 5 of a step.
         (minus(light.vector.map(|x| N::scaled(x, 5)), point), false)
     }
-}
-
-/// A radiance with 20 fraction bits.
-pub fn radiance_of<N: Enclosure>(q20: i32) -> N {
-    N::scaled(q20.into(), 20)
-}
-
-/// A ratio with 30 fraction bits.
-pub fn ratio_of<N: Enclosure>(q30: i32) -> N {
-    N::scaled(q30.into(), 30)
 }

@@ -41,10 +41,12 @@ pub struct Solid {
     pub object: u32,
     /// Its planes, for what is flat or has flat faces: primitives that share a number lie in one plane.
     pub planes: [u32; 6],
+    /// The first primitive of the very same form.
+    pub twin: u32,
 }
 
 /// The form of a primitive.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Form {
     Triangle {
         corners: [[i64; 3]; 3],
@@ -175,6 +177,7 @@ impl Space {
     ) -> Result<Self, Unknown> {
         let mut space = Self::default();
         let mut planes = Planes::default();
+        let mut twins = HashMap::new();
         for kind in Kind::ALL {
             for slot in 0..scene.count(kind) {
                 let unknown = Unknown::Primitive(slot, kind.name());
@@ -187,6 +190,7 @@ impl Space {
                     primitive,
                     object,
                     planes: planes.of(&form),
+                    twin: *twins.entry(form).or_insert(index),
                 });
                 match scene.primitive_bounds(kind, slot) {
                     Some(bounds) if kind.is_bounded() => {
