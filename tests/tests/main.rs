@@ -7,6 +7,7 @@ mod apex;
 #[path = "blob/main.rs"]
 mod blob;
 mod boxes;
+mod certify;
 mod cylinder_cube;
 #[path = "deform/main.rs"]
 mod deform;

@@ -73,10 +73,7 @@ pub fn crossings<N: Enclosure>(
 
     // In the mantle: a t^2 + 2 b t + c is not positive.
     let slope = N::int(apex_radius - base_radius);
-    let (g, e) = (
-        N::int(base_radius) * h + slope * q_axial,
-        slope * d_axial,
-    );
+    let (g, e) = (N::int(base_radius) * h + slope * q_axial, slope * d_axial);
     // Seen from the point of the line that is closest to the axis's middle, so that squares are small.
     let shift = if at[0] {
         0.0

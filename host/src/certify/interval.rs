@@ -43,13 +43,21 @@ fn lacks(a: f64, b: f64, sum: f64) -> f64 {
 #[inline(always)]
 fn sum_below(a: f64, b: f64) -> f64 {
     let sum = a + b;
-    if lacks(a, b, sum) >= 0.0 { sum } else { down(sum) }
+    if lacks(a, b, sum) >= 0.0 {
+        sum
+    } else {
+        down(sum)
+    }
 }
 
 #[inline(always)]
 fn sum_above(a: f64, b: f64) -> f64 {
     let sum = a + b;
-    if lacks(a, b, sum) <= 0.0 { sum } else { up(sum) }
+    if lacks(a, b, sum) <= 0.0 {
+        sum
+    } else {
+        up(sum)
+    }
 }
 
 impl Add for Interval {
@@ -171,7 +179,9 @@ impl Enclosure for Interval {
         if quotients.iter().any(|x| x.is_nan()) {
             return None;
         }
-        let low = quotients.iter().fold(f64::INFINITY, |least, &x| least.min(x));
+        let low = quotients
+            .iter()
+            .fold(f64::INFINITY, |least, &x| least.min(x));
         let high = quotients
             .iter()
             .fold(f64::NEG_INFINITY, |most, &x| most.max(x));

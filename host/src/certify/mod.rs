@@ -14,7 +14,8 @@
 //! | `interval.rs`, `deep.rs` | intervals of double precision; balls of 128 and 256 bits |
 //! | `world.rs` | a blob's integers, and a hierarchy of boxes |
 //! | `crossing.rs`, `shapes.rs`, `cone.rs` | where rays cross primitives |
-//! | `hit.rs`, `trace.rs`, `shade.rs` | the rays of a sample, and the rules of effects |
+//! | `hit.rs`, `search.rs` | hits, and every crossing that may be the nearest |
+//! | `trace.rs`, `light.rs`, `shade.rs` | the rays of a sample, and the rules of effects |
 //! | `reason.rs` | why a pixel is open |
 //! | `picture.rs` | pixels, with more bits where that is needed |
 //! | `report.rs`, `page.rs` | what was found |
@@ -24,11 +25,13 @@ mod crossing;
 mod deep;
 mod hit;
 mod interval;
+mod light;
 mod number;
 mod page;
 mod picture;
 mod reason;
 mod report;
+mod search;
 mod shade;
 mod shapes;
 mod trace;
@@ -38,5 +41,5 @@ pub use page::{Pictures, page, sentence};
 pub use picture::{Enclosed, LEVELS, code, enclose, explain};
 pub use reason::Reason;
 pub use report::{FormatReport, OpenPixel, OpenPixels, Report, Width, certify, exact_picture, map};
-pub use trace::{Open, Step};
+pub use search::{Open, Step};
 pub use world::{NONE, Unknown, World};

@@ -104,7 +104,10 @@ fn reasons(report: &Report, explain: &str) -> String {
         let first = reason.examples.first();
         let command = first.map_or(String::new(), |it| {
             let [x, y] = it.pixel;
-            format!("<code>{}</code>", escape(&format!("{explain}{x},{y} --interval")))
+            format!(
+                "<code>{}</code>",
+                escape(&format!("{explain}{x},{y} --interval"))
+            )
         });
         let _ = writeln!(
             table,
@@ -124,7 +127,11 @@ fn widths(report: &Report) -> String {
          to 1. The bars are logarithmic.</p>\n<table class=\"bars\">\n",
     );
     let log = |count: usize| libm::log10(1.0 + count as f64);
-    let most = report.widths.iter().map(|it| log(it.pixels)).fold(1.0, f64::max);
+    let most = report
+        .widths
+        .iter()
+        .map(|it| log(it.pixels))
+        .fold(1.0, f64::max);
     for width in report.widths.iter().filter(|it| it.pixels > 0) {
         let _ = writeln!(
             chart,

@@ -1,11 +1,11 @@
 //! The pixels of a picture, each enclosed.
 
+use super::crossing::{Ray, Start, exact};
 use super::deep::{self, Ball};
 use super::interval::Interval;
-use super::crossing::{Ray, Start, exact};
 use super::number::*;
 use super::reason::Reason;
-use super::trace::{Open, Step, Tracer};
+use super::search::{Open, Step, Tracer};
 use super::world::{NONE, World};
 use bytemuck::{Pod, Zeroable};
 use gridel_core::render::Pixel as _;
@@ -85,9 +85,7 @@ fn within(index: u16, count: u16) -> [i64; 2] {
     if count == 1 {
         return [SUBPIXELS / 2; 2];
     }
-    let first = (0..8).fold(0, |sum, bit| {
-        sum | i64::from(index >> bit & 1) << (7 - bit)
-    });
+    let first = (0..8).fold(0, |sum, bit| sum | i64::from(index >> bit & 1) << (7 - bit));
     // Pascal's triangle modulo 2: column `bit` has an entry in row `row` if `row` holds the bits of... `bit`.
     let second = (0..8_u32).fold(0_i64, |sum, bit| {
         if index >> bit & 1 == 0 {
@@ -199,7 +197,13 @@ fn evaluate<N: Enclosure>(
         sum = scale(sum, N::scaled(part, 30));
     }
     if let Some(steps) = steps {
-        steps.extend(tracer.steps.take().into_iter().flat_map(RefCell::into_inner));
+        steps.extend(
+            tracer
+                .steps
+                .take()
+                .into_iter()
+                .flat_map(RefCell::into_inner),
+        );
     }
     let open = tracer.open.take();
     Evaluated {
@@ -226,12 +230,7 @@ fn code_of(world: &World<'_>, linear: [f64; 3]) -> [u8; 3] {
 }
 
 /// Encloses a pixel: with more bits until its 8-bit values are proved.
-pub fn enclose(
-    world: &World<'_>,
-    settings: &Settings,
-    pixel: [u16; 2],
-    levels: usize,
-) -> Enclosed {
+pub fn enclose(world: &World<'_>, settings: &Settings, pixel: [u16; 2], levels: usize) -> Enclosed {
     let mut enclosed = Enclosed {
         linear: [[0.0, 1.0]; 3],
         primitive: NONE,
@@ -252,7 +251,10 @@ pub fn enclose(
         let margin = |x: f64, by: f64| (x + by).clamp(0.0, 1.0);
         let rounded = 1e-15;
         enclosed.low = code_of(world, enclosed.linear.map(|[low, _]| margin(low, -rounded)));
-        enclosed.high = code_of(world, enclosed.linear.map(|[_, high]| margin(high, rounded)));
+        enclosed.high = code_of(
+            world,
+            enclosed.linear.map(|[_, high]| margin(high, rounded)),
+        );
         if enclosed.low == enclosed.high {
             enclosed.reason = 0;
             enclosed.on_boundary = 0;

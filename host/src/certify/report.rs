@@ -204,7 +204,9 @@ impl Report {
 /// a pixel is open. As sRGB pixels.
 pub fn map(pixels: &[Enclosed], pictures: &[(Format, Vec<[u16; 3]>)]) -> Vec<u8> {
     let color = |index: usize, it: &Enclosed| -> [u8; 3] {
-        let errors = pictures.iter().map(|(_, all)| it.error_of(code(all[index])));
+        let errors = pictures
+            .iter()
+            .map(|(_, all)| it.error_of(code(all[index])));
         let most = errors.clone().flatten().max().unwrap_or(0);
         match most {
             2.. => [200, 30, 20],

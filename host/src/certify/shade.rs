@@ -257,10 +257,7 @@ fn smooth<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<Smooth<N>> {
 /// The interpolated normal on the side of the ray; `None` of what is not smooth.
 ///
 /// `None` outside where the normals may cancel out.
-pub fn smooth_normal<N: Enclosure>(
-    world: &World<'_>,
-    hit: &Hit<N>,
-) -> Option<Option<Three<N>>> {
+pub fn smooth_normal<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<Option<Three<N>>> {
     let Some(smooth) = smooth(world, hit) else {
         return Some(None);
     };
@@ -276,10 +273,7 @@ pub fn smooth_normal<N: Enclosure>(
 }
 
 /// The way from a hit out to the curved surface that its triangle stands for, and whether that lies above it.
-pub fn lift<N: Enclosure>(
-    world: &World<'_>,
-    hit: &Hit<N>,
-) -> Option<(Option<bool>, Three<N>)> {
+pub fn lift<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<(Option<bool>, Three<N>)> {
     let nowhere = [N::zero(); 3];
     let Some(smooth) = smooth(world, hit) else {
         return Some((Some(false), nowhere));

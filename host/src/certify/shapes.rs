@@ -278,14 +278,8 @@ fn cuboid<N: Enclosure>(
             })
         };
         let (near, far) = match slope.sign() {
-            Some(Ordering::Greater) => (
-                face(below, 2 * k, false),
-                face(above, 2 * k + 1, true),
-            ),
-            Some(Ordering::Less) => (
-                face(above, 2 * k + 1, false),
-                face(below, 2 * k, true),
-            ),
+            Some(Ordering::Greater) => (face(below, 2 * k, false), face(above, 2 * k + 1, true)),
+            Some(Ordering::Less) => (face(above, 2 * k + 1, false), face(below, 2 * k, true)),
             Some(Ordering::Equal) => {
                 match (below.sign(), above.sign()) {
                     (Some(Ordering::Greater), _) | (_, Some(Ordering::Less)) => return Ok(()),

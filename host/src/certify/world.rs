@@ -132,9 +132,11 @@ impl<'s> World<'s> {
         let mut parts = Vec::new();
         for (number, part) in scene.parts().iter().enumerate() {
             let first = scene.first_primitive_of_part(number).unwrap_or(0);
-            parts.push(Space::of(part, |own| {
-                (first + own, scene.object(first + own))
-            }, Vec::new())?);
+            parts.push(Space::of(
+                part,
+                |own| (first + own, scene.object(first + own)),
+                Vec::new(),
+            )?);
         }
         let mut placed = Vec::new();
         let mut boxes = Vec::new();
