@@ -17,7 +17,8 @@ pub enum Start {
     Free,
     On {
         instance: u32,
-        solid: u32,
+        /// The first primitive of its form: of those, each is left alike.
+        twin: u32,
         part: u8,
         /// The plane of a flat surface.
         plane: u32,

@@ -16,6 +16,8 @@ pub struct Hit<N> {
     pub primitive: u32,
     pub instance: u32,
     pub solid: u32,
+    /// The first primitive of the same form, from which a ray starts as well.
+    pub twin: u32,
     pub part: u8,
     pub plane: u32,
 }
@@ -34,7 +36,7 @@ impl<N: Enclosure> Hit<N> {
     pub fn start(&self, outward: bool) -> Start {
         Start::On {
             instance: self.instance,
-            solid: self.solid,
+            twin: self.twin,
             part: self.part,
             plane: self.plane,
             inward: !outward,

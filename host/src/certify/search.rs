@@ -256,7 +256,7 @@ impl Tracer<'_, '_> {
         let mut stopped = false;
         let mut test = |number: u32, end: f64| -> f64 {
             let solid = &space.solids[number as usize];
-            let named = (solid, number, instance);
+            let named = (solid, instance);
             if let Some(outer) = &outer {
                 quick.clear();
                 let missed = shapes::crossings(named, outer, &mut quick).is_ok()
@@ -357,6 +357,7 @@ impl Tracer<'_, '_> {
             primitive: solid.primitive,
             instance,
             solid: number,
+            twin: solid.twin,
             part,
             plane: solid.planes[usize::from(part)],
         })

@@ -48,18 +48,18 @@ impl Placed {
 /// # Errors
 /// If the ray grazes the primitive so that it is open where it crosses it.
 pub fn crossings<N: Enclosure>(
-    (solid, number, instance): (&Solid, u32, u32),
+    (solid, instance): (&Solid, u32),
     ray: &Ray<N>,
     found: &mut Vec<Crossing<N>>,
 ) -> Result<(), Grazes> {
     let (plane, itself) = match ray.start {
         Start::On {
             instance: from,
-            solid,
+            twin,
             part,
             plane,
             inward,
-        } if from == instance => (plane, (solid == number).then_some((part, inward))),
+        } if from == instance => (plane, (solid.twin == twin).then_some((part, inward))),
         _ => (NONE, None),
     };
     let same_plane = |of: u32| of != NONE && of == plane;
