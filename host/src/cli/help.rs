@@ -21,15 +21,17 @@ Topics (`gridel help TOPIC` prints a document):
   structures  acceleration structures, and when to use which
   memory      bytes of blobs, of RAM and of flash on boards
   benchmarks  speed against other libraries, and what accuracy costs
+  exact       the exact picture that `gridel certify` proves
   paper       the tables of the paper, measured again";
 
 /// The documents by their topics.
-const TOPICS: [(&str, &str); 6] = [
+const TOPICS: [(&str, &str); 7] = [
     ("scene", include_str!("../../docs/SCENE.md")),
     ("check", include_str!("../../docs/CHECK.md")),
     ("structures", include_str!("../../docs/STRUCTURES.md")),
     ("memory", include_str!("../../docs/MEMORY.md")),
     ("benchmarks", include_str!("../../docs/BENCHMARKS.md")),
+    ("exact", include_str!("../../docs/EXACT.md")),
     ("paper", include_str!("../../docs/PAPER.md")),
 ];
 

@@ -79,7 +79,8 @@ fn decay(x: &Real) -> Real {
     result
 }
 
-/// t of crossings of the surface that a ray starts on are 0 but for the roundings of 320 bits.
+/// t of crossings of the surface that a ray starts on are 0, and those of what touches a light 1, but for the roundings
+/// of 320 bits.
 fn nothing() -> Real {
     real(f64::powi(2.0, -150))
 }
@@ -112,7 +113,7 @@ impl<'s> Exact<'s> {
         let view = self.scene.view();
         let [width, height] = [self.settings.width, self.settings.height].map(f64::from);
         // From the middle of the picture, in half heights.
-        let right = (2.0 * f64::from(x) + 1.0 - width) / 1.0;
+        let right = 2.0 * f64::from(x) + 1.0 - width;
         let up = height - 2.0 * f64::from(y) - 1.0;
         let direction = [0, 1, 2].map(|k| {
             real(f64::from(view.forward[k]))
@@ -145,7 +146,7 @@ impl<'s> Exact<'s> {
             }
             for (enter, leave) in placed.solid.spans(line, &real(0.0)) {
                 let mut keep = |t: Real, leaves: bool| {
-                    if t > nothing() && end.is_none_or(|end| t < *end) {
+                    if t > nothing() && end.is_none_or(|end| &t + nothing() < *end) {
                         all.push((t, placed, leaves));
                     }
                 };

@@ -177,3 +177,36 @@ fn rays_exactly_on_a_boundary_are_decided_or_said_to_be_on_it() {
     let open = pixels.iter().filter(|it| it.proved().is_none()).count();
     assert_eq!(open, 0);
 }
+
+/// README's table of proved pixels is what is measured.
+#[test]
+fn the_table_in_the_readme_is_measured() {
+    let readme = include_str!("../../../README.md");
+    let (_, table) = readme.split_once("<!-- certified -->\n").expect("a table");
+    let (table, _) = table.split_once("<!-- end -->").expect("an end");
+    let mut rows = String::from(
+        "| scene | format | proved equal | proved different | open | largest proved error |\n\
+         |---|---|---|---|---|---|\n",
+    );
+    for name in ["glass-chess", "cornell", "c60"] {
+        let mut fixtures = scenes::fixtures().into_iter();
+        let (_, scene) = fixtures.find(|(it, _)| it == name).expect("a fixture");
+        let blob = scenes::blob(&scene, 24);
+        let scene = blob.scene().expect("a scene");
+        let settings = settings(&scene, [160, 120], 1);
+        let pixels = certified(&scene, &settings);
+        let pictures = Format::ALL.map(|format| {
+            let job = Job::whole(format, Structure::DualSplit, settings);
+            let picture = render(&scene, &job, &|| ()).expect("a picture");
+            (format, picture.pixels)
+        });
+        for format in Report::of(&settings, &pixels, &pictures).formats {
+            let share = 100.0 * format.equal as f64 / pixels.len() as f64;
+            rows += &format!(
+                "| {name} | `{}` | {share:.2} % | {} | {} | {}/255 |\n",
+                format.format, format.different, format.open, format.max_proved_error
+            );
+        }
+    }
+    assert_eq!(table, rows, "paste this:\n{rows}");
+}
