@@ -177,7 +177,12 @@ impl<'s> Exact<'s> {
         }
         let (t, placed, leaves) = best?;
         let point = line.at(&t);
-        let normal = self.normal(placed, &point)?;
+        let mut normal = self.normal(placed, &point)?;
+        // The faces of a box without thickness lie in one plane: that counts which the ray comes from, or goes to.
+        let is_box = matches!(placed.solid, Solid::Box(_));
+        if is_box && dot(&normal, &line.slope).is_negative() == leaves {
+            normal = normal.map(|x| -x);
+        }
         let front = if placed.solid.is_flat() {
             dot(&normal, &line.slope).is_negative()
         } else {
