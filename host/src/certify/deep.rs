@@ -166,7 +166,9 @@ impl Enclosure for Ball {
     }
 
     fn float(value: f64) -> Self {
-        let exact = Big::try_from(value).expect("a finite number");
+        // No number of a scene comes near the ends of the range: an infinite bound stands for the largest float.
+        let value = value.clamp(-f64::MAX, f64::MAX);
+        let exact = Big::try_from(value).unwrap_or(zero());
         on_balls(|balls| balls.push(exact, 0.0))
     }
 
@@ -228,7 +230,7 @@ impl Enclosure for Ball {
             return Self::zero();
         }
         if self.sign() != Some(Ordering::Greater) || low <= 0.0 {
-            let half = up(high.sqrt()) * 0.5;
+            let half = (up(high.sqrt()) * 0.5).min(f64::MAX);
             return on_balls(|balls| {
                 let middle = Big::try_from(half).expect("a finite number");
                 balls.push(middle, half)

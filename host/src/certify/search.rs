@@ -212,16 +212,15 @@ impl Tracer<'_, '_> {
         let own = &self.world.own;
         let mut end = end;
         let mut instances = Vec::new();
-        self.search_space((own, NONE), ray, &mut end, depth, visit, &mut instances)?;
+        self.search_space((own, NONE), (ray, depth), &mut end, visit, &mut instances)?;
         for instance in instances {
             let placed = &self.world.placed[instance as usize];
             let space = &self.world.parts[placed.part];
             let ray = placed.ray(ray);
             self.search_space(
                 (space, instance),
-                &ray,
+                (&ray, depth),
                 &mut end,
-                depth,
                 visit,
                 &mut Vec::new(),
             )?;
@@ -232,9 +231,8 @@ impl Tracer<'_, '_> {
     fn search_space<N: Enclosure>(
         &self,
         (space, instance): (&Space, u32),
-        ray: &Ray<N>,
+        (ray, depth): (&Ray<N>, u8),
         end: &mut f64,
-        depth: u8,
         visit: &mut dyn FnMut(Candidate<N>, f64) -> f64,
         instances: &mut Vec<u32>,
     ) -> Result<(), Stop> {

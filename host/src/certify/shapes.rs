@@ -339,7 +339,7 @@ pub fn normal<N: Enclosure>(form: &Form, part: u8, point: Three<N>) -> Option<Th
         Form::Sphere { center, .. } => unit(minus(point, exact(center))),
         Form::Cuboid { .. } => {
             let mut normal = [0; 3];
-            normal[usize::from(part / 2)] = if part % 2 == 0 { -1 } else { 1 };
+            normal[usize::from(part / 2)] = if part.is_multiple_of(2) { -1 } else { 1 };
             Some(exact(normal))
         }
         Form::Cone { .. } => cone::normal(form, part, point),
@@ -362,7 +362,14 @@ pub fn face(form: &Form, part: u8) -> Option<(usize, i64)> {
         | Form::Plane { normal, point } => axis_of(normal).map(|k| (k, point[k])),
         Form::Cuboid { lowest, highest } => {
             let k = usize::from(part / 2);
-            Some((k, if part % 2 == 0 { lowest[k] } else { highest[k] }))
+            Some((
+                k,
+                if part.is_multiple_of(2) {
+                    lowest[k]
+                } else {
+                    highest[k]
+                },
+            ))
         }
         _ => None,
     }
