@@ -9,6 +9,7 @@ mod apex;
 mod blob;
 mod boxes;
 mod c_header;
+mod certify;
 mod cylinder_cube;
 #[path = "deform/main.rs"]
 mod deform;
