@@ -31,6 +31,7 @@ pub(crate) mod test_chains;
 mod test_scenes;
 mod text;
 mod track;
+mod without;
 mod words;
 
 pub use crate::shape::Shape;
@@ -50,6 +51,7 @@ pub use placement::Placement;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
 pub use track::{Interpolation, Key, TICKS_PER_SECOND, Track, TrackTarget};
+pub use without::{effect_named, leave_out, shown_without};
 
 use access::Access;
 use importer::{Choices, Importers};
