@@ -11,9 +11,11 @@ use crate::format::Effects;
 use crate::format::light_form::LightForm;
 use crate::format::record::Light;
 use crate::number::{Angle, extent};
+use crate::observe::count::Observer;
+use crate::observe::event::Event;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::light::{Reach, largest, length};
-use crate::shade::surface::Aim;
+use crate::shade::surface::{Aim, Lighting, Surface};
 
 pub(crate) struct AreaLight;
 
@@ -41,6 +43,27 @@ impl Effect for AreaLight {
             // Lights beyond the first 4,096 share points with these.
             let point = tracer.point(number as u16 & 0xfff);
             *aim = at(form, aim, point);
+        }
+    }
+
+    #[inline(always)]
+    fn face<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        _: &Surface<'_, N>,
+        lighting: &mut Lighting<'_, N>,
+        _: &mut bool,
+    ) {
+        if X::Observer::ENABLED && lighting.light.is_area() {
+            let way = lighting.way.map(N::far_to_f64);
+            let longest = way
+                .iter()
+                .fold(0.0, |longest: f64, it| longest.max(it.abs()));
+            let reach = lighting.distance.map_or(0.0, N::far_to_f64);
+            let from = lighting.origin.map(N::length_to_f64);
+            let axis = |k: usize| from[k] + way[k] / longest * reach;
+            let point = [axis(0), axis(1), axis(2)];
+            tracer.count().event(Event::FromArea { point });
         }
     }
 }

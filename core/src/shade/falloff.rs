@@ -7,6 +7,8 @@ use crate::accel::Number;
 use crate::format::Effects;
 use crate::format::light_form::LightForm;
 use crate::format::record::Light;
+use crate::observe::count::Observer;
+use crate::observe::event::Event;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::light::{Reach, length};
@@ -32,7 +34,11 @@ impl Effect for Falloff {
         is_reached: &mut bool,
     ) {
         if let Some(form) = tracer.scene().light_form(lighting.light) {
-            *is_reached = *is_reached && shines(form, lighting.to_light);
+            let is_shone_on = shines(form, lighting.to_light) && is_in_range(form, lighting);
+            if X::Observer::ENABLED && !is_shone_on {
+                tracer.count().event(Event::Outside);
+            }
+            *is_reached = *is_reached && is_shone_on;
         }
     }
 
@@ -46,6 +52,11 @@ impl Effect for Falloff {
     ) {
         if let Some(form) = tracer.scene().light_form(lighting.light) {
             *arriving = falling(form, lighting, *arriving);
+            if X::Observer::ENABLED {
+                tracer.count().event(Event::Fallen {
+                    arriving: arriving.to_f64(),
+                });
+            }
         }
     }
 }
@@ -64,6 +75,14 @@ fn shines<N: Number>(form: &LightForm, to_light: [N; 3]) -> bool {
         LightForm::RECTANGLE | LightForm::DISC => cosine(form, to_light) > N::ZERO,
         _ => !has_cone(form) || cosine(form, to_light) > N::ratio(form.cone_cosine),
     }
+}
+
+/// Whether a light's range reaches a surface.
+#[inline(always)]
+fn is_in_range<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>) -> bool {
+    form.range == 0
+        || Reach::of(lighting.way, lighting.distance)
+            .is_some_and(|reach| reach.half_length < length::<N>(form.range).half())
 }
 
 fn has_cone(form: &LightForm) -> bool {

@@ -1,14 +1,36 @@
-//! Random numbers that repeat: points of a pixel's samples for the effects that draw some.
+//! Random points that repeat, for the effects that draw some.
+//!
+//! An effect asks the ray loop for a point of the unit square, at any of its places:
+//!
+//! ```text
+//! let [u, v] = tracer.point(dimension);    // 32 fraction bits each
+//! let ratio = N::ratio((u >> 2) as i32);   // from 0 to 1 in any number format
+//! let [sine, cosine] = Angle(v).sin_cos(); // a turn
+//! ```
+//!
+//! The point follows from five numbers, and from nothing else: column and row of the pixel, sample, bounce, and
+//! dimension. Pixel and sample are those of all rays that wait, and the ray loop knows the bounce by the ray's depth
+//! and kind, so a ray that waits carries nothing for it. The dimension tells apart what one ray draws points for. Two
+//! effects with one dimension would draw the same point, so each has numbers of its own:
+//!
+//! | dimension | what for | drawn at |
+//! |---|---|---|
+//! | 0 to 0x0fff | the light of this number | `aim` |
+//! | 0x1000 | the lens | `camera` |
+//! | 0x1001 | time | `camera` |
+//! | 0x1010, 0x1011 | a glossy reflection, a glossy transmission | `bounce` |
+//! | 0x1020 | the environment as a light | `aim` |
+//! | 0x1030, 0x1031 | the direction of indirect light, and whether there is any | `bounce` |
 //!
 //! A point is one of Sobol's first two dimensions, which put one of the first 2^k points into every elementary
 //! interval of area 2^-k. Every pixel, bounce and dimension has a shuffle of the points and a scramble of each axis of
 //! its own, which keep that (Owen, "Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences", 1995). Both are hashes that
 //! change no bit because of a lower one (Laine and Karras, "Stratified Sampling for Stochastic Transparency", 2011;
-//! Burley, "Practical Hash-based Owen Scrambling", 2020).
+//! Burley, "Practical Hash-based Owen Scrambling", 2020). So the samples of a pixel are spread evenly in each
+//! dimension, and independently of those of other dimensions, bounces and pixels.
 //!
-//! All is integers of 32 bits, without a table, so every number format and machine draws the same points. A ray that
-//! waits carries nothing for it: the pixel and the sample are those of all rays that wait, and the bounce is told by the
-//! ray's depth and kind.
+//! All is integers of 32 bits, without a table: every number format and machine draws the same points. A picture of
+//! 2^k samples is better than one of as many that are not a power of two.
 
 /// The points of one sample of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

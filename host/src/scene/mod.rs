@@ -22,6 +22,7 @@ pub(crate) mod molecule;
 mod normals;
 mod options;
 mod placement;
+mod plain_lights;
 mod polygon;
 mod size;
 mod source_span;
