@@ -81,7 +81,7 @@ fn shines<N: Number>(form: &LightForm, to_light: [N; 3]) -> bool {
 #[inline(always)]
 fn is_in_range<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>) -> bool {
     form.range == 0
-        || Reach::of(lighting.way, lighting.distance)
+        || Reach::<N>::of(lighting.way, lighting.distance)
             .is_some_and(|reach| reach.half_length < length::<N>(form.range).half())
 }
 
