@@ -221,7 +221,7 @@ fn evaluate<N: Enclosure>(
 fn code_of(world: &World<'_>, linear: [f64; 3]) -> [u8; 3] {
     code(linear.map(|x| {
         let value = (x * 65535.0 + 0.5).clamp(0.0, 65535.0) as u16;
-        if world.scene.view().display_values != 0 {
+        if world.scene.view().encoding == View::DISPLAY_VALUES {
             from_display(value)
         } else {
             value
