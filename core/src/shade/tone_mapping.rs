@@ -66,7 +66,7 @@ mod tests {
 
     #[test]
     fn curves_have_the_values_of_their_formulas() {
-        for x in [0.0, 0.001, 0.18, 0.5, 1.0, 3.0, 8.0, 16.0] {
+        for x in [0.0_f64, 0.001, 0.18, 0.5, 1.0, 3.0, 8.0, 16.0] {
             let reinhard = x / (1.0 + x);
             let aces = (x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)).min(1.0);
             for (is_aces, exact) in [(false, reinhard), (true, aces)] {

@@ -8,6 +8,7 @@ use super::reason::Reason;
 use super::search::{Open, Step, Tracer};
 use super::world::{NONE, World};
 use bytemuck::{Pod, Zeroable};
+use gridel_core::format::record::View;
 use gridel_core::render::Pixel as _;
 use gridel_core::{Rgb888, Settings};
 use std::cell::{Cell, RefCell};
