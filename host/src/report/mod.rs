@@ -3,5 +3,4 @@
 pub mod chart;
 mod heat_map;
 
-pub use heat_map::HeatMap;
-pub(crate) use heat_map::work_color;
+pub use heat_map::{HeatMap, work_color};

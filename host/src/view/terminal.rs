@@ -2,7 +2,8 @@
 
 use super::frame::Frame;
 use super::keys::{Action, Key, action, key_help};
-use super::refine::{Refiner, ViewError};
+use super::refine::Refiner;
+use super::shot::ViewError;
 use super::save::save;
 use super::state::{Effect, State};
 use console::Term;
