@@ -119,10 +119,15 @@ const SHADOWED: u32 = Effects::SHADOW.0;
 pub(crate) const OPAQUE: u32 = Effects::ALL.without(Effects::FILTERING).0;
 pub(crate) const ALL: u32 = Effects::ALL.0;
 
+/// WebAssembly is sent to pages, so it has no code for what other code does as well.
+pub(crate) const PAGE: bool = cfg!(target_family = "wasm");
+
+/// Whether no structure has code of its own. The library's own tests compile all of it again.
+const COMPACT: bool = PAGE || cfg!(test);
+
 fn with_format<'s, N: Number>(scene: &'s Scene<'_>, job: &Job) -> NewTracer<'s> {
-    // Pictures are made through these; the others are there to be compared. The library's own tests,
-    // for which all of it is compiled again, do without.
-    if !cfg!(test) && !job.count {
+    // Pictures are made through these; the others are there to be compared.
+    if !COMPACT && !job.count {
         match job.structure {
             Structure::DualSplit => return fast::<N, DualSplit>(scene, job),
             Structure::Wide => return fast::<N, Wide>(scene, job),
@@ -130,12 +135,16 @@ fn with_format<'s, N: Number>(scene: &'s Scene<'_>, job: &Job) -> NewTracer<'s> 
         }
     }
     let opaque = Effects(OPAQUE).contains(scene.effects());
-    match (job.count, opaque) {
-        (true, true) => counted_rows::<N, OPAQUE>(scene, job),
-        (true, false) => counted_rows::<N, ALL>(scene, job),
-        (false, true) => rows::<N, DynAccel, OPAQUE>(scene, job),
-        (false, false) => rows::<N, DynAccel, ALL>(scene, job),
+    if !job.count {
+        return match opaque {
+            true => rows::<N, DynAccel, OPAQUE>(scene, job),
+            false => rows::<N, DynAccel, ALL>(scene, job),
+        };
     }
+    if !PAGE && opaque {
+        return counted_rows::<N, OPAQUE>(scene, job);
+    }
+    counted_rows::<N, ALL>(scene, job)
 }
 
 /// The scene with a structure chosen for [`DynAccel`] to walk.

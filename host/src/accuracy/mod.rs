@@ -16,6 +16,7 @@ mod bench;
 mod effects;
 mod instances;
 mod page;
+#[cfg(not(target_family = "wasm"))]
 mod plot;
 mod setting;
 
@@ -24,6 +25,7 @@ pub use bench::{Bench, Cost, ErrorParts, MeasureError, Point, Reference, referen
 pub use effects::{BOARD, Worth, given_up, worths};
 pub use instances::instance_notes;
 pub use page::{MOST_PICTURE_BYTES, PagePicture, page};
+#[cfg(not(target_family = "wasm"))]
 pub use plot::plot;
 pub use setting::{Parameter, Setting, least_reference_samples, sweep};
 

@@ -1,5 +1,6 @@
 //! Charts and pictures of where work goes.
 
+#[cfg(not(target_family = "wasm"))]
 pub mod chart;
 mod heat_map;
 

@@ -271,11 +271,12 @@ impl Drop for Stop<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::{Picture, render};
+    use crate::render::{Job, Picture, render};
     use crate::report::work_color;
     use crate::scene::Camera;
     use crate::view::test_scene::quick;
     use gridel_core::format::record::View;
+    use gridel_core::render::RenderError;
     use gridel_core::{Format, Settings, Structure};
     use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -3,8 +3,8 @@
 use super::frame::Frame;
 use super::keys::{Action, Key, action, key_help};
 use super::refine::Refiner;
-use super::shot::ViewError;
 use super::save::save;
+use super::shot::ViewError;
 use super::state::{Effect, State};
 use console::Term;
 use std::fmt::Write as _;

@@ -455,10 +455,13 @@ async function memory() {
     const request = { do: "memory", board: name, format: at("board-format").value || null };
     if (!scene.blob) {
       const { bits, structure, without } = settings();
-      request.compile = { name: scene.name, structure, latticeBits: bits, without };
+      const measured = about.boardStructures.includes(structure) ? structure : "dual-split";
+      request.compile = { name: scene.name, structure: measured, latticeBits: bits, without };
     }
     const { answer } = await workers.ask(request);
-    at("fits").textContent = answer.fits ? `The scene fits on ${name}.` : `${answer.why[0].toUpperCase()}${answer.why.slice(1)}.`;
+    const { structure, format } = answer.report;
+    at("fits").textContent = answer.fits ? `The scene fits on ${name}, through ${structure} in ${format}.`
+      : `${answer.why[0].toUpperCase()}${answer.why.slice(1)}.`;
     at("memory").textContent = answer.text;
     at("memory").hidden = false;
   } catch (error) {

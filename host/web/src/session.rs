@@ -251,6 +251,7 @@ fn about() -> Value {
         "structures": structures,
         "effects": effects,
         "boards": boards,
+        "boardStructures": MemoryReport::STRUCTURES.map(Structure::name),
         "extensions": extensions,
         "latticeBits": [LATTICE_BITS.start(), LATTICE_BITS.end()],
     })
