@@ -28,8 +28,10 @@ let compiled = { picture: null, reference: null };
 let finished = null;
 /** Counts changes: work for an earlier one is given up. */
 let change = 0;
+/** Counts files that are opened, of which the last one is shown. */
+let openings = 0;
+let isOpening = false;
 let isPainting = false;
-let errorPicture = null;
 
 const module = WebAssembly.compileStreaming(fetch("gridel.wasm")).catch(async () =>
   // A server may not know the type of such files.
@@ -76,16 +78,30 @@ function shot(chosen) {
 
 // Pictures.
 
+/** What loads blobs goes one after the other. */
+let queue = Promise.resolve();
+function inTurn(work) {
+  const done = queue.then(work);
+  queue = done.catch(() => {});
+  return done;
+}
+
+function setState(state) {
+  document.documentElement.dataset.state = state;
+}
+
 /** Shows what the controls say. */
 async function update({ moved = false } = {}) {
-  if (!scene) return;
+  // A scene that is opened will be shown with what the controls say then.
+  if (!scene || isOpening) return;
   const mine = change += 1;
   const isStale = () => mine !== change;
   finished = null;
-  errorPicture = null;
+  at("error").hidden = true;
+  setState("drawing");
   try {
     const chosen = settings();
-    await compile(chosen);
+    await inTurn(() => isStale() || compile(chosen));
     if (isStale()) return;
     const wanted = { ...shot(chosen), heatMap: view() === "work" };
     if (frame.width !== wanted.width || frame.height !== wanted.height) {
@@ -95,15 +111,16 @@ async function update({ moved = false } = {}) {
     }
     if (moved || table.key !== tableKey()) table.clear(tableKey());
     describe(chosen, "drawing");
-    const { seconds, cpu } = await workers.draw(wanted, frame, { onchange: paint });
-    if (isStale()) return;
+    const seconds = await workers.draw(wanted, frame, { onchange: paint });
+    if (isStale() || seconds === undefined) return;
     mark("picture");
-    finished = { chosen, wanted, seconds, cpu, linear: frame.linear };
+    finished = { chosen, wanted, seconds, linear: frame.linear };
     at("time").textContent = secondsText(seconds);
     at("bytes").textContent = bytesText(scene.info.bytes);
     await paintLast();
     memory();
     if (!wanted.heatMap) await compare(chosen, isStale);
+    if (isStale()) return;
     describe(chosen, "done");
   } catch (error) {
     if (!isStale()) showError(error);
@@ -136,7 +153,7 @@ async function compare(chosen, isStale) {
   const picture = finished;
   const samples = at("reference").value === "same" ? chosen.samples : Number(at("reference").value);
   const depth = Math.max(chosen.depth, scene.first.depth);
-  const slot = await referenceSlot();
+  const slot = await inTurn(() => isStale() || referenceSlot());
   if (isStale()) return;
   const wanted = { ...shot(chosen), slot, format: "f64", structure: scene.blob ? chosen.structure : "wide", samples, depth };
   const key = JSON.stringify([scene.number, wanted]);
@@ -144,8 +161,8 @@ async function compare(chosen, isStale) {
     status("Drawing the reference");
     const drawn = new Frame(wanted.width, wanted.height);
     const onchange = () => { at("progress").value = drawn.drawn / (drawn.width * drawn.height); };
-    const { seconds } = await workers.draw(wanted, drawn, { onchange, isBackground: true });
-    if (isStale()) return;
+    const seconds = await workers.draw(wanted, drawn, { onchange, isBackground: true });
+    if (isStale() || seconds === undefined) return;
     reference = { key, linear: drawn.linear, seconds };
   }
   const bits = scene.blob ? scene.info.latticeBits : 24;
@@ -186,8 +203,12 @@ function bytesOf(...arrays) {
 /** Paints soon what was drawn so far. */
 function paint() {
   at("progress").value = frame.drawn / (frame.width * frame.height);
-  if (isPainting || view() === "work") return;
+  if (isPainting) return;
   isPainting = true;
+  if (view() === "work") {
+    paintWork();
+    return;
+  }
   requestAnimationFrame(() => {
     isPainting = false;
     // The last of an earlier picture.
@@ -201,6 +222,27 @@ function show(colors) {
   if (colors.length !== at("canvas").width * at("canvas").height) return;
   const pixels = new Uint8ClampedArray(colors.buffer, colors.byteOffset, 4 * colors.length);
   context.putImageData(new ImageData(pixels, at("canvas").width), 0, 0);
+}
+
+/** Paints the work so far. */
+async function paintWork() {
+  const mine = change;
+  try {
+    const { bytes } = await workers.ask({ do: "heat-map" }, bytesOf(frame.work));
+    if (mine !== change || finished) return;
+    show(packed(bytes));
+  } finally {
+    isPainting = false;
+  }
+}
+
+/** Colors of three bytes as a canvas takes them. */
+function packed(bytes) {
+  const colors = new Uint32Array(bytes.length / 3);
+  for (let pixel = 0, byte = 0; pixel < colors.length; pixel += 1, byte += 3) {
+    colors[pixel] = bytes[byte] | bytes[byte + 1] << 8 | bytes[byte + 2] << 16 | 0xff000000;
+  }
+  return colors;
 }
 
 /** Paints a finished picture as it is looked at. */
@@ -218,12 +260,7 @@ async function paintLast() {
     : await workers.ask({ do: "difference" }, bytesOf(reference.linear, mine.linear));
   if (finished !== mine) return;
   mine.maximum = made.answer.maximum;
-  const colors = new Uint32Array(made.bytes.length / 3);
-  for (let pixel = 0; pixel < colors.length; pixel += 1) {
-    const [red, green, blue] = made.bytes.subarray(3 * pixel, 3 * pixel + 3);
-    colors[pixel] = red | green << 8 | blue << 16 | 0xff000000;
-  }
-  show(colors);
+  show(packed(made.bytes));
   describe(mine.chosen, "done");
 }
 
@@ -257,7 +294,7 @@ function describe(chosen, state) {
   const errors = done && finished?.errors ? `, RMS error ${errorText(finished.errors.rmse)}` : "";
   const time = done && finished ? `, ${secondsText(finished.seconds)}` : "";
   const text = `${scene.name}: ${nameOf(chosen)}${what}${white}${time}${errors}`;
-  document.documentElement.dataset.state = state;
+  setState(state);
   if (done) {
     status(text);
     at("progress").value = 1;
@@ -270,7 +307,7 @@ function showError(error) {
   at("error-text").textContent = problem.report;
   at("error").hidden = false;
   status(problem.message);
-  document.documentElement.dataset.state = "error";
+  setState("error");
   at("error").scrollIntoView({ block: "nearest" });
 }
 
@@ -278,35 +315,57 @@ function showError(error) {
 
 /** Opens files, of which one is the scene. */
 async function open(files, main = candidates(files)[0]) {
-  if (!main) return;
-  const mine = change += 1;
+  if (!main) {
+    setState("done");
+    return;
+  }
+  const mine = openings += 1;
+  const isStale = () => mine !== openings;
+  isOpening = true;
+  change += 1;
   workers.stop();
   at("error").hidden = true;
-  document.documentElement.dataset.state = "opening";
+  setState("opening");
   try {
     await workers.ready;
-    const all = candidates(files);
-    at("main-label").hidden = all.length < 2;
-    at("main").replaceChildren(...all.map((it) => new Option(it.path, it.path, false, it === main)));
-    await workers.ask({ do: "clear-files" });
-    for (const { path, bytes } of files) await workers.ask({ do: "add-file", path }, bytes);
-    const blob = isBlob(main) ? main.bytes : null;
-    const opened = { files, name: main.path, blob, number: mine, warnings: [] };
-    const first = blob
-      ? (await workers.askAll({ do: "load", slot: 0 }, blob)).answer
-      : await firstInfo(opened);
-    if (mine !== change) return;
-    Object.assign(opened, { info: first, first });
-    opened.bytes ??= blob;
+    const opened = await inTurn(() => isStale() || load(files, main, mine));
+    if (isStale()) return;
     scene = opened;
     camera = null;
-    compiled = { picture: blob ? "blob" : opened.compiled, reference: null };
     offer();
     await cameraText();
+    if (isStale()) return;
+    isOpening = false;
     update({ moved: true });
   } catch (error) {
-    if (mine === change) showError(error);
+    if (isStale()) return;
+    isOpening = false;
+    // The scene before stays, and so do its files.
+    if (scene) await inTurn(() => give(scene.files, scene.files.find(({ path }) => path === scene.name)));
+    compiled = { picture: null, reference: null };
+    showError(error);
   }
+}
+
+/** Hands files to the first worker. */
+async function give(files, main) {
+  const all = candidates(files);
+  at("main-label").hidden = all.length < 2;
+  at("main").replaceChildren(...all.map((it) => new Option(it.path, it.path, false, it === main)));
+  await workers.ask({ do: "clear-files" });
+  for (const { path, bytes } of files) await workers.ask({ do: "add-file", path }, bytes);
+}
+
+/** Loads a scene into all workers. */
+async function load(files, main, number) {
+  await give(files, main);
+  const blob = isBlob(main) ? main.bytes : null;
+  const opened = { files, name: main.path, blob, bytes: blob, number, warnings: [] };
+  const first = blob
+    ? (await workers.askAll({ do: "load", slot: 0 }, blob)).answer
+    : await firstInfo(opened);
+  compiled = { picture: blob ? "blob" : opened.compiled, reference: null };
+  return Object.assign(opened, { info: first, first });
 }
 
 /** Compiles a scene for the first time. */
@@ -352,7 +411,8 @@ let waiting = null;
 
 /** Moves the camera; what comes while it moves is added up. */
 async function move({ orbit = [0, 0], pan = [0, 0], zoom = 0 }) {
-  if (!scene) return;
+  if (!scene || isOpening) return;
+  setState("drawing");
   waiting ??= { orbit: [0, 0], pan: [0, 0], zoom: 0 };
   for (const axis of [0, 1]) {
     waiting.orbit[axis] += orbit[axis];
@@ -486,11 +546,6 @@ async function savePicture() {
 
 // Measuring.
 
-/** Returns once the picture and its errors are there. */
-async function settle() {
-  await update();
-}
-
 async function measure() {
   const first = settings();
   const sweeps = {
@@ -511,12 +566,12 @@ async function measure() {
     for (const chosen of sweeps[at("sweep").value]()) {
       choose(chosen);
       const before = change + 1;
-      await settle();
+      await update();
       // Somebody changed something: that comes first.
       if (change !== before) return;
     }
     choose(first);
-    await settle();
+    await update();
   } finally {
     at("measure").disabled = false;
   }
@@ -530,6 +585,7 @@ function use(chosen) {
 // The start.
 
 async function openSample() {
+  setState("opening");
   const name = at("sample").value;
   const answer = await fetch(`scenes/${name}`);
   if (!answer.ok) throw new Error(`scenes/${name}: ${answer.status}`);
@@ -556,6 +612,7 @@ function connect() {
   const guarded = (action) => (...given) => Promise.resolve(action(...given)).catch(showError);
   at("sample").onchange = guarded(openSample);
   at("files").onchange = guarded(async ({ target }) => {
+    setState("opening");
     const files = await fromList(target.files);
     // The same file can be chosen again after a change.
     target.value = "";
@@ -594,6 +651,7 @@ function connect() {
   addEventListener("drop", guarded(async (event) => {
     event.preventDefault();
     drop.hidden = true;
+    setState("opening");
     await open(await fromDrop(event.dataTransfer));
   }));
 }

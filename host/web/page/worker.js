@@ -44,7 +44,7 @@ async function receive(data) {
     postMessage({ id: data.id, answer: {}, bytes: new Uint8Array() });
   } else if (data.draw) {
     const begun = call(data.draw);
-    drawing = begun.answer.error ? null : { generation: data.generation, time: 0 };
+    drawing = begun.answer.error ? null : { generation: data.generation };
     if (begun.answer.error) postMessage({ generation: data.generation, error: begun.answer.error });
     else turn();
   } else if (data.stop) {
@@ -63,11 +63,10 @@ function draw() {
   try {
     const { answer, bytes } = call({ do: "step", blocks });
     const time = performance.now() - begun;
-    drawing.time += time;
     if (time < TURN / 2) blocks = Math.min(2 * blocks, 1 << 16);
     else if (time > 2 * TURN) blocks = Math.max(1, blocks >> 1);
     const { error, done, seen } = answer;
-    postMessage({ generation, error, done, seen, time: drawing.time, words: bytes.buffer }, [bytes.buffer]);
+    postMessage({ generation, error, done, seen, words: bytes.buffer }, [bytes.buffer]);
     if (error || done) drawing = null;
     else turn();
   } catch (fault) {

@@ -25,13 +25,14 @@ export class Frame {
 
   begin() {
     this.sides = new Uint8Array(this.width * this.height).fill(255);
+    this.work.fill(0);
     this.drawn = 0;
   }
 
   put(words) {
     const { width, sides, colors, linear, work } = this;
     for (let at = 0; at < words.length; at += 4) {
-      const [place, value, redGreen, blueSize] = words.subarray(at, at + 4);
+      const place = words[at], value = words[at + 1], redGreen = words[at + 2], blueSize = words[at + 3];
       const x = place & 0xffff, y = place >>> 16;
       const columns = (blueSize >>> 16) & 0xff, rows = blueSize >>> 24;
       const pixel = y * width + x;
@@ -99,19 +100,18 @@ export class Workers {
     const { current } = this;
     if (!current || data.generation !== current.generation) return;
     if (data.error) {
-      this.stop();
+      this.current = null;
       current.reject(new Problem(data.error));
+      this.stop();
       return;
     }
     current.frame.put(new Uint32Array(data.words));
-    current.times[index] = data.time;
     if (data.seen) current.seen.add(index);
     if (data.done) current.done.add(index);
     current.onchange?.();
     if (current.done.size === this.all.length) {
       this.current = null;
-      current.resolve({ seconds: (performance.now() - current.begun) / 1000,
-        cpu: current.times.reduce((sum, time) => sum + time, 0) / 1000 });
+      current.resolve((performance.now() - current.begun) / 1000);
       this.begin();
     } else if (this.next && this.isSeen()) {
       this.begin();
@@ -123,9 +123,10 @@ export class Workers {
       || performance.now() - this.current.begun > PATIENCE || this.current.isBackground;
   }
 
-  /** Draws a picture in place of the one that is drawn; the promise of one that is given up is never kept. */
+  /** Draws a picture in place of the one that is drawn. Returns the seconds; nothing for one that is given up. */
   draw(shot, frame, { onchange, isBackground = false } = {}) {
     return new Promise((resolve, reject) => {
+      this.next?.resolve();
       this.next = { shot, frame, onchange, isBackground, resolve, reject };
       if (this.isSeen()) this.begin();
       else setTimeout(() => { if (this.next && this.isSeen()) this.begin(); }, PATIENCE);
@@ -137,8 +138,9 @@ export class Workers {
     if (!next) return;
     this.next = null;
     const generation = this.generation += 1;
+    this.current?.resolve();
     next.frame.begin();
-    this.current = { ...next, generation, begun: performance.now(), seen: new Set(), done: new Set(), times: [] };
+    this.current = { ...next, generation, begun: performance.now(), seen: new Set(), done: new Set() };
     this.all.forEach((worker, index) => {
       const draw = { do: "begin", shot: next.shot, share: [index, this.all.length] };
       worker.postMessage({ draw, generation });
@@ -147,6 +149,8 @@ export class Workers {
 
   /** Gives up what is drawn. */
   stop() {
+    this.current?.resolve();
+    this.next?.resolve();
     this.current = this.next = null;
     this.all.forEach((worker) => worker.postMessage({ stop: true }));
   }
