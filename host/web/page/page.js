@@ -1,17 +1,16 @@
 // The page: controls, picture, figures.
 
+import { at, choose, count, cycle, nameOf, offer, offerAll, offerFormats, settings, step, view } from "./controls.js";
 import { Frame, Problem, Workers } from "./workers.js";
 import { candidates, fromDrop, fromList, isBlob, save } from "./files.js";
 import { Table, bytesText, errorText, secondsText } from "./table.js";
 import { listen } from "./pointer.js";
 
-const at = (id) => document.getElementById(id);
 const context = at("canvas").getContext("2d", { alpha: false });
 
 /** Steps of an orbit by keys, to a whole turn, as in `gridel view`. */
 const ORBIT_STEP = 2 * Math.PI / 48;
 const PAN_STEP = 1 / 24;
-const SAMPLES = [1, 2, 4, 8, 16, 32, 64, 128, 256];
 
 /** What there is to choose from. */
 let about;
@@ -40,35 +39,10 @@ const workers = new Workers(module, Math.max(1, Math.min(8, navigator.hardwareCo
 workers.onfault = showError;
 const table = new Table(at("rows"), use);
 
-/** What is chosen. */
-function settings() {
-  return {
-    format: document.querySelector("[name=format]:checked")?.value ?? "f32",
-    bits: Number(at("bits").value),
-    structure: at("structure").value,
-    samples: Number(at("samples").value),
-    depth: Number(at("depth").value),
-    without: Array.from(document.querySelectorAll("#effects input:not(:checked)"), (it) => it.value),
-  };
-}
-
-function choose({ format, bits, structure, samples, depth, without }) {
-  const radio = document.querySelector(`[name=format][value="${format}"]`);
-  if (radio) radio.checked = true;
-  at("bits").value = bits;
-  at("bits-shown").value = bits;
-  at("structure").value = structure;
-  at("samples").value = samples;
-  at("depth").value = depth;
-  for (const box of document.querySelectorAll("#effects input")) box.checked = !without.includes(box.value);
-}
-
 function size() {
   const scale = Number(at("size").value);
   return [scene.info.width, scene.info.height].map((side) => Math.max(1, Math.round(side * scale)));
 }
-
-const view = () => document.querySelector("[name=view]:checked").value;
 
 function shot(chosen) {
   const [width, height] = size();
@@ -174,7 +148,7 @@ async function compare(chosen, isStale) {
   at("rmse").textContent = errorText(answer.rmse);
   at("largest").textContent = errorText(answer.largest);
   at("different").textContent = `${(100 * answer.share).toFixed(2)} %`;
-  table.add({ chosen, name: nameOf(chosen), ...answer, seconds: picture.seconds, bytes: scene.info.bytes });
+  table.add({ chosen, name: nameOf(chosen, scene), ...answer, seconds: picture.seconds, bytes: scene.info.bytes });
   picture.errors = answer;
   await paintLast();
 }
@@ -271,14 +245,6 @@ function mark(what) {
 
 // Words.
 
-const count = (number, thing) => `${number} ${thing}${number === 1 ? "" : "s"}`;
-
-function nameOf({ format, bits, structure, samples, depth, without }) {
-  const left = without.length ? `, without ${without.join(", ")}` : "";
-  const shownBits = scene.blob ? scene.info.latticeBits : bits;
-  return `${format}, ${shownBits} bits, ${structure}, ${count(samples, "sample")}, depth ${depth}${left}`;
-}
-
 function tableKey() {
   return JSON.stringify([scene.number, camera, at("size").value, at("reference").value]);
 }
@@ -293,7 +259,7 @@ function describe(chosen, state) {
   const white = finished?.maximum && view() === "work" ? `: white is ${finished.maximum} tests` : "";
   const errors = done && finished?.errors ? `, RMS error ${errorText(finished.errors.rmse)}` : "";
   const time = done && finished ? `, ${secondsText(finished.seconds)}` : "";
-  const text = `${scene.name}: ${nameOf(chosen)}${what}${white}${time}${errors}`;
+  const text = `${scene.name}: ${nameOf(chosen, scene)}${what}${white}${time}${errors}`;
   setState(state);
   if (done) {
     status(text);
@@ -332,7 +298,10 @@ async function open(files, main = candidates(files)[0]) {
     if (isStale()) return;
     scene = opened;
     camera = null;
-    offer();
+    offer(scene, about);
+    at("summary").textContent = "Click into the picture, or give a column and a row.";
+    at("explanation").hidden = true;
+    document.title = `${scene.name}: what accuracy costs`;
     await cameraText();
     if (isStale()) return;
     isOpening = false;
@@ -376,32 +345,6 @@ async function firstInfo(opened) {
   opened.bytes = made.bytes;
   opened.compiled = JSON.stringify([24, "wide", []]);
   return (await workers.askAll({ do: "load", slot: 0 }, made.bytes)).answer;
-}
-
-/** Offers what the scene can be shown with. */
-function offer() {
-  const { first, blob } = scene;
-  const structures = blob ? first.structures : about.structures;
-  at("structure").replaceChildren(...structures.map((name) => new Option(name, name)));
-  at("bits").disabled = Boolean(blob);
-  const boxes = about.effects.filter(({ name }) => first.effects.includes(name)).map(({ name, without }) => {
-    const label = document.createElement("label");
-    const box = Object.assign(document.createElement("input"), { type: "checkbox", value: name, checked: true, disabled: Boolean(blob) });
-    label.title = `without it, ${without}`;
-    label.append(box, name);
-    return label;
-  });
-  const none = Object.assign(document.createElement("span"), { className: "quiet", textContent: "none" });
-  at("effects").replaceChildren(at("effects").querySelector("legend"), ...(boxes.length ? boxes : [none]));
-  const samples = [...new Set([...SAMPLES, first.samples])].sort((a, b) => a - b);
-  at("samples").replaceChildren(...samples.map((number) => new Option(number, number)));
-  choose({ format: settings().format, bits: first.latticeBits, structure: blob ? first.structures[0] : "wide",
-    samples: first.samples, depth: first.depth, without: [] });
-  at("warnings-details").hidden = scene.warnings.length === 0;
-  at("warnings").replaceChildren(...scene.warnings.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
-  at("summary").textContent = "Click into the picture, or give a column and a row.";
-  at("explanation").hidden = true;
-  document.title = `${scene.name}: what accuracy costs`;
 }
 
 // The camera.
@@ -449,18 +392,6 @@ async function cameraText() {
 
 // What is asked for by keys.
 
-function cycle(select) {
-  select.selectedIndex = (select.selectedIndex + 1) % select.options.length;
-  update();
-}
-
-function step(select, by) {
-  const index = Math.min(Math.max(select.selectedIndex + by, 0), select.options.length - 1);
-  if (index === select.selectedIndex) return;
-  select.selectedIndex = index;
-  update();
-}
-
 /** Does what a key asks for; false for one that nothing hears. */
 function key({ key: name, shiftKey, ctrlKey, altKey, metaKey }) {
   if (ctrlKey || altKey || metaKey) return false;
@@ -478,7 +409,12 @@ function key({ key: name, shiftKey, ctrlKey, altKey, metaKey }) {
       formats[(formats.findIndex((it) => it.checked) + 1) % formats.length].checked = true;
       update();
     },
-    a: () => cycle(at("structure")), m: () => step(at("samples"), 1), l: () => step(at("samples"), -1),
+    a: () => {
+      cycle(at("structure"));
+      update();
+    },
+    m: () => step(at("samples"), 1) && update(),
+    l: () => step(at("samples"), -1) && update(),
     c: () => {
       const other = view() === "work" ? "picture" : "work";
       document.querySelector(`[name=view][value=${other}]`).checked = true;
@@ -528,11 +464,6 @@ async function memory() {
     at("fits").textContent = error.help ? `${error.message}: ${error.help}.` : error.message;
     at("memory").hidden = true;
   }
-}
-
-function offerFormats() {
-  const board = about.boards.find(({ name }) => name === at("board").value);
-  at("board-format").replaceChildren(...board.formats.map((name) => new Option(name, name)));
 }
 
 const stem = () => scene.name.split("/").at(-1).replace(/\.gz$/, "").replace(/\.[^.]*$/, "");
@@ -596,14 +527,7 @@ async function start() {
   const sample = fetch(`scenes/${at("sample").value}`).then((it) => it.arrayBuffer());
   await workers.ready;
   about = (await workers.ask({ do: "about" })).answer;
-  at("formats").append(...about.formats.map((name) => {
-    const label = document.createElement("label");
-    label.append(Object.assign(document.createElement("input"), { type: "radio", name: "format", value: name, checked: name === "f32" }), name);
-    return label;
-  }));
-  at("board").replaceChildren(...about.boards.map(({ name, core }) => new Option(`${name} (${core})`, name)));
-  offerFormats();
-  at("files").accept = [...about.extensions, "gridel", "gz", "mtl", "bin"].map((it) => `.${it}`).join(",");
+  offerAll(about);
   connect();
   await open([{ path: at("sample").value, bytes: new Uint8Array(await sample) }]);
 }
@@ -633,7 +557,7 @@ function connect() {
   at("measure").onclick = guarded(measure);
   at("explain").onclick = () => explain(Number(at("pixel-x").value), Number(at("pixel-y").value));
   at("board").onchange = () => {
-    offerFormats();
+    offerFormats(about);
     memory();
   };
   at("board-format").onchange = () => memory();
