@@ -216,13 +216,13 @@ fn pixels_equal(page: &Page) {
     let chess = "glass-chess.toml";
     assert_eq!(
         shown(&browser),
-        page.rendered(&[chess, "--format", "f32", "--accel", "wide"])
+        page.rendered(&[chess, "--format", "f32", "--accel", "dual-split"])
     );
 
     choose(&browser, "sample", "quick.toml");
     for (format, structure) in [
-        ("fixed", "wide"),
         ("fixed", "dual-split"),
+        ("f32", "wide"),
         ("f32", "list"),
         ("f64", "bvh"),
         ("f64", "octree"),
@@ -284,7 +284,7 @@ fn camera_follows(page: &Page) {
         let toml = content(&browser, "camera");
         let options = toml.lines().next().unwrap().trim_start_matches("# ");
         let options: Vec<_> = options.split(' ').collect();
-        let common = ["quick.toml", "--format", "f32", "--accel", "wide"];
+        let common = ["quick.toml", "--format", "f32", "--accel", "dual-split"];
         let picture = page.rendered(&[&common[..], &options].concat());
         assert!(shown(&browser) == picture, "{toml}");
         assert!(picture != first);
@@ -366,14 +366,13 @@ fn answers(page: &Page) {
         "--format",
         "f64",
         "--accel",
-        "wide",
+        "dual-split",
     ]);
     assert_eq!(content(&browser, "explanation").trim(), explained.trim());
 
     // Files are those of the program, too.
     let downloads = json!({"behavior": "allow", "downloadPath": page.files.path("")});
     browser.command("Page.setDownloadBehavior", downloads);
-    choose(&browser, "structure", "dual-split");
     browser.wait("document.getElementById('memory').textContent.includes('dual-split')");
     let report = content(&browser, "memory");
     let inspected = page
@@ -425,7 +424,7 @@ fn files_open(page: &Page) {
     );
     settle(&browser);
     let of_program = |arguments: &[&str]| {
-        page.rendered(&[arguments, &["--format", "f32", "--accel", "wide"]].concat())
+        page.rendered(&[arguments, &["--format", "f32", "--accel", "dual-split"]].concat())
     };
     assert!(shown(&browser) == of_program(&["tree.toml"]));
     // The other file that is a scene of its own.

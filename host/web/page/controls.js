@@ -2,6 +2,9 @@
 
 export const at = (id) => document.getElementById(id);
 
+/** The fastest structure without SIMD, and what boards hold. */
+export const USUAL = "dual-split";
+
 const SAMPLES = [1, 2, 4, 8, 16, 32, 64, 128, 256];
 
 /** What is chosen. */
@@ -59,7 +62,7 @@ export function offer(scene, about) {
   at("effects").replaceChildren(at("effects").querySelector("legend"), ...(boxes.length ? boxes : [none]));
   const samples = [...new Set([...SAMPLES, first.samples])].sort((a, b) => a - b);
   at("samples").replaceChildren(...samples.map((number) => new Option(number, number)));
-  choose({ format: settings().format, bits: first.latticeBits, structure: blob ? first.structures[0] : "wide",
+  choose({ format: settings().format, bits: first.latticeBits, structure: first.structures.includes(USUAL) ? USUAL : first.structures[0],
     samples: first.samples, depth: first.depth, without: [] });
   at("warnings-details").hidden = scene.warnings.length === 0;
   at("warnings").replaceChildren(...scene.warnings.map((text) => Object.assign(document.createElement("li"), { textContent: text })));

@@ -1,6 +1,6 @@
 // The page: controls, picture, figures.
 
-import { at, choose, count, cycle, nameOf, offer, offerAll, offerFormats, settings, step, view } from "./controls.js";
+import { USUAL, at, choose, count, cycle, nameOf, offer, offerAll, offerFormats, settings, step, view } from "./controls.js";
 import { Frame, Problem, Workers } from "./workers.js";
 import { candidates, fromDrop, fromList, isBlob, save } from "./files.js";
 import { Table, bytesText, errorText, secondsText } from "./table.js";
@@ -129,7 +129,7 @@ async function compare(chosen, isStale) {
   const depth = Math.max(chosen.depth, scene.first.depth);
   const slot = await inTurn(() => isStale() || referenceSlot());
   if (isStale()) return;
-  const wanted = { ...shot(chosen), slot, format: "f64", structure: scene.blob ? chosen.structure : "wide", samples, depth };
+  const wanted = { ...shot(chosen), slot, format: "f64", structure: scene.blob ? chosen.structure : USUAL, samples, depth };
   const key = JSON.stringify([scene.number, wanted]);
   if (reference?.key !== key) {
     status("Drawing the reference");
@@ -157,7 +157,7 @@ async function compare(chosen, isStale) {
 async function referenceSlot() {
   if (scene.blob) return 0;
   if (compiled.reference !== scene.number) {
-    const made = await workers.ask({ do: "compile", name: scene.name, structure: "wide", latticeBits: 24, without: [] });
+    const made = await workers.ask({ do: "compile", name: scene.name, structure: USUAL, latticeBits: 24, without: [] });
     await workers.askAll({ do: "load", slot: 1 }, made.bytes);
     compiled.reference = scene.number;
   }
@@ -340,10 +340,10 @@ async function load(files, main, number) {
 /** Compiles a scene for the first time. */
 async function firstInfo(opened) {
   status(`Reading ${opened.name}`);
-  const made = await workers.ask({ do: "compile", name: opened.name, structure: "wide", latticeBits: 24, without: [] });
+  const made = await workers.ask({ do: "compile", name: opened.name, structure: USUAL, latticeBits: 24, without: [] });
   opened.warnings = made.answer.warnings;
   opened.bytes = made.bytes;
-  opened.compiled = JSON.stringify([24, "wide", []]);
+  opened.compiled = JSON.stringify([24, USUAL, []]);
   return (await workers.askAll({ do: "load", slot: 0 }, made.bytes)).answer;
 }
 
@@ -451,7 +451,7 @@ async function memory() {
     const request = { do: "memory", board: name, format: at("board-format").value || null };
     if (!scene.blob) {
       const { bits, structure, without } = settings();
-      const measured = about.boardStructures.includes(structure) ? structure : "dual-split";
+      const measured = about.boardStructures.includes(structure) ? structure : USUAL;
       request.compile = { name: scene.name, structure: measured, latticeBits: bits, without };
     }
     const { answer } = await workers.ask(request);
