@@ -87,6 +87,18 @@ export function step(select, by) {
   return isOther;
 }
 
+/** All values of one setting, beside what is chosen. */
+export function sweep(setting, first, scene, about) {
+  const each = (values, key) => values.map((value) => ({ ...first, [key]: value }));
+  switch (setting) {
+    case "format": return each(about.formats, "format");
+    case "bits": return each([24, 20, 16, 12, 10], "bits");
+    case "samples": return each([1, 2, 4, 8, 16], "samples");
+    case "structure": return each(Array.from(at("structure").options, ({ value }) => value), "structure");
+    default: return each([[], ...scene.first.effects.map((effect) => [effect])], "without");
+  }
+}
+
 // Words.
 
 export const count = (number, thing) => `${number} ${thing}${number === 1 ? "" : "s"}`;

@@ -1,16 +1,14 @@
 // The page: controls, picture, figures.
 
-import { USUAL, at, choose, count, cycle, nameOf, offer, offerAll, offerFormats, settings, step, view } from "./controls.js";
-import { Frame, Problem, Workers } from "./workers.js";
+import { USUAL, at, choose, count, cycle, nameOf, offer, offerAll, offerFormats, settings, step, sweep, view } from "./controls.js";
+import { Frame, Problem, Workers, bytesOf, packed } from "./workers.js";
 import { candidates, fromDrop, fromList, isBlob, save } from "./files.js";
 import { Table, bytesText, errorText, secondsText } from "./table.js";
+import { press } from "./keys.js";
 import { listen } from "./pointer.js";
 
 const context = at("canvas").getContext("2d", { alpha: false });
 
-/** Steps of an orbit by keys, to a whole turn, as in `gridel view`. */
-const ORBIT_STEP = 2 * Math.PI / 48;
-const PAN_STEP = 1 / 24;
 
 /** What there is to choose from. */
 let about;
@@ -164,16 +162,6 @@ async function referenceSlot() {
   return 1;
 }
 
-function bytesOf(...arrays) {
-  const all = new Uint8Array(arrays.reduce((sum, it) => sum + it.byteLength, 0));
-  let place = 0;
-  for (const it of arrays) {
-    all.set(new Uint8Array(it.buffer, it.byteOffset, it.byteLength), place);
-    place += it.byteLength;
-  }
-  return all;
-}
-
 /** Paints soon what was drawn so far. */
 function paint() {
   at("progress").value = frame.drawn / (frame.width * frame.height);
@@ -208,15 +196,6 @@ async function paintWork() {
   } finally {
     isPainting = false;
   }
-}
-
-/** Colors of three bytes as a canvas takes them. */
-function packed(bytes) {
-  const colors = new Uint32Array(bytes.length / 3);
-  for (let pixel = 0, byte = 0; pixel < colors.length; pixel += 1, byte += 3) {
-    colors[pixel] = bytes[byte] | bytes[byte + 1] << 8 | bytes[byte + 2] << 16 | 0xff000000;
-  }
-  return colors;
 }
 
 /** Paints a finished picture as it is looked at. */
@@ -390,41 +369,26 @@ async function cameraText() {
   at("camera").textContent = (await workers.ask({ do: "move", slot: 0, camera: null })).answer.toml;
 }
 
-// What is asked for by keys.
-
-/** Does what a key asks for; false for one that nothing hears. */
-function key({ key: name, shiftKey, ctrlKey, altKey, metaKey }) {
-  if (ctrlKey || altKey || metaKey) return false;
-  const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-  const way = arrows[name];
-  if (way) {
-    const by = (length) => way.map((steps) => steps * length);
-    move(shiftKey ? { pan: by(PAN_STEP) } : { orbit: by(ORBIT_STEP) });
-    return true;
-  }
-  const formats = [...document.querySelectorAll("[name=format]")];
-  const actions = {
-    "+": () => move({ zoom: 1 }), "=": () => move({ zoom: 1 }), "-": () => move({ zoom: -1 }), r: home,
-    f: () => {
-      formats[(formats.findIndex((it) => it.checked) + 1) % formats.length].checked = true;
-      update();
-    },
-    a: () => {
-      cycle(at("structure"));
-      update();
-    },
-    m: () => step(at("samples"), 1) && update(),
-    l: () => step(at("samples"), -1) && update(),
-    c: () => {
-      const other = view() === "work" ? "picture" : "work";
-      document.querySelector(`[name=view][value=${other}]`).checked = true;
-      update();
-    },
-  };
-  const action = actions[name.toLowerCase()];
-  action?.();
-  return Boolean(action);
-}
+/** What letters do. */
+const actions = {
+  r: home,
+  f: () => {
+    const formats = [...document.querySelectorAll("[name=format]")];
+    formats[(formats.findIndex((it) => it.checked) + 1) % formats.length].checked = true;
+    update();
+  },
+  a: () => {
+    cycle(at("structure"));
+    update();
+  },
+  m: () => step(at("samples"), 1) && update(),
+  l: () => step(at("samples"), -1) && update(),
+  c: () => {
+    const other = view() === "work" ? "picture" : "work";
+    document.querySelector(`[name=view][value=${other}]`).checked = true;
+    update();
+  },
+};
 
 // Explanations, boards, files.
 
@@ -479,13 +443,6 @@ async function savePicture() {
 
 async function measure() {
   const first = settings();
-  const sweeps = {
-    format: () => about.formats.map((format) => ({ ...first, format })),
-    bits: () => [24, 20, 16, 12, 10].map((bits) => ({ ...first, bits })),
-    samples: () => [1, 2, 4, 8, 16].map((samples) => ({ ...first, samples })),
-    structure: () => Array.from(at("structure").options, ({ value }) => ({ ...first, structure: value })),
-    effects: () => [{ ...first, without: [] }, ...scene.first.effects.map((effect) => ({ ...first, without: [effect] }))],
-  };
   const isBlobs = scene.blob && ["bits", "effects"].includes(at("sweep").value);
   if (isBlobs) {
     status("A blob has its lattice bits and effects: open its scene file to change them.");
@@ -494,7 +451,7 @@ async function measure() {
   at("measure").disabled = true;
   document.querySelector("[name=view][value=picture]").checked = true;
   try {
-    for (const chosen of sweeps[at("sweep").value]()) {
+    for (const chosen of sweep(at("sweep").value, first, scene, about)) {
       choose(chosen);
       const before = change + 1;
       await update();
@@ -565,7 +522,7 @@ function connect() {
   at("save-picture").onclick = guarded(savePicture);
   at("save-memory").onclick = () => save(`${stem()}-${at("board").value}.txt`, at("memory").textContent, "text/plain");
   at("error-close").onclick = () => { at("error").hidden = true; };
-  listen(at("canvas"), { move, key, click: explain });
+  listen(at("canvas"), { move, click: explain, key: (event) => press(event, move, actions) });
   const drop = at("drop");
   addEventListener("dragover", (event) => {
     event.preventDefault();

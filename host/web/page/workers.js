@@ -155,3 +155,23 @@ export class Workers {
     this.all.forEach((worker) => worker.postMessage({ stop: true }));
   }
 }
+
+/** The bytes of arrays, one after the other. */
+export function bytesOf(...arrays) {
+  const all = new Uint8Array(arrays.reduce((sum, it) => sum + it.byteLength, 0));
+  let place = 0;
+  for (const it of arrays) {
+    all.set(new Uint8Array(it.buffer, it.byteOffset, it.byteLength), place);
+    place += it.byteLength;
+  }
+  return all;
+}
+
+/** Colors of three bytes as a canvas takes them. */
+export function packed(bytes) {
+  const colors = new Uint32Array(bytes.length / 3);
+  for (let pixel = 0, byte = 0; pixel < colors.length; pixel += 1, byte += 3) {
+    colors[pixel] = bytes[byte] | bytes[byte + 1] << 8 | bytes[byte + 2] << 16 | 0xff000000;
+  }
+  return colors;
+}
