@@ -10,6 +10,9 @@ import { listen } from "./pointer.js";
 const context = at("canvas").getContext("2d", { alpha: false });
 
 
+/** Between paintings of work that is not finished, in milliseconds. */
+const WORK_PAUSE = 400;
+
 /** What there is to choose from. */
 let about;
 /** The scene that is shown: files, the name of the main one, what its blob says of itself. */
@@ -87,7 +90,8 @@ async function update({ moved = false } = {}) {
     if (isStale() || seconds === undefined) return;
     mark("picture");
     finished = { chosen, wanted, seconds, linear: frame.linear };
-    at("time").textContent = secondsText(seconds);
+    // Counting takes time.
+    if (!wanted.heatMap) at("time").textContent = secondsText(seconds);
     at("bytes").textContent = bytesText(scene.info.bytes);
     await paintLast();
     memory();
@@ -194,7 +198,8 @@ async function paintWork() {
     if (mine !== change || finished) return;
     show(packed(bytes));
   } finally {
-    isPainting = false;
+    // The first worker draws, too.
+    setTimeout(() => { isPainting = false; }, WORK_PAUSE);
   }
 }
 
@@ -237,7 +242,7 @@ function describe(chosen, state) {
   const what = { picture: "", work: ", work of each pixel", error: ", error eight times enlarged" }[view()];
   const white = finished?.maximum && view() === "work" ? `: white is ${finished.maximum} tests` : "";
   const errors = done && finished?.errors ? `, RMS error ${errorText(finished.errors.rmse)}` : "";
-  const time = done && finished ? `, ${secondsText(finished.seconds)}` : "";
+  const time = done && finished && !finished.wanted.heatMap ? `, ${secondsText(finished.seconds)}` : "";
   const text = `${scene.name}: ${nameOf(chosen, scene)}${what}${white}${time}${errors}`;
   setState(state);
   if (done) {

@@ -10,6 +10,7 @@ use gridel_host::picture::{PictureFormat, RenderMetadata};
 use gridel_host::render::{Job, Picture};
 use gridel_host::report::work_color;
 use serde_json::json;
+use std::collections::BTreeMap;
 
 /// Linear pixels: three channels of 16 bits.
 fn pixels(bytes: &[u8]) -> Vec<[u16; 3]> {
@@ -51,8 +52,11 @@ pub fn difference(bytes: &[u8]) -> Answer {
 pub fn heat_map(bytes: &[u8]) -> Answer {
     let work: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
     let maximum = work.iter().copied().max().unwrap_or(0);
-    let colors = work.iter().flat_map(|&work| work_color(work, maximum).0);
-    Ok((json!({"maximum": maximum}), colors.collect()))
+    // Many pixels have the same work.
+    let mut colors = BTreeMap::new();
+    let mut color = |work| *colors.entry(work).or_insert_with(|| work_color(work, maximum).0);
+    let map = work.iter().flat_map(|&work| color(work)).collect();
+    Ok((json!({"maximum": maximum}), map))
 }
 
 /// The file that `gridel render` writes.
