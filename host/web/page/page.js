@@ -172,7 +172,7 @@ function paint() {
   if (isPainting) return;
   isPainting = true;
   if (view() === "work") {
-    paintWork();
+    paintWork().catch(showError);
     return;
   }
   requestAnimationFrame(() => {
