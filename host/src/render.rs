@@ -122,7 +122,7 @@ const SHADOWED: u32 = Effects::SHADOW.0;
 pub(crate) const OPAQUE: u32 = Effects::ALL.without(Effects::FILTERING).0;
 pub(crate) const ALL: u32 = Effects::ALL.0;
 
-/// WebAssembly is sent to pages, so it has no code for what other code does as well.
+/// WebAssembly is sent to pages, so it has no code for what other code does as well: what counts draws all pictures.
 pub(crate) const PAGE: bool = cfg!(target_family = "wasm");
 
 /// Whether no structure has code of its own. The library's own tests compile all of it again.
@@ -138,7 +138,7 @@ fn with_format<'s, N: Number>(scene: &'s Scene<'_>, job: &Job) -> NewTracer<'s> 
         }
     }
     let opaque = Effects(OPAQUE).contains(scene.effects());
-    if !job.count {
+    if !PAGE && !job.count {
         return match opaque {
             true => rows::<N, DynAccel, OPAQUE>(scene, job),
             false => rows::<N, DynAccel, ALL>(scene, job),
@@ -176,8 +176,10 @@ fn counted_rows<'s, N: Number, const EFFECTS: u32>(
     job: &Job,
 ) -> NewTracer<'s> {
     let renderer = Renderer::<N, DynAccel, EFFECTS>::with_settings(scene, job.settings)?;
+    let count = job.count;
     Ok(Box::new(move |first, pixels| {
-        Some(counted_row(&renderer, first, pixels))
+        let cost = counted_row(&renderer, first, pixels);
+        count.then_some(cost)
     }))
 }
 

@@ -471,7 +471,8 @@ fn files_open(page: &Page) {
             let words = text
                 .split_whitespace()
                 .filter(|word| !"│╰─▶×╭╯├".contains(*word));
-            words.collect::<Vec<_>>().join(" ")
+            // Lines break at other places.
+            words.collect::<String>()
         };
         let run = page.files.run(&["render", name, "-o", "none.png"]);
         assert_ne!(run.code, Some(0));

@@ -23,7 +23,7 @@ export function choose({ format, bits, structure, samples, depth, without }) {
   const radio = document.querySelector(`[name=format][value="${format}"]`);
   if (radio) radio.checked = true;
   at("bits").value = bits;
-  at("bits-shown").value = bits;
+  at("bits-shown").textContent = bits;
   at("structure").value = structure;
   at("samples").value = samples;
   at("depth").value = depth;

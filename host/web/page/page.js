@@ -7,7 +7,7 @@ import { Table, bytesText, errorText, secondsText } from "./table.js";
 import { press } from "./keys.js";
 import { listen } from "./pointer.js";
 
-const context = at("canvas").getContext("2d", { alpha: false });
+const context = at("canvas").getContext("2d", { alpha: false, willReadFrequently: true });
 
 
 /** Between paintings of work that is not finished, in milliseconds. */
@@ -507,7 +507,7 @@ function connect() {
   at("main").onchange = () => open(scene.files, scene.files.find(({ path }) => path === at("main").value));
   at("settings").onsubmit = (event) => event.preventDefault();
   at("settings").onchange = () => update();
-  at("bits").oninput = () => { at("bits-shown").value = at("bits").value; };
+  at("bits").oninput = () => { at("bits-shown").textContent = at("bits").value; };
   for (const radio of document.querySelectorAll("[name=view]")) {
     radio.onchange = () => {
       const isDrawn = finished && finished.wanted.heatMap === (view() === "work");
