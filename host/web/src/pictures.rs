@@ -54,7 +54,11 @@ pub fn heat_map(bytes: &[u8]) -> Answer {
     let maximum = work.iter().copied().max().unwrap_or(0);
     // Many pixels have the same work.
     let mut colors = BTreeMap::new();
-    let mut color = |work| *colors.entry(work).or_insert_with(|| work_color(work, maximum).0);
+    let mut color = |work| {
+        *colors
+            .entry(work)
+            .or_insert_with(|| work_color(work, maximum).0)
+    };
     let map = work.iter().flat_map(|&work| color(work)).collect();
     Ok((json!({"maximum": maximum}), map))
 }
