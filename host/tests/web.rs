@@ -29,6 +29,9 @@ const SHIFT: &str = "\u{e008}";
 const RIGHT: &str = "\u{e014}";
 const UP: &str = "\u{e013}";
 
+/// A name, and what runs with a page that is served.
+type Test = (&'static str, fn(&Page));
+
 fn main() {
     let page = std::env::var_os("GRIDEL_WEB").map(PathBuf::from);
     let needs = match (&page, browser::is_missing()) {
@@ -37,7 +40,7 @@ fn main() {
         _ => "",
     };
     let is_required = page.is_some() && browser::is_required();
-    let tests: [(&str, fn(&Page)); 6] = [
+    let tests: [Test; 6] = [
         ("web_page_is_small", page_is_small),
         ("web_page_draws_the_pixels_of_the_program", pixels_equal),
         ("web_page_follows_mouse_and_keys", camera_follows),
