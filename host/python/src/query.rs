@@ -1,6 +1,6 @@
 //! Queries of many rays and points, spread over threads.
 
-use crate::rays::{Points, Rays};
+use crate::rays::{Points, Rays, Ready};
 use glam::DVec3;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
@@ -8,7 +8,11 @@ use gridel_core::{
     Accel, Fixed, Format, HitList, NoCount, Number, PrimitiveHit, Ray, Scene, Solid, Stack,
     Structure, Wide, all_hits, any_hit, closest_primitive, containment_ray,
 };
-use gridel_host::trace::{DirectionScale, Frame, Rejection, SceneRay};
+#[cfg(target_arch = "x86_64")]
+use gridel_core::SimdLevel;
+#[cfg(target_arch = "x86_64")]
+use gridel_host::simd;
+use gridel_host::trace::{DirectionScale, Frame, SceneRay};
 use rayon::prelude::*;
 
 /// Rays whose steps are taken together, as `gridel trace` takes them.
@@ -199,8 +203,31 @@ fn found<N: Number>(
 /// Answers a question about each ray.
 pub fn ask<Q: Question>(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<Q::Answer> {
     fill(how, rays.len(), Q::MISS, |start, answers| {
-        dispatch!(how, ask_chunk, [Q], (scene, rays, start, answers));
+        ask_some::<Q>(scene, rays, how, (start, answers));
     })
+}
+
+/// Answers a question about some rays, given the number of the first and room for the answers.
+fn ask_some<Q: Question>(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    how: How,
+    (start, answers): (usize, &mut [Q::Answer]),
+) {
+    // What most ask, with the instructions of newer processors all along.
+    #[cfg(target_arch = "x86_64")]
+    if let (Format::F32, Structure::Wide, SimdLevel::Avx2(avx2)) =
+        (how.format, how.structure, simd::level())
+    {
+        return avx2.call(
+            #[inline(always)]
+            |_, scene, rays, start, answers, ()| {
+                ask_inline::<f32, Wide, Q>(scene, rays, start, answers);
+            },
+            (scene, rays, start, answers, ()),
+        );
+    }
+    dispatch!(how, ask_chunk, [Q], (scene, rays, start, answers));
 }
 
 fn ask_chunk<N: Number, A: Accel, Q: Question>(
@@ -209,17 +236,23 @@ fn ask_chunk<N: Number, A: Accel, Q: Question>(
     start: usize,
     answers: &mut [Q::Answer],
 ) {
+    ask_inline::<N, A, Q>(scene, rays, start, answers);
+}
+
+#[inline(always)]
+fn ask_inline<N: Number, A: Accel, Q: Question>(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    start: usize,
+    answers: &mut [Q::Answer],
+) {
     let frame = Frame::of(scene);
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
-    let mut ready: Vec<Result<(Ray<N>, DirectionScale), Rejection>> = Vec::with_capacity(BATCH);
+    let mut ready: Vec<Ready<N>> = Vec::with_capacity(BATCH);
     let mut met = Vec::with_capacity(BATCH);
     for (batch, answers) in answers.chunks_mut(BATCH).enumerate() {
         let first = start + batch * BATCH;
-        ready.clear();
-        ready.extend((first..first + answers.len()).map(
-            #[inline(always)]
-            |number| frame.ray::<N>(scene, &rays.get(number)),
-        ));
+        rays.fill((scene, &frame), first..first + answers.len(), &mut ready);
         if Q::ANY {
             for (ready, answer) in ready.iter().zip(answers) {
                 let Ok((ray, scale)) = ready else {
@@ -434,7 +467,7 @@ pub fn locations(
             hits = dispatch!(how, all_chunk, [], (scene, rays, numbers));
         } else {
             let mut first = vec![Found::MISS; numbers.len()];
-            dispatch!(how, ask_chunk, [Closest], (scene, rays, start, &mut first));
+            ask_some::<Closest>(scene, rays, how, (start, &mut first));
             let met = numbers.zip(first);
             hits.extend(met.filter(|(_, hit)| hit.primitive != NONE));
         }
