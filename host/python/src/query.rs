@@ -272,10 +272,15 @@ fn ask_inline<N: Number, A: Accel, Q: Question>(
             continue;
         }
         met.clear();
-        met.extend(ready.iter().map(|ready| {
-            let (ray, _) = ready.as_ref().ok()?;
-            closest_primitive::<N, A, _>(scene, ray, stack.as_view(), &mut NoCount)
-        }));
+        // A loop, not `extend`, which is not inlined and then is not compiled for this processor.
+        for ready in &ready {
+            met.push(match ready {
+                Ok((ray, _)) => {
+                    closest_primitive::<N, A, _>(scene, ray, stack.as_view(), &mut NoCount)
+                }
+                Err(_) => None,
+            });
+        }
         for ((ready, met), answer) in ready.iter().zip(&met).zip(answers) {
             match ready {
                 Ok((ray, scale)) => {
@@ -292,6 +297,97 @@ fn ask_inline<N: Number, A: Accel, Q: Question>(
                 Err(_) => *answer = Q::REJECTED,
             }
         }
+    }
+}
+
+/// The first hits of some rays, as arrays hold them.
+pub struct Columns<'c, T> {
+    pub t: &'c mut [T],
+    pub object: &'c mut [u32],
+    pub primitive: &'c mut [u32],
+    /// Empty where nobody asks.
+    pub instance: &'c mut [u32],
+    pub normal: &'c mut [[f32; 3]],
+    pub uv: &'c mut [[f32; 2]],
+}
+
+impl<'c, T> Columns<'c, T> {
+    /// The first so many rows, and the others.
+    fn split(self, at: usize) -> (Self, Self) {
+        let (t, more_t) = self.t.split_at_mut(at);
+        let (object, more_objects) = self.object.split_at_mut(at);
+        let (primitive, more_primitives) = self.primitive.split_at_mut(at);
+        let instances = at.min(self.instance.len());
+        let (instance, more_instances) = self.instance.split_at_mut(instances);
+        let (normal, more_normals) = self.normal.split_at_mut(at);
+        let (uv, more_uvs) = self.uv.split_at_mut(at);
+        let first = Self {
+            t,
+            object,
+            primitive,
+            instance,
+            normal,
+            uv,
+        };
+        let rest = Self {
+            t: more_t,
+            object: more_objects,
+            primitive: more_primitives,
+            instance: more_instances,
+            normal: more_normals,
+            uv: more_uvs,
+        };
+        (first, rest)
+    }
+}
+
+/// Rays whose hits are found before they are written: as many as a processor's nearest memory holds.
+const WRITTEN: usize = 256;
+
+/// Finds the first hit of each ray and writes it to arrays of as many rows.
+///
+/// `place` gives the t and the weights of corners of a hit, and `number` its t and its primitive as the arrays have them.
+pub fn cast<T: Send + Copy>(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    how: How,
+    mut columns: Columns<'_, T>,
+    place: impl Fn(&SceneRay, &Found) -> (f64, [f32; 2]) + Sync,
+    number: impl Fn(&Found) -> (T, u32) + Sync,
+) {
+    let mut chunks = Vec::with_capacity(rays.len().div_ceil(CHUNK));
+    for start in (0..rays.len()).step_by(CHUNK) {
+        let (chunk, rest) = columns.split(CHUNK.min(rays.len() - start));
+        chunks.push((start, chunk));
+        columns = rest;
+    }
+    let write = |(start, mut columns): (usize, Columns<'_, T>)| {
+        let mut hits = [Found::MISS; WRITTEN];
+        let mut start = start;
+        while !columns.t.is_empty() {
+            let (rows, rest) = columns.split(WRITTEN.min(columns.t.len()));
+            let hits = &mut hits[..rows.t.len()];
+            hits.fill(Found::MISS);
+            ask_some::<Closest>(scene, rays, how, (start, hits));
+            for (row, hit) in hits.iter_mut().enumerate() {
+                if hit.primitive != NONE {
+                    (hit.t, rows.uv[row]) = place(&rays.get(start + row), hit);
+                }
+                (rows.t[row], rows.primitive[row]) = number(hit);
+                rows.object[row] = hit.object;
+                rows.normal[row] = hit.normal;
+                if let Some(instance) = rows.instance.get_mut(row) {
+                    *instance = hit.instance;
+                }
+            }
+            start += WRITTEN;
+            columns = rest;
+        }
+    };
+    if how.threads == 1 || chunks.len() <= 1 {
+        chunks.into_iter().for_each(write);
+    } else {
+        with_threads(how.threads, || chunks.into_par_iter().for_each(write));
     }
 }
 
@@ -429,22 +525,6 @@ fn contains_chunk<N: Number, A: Accel>(
         });
         *answer = is_odd && is_closed(0) || !odd.is_empty();
     }
-}
-
-/// Changes each of many hits, and collects what comes of it.
-pub fn map<T: Send, R: Send>(
-    how: How,
-    items: &mut [T],
-    change: impl Fn(usize, &mut T) -> R + Sync,
-) -> Vec<R> {
-    if how.threads == 1 || items.len() <= CHUNK {
-        let items = items.iter_mut().enumerate();
-        return items.map(|(number, item)| change(number, item)).collect();
-    }
-    with_threads(how.threads, || {
-        let items = items.par_iter_mut().enumerate().with_min_len(CHUNK);
-        items.map(|(number, item)| change(number, item)).collect()
-    })
 }
 
 /// Places, numbers of rays and triangles.

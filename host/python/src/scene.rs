@@ -1,7 +1,7 @@
 //! Scenes as Python holds them.
 
 use crate::closed::closed;
-use crate::query::{self, Any, Closest, FirstPrimitive, Found, How, NONE};
+use crate::query::{self, Any, Columns, FirstPrimitive, Found, How, NONE};
 use crate::rays::{Array, Points, Rays};
 use glam::DVec3;
 use gridel_core::{BlobError, Format, Scene, Settings, Structure};
@@ -202,6 +202,62 @@ type HitArrays<'py> = (
     Bound<'py, PyArray2<f32>>,
 );
 
+/// First hits as Open3D has them: t, object, primitive, normal, uv.
+type MeshHitArrays<'py> = (
+    Arrays<'py, f32>,
+    Arrays<'py, u32>,
+    Arrays<'py, u32>,
+    Bound<'py, PyArray2<f32>>,
+    Bound<'py, PyArray2<f32>>,
+);
+
+/// The first hits of rays.
+struct Cast<T> {
+    t: Vec<T>,
+    object: Vec<u32>,
+    primitive: Vec<u32>,
+    instance: Vec<u32>,
+    normal: Vec<[f32; 3]>,
+    uv: Vec<[f32; 2]>,
+}
+
+impl NativeScene {
+    /// Finds the first hit of each ray; `number` gives its t and its primitive as the caller has them.
+    fn cast_into<T: Send + Copy + Default>(
+        &self,
+        scene: &Scene<'_>,
+        rays: Rays<'_>,
+        how: How,
+        has_instances: bool,
+        number: impl Fn(&Found) -> (T, u32) + Sync,
+    ) -> Cast<T> {
+        // Zeros are not written to, as other numbers would be.
+        let length = rays.len();
+        let mut found = Cast {
+            t: vec![T::default(); length],
+            object: vec![0; length],
+            primitive: vec![0; length],
+            instance: vec![0; if has_instances { length } else { 0 }],
+            normal: vec![[0.0; 3]; length],
+            uv: vec![[0.0; 2]; length],
+        };
+        let columns = Columns {
+            t: &mut found.t,
+            object: &mut found.object,
+            primitive: &mut found.primitive,
+            instance: &mut found.instance,
+            normal: &mut found.normal,
+            uv: &mut found.uv,
+        };
+        let place = |ray: &SceneRay, hit: &Found| {
+            let (t, _, uv) = self.place(ray, hit);
+            (t, uv.map(|weight| weight as f32))
+        };
+        query::cast(scene, rays, how, columns, place, number);
+        found
+    }
+}
+
 /// Collects one number of each hit.
 fn column<'py, T: numpy::Element>(
     py: Python<'py>,
@@ -326,31 +382,55 @@ impl NativeScene {
             Array::borrow(rays, "rays")?,
         );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
-        let (hits, uvs) = py.detach(|| {
-            let mut hits = query::ask::<Closest>(&scene, rays, how);
-            let uvs = query::map(how, &mut hits, |number, hit| {
-                if hit.primitive == NONE {
-                    return [0.0; 2];
-                }
-                let (t, _, uv) = self.place(&rays.get(number), hit);
-                hit.t = t;
-                uv.map(|weight| weight as f32)
-            });
-            (hits, uvs)
+        let found = py.detach(|| {
+            self.cast_into(&scene, rays, how, true, |hit| (hit.t, hit.primitive))
         });
-        let each = |number: fn(&Found) -> u32| -> Arrays<'py, u32> {
-            hits.iter().map(number).collect::<Vec<_>>().into_pyarray(py)
-        };
         Ok((
-            hits.iter()
-                .map(|hit| hit.t)
-                .collect::<Vec<_>>()
-                .into_pyarray(py),
-            each(|hit| hit.object),
-            each(|hit| hit.primitive),
-            each(|hit| hit.instance),
-            rows(py, hits.iter().map(|hit| hit.normal).collect())?,
-            rows(py, uvs)?,
+            found.t.into_pyarray(py),
+            found.object.into_pyarray(py),
+            found.primitive.into_pyarray(py),
+            found.instance.into_pyarray(py),
+            rows(py, found.normal)?,
+            rows(py, found.uv)?,
+        ))
+    }
+
+    /// The first hits as Open3D has them: t in single precision, object, primitive counted from its object's first,
+    /// normal, uv.
+    fn cast_rays<'py>(
+        &self,
+        py: Python<'py>,
+        rays: &Bound<'py, PyUntypedArray>,
+        threads: usize,
+    ) -> PyResult<MeshHitArrays<'py>> {
+        let (how, array) = (
+            self.how("f32", None, threads)?,
+            Array::borrow(rays, "rays")?,
+        );
+        let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
+        let found = py.detach(|| {
+            self.cast_into(&scene, rays, how, false, |hit| {
+                let first = self.firsts.get(hit.object as usize).copied().unwrap_or(0);
+                // A ray without a direction hits nothing there.
+                let t = if hit.t.is_nan() {
+                    f32::INFINITY
+                } else {
+                    hit.t as f32
+                };
+                let primitive = if hit.primitive == NONE {
+                    NONE
+                } else {
+                    hit.primitive - first
+                };
+                (t, primitive)
+            })
+        });
+        Ok((
+            found.t.into_pyarray(py),
+            found.object.into_pyarray(py),
+            found.primitive.into_pyarray(py),
+            rows(py, found.normal)?,
+            rows(py, found.uv)?,
         ))
     }
 
