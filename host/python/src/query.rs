@@ -2,14 +2,14 @@
 
 use crate::rays::{Points, Rays, Ready};
 use glam::DVec3;
+#[cfg(target_arch = "x86_64")]
+use gridel_core::SimdLevel;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
     Accel, Fixed, Format, HitList, NoCount, Number, PrimitiveHit, Ray, Scene, Solid, Stack,
     Structure, Wide, all_hits, any_hit, closest_primitive, containment_ray,
 };
-#[cfg(target_arch = "x86_64")]
-use gridel_core::SimdLevel;
 #[cfg(target_arch = "x86_64")]
 use gridel_host::simd;
 use gridel_host::trace::{DirectionScale, Frame, SceneRay};
@@ -365,8 +365,9 @@ pub fn cast<T: Send + Copy>(
         let mut hits = [Found::MISS; WRITTEN];
         let mut start = start;
         while !columns.t.is_empty() {
-            let (rows, rest) = columns.split(WRITTEN.min(columns.t.len()));
-            let hits = &mut hits[..rows.t.len()];
+            let count = WRITTEN.min(columns.t.len());
+            let (rows, rest) = columns.split(count);
+            let hits = &mut hits[..count];
             hits.fill(Found::MISS);
             ask_some::<Closest>(scene, rays, how, (start, hits));
             for (row, hit) in hits.iter_mut().enumerate() {

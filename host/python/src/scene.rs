@@ -382,9 +382,8 @@ impl NativeScene {
             Array::borrow(rays, "rays")?,
         );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
-        let found = py.detach(|| {
-            self.cast_into(&scene, rays, how, true, |hit| (hit.t, hit.primitive))
-        });
+        let found =
+            py.detach(|| self.cast_into(&scene, rays, how, true, |hit| (hit.t, hit.primitive)));
         Ok((
             found.t.into_pyarray(py),
             found.object.into_pyarray(py),
