@@ -174,6 +174,49 @@ impl Question for Closest {
     }
 }
 
+/// The first hit without its normal.
+pub struct Nearest;
+
+impl Question for Nearest {
+    type Answer = Found;
+    const MISS: Found = Found::MISS;
+    const REJECTED: Found = Closest::REJECTED;
+
+    #[inline(always)]
+    fn hit<N: Number>(met: Met<'_, '_, N>) -> Found {
+        match met.hit {
+            Some(hit) => bare(met.scene, (met.ray, met.scale), hit),
+            None => Found::MISS,
+        }
+    }
+}
+
+/// A hit as arrays hold it, without its normal: for less.
+#[inline(always)]
+fn bare<N: Number>(
+    scene: &Scene<'_>,
+    (ray, scale): (&Ray<N>, &DirectionScale),
+    hit: &PrimitiveHit<N>,
+) -> Found {
+    let error = || {
+        let whole = hit.hit(scene, ray);
+        whole.map_or(0.0, |whole| whole.error.length_to_f64())
+    };
+    let Ok(t) = scale.multiple(N::far_to_f64(hit.t), error) else {
+        return Closest::REJECTED;
+    };
+    let instance = hit.instance();
+    let instance = instance.and_then(|index| scene.instances().get(index as usize));
+    Found {
+        t,
+        object: scene.object(hit.primitive),
+        primitive: hit.primitive,
+        instance: instance.map_or(NONE, |instance| instance.number),
+        leaves: hit.leaves(),
+        normal: [0.0; 3],
+    }
+}
+
 /// A hit as arrays hold it.
 #[inline(always)]
 fn found<N: Number>(
@@ -184,20 +227,11 @@ fn found<N: Number>(
     let Some(whole) = hit.hit(scene, ray) else {
         return Found::MISS;
     };
-    let error = || whole.error.length_to_f64();
-    let Ok(t) = scale.multiple(N::far_to_f64(hit.t), error) else {
-        return Closest::REJECTED;
-    };
-    let instance = hit.instance();
-    let instance = instance.and_then(|index| scene.instances().get(index as usize));
-    Found {
-        t,
-        object: whole.object,
-        primitive: whole.primitive,
-        instance: instance.map_or(NONE, |instance| instance.number),
-        leaves: hit.leaves(),
-        normal: whole.normal.map(|x| x.ratio_to_f64() as f32),
+    let mut found = bare(scene, (ray, scale), hit);
+    if found.primitive != NONE {
+        found.normal = whole.normal.map(|x| x.ratio_to_f64() as f32);
     }
+    found
 }
 
 /// Answers a question about each ray.
@@ -437,7 +471,7 @@ pub fn all(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<Vec<(usize, Found
     let chunks = rays.len().div_ceil(CHUNK);
     let chunk = |number: usize| {
         let numbers = number * CHUNK..rays.len().min((number + 1) * CHUNK);
-        dispatch!(how, all_chunk, [], (scene, rays, numbers))
+        dispatch!(how, all_chunk, [Closest], (scene, rays, numbers))
     };
     if how.threads == 1 || chunks == 1 {
         return (0..chunks).map(chunk).collect();
@@ -447,7 +481,7 @@ pub fn all(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<Vec<(usize, Found
     })
 }
 
-fn all_chunk<N: Number, A: Accel>(
+fn all_chunk<N: Number, A: Accel, Q: Question<Answer = Found>>(
     scene: &Scene<'_>,
     rays: Rays<'_>,
     numbers: std::ops::Range<usize>,
@@ -457,7 +491,14 @@ fn all_chunk<N: Number, A: Accel>(
     for number in numbers {
         if let Ok((ray, scale)) = frame.ray::<N>(scene, &rays.get(number)) {
             each_hit::<N, A>(scene, &ray, |hit| {
-                all.push((number, found(scene, (&ray, &scale), hit)));
+                let (ray, scale, hit) = (&ray, &scale, Some(hit));
+                let met = Met {
+                    scene,
+                    ray,
+                    scale,
+                    hit,
+                };
+                all.push((number, Q::hit(met)));
             });
         }
     }
@@ -545,10 +586,10 @@ pub fn locations(
         let numbers = start..rays.len().min(start + CHUNK);
         let mut hits = Vec::with_capacity(2 * CHUNK);
         if multiple_hits {
-            hits = dispatch!(how, all_chunk, [], (scene, rays, numbers));
+            hits = dispatch!(how, all_chunk, [Nearest], (scene, rays, numbers));
         } else {
             let mut first = vec![Found::MISS; numbers.len()];
-            ask_some::<Closest>(scene, rays, how, (start, &mut first));
+            ask_some::<Nearest>(scene, rays, how, (start, &mut first));
             let met = numbers.zip(first);
             hits.extend(met.filter(|(_, hit)| hit.primitive != NONE));
         }
