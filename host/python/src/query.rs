@@ -604,9 +604,9 @@ fn contains_chunk<N: Number, A: Accel>(
 }
 
 /// Places, numbers of rays and triangles.
-type Locations = (Vec<[f64; 3]>, Vec<i64>, Vec<i64>);
+pub type Locations = (Vec<[f64; 3]>, Vec<i64>, Vec<i64>);
 
-/// Where rays meet triangles: at most so many of each ray, or the first alone.
+/// Where rays meet triangles: at most so many of each ray, or the first alone. Chunk by chunk.
 pub fn locations(
     scene: &Scene<'_>,
     rays: Rays<'_>,
@@ -614,7 +614,7 @@ pub fn locations(
     multiple_hits: bool,
     max_hits: Option<usize>,
     place: impl Fn(&SceneRay, &Found) -> [f64; 3] + Sync,
-) -> Locations {
+) -> Vec<Locations> {
     let most = max_hits.unwrap_or(usize::MAX);
     let one = |start: usize| -> Locations {
         let numbers = start..rays.len().min(start + CHUNK);
@@ -642,20 +642,9 @@ pub fn locations(
         locations
     };
     let starts: Vec<usize> = (0..rays.len()).step_by(CHUNK).collect();
-    let chunks: Vec<Locations> = if how.threads == 1 || starts.len() <= 1 {
+    if how.threads == 1 || starts.len() <= 1 {
         starts.into_iter().map(one).collect()
     } else {
         with_threads(how.threads, || starts.into_par_iter().map(one).collect())
-    };
-    let mut all = Locations::default();
-    let length = chunks.iter().map(|chunk| chunk.1.len()).sum();
-    all.0.reserve_exact(length);
-    all.1.reserve_exact(length);
-    all.2.reserve_exact(length);
-    for (places, numbers, triangles) in chunks {
-        all.0.extend(places);
-        all.1.extend(numbers);
-        all.2.extend(triangles);
     }
-    all
 }
