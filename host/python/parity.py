@@ -52,7 +52,7 @@ def rays(rng, vertices, faces, count):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rays", type=int, default=10_000_000)
+    parser.add_argument("--rays", type=int, default=1_000_000)
     parser.add_argument("--threads", type=int, default=0)
     given = parser.parse_args()
     rng = np.random.default_rng(4)
