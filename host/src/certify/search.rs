@@ -152,12 +152,16 @@ impl Tracer<'_, '_> {
             }
         };
         let beats = |a: &Candidate<N>, b: &Candidate<N>| {
-            if (a.instance, a.solid) == (b.instance, b.solid)
-                && b.crossing.leaves
-                && !a.crossing.leaves
-            {
-                // A solid is entered before it is left.
-                return a.crossing.sure;
+            if (a.instance, a.solid) == (b.instance, b.solid) {
+                let (first, second) = (&a.crossing, &b.crossing);
+                // A solid is entered before it is left. Those of tori are numbered along the ray.
+                if matches!(solid(a).form, Form::Torus { .. }) {
+                    let number = |it: &Crossing<N>| (it.part, it.leaves);
+                    return first.sure && number(first) < number(second);
+                }
+                if second.leaves && !first.leaves {
+                    return first.sure;
+                }
             }
             a.crossing.sure
                 && match order(a, b) {

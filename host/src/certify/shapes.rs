@@ -6,6 +6,7 @@
 use super::cone;
 use super::crossing::{Crossing, Grazes, Ray, Start, axis_of, compare, exact, flat_normal};
 use super::number::*;
+use super::torus;
 use super::world::{Form, NONE, Placed, Solid};
 use std::cmp::Ordering;
 
@@ -114,6 +115,7 @@ pub fn crossings<N: Enclosure>(
             ];
             cone::crossings(&solid.form, at, ray, found)
         }
+        Form::Torus { .. } => torus::crossings(&solid.form, itself.is_some(), ray, found),
     }
 }
 
@@ -343,6 +345,7 @@ pub fn normal<N: Enclosure>(form: &Form, part: u8, point: Three<N>) -> Option<Th
             Some(exact(normal))
         }
         Form::Cone { .. } => cone::normal(form, part, point),
+        Form::Torus { .. } => torus::normal(form, point),
     }
 }
 

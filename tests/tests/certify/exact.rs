@@ -239,6 +239,13 @@ impl<'s> Exact<'s> {
                 let narrows = real(cone.base_radius) - real(cone.apex_radius);
                 unit(&sum(&scaled(&out, &height), &scaled(&axis, &narrows)))
             }
+            Solid::Torus(torus) => {
+                let axis = unit(&vector(torus.axis.to_array()));
+                let q = minus(point, &vector(torus.center.to_array()));
+                let y = dot(&q, &axis);
+                let outward = unit(&along(&q, &-&y, &axis));
+                unit(&along(&q, &real(-torus.major_radius), &outward))
+            }
             _ => return None,
         })
     }
