@@ -39,7 +39,7 @@ mod trace;
 mod world;
 
 pub use page::{Pictures, page, sentence};
-pub use picture::{Enclosed, LEVELS, code, enclose, explain};
+pub use picture::{Enclosed, LEVELS, code, enclose, explain, linear};
 pub use reason::Reason;
 pub use report::{FormatReport, OpenPixel, OpenPixels, Report, Width, certify, exact_picture, map};
 pub use search::{Open, Step};
