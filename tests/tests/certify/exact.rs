@@ -1,12 +1,13 @@
 //! Pixels in 320 bits, by code that shares nothing with what it tests: no kernel, no shape's test and no rule of an
 //! effect. Rays meet the shapes of `verify`, one after the other.
 
+use gridel_core::format::instance::{Instance, MATRIX_BITS};
 use gridel_core::format::record::{Light, Material};
 use gridel_core::{Kind, Scene, Settings};
 use gridel_host::shape::Solid;
 use gridel_host::shape::exact::{Line, Real, Vector, along, dot, minus, norm, scaled, unit};
 
-/// A scene without instances and smooth normals.
+/// A scene without smooth normals.
 pub struct Exact<'s> {
     scene: &'s Scene<'s>,
     solids: Vec<Placed>,
@@ -16,8 +17,74 @@ pub struct Exact<'s> {
 struct Placed {
     solid: Solid,
     primitive: u32,
-    /// In units.
+    object: u32,
+    /// In units of its part.
     bounds: Option<[[f64; 2]; 3]>,
+    /// Where its part stands, if it belongs to one.
+    map: Option<Map>,
+}
+
+/// A matrix, and the place that becomes the part's origin.
+#[derive(Clone)]
+struct Map {
+    rows: [Vector; 3],
+    center: Vector,
+}
+
+impl Map {
+    fn of(instance: &Instance) -> Self {
+        let down = MATRIX_BITS as i32 - i32::from(instance.exponent);
+        Self {
+            rows: instance.matrix.map(|row| row.map(|x| fraction(x, down))),
+            center: instance.center.map(|x| fraction(x, 8)),
+        }
+    }
+
+    fn line(&self, line: &Line) -> Line {
+        let from_center = minus(&line.origin, &self.center);
+        let turned = |v: &Vector| [0, 1, 2].map(|k| dot(&self.rows[k], v));
+        Line {
+            origin: turned(&from_center),
+            slope: turned(&line.slope),
+        }
+    }
+
+    /// A normal of the part in the scene: by the transposed matrix.
+    fn normal(&self, normal: &Vector) -> Vector {
+        let column = |k: usize| [0, 1, 2].map(|row: usize| self.rows[row][k].clone());
+        unit(&[0, 1, 2].map(|k| dot(&column(k), normal)))
+    }
+}
+
+impl Placed {
+    /// The primitives of a scene or of a part, whose numbers begin with one.
+    fn all(scene: &Scene<'_>, first: u32, whole: &Scene<'_>, map: Option<&Map>) -> Vec<Self> {
+        let mut all = Vec::new();
+        for kind in Kind::ALL {
+            for slot in 0..scene.count(kind) {
+                let geometry = scene.geometry(kind, slot).expect("a primitive");
+                let bounds = scene.primitive_bounds(kind, slot);
+                let primitive = first + scene.primitive(kind, slot as u32);
+                all.push(Self {
+                    solid: Solid::of(geometry),
+                    primitive,
+                    object: whole.object(primitive),
+                    bounds: bounds
+                        .filter(|_| kind.is_bounded())
+                        .map(|bounds| bounds.0.map(|side| side.map(f64::from))),
+                    map: map.cloned(),
+                });
+            }
+        }
+        all
+    }
+
+    /// A line in its part; t stays.
+    fn line(&self, line: &Line) -> Line {
+        self.map
+            .as_ref()
+            .map_or_else(|| line.clone(), |map| map.line(line))
+    }
 }
 
 struct Met {
@@ -87,19 +154,17 @@ fn nothing() -> Real {
 
 impl<'s> Exact<'s> {
     pub fn of(scene: &'s Scene<'s>, settings: Settings) -> Self {
-        let mut solids = Vec::new();
-        for kind in Kind::ALL {
-            for slot in 0..scene.count(kind) {
-                let geometry = scene.geometry(kind, slot).expect("a primitive");
-                let bounds = scene.primitive_bounds(kind, slot);
-                solids.push(Placed {
-                    solid: Solid::of(geometry),
-                    primitive: scene.primitive(kind, slot as u32),
-                    bounds: bounds
-                        .filter(|_| kind.is_bounded())
-                        .map(|bounds| bounds.0.map(|side| side.map(f64::from))),
-                });
-            }
+        let mut solids = Placed::all(scene, 0, scene, None);
+        for instance in scene.instances() {
+            let number = usize::from(instance.part);
+            let first = scene.first_primitive_of_part(number).expect("a part");
+            let map = Map::of(instance);
+            solids.extend(Placed::all(
+                &scene.parts()[number],
+                first,
+                scene,
+                Some(&map),
+            ));
         }
         Self {
             scene,
@@ -134,17 +199,18 @@ impl<'s> Exact<'s> {
 
     /// The crossings of a line between two t, in any order.
     fn crossings(&self, line: &Line, end: Option<&Real>) -> Vec<(Real, &Placed, bool)> {
-        let origin = line.origin.each_ref().map(Real::to_f64);
-        let slope = line.slope.each_ref().map(Real::to_f64);
         let mut all = Vec::new();
         for placed in &self.solids {
+            let line = placed.line(line);
+            let origin = line.origin.each_ref().map(Real::to_f64);
+            let slope = line.slope.each_ref().map(Real::to_f64);
             if placed
                 .bounds
                 .is_some_and(|it| !may_meet(origin, slope, &it))
             {
                 continue;
             }
-            for (enter, leave) in placed.solid.spans(line, &real(0.0)) {
+            for (enter, leave) in placed.solid.spans(&line, &real(0.0)) {
                 let mut keep = |t: Real, leaves: bool| {
                     if t > nothing() && end.is_none_or(|end| &t + nothing() < *end) {
                         all.push((t, placed, leaves));
@@ -177,7 +243,10 @@ impl<'s> Exact<'s> {
         }
         let (t, placed, leaves) = best?;
         let point = line.at(&t);
-        let mut normal = self.normal(placed, &point)?;
+        let mut normal = self.normal(placed, &placed.line(line).at(&t))?;
+        if let Some(map) = &placed.map {
+            normal = map.normal(&normal);
+        }
         // The faces of a box without thickness lie in one plane: that counts which the ray comes from, or goes to.
         let is_box = matches!(placed.solid, Solid::Box(_));
         if is_box && dot(&normal, &line.slope).is_negative() == leaves {
@@ -193,7 +262,7 @@ impl<'s> Exact<'s> {
             point,
             normal,
             front,
-            object: self.scene.object(placed.primitive),
+            object: placed.object,
         })
     }
 

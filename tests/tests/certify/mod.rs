@@ -1,6 +1,7 @@
 //! Certified pixels: every exact value lies in its interval, and what is made too narrow is noticed.
 
 mod exact;
+mod hard;
 
 use exact::Exact;
 use gridel_core::{Effects, Format, Scene, Settings, Structure};
@@ -13,15 +14,15 @@ use gridel_tests::scenes;
 use rayon::prelude::*;
 use std::convert::Infallible;
 
-/// Fixtures that are known to `certify` and to the 320-bit evaluator: no torus, no instances, no smooth normals.
+/// Fixtures that are known to `certify` and to the 320-bit evaluator, which has no smooth normals.
 fn known() -> Vec<(String, Blob)> {
     let fixtures = scenes::fixtures().into_iter();
     let blobs = fixtures.map(|(name, scene)| (name, scenes::blob(&scene, 24)));
     let mut known: Vec<(String, Blob)> = blobs
         .filter(|(_, blob)| {
             blob.scene().is_ok_and(|scene| {
-                let is_plain = !scene.effects().contains(Effects::SMOOTH);
-                is_plain && scene.instances().is_empty() && World::of(&scene).is_ok()
+                let is_plain = !scene.effects_with_parts().contains(Effects::SMOOTH);
+                is_plain && World::of(&scene).is_ok()
             })
         })
         .collect();
@@ -113,13 +114,6 @@ fn fixtures_are_certified_and_f64_is_right_where_they_are_proved() {
     for (name, scene) in scenes::fixtures() {
         let blob = scenes::blob(&scene, 24);
         let scene = blob.scene().expect("a scene");
-        if let Err(unknown) = World::of(&scene) {
-            assert!(
-                ["stress-torus", "turntable"].contains(&&*name),
-                "{name}: {unknown}"
-            );
-            continue;
-        }
         let settings = settings(&scene, [64, 48], 2);
         let pixels = certified(&scene, &settings);
         let job = Job::whole(Format::F64, Structure::DualSplit, settings);
