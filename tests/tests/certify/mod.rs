@@ -2,6 +2,7 @@
 
 mod exact;
 mod hard;
+mod shares;
 
 use exact::Exact;
 use gridel_core::{Effects, Format, Scene, Settings, Structure};

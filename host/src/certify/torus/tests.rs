@@ -53,7 +53,12 @@ fn truth(torus: Torus, origin: [i64; 3], direction: [i64; 3]) -> Vec<(Real, bool
 }
 
 /// Compares the crossings of a ray, and says how many there are and how many of them are sure.
-fn check<N: Enclosure>(form: &Form, ray: &Ray<N>, truth: &[(Real, bool)], skipped: usize) -> usize {
+fn check<N: Enclosure + std::fmt::Debug>(
+    form: &Form,
+    ray: &Ray<N>,
+    truth: &[(Real, bool)],
+    skipped: usize,
+) -> usize {
     let mut found = Vec::new();
     let is_itself = ray.start != Start::Free;
     if crossings(form, is_itself, ray, &mut found).is_err() {
