@@ -3,21 +3,26 @@
 
 use gridel_core::format::instance::{Instance, MATRIX_BITS};
 use gridel_core::format::record::{Light, Material};
-use gridel_core::{Kind, Scene, Settings};
+use gridel_core::{Effects, Kind, Scene, Settings};
 use gridel_host::shape::Solid;
-use gridel_host::shape::exact::{Line, Real, Vector, along, dot, minus, norm, scaled, unit};
+use gridel_host::shape::exact::{
+    Line, Real, Vector, along, cross, dot, minus, norm, scaled, unit, vector,
+};
 
-/// A scene without smooth normals.
+/// A scene.
 pub struct Exact<'s> {
     scene: &'s Scene<'s>,
     solids: Vec<Placed>,
     settings: Settings,
+    is_smooth: bool,
 }
 
 struct Placed {
     solid: Solid,
     primitive: u32,
     object: u32,
+    /// The normals of a triangle's corners, as they are stored.
+    normals: Option<[[i16; 2]; 3]>,
     /// In units of its part.
     bounds: Option<[[f64; 2]; 3]>,
     /// Where its part stands, if it belongs to one.
@@ -49,10 +54,15 @@ impl Map {
         }
     }
 
-    /// A normal of the part in the scene: by the transposed matrix.
-    fn normal(&self, normal: &Vector) -> Vector {
+    /// By the transposed matrix.
+    fn turned_back(&self, v: &Vector) -> Vector {
         let column = |k: usize| [0, 1, 2].map(|row: usize| self.rows[row][k].clone());
-        unit(&[0, 1, 2].map(|k| dot(&column(k), normal)))
+        [0, 1, 2].map(|k| dot(&column(k), v))
+    }
+
+    /// A normal of the part in the scene.
+    fn normal(&self, normal: &Vector) -> Vector {
+        unit(&self.turned_back(normal))
     }
 }
 
@@ -69,6 +79,10 @@ impl Placed {
                     solid: Solid::of(geometry),
                     primitive,
                     object: whole.object(primitive),
+                    normals: match kind {
+                        Kind::Triangle => scene.corner_normals(slot),
+                        _ => None,
+                    },
                     bounds: bounds
                         .filter(|_| kind.is_bounded())
                         .map(|bounds| bounds.0.map(|side| side.map(f64::from))),
@@ -87,12 +101,96 @@ impl Placed {
     }
 }
 
-struct Met {
+struct Met<'e> {
+    placed: &'e Placed,
     t: Real,
     point: Vector,
     normal: Vector,
     front: bool,
     object: u32,
+}
+
+impl Met<'_> {
+    /// A vector on the side from which the ray came.
+    fn turned(&self, v: &Vector) -> Vector {
+        if self.front {
+            v.clone()
+        } else {
+            v.each_ref().map(|x| -x)
+        }
+    }
+
+    /// The corners of a triangle with normals, as seen from the point in its part, and their parts of the area.
+    fn corners(&self) -> Option<([Vector; 3], [Real; 3], [[i16; 2]; 3])> {
+        let normals = self.placed.normals?;
+        let Solid::Triangle(corners) = &self.placed.solid else {
+            return None;
+        };
+        let here = self.placed.line(&Line {
+            origin: self.point.clone(),
+            slope: black(),
+        });
+        let corners = corners.map(|corner| minus(&vector(corner.to_array()), &here.origin));
+        let [a, b, c] = &corners;
+        let whole = cross(&minus(b, a), &minus(c, a));
+        let area = |p: &Vector, q: &Vector| dot(&cross(p, q), &whole) / dot(&whole, &whole);
+        let areas = [area(b, c), area(c, a), area(a, b)];
+        Some((corners, areas, normals))
+    }
+
+    /// The interpolated normal on the side of the ray.
+    fn smooth_normal(&self) -> Option<Vector> {
+        let (_, areas, normals) = self.corners()?;
+        let mut result = black();
+        for (stored, area) in normals.into_iter().zip(areas) {
+            // Of nearly length 1, by a step of Newton's from a line: that is the rule.
+            let v = unfolded(stored).map(|x| fraction(x, 15));
+            let square = dot(&v, &v);
+            let root = fraction(2_128_961_606, 30) - fraction(1_114_232_640, 30) * &square;
+            let step = real(1.5) - &square * &root * &root * real(0.5);
+            result = along(&result, &area, &scaled(&v, &(root * step)));
+        }
+        let normal = unit(&result);
+        let map = self.placed.map.as_ref();
+        let normal = map.map_or(normal.clone(), |map| map.normal(&normal));
+        Some(self.turned(&normal))
+    }
+
+    /// The way out to the curved surface that a triangle stands for; `None` if that does not lie above it.
+    fn lift(&self) -> Option<Vector> {
+        let (corners, areas, normals) = self.corners()?;
+        let zero = || real(0.0);
+        let mut way = black();
+        for k in 0..3 {
+            let normal = self.turned(&unit(&unfolded(normals[k]).map(|x| fraction(x, 0))));
+            let depth = dot(&corners[k], &normal).max(zero());
+            way = along(&way, &(depth * areas[k].clone().max(zero())), &normal);
+        }
+        if let Some(map) = &self.placed.map {
+            let length = norm(&way);
+            if length.is_zero() {
+                return None;
+            }
+            let turned = map.turned_back(&scaled(&way, &(one() / &length)));
+            let square = dot(&turned, &turned);
+            way = scaled(&turned, &(length / square));
+        }
+        dot(&way, &self.turned(&self.normal))
+            .is_positive()
+            .then_some(way)
+    }
+}
+
+/// The coordinates of a stored normal: a point of an octahedron whose lower half is folded out.
+fn unfolded([x, y]: [i16; 2]) -> [i64; 3] {
+    let (x, y) = (i64::from(x), i64::from(y));
+    let largest = i64::from(gridel_core::geometry::smooth::LARGEST);
+    let z = largest - x.abs() - y.abs();
+    if z >= 0 {
+        return [x, y, z];
+    }
+    let folded = |of: i64, other: i64| (largest - other.abs()) * if of < 0 { -1 } else { 1 };
+    [folded(x, y), folded(y, x), z]
 }
 
 fn real(value: f64) -> Real {
@@ -170,6 +268,7 @@ impl<'s> Exact<'s> {
             scene,
             solids,
             settings,
+            is_smooth: scene.effects().contains(Effects::SMOOTH),
         }
     }
 
@@ -193,7 +292,7 @@ impl<'s> Exact<'s> {
         seen.map(|x| x.max(real(0.0)).min(one()))
     }
 
-    fn material(&self, met: &Met) -> &Material {
+    fn material(&self, met: &Met<'_>) -> &Material {
         self.scene.material(met.object).expect("a material")
     }
 
@@ -227,7 +326,7 @@ impl<'s> Exact<'s> {
         all
     }
 
-    fn nearest(&self, line: &Line, end: Option<&Real>) -> Option<Met> {
+    fn nearest(&self, line: &Line, end: Option<&Real>) -> Option<Met<'_>> {
         let mut best: Option<(Real, &Placed, bool)> = None;
         for next in self.crossings(line, end) {
             let is_better = match &best {
@@ -258,6 +357,7 @@ impl<'s> Exact<'s> {
             !leaves
         };
         Some(Met {
+            placed,
             t,
             point,
             normal,
@@ -268,7 +368,6 @@ impl<'s> Exact<'s> {
 
     /// The gradient of how far the surface lies inside of the point, by its definition.
     fn normal(&self, placed: &Placed, point: &Vector) -> Option<Vector> {
-        use gridel_host::shape::exact::{cross, vector};
         Some(match &placed.solid {
             Solid::Triangle([a, b, c]) => {
                 let [a, b, c] = [a, b, c].map(|corner| vector(corner.to_array()));
@@ -332,11 +431,17 @@ impl<'s> Exact<'s> {
             weight = product(&weight, &self.absorbed(material, &length));
         }
         let direction = unit(&line.slope);
-        let normal = if met.front {
-            met.normal.clone()
-        } else {
-            met.normal.each_ref().map(|x| -x)
-        };
+        let mut normal = met.turned(&met.normal);
+        if self.is_smooth
+            && let Some(smooth) = met.smooth_normal()
+        {
+            normal = smooth;
+            let behind = dot(&normal, &direction);
+            // What reflects or refracts does not show its back.
+            if (is_glass || material.mirror != [0; 3]) && !behind.is_negative() {
+                normal = unit(&along(&normal, &-behind, &direction));
+            }
+        }
         let diffuse = self.diffuse(&met, material);
         let mut local = product(&color(view.ambient, 20), &diffuse);
         for light in self.scene.lights() {
@@ -372,23 +477,35 @@ impl<'s> Exact<'s> {
             mirrored = sum(&mirrored, &more).map(|x| x.min(one()));
             if let Some(slope) = passing {
                 let part = scaled(&transmit, &(one() - &reflected));
-                result = sum(
-                    &result,
-                    &self.sent(&met, slope, product(&weight, &part), depth),
-                );
+                let part = product(&weight, &part);
+                result = sum(&result, &self.sent(&met, (slope, !met.front), part, depth));
             }
         }
         let slope = along(&direction, &(real(2.0) * &cos), &normal);
         sum(
             &result,
-            &self.sent(&met, slope, product(&weight, &mirrored), depth),
+            &self.sent(&met, (slope, met.front), product(&weight, &mirrored), depth),
         )
     }
 
-    fn sent(&self, met: &Met, slope: Vector, weight: Vector, depth: u8) -> Vector {
+    fn sent(
+        &self,
+        met: &Met<'_>,
+        (slope, outward): (Vector, bool),
+        weight: Vector,
+        depth: u8,
+    ) -> Vector {
         let most = peak(&weight);
         if !most.is_positive() || most <= fraction(self.scene.view().cutoff, 20) {
             return black();
+        }
+        let mut slope = slope;
+        if self.is_smooth {
+            let normal = scaled(&met.normal, &real(if outward { 1.0 } else { -1.0 }));
+            let rise = dot(&slope, &normal);
+            if !rise.is_positive() {
+                slope = along(&slope, &(real(1.0 / 4096.0) - rise), &normal);
+            }
         }
         let line = Line {
             origin: met.point.clone(),
@@ -403,7 +520,7 @@ impl<'s> Exact<'s> {
             .map(|coefficient| decay(&(length * fraction(coefficient, 32))))
     }
 
-    fn diffuse(&self, met: &Met, material: &Material) -> Vector {
+    fn diffuse(&self, met: &Met<'_>, material: &Material) -> Vector {
         if material.checker_size <= 0 {
             return color(material.diffuse, 30);
         }
@@ -429,7 +546,7 @@ impl<'s> Exact<'s> {
     fn lit(
         &self,
         light: &Light,
-        met: &Met,
+        met: &Met<'_>,
         normal: &Vector,
         direction: &Vector,
         diffuse: &Vector,
@@ -464,6 +581,19 @@ impl<'s> Exact<'s> {
             origin: met.point.clone(),
             slope: way,
         };
+        let has_shadows = self.scene.effects().contains(Effects::SHADOW);
+        if !has_shadows {
+            return product(&color(light.color, 20), &reflected);
+        }
+        if self.is_smooth && !dot(&met.turned(&met.normal), &to_light).is_positive() {
+            let Some(step) = met.lift() else {
+                return black();
+            };
+            line.origin = sum(&line.origin, &step);
+            if !is_far {
+                line.slope = minus(&light.vector.map(|x| fraction(x, 13)), &line.origin);
+            }
+        }
         let mut rest = (!is_far).then(one);
         let mut left = [one(), one(), one()];
         while let Some(blocker) = self.nearest(&line, rest.as_ref()) {

@@ -102,7 +102,7 @@ fn critical_angles_are_proved_or_named() {
     let prism = "[camera]\neye = [0, 0.5, 6]\ntarget = [0, 0.5, 0]\nfov = 35\n\
         [[object]]\nkind = 'mesh'\nmaterial = 'glass'\n\
         vertices = [[-1, 0, -1], [1, 0, -1], [0, 1.75, -1], [-1, 0, 1], [1, 0, 1], [0, 1.75, 1]]\n\
-        triangles = [[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]]\n";
+        faces = [[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]]\n";
     check(&format!("{around}{prism}"), [33, 25], 8);
 }
 

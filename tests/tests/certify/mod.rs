@@ -5,7 +5,7 @@ mod hard;
 mod shares;
 
 use exact::Exact;
-use gridel_core::{Effects, Format, Scene, Settings, Structure};
+use gridel_core::{Format, Scene, Settings, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::certify::{Enclosed, Report, World, certify, code, enclose};
 use gridel_host::render::{Job, render};
@@ -15,21 +15,40 @@ use gridel_tests::scenes;
 use rayon::prelude::*;
 use std::convert::Infallible;
 
-/// Fixtures that are known to `certify` and to the 320-bit evaluator, which has no smooth normals.
+/// All fixtures, and a smooth mesh of glass and of mirrors, by itself and in instances.
 fn known() -> Vec<(String, Blob)> {
     let fixtures = scenes::fixtures().into_iter();
-    let blobs = fixtures.map(|(name, scene)| (name, scenes::blob(&scene, 24)));
-    let mut known: Vec<(String, Blob)> = blobs
-        .filter(|(_, blob)| {
-            blob.scene().is_ok_and(|scene| {
-                let is_plain = !scene.effects_with_parts().contains(Effects::SMOOTH);
-                is_plain && World::of(&scene).is_ok()
-            })
-        })
+    let mut known: Vec<(String, Blob)> = fixtures
+        .chain([(String::from("smooth"), smooth())])
+        .map(|(name, scene)| (name, scenes::blob(&scene, 24)))
         .collect();
     known.sort_by(|(a, _), (b, _)| a.cmp(b));
-    assert!(known.len() >= 8, "{} fixtures", known.len());
+    assert!(known.len() >= 16, "{} scenes", known.len());
     known
+}
+
+/// Octahedra that are shaded as balls: one of glass on a mirror, one that is placed twice, and a light so low that it
+/// faces normals where it does not face their triangles.
+fn smooth() -> gridel_host::scene::Scene {
+    let ball = "kind = 'mesh'\nsmooth = 120\n\
+        vertices = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]\n\
+        faces = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]\n";
+    let text = format!(
+        "background = [0.3, 0.4, 0.6]\nambient = 0.1\n\
+         [camera]\neye = [0.5, 2, 8]\ntarget = [0, 0, 0]\nfov = 40\n[render]\ndepth = 4\n\
+         [[light]]\nkind = 'point'\nposition = [-6, 0.5, 3]\ncolor = 0.6\n\
+         [[light]]\nkind = 'directional'\ndirection = [-3, -1, 0.5]\ncolor = 0.4\n\
+         [material.glass]\ndiffuse = 0.1\ntransmit = 0.8\nior = 1.5\nhighlight = 0.3\n\
+         [material.metal]\ndiffuse = 0.3\nmirror = 0.5\n\
+         [[object]]\nkind = 'box'\nmin = [-4, -1.5, -4]\nmax = [4, -1.25, 4]\nmaterial = 'metal'\n\
+         [[object]]\nmaterial = 'glass'\n{ball}\
+         [[part]]\nname = 'ball'\n[[part.object]]\nmaterial = 'metal'\n{ball}\
+         [[instance]]\npart = 'ball'\ntranslate = [-2, 0, 0]\nrotate = [10, 20, 30]\n\
+         [[instance]]\npart = 'ball'\ntranslate = [2, 0, -1]\nscale = 0.75\n"
+    );
+    let options = gridel_host::scene::ImportOptions::default();
+    let imported = gridel_host::scene::read("smooth.toml".as_ref(), text.into(), &options);
+    imported.expect("a scene").scene
 }
 
 fn settings(scene: &Scene<'_>, size: [u16; 2], samples: u16) -> Settings {
