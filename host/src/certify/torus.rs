@@ -5,7 +5,7 @@
 //! G is negative lies the inner sheet of a spindle torus, which is inside of the solid.)
 //!
 //! Along a ray F is a quartic. Its roots are isolated by subdivision: coefficients of Bernstein's polynomials whose signs
-//! are known count the roots of a stretch, none or one. Newton's steps narrow each root. A stretch whose signs stay open,
+//! are known count the roots of a stretch, none or one. Newton's steps narrow each root, and halving where they do not. A stretch whose signs stay open,
 //! where the ray all but touches the surface, may be crossed or not.
 
 use super::crossing::{Crossing, Grazes, Ray, exact};
@@ -20,8 +20,8 @@ type Quartic<N> = [N; 5];
 const STRETCHES: usize = 1500;
 /// Most times that a stretch is halved.
 const HALVINGS: u32 = 280;
-/// Most Newton's steps: each doubles the digits.
-const STEPS: usize = 12;
+/// Most Newton's steps: each doubles the digits, but for the first ones, which halve the stretch.
+const STEPS: usize = 64;
 /// Most stretches with crossings: numbers of parts.
 const PARTS: u8 = 6;
 
@@ -297,18 +297,33 @@ fn narrowed<N: Enclosure>(quartic: &Quartic<N>, between: N) -> N {
     for _ in 0..STEPS {
         // For a slope somewhere between, the root is off by the value over it.
         let from = root.point();
-        let Some(off) = value(quartic, from).over(slope(quartic, root)) else {
+        let here = value(quartic, from);
+        let slope = slope(quartic, root);
+        let Some(off) = here.over(slope) else {
             break;
         };
         let next = from - off;
-        if next.radius() >= root.radius() {
-            break;
-        }
         let was = root.radius();
-        root = next;
-        if next.radius() > 0.25 * was {
-            break;
+        if next.radius() < 0.5 * was {
+            root = next;
+            continue;
         }
+        // In the half where the quartic changes its sign, as it goes one way.
+        let is_before = match (here.sign(), slope.sign()) {
+            (Some(here), Some(slope)) if here.is_ne() => here == slope,
+            _ => {
+                if next.radius() < was {
+                    root = next;
+                }
+                break;
+            }
+        };
+        let reach = N::float(was);
+        root = from.hull(if is_before {
+            from - reach
+        } else {
+            from + reach
+        });
     }
     root
 }
