@@ -231,3 +231,34 @@ fn the_table_in_the_readme_is_measured() {
     }
     assert_eq!(table, rows, "paste this:\n{rows}");
 }
+
+/// What a blob is and what firmware runs know nothing of certified pixels: the enclosing numbers are the host's, which
+/// the core and its firmware do not depend on.
+#[test]
+fn the_core_and_firmware_have_no_intervals() {
+    use std::path::{Path, PathBuf};
+
+    fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+        for entry in std::fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                files(&path, found);
+            } else if path.extension().is_some_and(|it| it == "rs" || it == "toml") {
+                found.push(path);
+            }
+        }
+    }
+
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut found = Vec::new();
+    for folder in ["core", "tests/firmware"] {
+        files(&root.join(folder), &mut found);
+    }
+    assert!(found.len() > 100, "{} files", found.len());
+    for path in found {
+        let text = std::fs::read_to_string(&path).expect("a text");
+        for word in ["certify", "Enclosure", "dashu", "gridel-host", "next_up"] {
+            assert!(!text.contains(word), "{}: {word}", path.display());
+        }
+    }
+}
