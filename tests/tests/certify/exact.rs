@@ -414,7 +414,6 @@ impl<'s> Exact<'s> {
                 let outward = unit(&along(&q, &-&y, &axis));
                 unit(&along(&q, &real(-torus.major_radius), &outward))
             }
-            _ => return None,
         })
     }
 
