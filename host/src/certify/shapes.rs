@@ -53,17 +53,21 @@ pub fn crossings<N: Enclosure>(
     ray: &Ray<N>,
     found: &mut Vec<Crossing<N>>,
 ) -> Result<(), Grazes> {
-    let (plane, itself) = match ray.start {
+    let (planes, itself) = match ray.start {
         Start::On {
             instance: from,
             twin,
             part,
             plane,
+            also: [second, third],
             inward,
-        } if from == instance => (plane, (solid.twin == twin).then_some((part, inward))),
-        _ => (NONE, None),
+        } if from == instance => (
+            [plane, second, third],
+            (solid.twin == twin).then_some((part, inward)),
+        ),
+        _ => ([NONE; 3], None),
     };
-    let same_plane = |of: u32| of != NONE && of == plane;
+    let same_plane = |of: u32| of != NONE && planes.contains(&of);
     match solid.form {
         Form::Triangle {
             corners, normal, ..

@@ -317,7 +317,12 @@ fn root(polynomial: &[Real], slope: &[Real], first: &Real, last: &Real) -> Real 
         let next = if steepness == Real::of(0.0) {
             middle
         } else {
-            let next = &x - y / steepness;
+            let step = y / steepness;
+            // Where the last steps are roundings, they may lead out.
+            if step.abs() < least {
+                break;
+            }
+            let next = &x - step;
             if next > low && next < high {
                 next
             } else {

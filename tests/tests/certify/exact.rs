@@ -467,7 +467,10 @@ impl<'s> Exact<'s> {
                 let parallel = (&cos - &ratio * &cos_out) / (&cos + &ratio * &cos_out);
                 reflected = (&perpendicular * &perpendicular + &parallel * &parallel) * real(0.5);
                 let lift = &ratio * &cos - &cos_out;
-                passing = Some(along(&scaled(&direction, &ratio), &lift, &normal));
+                let refracted = along(&scaled(&direction, &ratio), &lift, &normal);
+                // Lengths count where a triangle with normals lifts a direction: those of the rules.
+                let length = if met.front { one() } else { one() / &ratio };
+                passing = Some(scaled(&refracted, &length));
             }
             if material.inverse_ior == 1 << 30 {
                 (reflected, passing) = (real(0.0), Some(direction.clone()));
@@ -480,7 +483,7 @@ impl<'s> Exact<'s> {
                 result = sum(&result, &self.sent(&met, (slope, !met.front), part, depth));
             }
         }
-        let slope = along(&direction, &(real(2.0) * &cos), &normal);
+        let slope = along(&scaled(&direction, &real(0.5)), &cos, &normal);
         sum(
             &result,
             &self.sent(&met, (slope, met.front), product(&weight, &mirrored), depth),

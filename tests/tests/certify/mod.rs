@@ -243,7 +243,10 @@ fn the_core_and_firmware_have_no_intervals() {
             let path = entry.expect("an entry").path();
             if path.is_dir() {
                 files(&path, found);
-            } else if path.extension().is_some_and(|it| it == "rs" || it == "toml") {
+            } else if path
+                .extension()
+                .is_some_and(|it| it == "rs" || it == "toml")
+            {
                 found.push(path);
             }
         }

@@ -159,6 +159,7 @@ fn rays_from_the_surface_do_not_meet_it_where_they_start() {
             twin: 0,
             part: 0,
             plane: u32::MAX,
+            also: [u32::MAX; 2],
             inward: false,
         };
         let from = Ray {
