@@ -342,14 +342,10 @@ impl<'s> Exact<'s> {
         }
         let (t, placed, leaves) = best?;
         let point = line.at(&t);
-        let mut normal = self.normal(placed, &placed.line(line).at(&t))?;
+        let line_there = placed.line(line);
+        let mut normal = self.normal(placed, (&line_there.at(&t), &line_there.slope), leaves)?;
         if let Some(map) = &placed.map {
             normal = map.normal(&normal);
-        }
-        // The faces of a box without thickness lie in one plane: that counts which the ray comes from, or goes to.
-        let is_box = matches!(placed.solid, Solid::Box(_));
-        if is_box && dot(&normal, &line.slope).is_negative() == leaves {
-            normal = normal.map(|x| -x);
         }
         let front = if placed.solid.is_flat() {
             dot(&normal, &line.slope).is_negative()
@@ -367,7 +363,12 @@ impl<'s> Exact<'s> {
     }
 
     /// The gradient of how far the surface lies inside of the point, by its definition.
-    fn normal(&self, placed: &Placed, point: &Vector) -> Option<Vector> {
+    fn normal(
+        &self,
+        placed: &Placed,
+        (point, slope): (&Vector, &Vector),
+        leaves: bool,
+    ) -> Option<Vector> {
         Some(match &placed.solid {
             Solid::Triangle([a, b, c]) => {
                 let [a, b, c] = [a, b, c].map(|corner| vector(corner.to_array()));
@@ -377,15 +378,21 @@ impl<'s> Exact<'s> {
             Solid::Disc(disc) => unit(&vector(disc.normal.to_array())),
             Solid::Plane(plane) => unit(&vector(plane.normal.to_array())),
             Solid::Box(cuboid) => {
-                // The face that the point lies on.
+                // The face that the point lies on, of those that the line crosses in that direction; at an edge the
+                // first.
                 let (low, high) = (vector(cuboid.min.to_array()), vector(cuboid.max.to_array()));
                 let mut best: Option<(Real, usize, f64)> = None;
                 for k in 0..3 {
-                    for (side, sign) in [(&low, -1.0), (&high, 1.0)] {
-                        let off = (&point[k] - &side[k]).abs();
-                        if best.as_ref().is_none_or(|best| off < best.0) {
-                            best = Some((off, k, sign));
-                        }
+                    let towards = match (slope[k].is_positive(), slope[k].is_negative()) {
+                        (true, _) => 1.0,
+                        (_, true) => -1.0,
+                        _ => continue,
+                    };
+                    let sign = if leaves { towards } else { -towards };
+                    let side = if sign > 0.0 { &high } else { &low };
+                    let off = (&point[k] - &side[k]).abs();
+                    if best.as_ref().is_none_or(|best| &off + nothing() < best.0) {
+                        best = Some((off, k, sign));
                     }
                 }
                 let (_, axis, sign) = best?;

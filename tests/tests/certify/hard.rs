@@ -93,7 +93,7 @@ fn critical_angles_are_proved_or_named() {
     // In a block, straight at one of its faces: the critical angle is a circle of 30 degrees around the middle.
     let block = "[camera]\neye = [0.25, 0.125, 0.5]\ntarget = [0.25, 0.125, -1]\nfov = 120\n\
         [[object]]\nkind = 'box'\nmin = [-2, -2, -2]\nmax = [2, 2, 2]\nmaterial = 'glass'\n";
-    check(&format!("{around}{block}"), [33, 33], 3);
+    check(&format!("{around}{block}"), [33, 33], 12);
     // Off the middle of a ball.
     let ball = "[camera]\neye = [1.75, 0, 0]\ntarget = [1.75, 0, -1]\nfov = 110\n\
         [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 2\nmaterial = 'glass'\n";
