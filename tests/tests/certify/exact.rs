@@ -404,10 +404,20 @@ impl<'s> Exact<'s> {
                 let (height, axis) = (norm(&way), unit(&way));
                 let q = minus(point, &base);
                 let y = dot(&q, &axis);
-                if y.abs() < nothing() {
-                    return Some(axis.map(|x| -x));
+                // A cap counts at its rim if the line crosses it in that direction.
+                let crosses = |cap: &Vector| {
+                    let towards = dot(cap, slope);
+                    if leaves {
+                        towards.is_positive()
+                    } else {
+                        towards.is_negative()
+                    }
+                };
+                let below = axis.each_ref().map(|x| -x);
+                if y.abs() < nothing() && crosses(&below) {
+                    return Some(below);
                 }
-                if (&y - &height).abs() < nothing() {
+                if (&y - &height).abs() < nothing() && crosses(&axis) {
                     return Some(axis);
                 }
                 let out = unit(&along(&q, &-&y, &axis));

@@ -99,7 +99,7 @@ fn critical_angles_are_proved_or_named() {
         [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 2\nmaterial = 'glass'\n";
     check(&format!("{around}{ball}"), [33, 25], 3);
     // From outside at a prism.
-    let prism = "[camera]\neye = [0, 0.5, 6]\ntarget = [0, 0.5, 0]\nfov = 35\n\
+    let prism = "[camera]\neye = [0.125, 0.5, 6]\ntarget = [0, 0.5, 0]\nfov = 35\n\
         [[object]]\nkind = 'mesh'\nmaterial = 'glass'\n\
         vertices = [[-1, 0, -1], [1, 0, -1], [0, 1.75, -1], [-1, 0, 1], [1, 0, 1], [0, 1.75, 1]]\n\
         faces = [[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]]\n";
