@@ -71,9 +71,9 @@ fn an_interrupted_run_continues_where_it_stopped() {
     // What is done is not done again: of a pixel that is marked as open, the mark stays.
     let marked = forged(&state, |pixels| {
         assert_eq!(pixels[DONE], 1);
-        pixels[60..63].fill(0);
-        pixels[63..66].fill(255);
-        pixels[67] = 1;
+        pixels[64..67].fill(0);
+        pixels[67..70].fill(255);
+        pixels[71] = 1;
     });
     folder.write("out/certify.state", &marked);
     let again = folder.json(&SMALL);
