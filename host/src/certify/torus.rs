@@ -188,11 +188,11 @@ fn bernstein<N: Enclosure>(polynomial: &Quartic<N>, [first, last]: [N; 2]) -> Op
 /// The coefficients on both halves of a stretch.
 fn halves<N: Enclosure>(coefficients: &Quartic<N>) -> [Quartic<N>; 2] {
     let (mut left, mut right) = (*coefficients, *coefficients);
-    for step in 1..5 {
+    for (step, first) in left.iter_mut().enumerate().skip(1) {
         for index in 0..5 - step {
             right[index] = (right[index] + right[index + 1]).half();
         }
-        left[step] = right[0];
+        *first = right[0];
     }
     [left, right]
 }

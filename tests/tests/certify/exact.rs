@@ -110,6 +110,10 @@ struct Met<'e> {
     object: u32,
 }
 
+/// The corners of a triangle as seen from a point, the parts of the area that are opposite to them, and their normals
+/// as they are stored.
+type Corners = ([Vector; 3], [Real; 3], [[i16; 2]; 3]);
+
 impl Met<'_> {
     /// A vector on the side from which the ray came.
     fn turned(&self, v: &Vector) -> Vector {
@@ -121,7 +125,7 @@ impl Met<'_> {
     }
 
     /// The corners of a triangle with normals, as seen from the point in its part, and their parts of the area.
-    fn corners(&self) -> Option<([Vector; 3], [Real; 3], [[i16; 2]; 3])> {
+    fn corners(&self) -> Option<Corners> {
         let normals = self.placed.normals?;
         let Solid::Triangle(corners) = &self.placed.solid else {
             return None;
