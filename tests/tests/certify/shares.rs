@@ -65,7 +65,7 @@ fn the_share_of_proved_pixels_is_as_large_as_promised() {
     let mut measure = |name: &str, scene, size: [u16; 2], least: f64| {
         let blob = scenes::blob(&scene, 24);
         let scene = blob.scene().expect("a scene");
-        let size = if full() { size } else { [48, 48] };
+        let size = if full() { size } else { [32, 24] };
         let pixels = certified(&scene, &settings(&scene, size, 1));
         let row = row(name, size, &pixels);
         let proved = pixels.iter().filter(|it| it.proved().is_some()).count();
