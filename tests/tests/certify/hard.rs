@@ -63,7 +63,7 @@ fn check(text: &str, size: [u16; 2], most_open: usize) {
     let size = if full() {
         size
     } else {
-        size.map(|side| side / 2 | 1)
+        size.map(|side| (side / 2) | 1)
     };
     let blob = blob(text);
     let open = never_wrong(&blob.scene().expect("a scene"), size);
