@@ -1,7 +1,6 @@
 //! What pictures are measured against: `f64`, or the exact picture.
 
-use super::MeasureError;
-use crate::certify::{World, linear};
+use crate::certify::{Unknown, World, linear};
 use gridel_core::{Scene, Settings};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -40,7 +39,7 @@ impl Truth {
 pub(super) fn exact_pixels(
     scene: &Scene<'_>,
     settings: &Settings,
-) -> Result<(Vec<[u16; 3]>, usize), MeasureError> {
+) -> Result<(Vec<[u16; 3]>, usize), Unknown> {
     let world = World::of(scene)?;
     let width = usize::from(settings.width);
     let count = width * usize::from(settings.height);
