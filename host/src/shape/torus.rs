@@ -242,7 +242,8 @@ impl Ring {
             of(4.0) * &square * &b,
             &square * &square,
         ];
-        let reach = (&self.major + minor) * of(1.0625) + of(1e-9);
+        // In lengths of the slope, which may be short.
+        let reach = ((&self.major + minor) * of(1.0625) + of(1e-9)) / square.sqrt();
         let mut ends = vec![-&reach];
         ends.extend(roots(&quartic, &reach));
         // Along the axis of a spindle torus both sheets are met at once, so no sign changes.
