@@ -14,6 +14,7 @@ use gridel_core::{
 use gridel_host::simd;
 use gridel_host::trace::{DirectionScale, Frame, SceneRay};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Rays whose steps are taken together, as `gridel trace` takes them.
 const BATCH: usize = 16;
@@ -471,7 +472,7 @@ pub fn all(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<Vec<(usize, Found
     let chunks = rays.len().div_ceil(CHUNK);
     let chunk = |number: usize| {
         let numbers = number * CHUNK..rays.len().min((number + 1) * CHUNK);
-        dispatch!(how, all_chunk, [Closest], (scene, rays, numbers))
+        all_of::<Closest>(scene, rays, how, numbers)
     };
     if how.threads == 1 || chunks == 1 {
         return (0..chunks).map(chunk).collect();
@@ -481,17 +482,50 @@ pub fn all(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<Vec<(usize, Found
     })
 }
 
+/// All hits of some rays.
+fn all_of<Q: Question<Answer = Found>>(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    how: How,
+    numbers: Range<usize>,
+) -> Vec<(usize, Found)> {
+    #[cfg(target_arch = "x86_64")]
+    if let (Format::F32, Structure::Wide, SimdLevel::Avx2(avx2)) =
+        (how.format, how.structure, simd::level())
+    {
+        return avx2.call(
+            #[inline(always)]
+            |_, scene, rays, numbers, (), ()| all_inline::<f32, Wide, Q>(scene, rays, numbers),
+            (scene, rays, numbers, (), ()),
+        );
+    }
+    dispatch!(how, all_chunk, [Q], (scene, rays, numbers))
+}
+
 fn all_chunk<N: Number, A: Accel, Q: Question<Answer = Found>>(
     scene: &Scene<'_>,
     rays: Rays<'_>,
-    numbers: std::ops::Range<usize>,
+    numbers: Range<usize>,
+) -> Vec<(usize, Found)> {
+    all_inline::<N, A, Q>(scene, rays, numbers)
+}
+
+#[inline(always)]
+fn all_inline<N: Number, A: Accel, Q: Question<Answer = Found>>(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    numbers: Range<usize>,
 ) -> Vec<(usize, Found)> {
     let frame = Frame::of(scene);
     let mut all = Vec::with_capacity(2 * numbers.len());
-    for number in numbers {
-        if let Ok((ray, scale)) = frame.ray::<N>(scene, &rays.get(number)) {
-            each_hit::<N, A>(scene, &ray, |hit| {
-                let (ray, scale, hit) = (&ray, &scale, Some(hit));
+    let mut ready: Vec<Ready<N>> = Vec::with_capacity(BATCH);
+    for first in numbers.clone().step_by(BATCH) {
+        let batch = first..numbers.end.min(first + BATCH);
+        rays.fill((scene, &frame), batch.clone(), &mut ready);
+        for (number, ready) in batch.zip(&ready) {
+            let Ok((ray, scale)) = ready else { continue };
+            each_hit::<N, A>(scene, ray, |hit| {
+                let hit = Some(hit);
                 let met = Met {
                     scene,
                     ray,
@@ -570,9 +604,9 @@ fn contains_chunk<N: Number, A: Accel>(
 }
 
 /// Places, numbers of rays and triangles.
-type Locations = (Vec<[f64; 3]>, Vec<i64>, Vec<i64>);
+pub type Locations = (Vec<[f64; 3]>, Vec<i64>, Vec<i64>);
 
-/// Where rays meet triangles: at most so many of each ray, or the first alone.
+/// Where rays meet triangles: at most so many of each ray, or the first alone. Chunk by chunk.
 pub fn locations(
     scene: &Scene<'_>,
     rays: Rays<'_>,
@@ -580,13 +614,13 @@ pub fn locations(
     multiple_hits: bool,
     max_hits: Option<usize>,
     place: impl Fn(&SceneRay, &Found) -> [f64; 3] + Sync,
-) -> Locations {
+) -> Vec<Locations> {
     let most = max_hits.unwrap_or(usize::MAX);
     let one = |start: usize| -> Locations {
         let numbers = start..rays.len().min(start + CHUNK);
         let mut hits = Vec::with_capacity(2 * CHUNK);
         if multiple_hits {
-            hits = dispatch!(how, all_chunk, [Nearest], (scene, rays, numbers));
+            hits = all_of::<Nearest>(scene, rays, how, numbers);
         } else {
             let mut first = vec![Found::MISS; numbers.len()];
             ask_some::<Nearest>(scene, rays, how, (start, &mut first));
@@ -608,20 +642,9 @@ pub fn locations(
         locations
     };
     let starts: Vec<usize> = (0..rays.len()).step_by(CHUNK).collect();
-    let chunks: Vec<Locations> = if how.threads == 1 || starts.len() <= 1 {
+    if how.threads == 1 || starts.len() <= 1 {
         starts.into_iter().map(one).collect()
     } else {
         with_threads(how.threads, || starts.into_par_iter().map(one).collect())
-    };
-    let mut all = Locations::default();
-    let length = chunks.iter().map(|chunk| chunk.1.len()).sum();
-    all.0.reserve_exact(length);
-    all.1.reserve_exact(length);
-    all.2.reserve_exact(length);
-    for (places, numbers, triangles) in chunks {
-        all.0.extend(places);
-        all.1.extend(numbers);
-        all.2.extend(triangles);
     }
-    all
 }

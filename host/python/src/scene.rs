@@ -164,6 +164,8 @@ impl NativeScene {
 
     /// Where a ray meets a triangle as it was given, in double precision, and the weights of its second and third corner;
     /// by the hit's own t where the triangle is not a mesh's, or nearly parallel to the ray.
+    // Inlined, it computes what is used there, and nothing else.
+    #[inline(always)]
     fn place(&self, ray: &SceneRay, hit: &Found) -> (f64, DVec3, [f64; 2]) {
         let own = ray.origin + ray.direction * hit.t;
         if hit.instance != NONE {
@@ -211,50 +213,64 @@ type MeshHitArrays<'py> = (
     Bound<'py, PyArray2<f32>>,
 );
 
-/// The first hits of rays.
-struct Cast<T> {
-    t: Vec<T>,
-    object: Vec<u32>,
-    primitive: Vec<u32>,
-    instance: Vec<u32>,
-    normal: Vec<[f32; 3]>,
-    uv: Vec<[f32; 2]>,
+/// The first hits of rays, in memory of NumPy's, which takes large pages where there are some.
+struct Cast<'py, T> {
+    t: Arrays<'py, T>,
+    object: Arrays<'py, u32>,
+    primitive: Arrays<'py, u32>,
+    instance: Arrays<'py, u32>,
+    normal: Bound<'py, PyArray2<f32>>,
+    uv: Bound<'py, PyArray2<f32>>,
+}
+
+/// Zeros, which are not written to before they are filled in.
+fn zeros<T: numpy::Element>(py: Python<'_>, length: usize) -> Arrays<'_, T> {
+    PyArray1::zeros(py, length, false)
 }
 
 impl NativeScene {
     /// Finds the first hit of each ray; `number` gives its t and its primitive as the caller has them.
-    fn cast_into<T: Send + Copy + Default>(
+    fn cast_into<'py, T: numpy::Element + Send + Copy>(
         &self,
-        scene: &Scene<'_>,
-        rays: Rays<'_>,
-        how: How,
+        py: Python<'py>,
+        (scene, rays, how): (&Scene<'_>, Rays<'_>, How),
         has_instances: bool,
-        number: impl Fn(&Found) -> (T, u32) + Sync,
-    ) -> Cast<T> {
-        // Zeros are not written to, as other numbers would be.
+        number: impl Fn(&Found) -> (T, u32) + Sync + Send,
+    ) -> PyResult<Cast<'py, T>> {
         let length = rays.len();
-        let mut found = Cast {
-            t: vec![T::default(); length],
-            object: vec![0; length],
-            primitive: vec![0; length],
-            instance: vec![0; if has_instances { length } else { 0 }],
-            normal: vec![[0.0; 3]; length],
-            uv: vec![[0.0; 2]; length],
-        };
-        let columns = Columns {
-            t: &mut found.t,
-            object: &mut found.object,
-            primitive: &mut found.primitive,
-            instance: &mut found.instance,
-            normal: &mut found.normal,
-            uv: &mut found.uv,
-        };
-        let place = |ray: &SceneRay, hit: &Found| {
-            let (t, _, uv) = self.place(ray, hit);
-            (t, uv.map(|weight| weight as f32))
-        };
-        query::cast(scene, rays, how, columns, place, number);
-        found
+        let t = zeros(py, length);
+        let [object, primitive] = [length; 2].map(|length| zeros(py, length));
+        let instance = zeros(py, if has_instances { length } else { 0 });
+        let [normal, uv] = [3 * length, 2 * length].map(|length| zeros(py, length));
+        {
+            let mut t = t.readwrite();
+            let [mut object, mut primitive, mut instance] =
+                [&object, &primitive, &instance].map(|array| array.readwrite());
+            let [mut normal, mut uv] = [&normal, &uv].map(|array| array.readwrite());
+            let (normal, _) = normal.as_slice_mut().map_err(invalid)?.as_chunks_mut();
+            let (uv, _) = uv.as_slice_mut().map_err(invalid)?.as_chunks_mut();
+            let columns = Columns {
+                t: t.as_slice_mut().map_err(invalid)?,
+                object: object.as_slice_mut().map_err(invalid)?,
+                primitive: primitive.as_slice_mut().map_err(invalid)?,
+                instance: instance.as_slice_mut().map_err(invalid)?,
+                normal,
+                uv,
+            };
+            let place = |ray: &SceneRay, hit: &Found| {
+                let (t, _, uv) = self.place(ray, hit);
+                (t, uv.map(|weight| weight as f32))
+            };
+            py.detach(|| query::cast(scene, rays, how, columns, place, number));
+        }
+        Ok(Cast {
+            t,
+            object,
+            primitive,
+            instance,
+            normal: normal.reshape([length, 3])?,
+            uv: uv.reshape([length, 2])?,
+        })
     }
 }
 
@@ -265,6 +281,13 @@ fn column<'py, T: numpy::Element>(
     number: impl Fn(&(usize, Found)) -> T,
 ) -> Arrays<'py, T> {
     hits.iter().map(number).collect::<Vec<_>>().into_pyarray(py)
+}
+
+/// Copies values to the start of a slice, and returns the rest of it.
+fn append<'s, T: Copy>(to: &'s mut [T], values: &[T]) -> &'s mut [T] {
+    let (first, rest) = to.split_at_mut(values.len());
+    first.copy_from_slice(values);
+    rest
 }
 
 fn rows<'py, T: numpy::Element, const WIDTH: usize>(
@@ -382,15 +405,15 @@ impl NativeScene {
             Array::borrow(rays, "rays")?,
         );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
-        let found =
-            py.detach(|| self.cast_into(&scene, rays, how, true, |hit| (hit.t, hit.primitive)));
+        let number = |hit: &Found| (hit.t, hit.primitive);
+        let found = self.cast_into(py, (&scene, rays, how), true, number)?;
         Ok((
-            found.t.into_pyarray(py),
-            found.object.into_pyarray(py),
-            found.primitive.into_pyarray(py),
-            found.instance.into_pyarray(py),
-            rows(py, found.normal)?,
-            rows(py, found.uv)?,
+            found.t,
+            found.object,
+            found.primitive,
+            found.instance,
+            found.normal,
+            found.uv,
         ))
     }
 
@@ -407,29 +430,23 @@ impl NativeScene {
             Array::borrow(rays, "rays")?,
         );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
-        let found = py.detach(|| {
-            self.cast_into(&scene, rays, how, false, |hit| {
-                let first = self.firsts.get(hit.object as usize).copied().unwrap_or(0);
-                // A ray without a direction hits nothing there.
-                let t = if hit.t.is_nan() {
-                    f32::INFINITY
-                } else {
-                    hit.t as f32
-                };
-                let primitive = if hit.primitive == NONE {
-                    NONE
-                } else {
-                    hit.primitive - first
-                };
-                (t, primitive)
-            })
-        });
+        let number = |hit: &Found| {
+            // A ray without a direction hits nothing there.
+            let t = if hit.t.is_nan() {
+                f32::INFINITY
+            } else {
+                hit.t as f32
+            };
+            let first = self.firsts.get(hit.object as usize).copied();
+            (t, first.map_or(NONE, |first| hit.primitive - first))
+        };
+        let found = self.cast_into(py, (&scene, rays, how), false, number)?;
         Ok((
-            found.t.into_pyarray(py),
-            found.object.into_pyarray(py),
-            found.primitive.into_pyarray(py),
-            rows(py, found.normal)?,
-            rows(py, found.uv)?,
+            found.t,
+            found.object,
+            found.primitive,
+            found.normal,
+            found.uv,
         ))
     }
 
@@ -576,16 +593,28 @@ impl NativeScene {
         ];
         let rays = Rays::two(arrays[0].rows("origins")?, arrays[1].rows("directions")?)?;
         let scene = self.chosen(how)?;
-        let (places, numbers, triangles) = py.detach(|| {
+        let chunks = py.detach(|| {
             query::locations(&scene, rays, how, multiple_hits, max_hits, |ray, hit| {
                 self.place(ray, hit).1.to_array()
             })
         });
-        Ok((
-            rows(py, places)?,
-            numbers.into_pyarray(py),
-            triangles.into_pyarray(py),
-        ))
+        let length = chunks.iter().map(|chunk| chunk.0.len()).sum();
+        let places = zeros(py, 3 * length);
+        let [numbers, triangles] = [length; 2].map(|length| zeros(py, length));
+        {
+            let mut places = places.readwrite();
+            let [mut numbers, mut triangles] =
+                [&numbers, &triangles].map(|array| array.readwrite());
+            let mut places = places.as_slice_mut().map_err(invalid)?;
+            let mut numbers = numbers.as_slice_mut().map_err(invalid)?;
+            let mut triangles = triangles.as_slice_mut().map_err(invalid)?;
+            for chunk in chunks {
+                places = append(places, chunk.0.as_flattened());
+                numbers = append(numbers, &chunk.1);
+                triangles = append(triangles, &chunk.2);
+            }
+        }
+        Ok((places.reshape([length, 3])?, numbers, triangles))
     }
 
     /// Whether each point lies in a closed object, or with `closed_only` false in any object by parity.

@@ -6,7 +6,8 @@ use crate::firmware::board;
 use crate::plan::Plan;
 use crate::scenes::{self, Compiled, repository};
 use gridel_core::{
-    Angle, Camera, Fixed, Format, List, NoCount, Number, Position, Scene, Settings, Stack, Structure, Up,
+    Angle, Camera, Fixed, Format, List, NoCount, Number, Position, Scene, Settings, Stack,
+    Structure, Up,
 };
 use gridel_core::{any_hit, closest_hit};
 use gridel_host::compile::{self, Options};
