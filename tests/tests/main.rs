@@ -24,6 +24,7 @@ mod large_scenes;
 #[path = "lattice/main.rs"]
 mod lattice;
 mod layers;
+mod lights;
 mod live;
 mod origins;
 mod reference;

@@ -35,6 +35,12 @@ macro_rules! effects {
             /// Smooth normals: meshes are shaded by the normals of their vertices.
             SMOOTH = 6, "smooth", Smooth in smooth, casts 0,
                 required by "a mesh with normals that are not those of its faces";
+            /// Lights that fall off with distance, and spots.
+            FALLOFF = 11, "falloff", Falloff in falloff, casts 0,
+                required by "a light with a falloff, a spot or an area";
+            /// Lights with an area: soft shadows.
+            AREA_LIGHT = 12, "area-light", AreaLight in area_light, casts 0,
+                required by "a light that is a sphere, a rectangle or a disc";
         }
     };
 }

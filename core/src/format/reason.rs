@@ -68,6 +68,12 @@ texts! {
         // Lights and materials.
         Color => "color",
         PositionOrDirection => "position or direction",
+        LightReference => "distance at which a light has its color",
+        LightRange => "distance at which a light ends",
+        ConeCosine => "cosine of a spot's angle",
+        ConeWidth => "width of a spot's edge",
+        LightEdge => "edge of a light",
+        LightForm => "form of a light",
         Diffuse => "diffuse color",
         Odd => "odd color",
         Highlight => "highlight",

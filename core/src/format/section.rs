@@ -17,10 +17,31 @@ macro_rules! kinds {
         impl SectionKind {
             /// All kinds, in order.
             pub const ALL: [SectionKind; [$($number),*].len()] = {
-                let mut all = [SectionKind::View; [$($number),*].len()];
-                $(all[$number - 1] = SectionKind::$kind;)*
+                let mut all = [$(SectionKind::$kind),*];
+                // Those of shapes come last in the table above, and not by their numbers.
+                let mut sorted = 1;
+                while sorted < all.len() {
+                    let mut place = sorted;
+                    while place > 0 && all[place - 1] as u16 > all[place] as u16 {
+                        all.swap(place - 1, place);
+                        place -= 1;
+                    }
+                    sorted += 1;
+                }
                 all
             };
+
+            /// A bit for every number that a kind has.
+            pub(crate) const KNOWN: [u32; 4] = {
+                let mut known = [0; 4];
+                $(known[$number / 32] |= 1 << ($number % 32);)*
+                known
+            };
+
+            /// The kind with a number.
+            pub fn of_number(number: u16) -> Option<Self> {
+                Self::ALL.into_iter().find(|&kind| kind as u16 == number)
+            }
 
             /// The name that errors and memory maps use.
             pub const fn name(self) -> &'static str {
@@ -196,6 +217,8 @@ macro_rules! sections {
             Joints = 73, "joints", [track::Joint], "joint" of "tracks";
             /// For each instance, the joint on which it hangs, or `u32::MAX`. Absent where there are no joints.
             InstanceJoints = 74, "instance-joints", [u32], "instance" of "tracks";
+            /// [`LightForm`](crate::format::light_form::LightForm)s: what makes lights more than points.
+            LightForms = 80, "light-forms", [light_form::LightForm], "form" of "lights";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

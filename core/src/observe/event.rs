@@ -127,6 +127,18 @@ pub enum Event {
     /// The light that was just considered, which the smooth normal faces, lies behind the triangle, and does not
     /// reach it.
     BehindTriangle,
+    /// The light that was just considered has an area, and shines from a point of it.
+    FromArea {
+        /// The point, in units.
+        point: [f64; 3],
+    },
+    /// The light that was just considered does not shine in this direction, or not so far.
+    Outside,
+    /// The light that was just considered falls off with distance or angle.
+    Fallen {
+        /// The radiance that arrives, after shadows.
+        arriving: [f64; 3],
+    },
     /// Light for a shadow comes through the glass that was just met.
     Filtered {
         /// The part of it that is left.

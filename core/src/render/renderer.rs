@@ -23,7 +23,8 @@ pub struct Settings {
     pub width: u16,
     /// Pixels from top to bottom, above 0. The field of view is vertical.
     pub height: u16,
-    /// Samples a pixel, 1 to 256; powers of two are spread best.
+    /// Samples a pixel, 1 to 4,096; powers of two are spread best. Beyond 256 they share places within the pixel, and
+    /// differ in what effects draw.
     pub samples: u16,
     /// How often a ray may be reflected or refracted, 0 to 16.
     pub depth: u8,
@@ -64,7 +65,7 @@ pub enum RenderError {
         /// The requested height.
         height: u16,
     },
-    /// Not 1 to 256 samples.
+    /// Not 1 to 4,096 samples.
     Samples(u16),
     /// The depth is above 16.
     Depth(u8),

@@ -7,6 +7,8 @@ use crate::ray::Ray;
 use crate::render::samples::Samples;
 use crate::render::{Pixel, Renderer, WorkspaceView};
 use crate::shade::Color;
+use crate::shade::sampler::Sampler;
+
 impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
     /// One pixel, linear, 65535 being white. Outside of the picture pixels go on.
     ///
@@ -63,7 +65,8 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
         let tracing = self.tracing();
         let mut radiance = Color::BLACK;
         let camera = || Ok(*ray);
-        while !tracing.step::<N, A, C, EFFECTS>(0, camera, &mut radiance, space, count) {}
+        let sampler = Sampler::new([0; 2], 0);
+        while !tracing.step::<N, A, C, EFFECTS>(sampler, camera, &mut radiance, space, count) {}
         let seen = radiance.displayable();
         if C::ENABLED {
             count.event(Event::SampleFinished {

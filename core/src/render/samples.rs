@@ -7,7 +7,12 @@ use crate::render::pixel::Linear;
 use crate::render::sample::place;
 use crate::render::{Renderer, WorkspaceView};
 use crate::shade::Color;
+use crate::shade::sampler::Sampler;
 use core::hint::black_box;
+
+/// The samples whose sum is in the range of `fixed`. Of more samples, quarters are added up.
+const FULL: u16 = 1024;
+
 /// A pixel that is being rendered: the number of its sample, and what was seen so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Samples<N: Number> {
@@ -45,12 +50,18 @@ impl<N: Number> Samples<N> {
         };
         let radiance = &mut self.radiance;
         let tracing = renderer.tracing();
-        if !tracing.step::<N, A, C, EFFECTS>(self.index, camera, radiance, space, count) {
+        let sampler = Sampler::new([x, y], self.index);
+        if !tracing.step::<N, A, C, EFFECTS>(sampler, camera, radiance, space, count) {
             return None;
         }
         // Clamped before they are averaged, so that the edge of a highlight is smooth.
         let seen = self.radiance.displayable();
-        self.sum = self.sum.plus_displayable(seen);
+        let part = if samples > FULL {
+            seen.scaled(N::ONE.half().half())
+        } else {
+            seen
+        };
+        self.sum = self.sum.plus_displayable(part);
         if C::ENABLED {
             count.event(Event::SampleFinished {
                 place: Some(place([x, y], self.index, samples)),
@@ -66,8 +77,9 @@ impl<N: Number> Samples<N> {
             self.sum
         } else {
             // `Renderer::with_settings` rejects 0 samples.
-            self.sum
-                .scaled(N::ratio((1 << 30) / i32::from(samples.max(1))))
+            let one = (1 << 30) / i32::from(samples.max(1));
+            let part = if samples > FULL { one << 2 } else { one };
+            self.sum.scaled(N::ratio(part))
         };
         Some(renderer.to_linear(mean))
     }

@@ -21,7 +21,10 @@ use crate::query::{Hit, any_hit, closest_hit};
 use crate::ray::{Ray, RayError};
 use crate::scene::Scene;
 use crate::shade::effect::{EffectList, Tracer};
-use crate::shade::surface::{Bounce, Filter, Lighting, Secondary, Surface, depart, secondary_ray};
+use crate::shade::sampler::Sampler;
+use crate::shade::surface::{
+    Aim, Bounce, Filter, Lighting, Secondary, Surface, depart, secondary_ray,
+};
 use crate::shade::{All, Color};
 use core::marker::PhantomData;
 use heapless::{Vec, VecView};
@@ -103,7 +106,7 @@ impl Loop<'_, '_> {
     #[inline(always)]
     pub(super) fn step<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
         &self,
-        sample: u16,
+        sampler: Sampler,
         camera: impl FnOnce() -> Result<Ray<N>, RayError>,
         radiance: &mut Color<N>,
         space: &mut WorkspaceView<'_, N>,
@@ -115,6 +118,8 @@ impl Loop<'_, '_> {
             scene: self.scene,
             most: self.depth,
             depth: 0,
+            kind: RayKind::Primary,
+            sampler,
             state: State::<N>::default(),
             space,
             count,
@@ -124,7 +129,8 @@ impl Loop<'_, '_> {
             Some(next) => {
                 let (origin, direction) = (next.origin, next.direction.map(N::widen));
                 let ray = secondary_ray(self.scene, origin, direction, None);
-                (tracing.depth, tracing.state) = (next.depth, next.state);
+                (tracing.depth, tracing.kind) = (next.depth, next.kind);
+                tracing.state = next.state;
                 (ray, next.weight, next.kind)
             }
             None => (camera().ok(), Color::WHITE, RayKind::Primary),
@@ -140,7 +146,7 @@ impl Loop<'_, '_> {
         if let Some(mut ray) = ray {
             if kind == RayKind::Primary {
                 let mut state = tracing.state;
-                All::camera::<EFFECTS, N, _>(&mut tracing, &mut state, sample, &mut ray);
+                All::camera::<EFFECTS, N, _>(&mut tracing, &mut state, sampler.sample(), &mut ray);
                 tracing.state = state;
             }
             tracing.count.ray(kind, &ray);
@@ -161,6 +167,9 @@ struct Tracing<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
     most: u8,
     /// How many reflections and refractions led to the ray.
     depth: u8,
+    kind: RayKind,
+    /// Whose points effects draw.
+    sampler: Sampler,
     state: State<N>,
     space: &'t mut WorkspaceView<'w, N>,
     count: &'t mut C,
@@ -262,6 +271,9 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         let mut state = self.state;
         let origin = depart(self.scene, surface.hit, surface.hit.front, true);
         let (way, distance) = light.seen_from(origin);
+        let mut aim = Aim { way, distance };
+        All::aim::<EFFECTS, N, _>(self, &mut state, number, light, &mut aim);
+        let Aim { way, distance } = aim;
         let Some((slopes, _)) = N::slopes(way) else {
             return Color::BLACK;
         };
@@ -316,6 +328,13 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
     #[inline(always)]
     fn count(&mut self) -> &mut C {
         self.count
+    }
+
+    #[inline(always)]
+    fn point(&self, dimension: u16) -> [u32; 2] {
+        // A hit sends at most one ray of a kind.
+        let bounce = u16::from(self.depth) << 8 | self.kind as u16;
+        self.sampler.point(bounce, dimension)
     }
 
     #[inline(always)]

@@ -1,6 +1,7 @@
 //! A scene: a checked view of a blob.
 
 use crate::accel::{Space, StructureViews};
+use crate::format::light_form::LightForm;
 use crate::format::record::{Header, Light, Material, UnitBox, View};
 use crate::format::{Effects, Indices, Kind, Structure};
 use crate::geometry::{Geometry, PrimitiveId};
@@ -20,6 +21,7 @@ pub struct Scene<'a> {
     pub(crate) structures: StructureViews<'a>,
     pub(crate) view: &'a View,
     pub(crate) lights: &'a [Light],
+    pub(crate) light_forms: &'a [LightForm],
     pub(crate) materials: &'a [Material],
     pub(in crate::scene) object_first: Indices<'a>,
     pub(in crate::scene) object_material: Indices<'a>,
@@ -71,6 +73,17 @@ impl<'a> Scene<'a> {
     /// ```
     pub fn lights(&self) -> &'a [Light] {
         self.lights
+    }
+
+    /// The forms of lights, which lights name by their numbers.
+    pub fn light_forms(&self) -> &'a [LightForm] {
+        self.light_forms
+    }
+
+    /// The form of a light.
+    #[inline(always)]
+    pub(crate) fn light_form(&self, light: &Light) -> Option<&'a LightForm> {
+        self.light_forms.get(light.form()? as usize)
     }
 
     /// The materials.

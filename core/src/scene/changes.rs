@@ -62,7 +62,7 @@ impl<'a> Scene<'a> {
     pub fn with_lights(&self, lights: &'a [Light]) -> Result<Self, BlobError> {
         let mut effects = self.effects;
         for (index, light) in lights.iter().enumerate() {
-            check_light(index, light)?;
+            check_light(index, light, self.light_forms.len())?;
             if self.lights.is_empty() {
                 effects = effects.with(light.effects());
             }

@@ -41,16 +41,26 @@ pub(crate) fn check<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<()
 const ONE: i64 = 1 << 30;
 
 fn check_lights(scene: &Scene<'_>) -> Result<(), BlobError> {
+    for (index, form) in scene.light_forms.iter().enumerate() {
+        let section = SectionKind::LightForms;
+        form.check_ranges(At { section, index }.location())?;
+    }
     let mut lights = scene.lights.iter().enumerate();
-    lights.try_for_each(|(index, light)| check_light(index, light))
+    lights.try_for_each(|(index, light)| check_light(index, light, scene.light_forms.len()))
 }
 
 /// Proves the ranges of a light.
 #[inline(always)]
-pub(super) fn check_light(index: usize, light: &Light) -> Result<(), BlobError> {
+pub(super) fn check_light(index: usize, light: &Light, forms: usize) -> Result<(), BlobError> {
     let section = SectionKind::Lights;
     let at = At { section, index };
     light.check_ranges(at.location())?;
+    match light.form() {
+        Some(form) if forms > 0 => {
+            at.within(Field::LightForm, form.into(), 0, forms as i64 - 1)?;
+        }
+        _ => at.within(Field::Kind, light.directional.into(), 0, 1)?,
+    }
     let most = if light.directional == 1 {
         ONE
     } else {

@@ -111,6 +111,7 @@ pub(crate) fn scene<'a>(
         effects: Effects(header.effects),
         view,
         lights: sections.records(SectionKind::Lights)?,
+        light_forms: sections.records(SectionKind::LightForms)?,
         materials: sections.records(SectionKind::Materials)?,
         object_first: Indices::read(sections, SectionKind::ObjectFirst)?,
         object_material: Indices::read(sections, SectionKind::ObjectMaterial)?,

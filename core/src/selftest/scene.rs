@@ -10,6 +10,11 @@ use crate::{Effects, Structure};
 use bytemuck::{NoUninit, Zeroable, bytes_of};
 use core::mem::size_of;
 
+/// The effects that the scene requires: its lights are points.
+pub(crate) const REQUIRED: Effects = Effects::ALL
+    .without(Effects::FALLOFF)
+    .without(Effects::AREA_LIGHT);
+
 /// Sections of the blob.
 const SECTIONS: usize = 12;
 /// Room for the blob.
@@ -99,7 +104,7 @@ impl TinyBlob {
             section_count: SECTIONS as u16,
             blob_bytes: blob.length as u32,
             structures: Structure::List.bit(),
-            effects: Effects::ALL.0,
+            effects: REQUIRED.0,
             primitives: 6,
             objects: 6,
             lattice_bits: 16,

@@ -12,7 +12,7 @@ use crate::query::Hit;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shade::Color;
-use crate::shade::surface::{Bounce, Filter, Lighting, Secondary, Surface};
+use crate::shade::surface::{Aim, Bounce, Filter, Lighting, Secondary, Surface};
 use core::fmt::Debug;
 
 /// The ray loop, as effects see it.
@@ -29,6 +29,10 @@ pub(crate) trait Tracer<'s, N: Number> {
     fn scene(&self) -> &'s Scene<'s>;
 
     fn count(&mut self) -> &mut Self::Observer;
+
+    /// A random point of the unit square, with 32 fraction bits, for the ray that is followed: see
+    /// [`Sampler::point`](crate::shade::sampler::Sampler::point), which says what a dimension is.
+    fn point(&self, dimension: u16) -> [u32; 2];
 
     fn any_hit(&mut self, ray: &Ray<N>) -> bool;
 
@@ -187,6 +191,9 @@ places! {
 
     /// A ray hits a surface: the diffuse color and the shading normal may change.
     fn surface(ray: &Ray<N>, surface: &mut Surface<'_, N>);
+
+    /// A surface looks for a light of the scene, by its number: the point of the light may change.
+    fn aim(number: u32, light: &Light, aim: &mut Aim<N>);
 
     /// A surface faces a light: the start of the way there may change, and whether the light reaches it.
     fn face(surface: &Surface<'_, N>, lighting: &mut Lighting<'_, N>, is_reached: &mut bool);

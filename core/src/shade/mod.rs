@@ -8,9 +8,10 @@
 //! | `camera` | a ray leaves the camera | |
 //! | `arrive` | a ray has come to a hit | absorption |
 //! | `surface` | a ray hits a surface | checker, smooth |
-//! | `face` | a surface faces a light | smooth |
+//! | `aim` | a surface looks for a light | area light |
+//! | `face` | a surface faces a light | smooth, falloff |
 //! | `reflect` | a surface reflects a light | highlight |
-//! | `light` | light arrives at a surface | shadow |
+//! | `light` | light arrives at a surface | shadow, falloff |
 //! | `filter` | a surface is in the way of light | glass, absorption |
 //! | `miss` | a ray hits nothing | |
 //! | `bounce` | a surface sends rays on | mirror, glass |
@@ -21,6 +22,7 @@ mod color;
 pub(crate) mod effect;
 pub(crate) mod light;
 mod material;
+pub(crate) mod sampler;
 pub(crate) mod surface;
 
 use crate::format::effects::{Effects, effects};

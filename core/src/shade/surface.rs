@@ -39,6 +39,15 @@ pub(crate) struct Lighting<'l, N: Number> {
     pub(crate) to_light: [N; 3],
 }
 
+/// The way from a surface to a light.
+#[derive(Clone, Copy)]
+pub(crate) struct Aim<N: Number> {
+    /// The way, of any length.
+    pub(crate) way: [N::Wide; 3],
+    /// How far the light is along the largest component of `way`; `None` for infinitely far.
+    pub(crate) distance: Option<N::Wide>,
+}
+
 /// A surface in the way of light to another one.
 pub(crate) struct Filter<'h, N: Number> {
     pub(crate) hit: &'h Hit<N>,

@@ -60,6 +60,16 @@ pub enum CompileError {
     )]
     #[diagnostic(help("make the cells smaller, or give the plane one color"))]
     CheckerSize { material: String, most: f64 },
+    #[error(
+        "light {number}: its {what} of {length:.3e} scene units is more than {most:.3e}, which the scene's lattice holds"
+    )]
+    #[diagnostic(help("make it smaller or less bright, or make the scene larger"))]
+    LightForm {
+        number: usize,
+        what: &'static str,
+        length: f64,
+        most: f64,
+    },
     #[error("{place}: track of {target}: {cause}")]
     #[diagnostic(help("{remedy}"))]
     Track {

@@ -20,6 +20,7 @@ mod instances;
 mod joints;
 mod lattice;
 mod layout;
+mod light_forms;
 mod names;
 mod octree;
 mod options;

@@ -6,6 +6,7 @@ use super::coordinates::Coordinates;
 use super::extent::Shapes;
 use super::framing::{BACKGROUND, framing_of};
 use super::joints;
+use super::light_forms::form_record;
 use super::section::Section;
 use super::tracks;
 use crate::scene::{Camera, Color, Diffuse, Light, Material, RenderSettings};
@@ -14,8 +15,10 @@ use crate::table::printable;
 use bytemuck::Zeroable;
 use glam::DVec3;
 use gridel_core::Effects;
+use gridel_core::format::light_form::LightForm;
 use gridel_core::format::limits::FARTHEST;
 use gridel_core::format::record::{self, View};
+use gridel_core::format::track::TrackTarget;
 
 /// The ambient light that is supplied with a light, so that shadows are not black.
 const AMBIENT: f64 = 0.15;
@@ -26,6 +29,8 @@ pub struct ShadingData {
     pub view: View,
     pub coordinates: Coordinates,
     pub lights: Vec<record::Light>,
+    /// What makes lights more than points.
+    pub light_forms: Vec<LightForm>,
     /// Materials that an object has.
     pub materials: Vec<record::Material>,
     /// For each object, its place in `materials`.
@@ -101,11 +106,31 @@ impl ShadingData {
             });
             object_material.push(number);
         }
+        let mut light_forms = Vec::new();
         let lights = lights
             .iter()
             .enumerate()
-            .map(|(number, light)| light_record(light, lattice, size, number))
-            .collect::<Result<Vec<_>, _>>()?;
+            .map(|(number, light)| {
+                let form = scene.light_forms.get(number).copied().flatten();
+                let (Some(form), Light::Point { position, color }) = (form, *light) else {
+                    return light_record(light, lattice, size, number);
+                };
+                let has_color_track = scene
+                    .tracks
+                    .iter()
+                    .any(|track| (track.target, track.index) == (TrackTarget::LightColor, number));
+                let (form, color) = form_record(&form, color, lattice, number, has_color_track)?;
+                let light = Light::Point { position, color };
+                let directional =
+                    record::Light::with_form(light_forms.len() as u32, form.shape != 0);
+                light_forms.push(form);
+                let record = light_record(&light, lattice, size, number)?;
+                Ok(record::Light {
+                    directional,
+                    ..record
+                })
+            })
+            .collect::<Result<Vec<_>, CompileError>>()?;
         // A scene file may turn shadows off.
         let unwanted = if scene.render.shadows {
             Effects::NONE
@@ -153,6 +178,7 @@ impl ShadingData {
             view: placed.replace_in(&view, &coordinates.header),
             coordinates,
             lights,
+            light_forms,
             materials,
             object_material,
             effects,

@@ -103,6 +103,12 @@ pub struct Lighting {
     pub shadow: Vec<Walk>,
     /// The part of the light that is left behind each.
     pub filtered: Vec<[f64; 3]>,
+    /// The point of an area from which this sample sees light, in scene units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from_area: Option<[f64; 3]>,
+    /// The radiance that arrives of a light that falls off, after shadows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub arriving: Option<[f64; 3]>,
     /// The radiance that the light adds to the surface, without the ray's weight.
     pub radiance: [f64; 3],
     pub outcome: LightOutcome,
@@ -118,6 +124,8 @@ pub enum LightOutcome {
     Behind,
     /// The smooth normal faces it, and the triangle does not.
     BehindTriangle,
+    /// The surface lies outside of a spot, or behind an area.
+    Outside,
     /// Something stands in between.
     Blocked {
         kind: &'static str,
@@ -129,6 +137,8 @@ pub enum LightOutcome {
     Faded,
     /// The material reflects none of it.
     Unreflected,
+    /// Too little of it arrives from so far, or the material reflects none of it.
+    Faint,
     /// It lies where the ray to it would start, so there is no direction to it.
     Here,
 }
@@ -316,6 +326,21 @@ impl Ray {
                     lighting.outcome = LightOutcome::BehindTriangle;
                 }
             }
+            Event::FromArea { point } => {
+                if let Some(lighting) = self.lights.last_mut() {
+                    lighting.from_area = Some(frame.place(point).to_array());
+                }
+            }
+            Event::Outside => {
+                if let Some(lighting) = self.lights.last_mut() {
+                    lighting.outcome = LightOutcome::Outside;
+                }
+            }
+            Event::Fallen { arriving } => {
+                if let Some(lighting) = self.lights.last_mut() {
+                    lighting.arriving = Some(arriving);
+                }
+            }
             Event::Added { source, radiance } => {
                 self.added = radiance;
                 self.background = source == Source::Background;
@@ -364,6 +389,8 @@ impl Lighting {
             cosine,
             shadow: Vec::new(),
             filtered: Vec::new(),
+            from_area: None,
+            arriving: None,
             radiance: [0.0; 3],
             outcome,
         }
@@ -376,11 +403,14 @@ impl Lighting {
         if self.cosine <= 0.0 {
             return LightOutcome::Behind;
         }
-        if matches!(self.outcome, LightOutcome::BehindTriangle) {
-            return LightOutcome::BehindTriangle;
+        if let LightOutcome::BehindTriangle | LightOutcome::Outside = self.outcome {
+            return self.outcome.clone();
         }
         let Some(last) = self.shadow.last() else {
-            return LightOutcome::Unreflected;
+            return match self.arriving {
+                Some(_) => LightOutcome::Faint,
+                None => LightOutcome::Unreflected,
+            };
         };
         // Glass that was met let the rest through, or too little of it.
         match last.met() {
@@ -391,6 +421,7 @@ impl Lighting {
                 object: met.object,
                 instance: met.instance,
             },
+            None if self.arriving.is_some() => LightOutcome::Faint,
             None => LightOutcome::Unreflected,
         }
     }

@@ -282,11 +282,21 @@ impl Shown<'_> {
             ),
             None => String::new(),
         };
+        let from = match lighting.from_area {
+            Some(point) => format!(", from its point {},", vector(point, significant)),
+            None => String::new(),
+        };
+        let arriving = match lighting.arriving {
+            Some(arriving) => format!(", and falls off to {}", color(arriving)),
+            None => String::new(),
+        };
         match lighting.outcome {
             LightOutcome::Lit => format!(
-                "{light} reaches it with cosine {cosine}{glass}: {}",
+                "{light}{from} reaches it with cosine {cosine}{glass}{arriving}: {}",
                 color(lighting.radiance)
             ),
+            LightOutcome::Outside => format!("{light}{from} does not shine in this direction"),
+            LightOutcome::Faint => format!("{light}{from} adds nothing that shows from so far"),
             LightOutcome::Behind => format!("{light} is behind the surface (cosine {cosine})"),
             LightOutcome::BehindTriangle => {
                 format!("{light} is behind the triangle (cosine {cosine} with the smooth normal)")
@@ -297,7 +307,7 @@ impl Shown<'_> {
                 object,
                 instance,
             } => format!(
-                "{light} is blocked by {kind} {primitive}, which is {}{}{}{glass}",
+                "{light}{from} is blocked by {kind} {primitive}, which is {}{}{}{glass}",
                 self.object(object),
                 self.material(object),
                 self.of_instance(instance)

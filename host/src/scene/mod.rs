@@ -16,11 +16,13 @@ mod flatten;
 mod gzip;
 mod importer;
 mod joint;
+mod light_form;
 mod model;
 pub(crate) mod molecule;
 mod normals;
 mod options;
 mod placement;
+mod plain_lights;
 mod polygon;
 mod size;
 mod source_span;
@@ -38,6 +40,7 @@ pub use error::SceneError;
 pub use importer::Importer;
 pub(crate) use joint::JointTracks;
 pub use joint::{LARGEST_SCALE, LEAST_SCALE};
+pub use light_form::{LightForm, LightShape, Spot};
 pub use model::{
     Camera, Color, Diffuse, Instance, Joint, Light, Material, Object, Part, RenderSettings, Scene,
 };

@@ -1,5 +1,6 @@
 //! The scene as data.
 
+use super::light_form::LightForm;
 use super::normals::{Normals, NormalsChoice};
 use super::placement::Placement;
 use super::source_span::SourceSpan;
@@ -31,6 +32,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Names of the lights, in their order; empty, or missing at the end, where there is none.
     pub light_names: Vec<String>,
+    /// For each light, what makes it more than a point; empty, or missing at the end, where there is nothing.
+    pub light_forms: Vec<Option<LightForm>>,
     /// Surfaces; objects refer to them by index.
     pub materials: Vec<Material>,
     /// Objects in scene-file order; that order is the one in which `trace` counts them.
@@ -268,6 +271,7 @@ impl Default for Scene {
             ambient: [0.0; 3],
             lights: Vec::new(),
             light_names: Vec::new(),
+            light_forms: Vec::new(),
             materials: Vec::new(),
             objects: Vec::new(),
             parts: Vec::new(),

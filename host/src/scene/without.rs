@@ -3,6 +3,7 @@
 //! An effect is what its scene calls for it with: a scene without that calls for nothing, and its blob has no byte
 //! and its program no instruction of it. Each effect has a row below, which takes away what calls for it.
 
+use super::plain_lights::{remove_falloff, shrink_areas};
 use super::{Diffuse, Material, Normals, Scene};
 use gridel_core::Effects;
 use gridel_core::format::track::TrackTarget;
@@ -61,6 +62,16 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
             object.normals = Normals::default();
         }
     }),
+    (
+        Effects::FALLOFF,
+        "lights are as bright everywhere as where the camera looks",
+        remove_falloff,
+    ),
+    (
+        Effects::AREA_LIGHT,
+        "lights shine from their middles, and shadows have hard edges",
+        shrink_areas,
+    ),
 ];
 
 fn each_material(scene: &mut Scene, change: impl Fn(&mut Material)) {
@@ -73,7 +84,7 @@ fn remove_tracks(scene: &mut Scene, target: TrackTarget) {
 
 impl Scene {
     /// Takes away all that calls for some effects: the blob has no byte of them, and the program no code. What calls for
-    /// others stays, but for what depends on them: without glass nothing absorbs.
+    /// others stays, but for what depends on them: without glass nothing absorbs, and without a falloff lights have no area.
     ///
     /// ```
     /// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
@@ -96,7 +107,7 @@ impl Scene {
     }
 }
 
-/// Leaves one effect out, and returns the names of the materials and objects that lose it; `None` for a scene that does
+/// Leaves one effect out, and returns the names of the lights, materials and objects that lose it; `None` for a scene that does
 /// not call for it.
 pub fn leave_out(scene: &mut Scene, effect: Effects) -> Option<Vec<String>> {
     let before = scene.clone();
@@ -108,7 +119,15 @@ pub fn leave_out(scene: &mut Scene, effect: Effects) -> Option<Vec<String>> {
     let materials = materials.filter(|(old, new)| old != new);
     let objects = before.all_objects().zip(scene.all_objects());
     let objects = objects.filter(|(old, new)| old != new);
-    let names = materials.map(|(old, _)| format!("material `{}`", old.name));
+    let lights = (0..before.lights.len()).filter(|&number| {
+        let form = |scene: &Scene| scene.light_forms.get(number).copied().flatten();
+        form(&before) != form(scene)
+    });
+    let lights = lights.map(|number| match before.light_names.get(number) {
+        Some(name) if !name.is_empty() => format!("light `{name}`"),
+        _ => format!("light {number}"),
+    });
+    let names = lights.chain(materials.map(|(old, _)| format!("material `{}`", old.name)));
     let names = names.chain(objects.map(|(old, _)| format!("object `{}`", old.name)));
     Some(names.collect())
 }
@@ -144,6 +163,11 @@ mod tests {
         kind = 'point'
         position = [4, 5, 6]
         color = [1, 1, 1]
+        [[light]]
+        kind = 'rectangle'
+        corner = [4, 5, 6]
+        edges = [[1, 0, 0], [0, 1, 0]]
+        radiance = 9
         [material.all]
         diffuse = [0.5, 0.5, 0.5]
         highlight = [0.3, 0.3, 0.3]
@@ -187,6 +211,7 @@ mod tests {
             assert_eq!(leave_out(&mut scene, effect), None, "{name}");
             let depends = match effect {
                 Effects::GLASS => Effects::ABSORPTION,
+                Effects::FALLOFF => Effects::AREA_LIGHT,
                 _ => Effects::NONE,
             };
             assert_eq!(

@@ -6,8 +6,8 @@ use glam::{DQuat, DVec3};
 use gridel_core::{Kind, Structure};
 use gridel_host::compile::Options;
 use gridel_host::scene::{
-    Camera, Diffuse, Instance, Light, Material, Normals, Object, Part, Placement, Scene, Shape,
-    SourceSpan,
+    Camera, Diffuse, Instance, Light, LightForm, LightShape, Material, Normals, Object, Part,
+    Placement, Scene, Shape, SourceSpan, Spot,
 };
 use gridel_host::shape::{Cuboid, Sphere};
 use gridel_tests::shapes::examples;
@@ -21,7 +21,7 @@ const TRIANGLE: &str = Kind::Triangle.name();
 const INSTANCES: &str = "instances";
 
 /// A part's name, and how to require it.
-type Effects = [(&'static str, fn(&mut Scene)); 7];
+type Effects = [(&'static str, fn(&mut Scene)); 9];
 
 const EFFECTS: Effects = [
     ("shadow", |scene| scene.render.shadows = true),
@@ -43,7 +43,32 @@ const EFFECTS: Effects = [
     ("smooth", |scene| {
         scene.objects.iter_mut().for_each(make_smooth);
     }),
+    ("falloff", |scene| {
+        let spot = Spot {
+            direction: DVec3::new(0.4, 1.0, -1.0),
+            inner: 20.0,
+            outer: 40.0,
+        };
+        shine(scene, LightShape::Point, Some(spot));
+    }),
+    ("area-light", |scene| {
+        shine(scene, LightShape::Sphere { radius: 0.5 }, None)
+    }),
 ];
+
+/// Gives the light a form.
+fn shine(scene: &mut Scene, shape: LightShape, spot: Option<Spot>) {
+    scene.lights[0] = Light::Point {
+        position: DVec3::new(-1.0, -2.5, 3.0),
+        color: [9.0; 3],
+    };
+    scene.light_forms = vec![Some(LightForm {
+        shape,
+        falls_off: true,
+        range: None,
+        spot,
+    })];
+}
 
 /// The base, and a scene for every shape and effect beside it. Scenes for shapes have no effects,
 /// and those for effects no other shapes; absorption comes with the glass that it is in.
@@ -86,10 +111,14 @@ pub fn combinations() -> impl Iterator<Item = (Vec<&'static str>, Vec<&'static s
         ("triangle", "shadow smooth"),
         ("triangle", "shadow highlight smooth"),
         ("triangle", EVERY_SMOOTH),
+        ("triangle", "shadow falloff"),
+        ("triangle", "shadow falloff area-light"),
+        ("triangle", "shadow smooth falloff area-light"),
         ("triangle instances", "shadow"),
         ("sphere", "shadow"),
         ("sphere", "shadow highlight"),
         ("sphere", EVERY),
+        ("sphere", "shadow falloff area-light"),
         ("box", "shadow"),
         ("box", "shadow highlight"),
         ("disc", "shadow"),

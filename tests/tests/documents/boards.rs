@@ -157,6 +157,7 @@ fn program(part: &str) -> Vec<Footprint> {
     let parts = match part {
         "base" => vec!["triangle"],
         "absorption" => vec!["triangle", "glass", "absorption"],
+        "area-light" => vec!["triangle", "falloff", "area-light"],
         "sphere, triangle, shadow" => vec!["triangle", "sphere", "shadow"],
         part => vec!["triangle", part],
     };
@@ -192,6 +193,8 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
         ("absorption", "glass"),
         ("checker", "base"),
         ("smooth", "base"),
+        ("falloff", "base"),
+        ("area-light", "falloff"),
         ("sphere, triangle, shadow", "base"),
     ];
     let mut table = String::from(

@@ -37,6 +37,19 @@ fn blobs() -> Vec<Vec<u8>> {
         direction: DVec3::new(-1.0, -2.0, -0.5),
         color: [0.8; 3],
     }];
+    scene.lights.push(scene::Light::Point {
+        position: DVec3::new(3.0, 4.0, 5.0),
+        color: [9.0; 3],
+    });
+    scene.light_forms = vec![
+        None,
+        Some(scene::LightForm {
+            shape: scene::LightShape::Sphere { radius: 0.5 },
+            falls_off: true,
+            range: None,
+            spot: None,
+        }),
+    ];
     scene.tracks = vec![scene::Track {
         target: TrackTarget::CameraOrbit,
         index: 0,
@@ -105,7 +118,7 @@ fn sections_of_blobs_have_the_strides_of_the_format() {
         let entries = rest.chunks_exact(size_of::<SectionEntry>());
         for entry in entries.take(header.section_count.into()) {
             let entry: SectionEntry = bytemuck::pod_read_unaligned(entry);
-            let kind = SectionKind::ALL[usize::from(entry.kind) - 1];
+            let kind = SectionKind::of_number(entry.kind).expect("a known kind");
             let stride = usize::from(entry.stride);
             let mut forms = kind.layout().records.iter();
             assert!(forms.any(|form| form.bytes == stride), "{kind:?} {stride}");

@@ -69,8 +69,8 @@ records! {
         /// Radiance, 20 fraction bits.
         #[valid(Color: 0..=RADIANCE)]
         pub color: [i32; 3],
-        /// 0 for a point light, 1 for a directional one.
-        #[valid(Kind: 0..=1)]
+        /// 0 for a point light, 1 for a directional one. Else a light at a position with a
+        /// [form](crate::format::light_form::LightForm): its number times 4, and 2 for a point or 3 for an area.
         pub directional: u32,
     }
 

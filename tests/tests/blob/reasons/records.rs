@@ -1,6 +1,8 @@
 //! The view, lights, materials, primitives and objects.
 
-use super::{Errors, Forgery, everything};
+use super::{Errors, Forgery, alone, everything};
+use gridel_core::Structure;
+use gridel_core::format::light_form::LightForm;
 use gridel_core::format::record::{Light, Material, Sphere24, Vertex24, View};
 use gridel_core::format::{Effects, Field, Reason, SectionKind};
 use gridel_core::geometry::cone::Cone;
@@ -23,7 +25,7 @@ pub(super) fn shading_data() -> Errors {
         (Field::Width, &|it| it.width = 0),
         (Field::Height, &|it| it.height = 0),
         (Field::Samples, &|it| it.samples = 0),
-        (Field::Samples, &|it| it.samples = 257),
+        (Field::Samples, &|it| it.samples = 4097),
         (Field::RayDepth, &|it| it.depth = 17),
         (Field::DisplayValues, &|it| it.display_values = 2),
     ];
@@ -65,6 +67,33 @@ pub(super) fn shading_data() -> Errors {
     });
     errors.reason("material 0", Reason::MissingEffect, |it| {
         it.header().effects &= !Effects::MIRROR.0
+    });
+    errors
+}
+
+/// Lights with forms.
+pub(super) fn light_forms() -> Errors {
+    let text = "[[light]]\nkind = 'disc'\ncenter = [0, 9, 0]\nnormal = [0, -1, 0]\nradius = 1\nradiance = 1\n\
+                [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1";
+    let imported =
+        gridel_host::scene::read("lights.toml".as_ref(), text.into(), &Default::default());
+    let mut errors = alone(&imported.expect("a scene").scene, Structure::List, 24);
+    let forms: [Forgery<LightForm>; 7] = [
+        (Field::Kind, &|it| it.shape = 4),
+        (Field::LightReference, &|it| it.reference = -1),
+        (Field::LightRange, &|it| it.range = -1),
+        (Field::ConeCosine, &|it| it.cone_cosine = i32::MAX),
+        (Field::ConeWidth, &|it| it.cone_width = -1),
+        (Field::Normal, &|it| it.normal[1] = i32::MIN),
+        (Field::LightEdge, &|it| it.edges[1][2] = i32::MAX),
+    ];
+    for (field, forge) in forms {
+        errors.field("form 0 of lights", field, |it| {
+            it.change(SectionKind::LightForms, 0, forge)
+        });
+    }
+    errors.field("light 0", Field::LightForm, |it| {
+        it.change(SectionKind::Lights, 0, |it: &mut Light| it.directional = 7)
     });
     errors
 }
