@@ -7,6 +7,7 @@
 //! [`Scene::display_values`] says otherwise.
 
 mod access;
+mod attributes;
 #[cfg(test)]
 mod bad;
 #[cfg(test)]
@@ -15,6 +16,7 @@ mod error;
 mod files;
 mod flatten;
 mod gzip;
+mod image;
 mod importer;
 mod joint;
 mod model;
@@ -30,18 +32,22 @@ pub(crate) mod test_chains;
 #[cfg(test)]
 mod test_scenes;
 mod text;
+mod texture;
 mod track;
 mod without;
 mod words;
 
 pub use crate::shape::Shape;
+pub use attributes::Attributes;
 pub use error::SceneError;
 pub use files::Files;
+pub use image::{Image, linear_of_srgb};
 pub use importer::Importer;
 pub(crate) use joint::JointTracks;
 pub use joint::{LARGEST_SCALE, LEAST_SCALE};
 pub use model::{
-    Camera, Color, Diffuse, Instance, Joint, Light, Material, Object, Part, RenderSettings, Scene,
+    Alpha, Camera, Color, Diffuse, Instance, Joint, Light, Material, Object, Part, RenderSettings,
+    Scene,
 };
 pub use normals::{Normals, NormalsChoice};
 pub use options::{
@@ -50,6 +56,7 @@ pub use options::{
 pub use placement::Placement;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
+pub use texture::{Texture, Wrap};
 pub use track::{Interpolation, Key, TICKS_PER_SECOND, Track, TrackTarget};
 pub use without::{effect_named, leave_out, shown_without};
 

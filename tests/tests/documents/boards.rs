@@ -157,6 +157,7 @@ fn program(part: &str) -> Vec<Footprint> {
     let parts = match part {
         "base" => vec!["triangle"],
         "absorption" => vec!["triangle", "glass", "absorption"],
+        "alpha" => vec!["triangle", "texture", "alpha"],
         "sphere, triangle, shadow" => vec!["triangle", "sphere", "shadow"],
         part => vec!["triangle", part],
     };
@@ -192,6 +193,9 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
         ("absorption", "glass"),
         ("checker", "base"),
         ("smooth", "base"),
+        ("vertex-colors", "base"),
+        ("texture", "base"),
+        ("alpha", "texture"),
         ("sphere, triangle, shadow", "base"),
     ];
     let mut table = String::from(
@@ -215,6 +219,16 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
         table += &format!("| {name} | {code} | {stack} | {work} |\n");
     }
     holds_table(MEMORY, "parts", &table);
+}
+
+#[test]
+fn memory_page_shows_recorded_cost_per_hit() {
+    let mut table = String::from("| effect | instructions per hit |\n|---|---|\n");
+    for effect in ["vertex-colors", "texture"] {
+        let each = on_board(effect, "mps2-an386", "f32")("hit-instructions");
+        table += &format!("| {effect} | {each} |\n");
+    }
+    holds_table(MEMORY, "per-hit", &table);
 }
 
 #[test]
