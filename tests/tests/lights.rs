@@ -224,3 +224,184 @@ fn points_fall_off_and_spots_end() {
     );
     assert_eq!(measured(&view(&spot, 45.0), Format::Fixed, 1), (0.0, 0.0));
 }
+
+/// A light that is seen lights as one that is not: its own surface does not stand in its way.
+#[test]
+fn visible_lights_light_as_invisible_ones() {
+    let rectangle = 15.0 * 0.044_632_5 / PI;
+    for (light, exact) in [
+        (
+            "kind = 'rectangle'\ncorner = [213, 548.8, 227]\nedges = [[130, 0, 0], [0, 0, 105]]\nradiance = 15",
+            rectangle,
+        ),
+        (
+            "kind = 'sphere'\ncenter = [278, 100, 279.6]\nradius = 20\nradiance = 10",
+            10.0 * 0.04,
+        ),
+        (
+            "kind = 'disc'\ncenter = [278, 100, 279.6]\nnormal = [0, -1, 0]\nradius = 20\nradiance = 10",
+            10.0 * 400.0 / 10_400.0,
+        ),
+    ] {
+        for visible in [true, false] {
+            let text = format!("[[light]]\n{light}\nvisible = {visible}");
+            let blob = scene(&text, "[278, 30, 279.6]", "[278, 0, 279.6]", FLOOR);
+            let effects = blob.scene().expect("a scene").effects();
+            assert_eq!(effects.contains(Effects::EMISSION), visible);
+            check("visible", &blob, exact);
+        }
+    }
+}
+
+/// Objects that glow are lights: a box and a mesh give what their faces give.
+#[test]
+fn surfaces_that_glow_light_others_and_are_seen() {
+    let lamp = "[material.lamp]\ndiffuse = 0\nemission = 15";
+    let mesh = format!(
+        "{lamp}\n[[object]]\nkind = 'mesh'\nvertices = [[213, 548.8, 227], [343, 548.8, 227], \
+         [343, 548.8, 332], [213, 548.8, 332]]\nfaces = [[0, 1, 2], [0, 2, 3]]\nmaterial = 'lamp'\n{FLOOR}"
+    );
+    let blob = scene("", "[278, 30, 279.6]", "[278, 0, 279.6]", &mesh);
+    check("mesh", &blob, 15.0 * 0.044_632_5 / PI);
+    // Of a box, the lower face alone is seen from below.
+    let cuboid = format!(
+        "{lamp}\n[[object]]\nkind = 'box'\nmin = [213, 548.8, 227]\nmax = [343, 600, 332]\nmaterial = 'lamp'\n{FLOOR}"
+    );
+    let blob = scene("", "[278, 30, 279.6]", "[278, 0, 279.6]", &cuboid);
+    check("box", &blob, 15.0 * 0.044_632_5 / PI);
+    // The front glows, and the back does not.
+    let half = mesh.replace("emission = 15", "emission = 0.5");
+    for format in Format::ALL {
+        let below = scene("", "[278, 30, 279.6]", "[278, 548.8, 279.6]", &half);
+        let (mean, _) = measured(&below, format, 1);
+        assert!((mean - 0.5).abs() < ROUNDING, "{format:?} {mean}");
+        let above = scene("", "[278, 900, 279.6]", "[278, 548.8, 279.6]", &half);
+        assert_eq!(measured(&above, format, 1).0, 0.0, "{format:?}");
+    }
+}
+
+/// A triangle gives half of the parallelogram that it is a half of, on the axis of symmetry.
+#[test]
+fn triangles_shine_from_their_area() {
+    let lamp = |faces: &str| {
+        let objects = format!(
+            "[material.lamp]\nemission = 15\n[[object]]\nkind = 'mesh'\nvertices = [[-50, 200, -50], \
+             [50, 200, -50], [50, 200, 50], [-50, 200, 50]]\nfaces = {faces}\nmaterial = 'lamp'\n{FLOOR}"
+        );
+        scene("", "[0, 30, 0]", "[0, 0, 0]", &objects)
+    };
+    // Midpoints of 2000 by 2000 cells of the square.
+    let mut sum = 0.0;
+    for x in 0..2000 {
+        for z in 0..2000 {
+            let at = |cell: i32| (f64::from(cell) + 0.5) / 20.0 - 50.0;
+            let square = at(x).powi(2) + at(z).powi(2) + 40_000.0;
+            sum += 40_000.0 / (square * square) / 400.0;
+        }
+    }
+    check("square", &lamp("[[0, 1, 2], [0, 2, 3]]"), 15.0 * sum / PI);
+    check("triangle", &lamp("[[0, 1, 2]]"), 15.0 * sum / PI / 2.0);
+}
+
+/// A scene that shows its background alone.
+fn background(render: &str) -> Blob {
+    let text = format!(
+        "background = [0.18, 1, 8]\n[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 9]\n\
+         [render]\nwidth = 4\nheight = 4\n{render}\n\
+         [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1"
+    );
+    let imported = gridel_host::scene::read("tone.toml".as_ref(), text.into(), &Default::default());
+    compile(&imported.expect("a scene").scene, &Options::default())
+        .expect("a blob")
+        .blob
+}
+
+fn pixel(blob: &Blob, format: Format, samples: u16) -> [f64; 3] {
+    let scene = blob.scene().expect("a scene");
+    let settings = Settings {
+        samples,
+        ..Settings::of(&scene)
+    };
+    let job = Job::whole(format, Structure::List, settings);
+    let picture = render(&scene, &job, &|| ()).expect("a picture");
+    picture.pixels[5].map(|channel| f64::from(channel) / 65_535.0)
+}
+
+/// Tones are mapped by their formulas, after the mean of any number of samples.
+#[test]
+fn tones_are_mapped_by_their_formulas() {
+    let reinhard = |x: f64| x / (1.0 + x);
+    let aces = |x: f64| (x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)).min(1.0);
+    let none = |x: f64| x.min(1.0);
+    let curves: [(&str, fn(f64) -> f64); 3] =
+        [("none", none), ("reinhard", reinhard), ("aces", aces)];
+    for (name, curve) in curves {
+        for stops in [0.0, -3.0, 1.0] {
+            let blob = background(&format!("tone_mapping = '{name}'\nexposure = {stops}"));
+            let is_mapped = blob
+                .scene()
+                .expect("a scene")
+                .effects()
+                .contains(Effects::TONE_MAPPING);
+            assert_eq!(is_mapped, name != "none");
+            for format in Format::ALL {
+                for samples in [1, 64, 65, 4096] {
+                    let found = pixel(&blob, format, samples);
+                    for (found, radiance) in found.into_iter().zip([0.18, 1.0, 8.0]) {
+                        let exact = curve((radiance * f64::exp2(stops)).min(16.0));
+                        assert!(
+                            (found - exact).abs() < 4e-5,
+                            "{name} {stops} {format:?} {samples}: {found}, exact {exact}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Exposure multiplies lights of every kind, and is no effect: it costs nothing.
+#[test]
+fn exposure_multiplies_all_light() {
+    let lights = "[[light]]\nkind = 'rectangle'\ncorner = [-20, 100, -20]\nedges = [[40, 0, 0], [0, 0, 40]]\n\
+                  radiance = 3\n[[light]]\nkind = 'directional'\ndirection = [0, -1, 0]\ncolor = 0.1\n\
+                  [[light]]\nkind = 'point'\nposition = [0, 50, 0]\ncolor = 0.2";
+    let at = |stops: f64| {
+        let text = format!(
+            "ambient = 0.05\n[camera]\neye = [0, 30, 0]\ntarget = [0, 0, 0]\nup = [1, 0, 0]\nfov = 0.2\n\
+             [render]\nwidth = 4\nheight = 4\nexposure = {stops}\n[material.white]\ndiffuse = 1\n{FLOOR}\n{lights}"
+        );
+        let imported =
+            gridel_host::scene::read("light.toml".as_ref(), text.into(), &Default::default());
+        compile(&imported.expect("a scene").scene, &Options::default())
+            .expect("a blob")
+            .blob
+    };
+    let (plain, dark) = (at(0.0), at(-2.0));
+    let effects = |blob: &Blob| blob.scene().expect("a scene").effects();
+    assert_eq!(effects(&plain), effects(&dark));
+    for format in Format::ALL {
+        let (bright, dim) = (pixel(&plain, format, 16), pixel(&dark, format, 16));
+        for (bright, dim) in bright.into_iter().zip(dim) {
+            assert!(bright > 0.3 && bright < 1.0);
+            assert!(
+                (bright / 4.0 - dim).abs() < 4e-5,
+                "{format:?} {bright} {dim}"
+            );
+        }
+    }
+}
+
+/// `fixed` holds what arrives up to 2048 times white, of lights of any brightness.
+#[test]
+fn fixed_agrees_with_floats_over_the_range_of_radiance() {
+    for (radius, distance) in [(1.6, 100.0), (5.0, 100.0), (30.0, 100.0), (0.2, 12.0)] {
+        // As bright as makes the point half white, up to the largest radiance.
+        let radiance = 0.5_f64 * (distance / radius) * (distance / radius);
+        let light = format!(
+            "[[light]]\nkind = 'sphere'\ncenter = [0, {distance}, 0]\nradius = {radius}\nradiance = {radiance}"
+        );
+        let blob = scene(&light, "[0, 10, 0]", "[0, 0, 0]", FLOOR);
+        check("range", &blob, 0.5);
+    }
+}

@@ -41,6 +41,12 @@ macro_rules! effects {
             /// Lights with an area: soft shadows.
             AREA_LIGHT = 12, "area-light", AreaLight in area_light, casts 0,
                 required by "a light that is a sphere, a rectangle or a disc";
+            /// Tone mapping: pixels are mapped to the range of a display.
+            TONE_MAPPING = 13, "tone-mapping", ToneMapping in tone_mapping, casts 0,
+                required by "a view with a curve for tones";
+            /// Surfaces that send out light of their own.
+            EMISSION = 14, "emission", Emission in emission, casts 0,
+                required by "a material that glows";
         }
     };
 }

@@ -18,8 +18,8 @@ records! {
     #[bytes(56)]
     pub struct LightForm {
         /// What shines: 0 the position itself, 1 a sphere around it, 2 a rectangle with a corner there, 3 a disc around
-        /// it.
-        #[valid(Kind: 0..=3)]
+        /// it, 4 a triangle with a corner there.
+        #[valid(Kind: 0..=4)]
         pub shape: u32,
         /// The distance at which the light has its color, with 13 fraction bits: it falls off with the distance's square. 0
         /// for light that does not fall off. Of what has an area, the color is the radiance times a factor, and this
@@ -38,7 +38,7 @@ records! {
         /// The direction of a spot, or the side on which a rectangle or disc shines: length 1, 30 fraction bits.
         #[valid(Normal: -ONE..=ONE)]
         pub normal: [i32; 3],
-        /// `[edge][axis]`: the edges of a rectangle, or two perpendicular radii of a disc, lengths with 13 fraction bits. The
+        /// `[edge][axis]`: the edges of a rectangle (any parallelogram) or a triangle, or two perpendicular radii of a disc, lengths with 13 fraction bits. The
         /// first number is the radius of a sphere.
         #[valid(LightEdge: -EDGE..=EDGE)]
         pub edges: [[i32; 3]; 2],
@@ -52,6 +52,8 @@ impl LightForm {
     pub const RECTANGLE: u32 = 2;
     /// The shape of a disc.
     pub const DISC: u32 = 3;
+    /// The shape of a triangle.
+    pub const TRIANGLE: u32 = 4;
 }
 
 impl Light {

@@ -64,7 +64,7 @@ texts! {
         Height => "height",
         Samples => "number of samples",
         RayDepth => "ray depth",
-        DisplayValues => "flag for display values",
+        Encoding => "encoding of the picture",
         // Lights and materials.
         Color => "color",
         PositionOrDirection => "position or direction",
@@ -74,6 +74,7 @@ texts! {
         ConeWidth => "width of a spot's edge",
         LightEdge => "edge of a light",
         LightForm => "form of a light",
+        Emission => "radiance of a material",
         Diffuse => "diffuse color",
         Odd => "odd color",
         Highlight => "highlight",

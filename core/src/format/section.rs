@@ -219,6 +219,9 @@ macro_rules! sections {
             InstanceJoints = 74, "instance-joints", [u32], "instance" of "tracks";
             /// [`LightForm`](crate::format::light_form::LightForm)s: what makes lights more than points.
             LightForms = 80, "light-forms", [light_form::LightForm], "form" of "lights";
+            /// For each of the first materials, the radiance of the light that it sends out, 20 fraction bits; others send
+            /// out none. Absent where no material glows.
+            Emissions = 81, "emissions", [[i32; 3]], "emission" of "";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

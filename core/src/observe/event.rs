@@ -139,6 +139,11 @@ pub enum Event {
         /// The radiance that arrives, after shadows.
         arriving: [f64; 3],
     },
+    /// The surface that was hit sends out light of its own.
+    Emitted {
+        /// Its radiance.
+        radiance: [f64; 3],
+    },
     /// Light for a shadow comes through the glass that was just met.
     Filtered {
         /// The part of it that is left.
@@ -189,7 +194,7 @@ pub enum Event {
         /// Its place in 1/256 pixel from the left and from the top of the picture; `None` for a ray
         /// of the caller's own.
         place: Option<[i32; 2]>,
-        /// Its radiance, each channel limited to 0 to 1.
+        /// Its radiance, each channel limited to 0 to 1; to 16 where pixels are mapped by tone.
         radiance: [f64; 3],
     },
 }

@@ -2,6 +2,7 @@
 
 use crate::accel::{Accel, Number};
 use crate::format::limits::{DISPLAY_VALUES, MAX_RAY_DEPTH, MAX_SAMPLES};
+use crate::format::record::View;
 use crate::format::{Effects, Structure};
 use crate::number::Format;
 use crate::ray::{Ray, RayError};
@@ -294,7 +295,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     #[inline(always)]
     pub(super) fn to_linear(&self, seen: Color<N>) -> Linear {
         let values = seen.0.map(N::to_linear16);
-        if DISPLAY_VALUES && self.scene.view().display_values != 0 {
+        if DISPLAY_VALUES && self.scene.view().encoding == View::DISPLAY_VALUES {
             from_display(values)
         } else {
             values

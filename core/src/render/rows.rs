@@ -5,6 +5,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::render::samples::Samples;
+use crate::render::trace::limited;
 use crate::render::{Pixel, Renderer, WorkspaceView};
 use crate::shade::Color;
 use crate::shade::sampler::Sampler;
@@ -67,14 +68,15 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
         let camera = || Ok(*ray);
         let sampler = Sampler::new([0; 2], 0);
         while !tracing.step::<N, A, C, EFFECTS>(sampler, camera, &mut radiance, space, count) {}
-        let seen = radiance.displayable();
+        let seen = limited::<N, EFFECTS>(radiance);
         if C::ENABLED {
             count.event(Event::SampleFinished {
                 place: None,
                 radiance: seen.to_f64(),
             });
         }
-        self.to_linear(seen)
+        let shown = tracing.developed::<N, A, C, EFFECTS>(seen, space, count);
+        self.to_linear(shown)
     }
 
     /// One pixel in a display's form.

@@ -5,13 +5,11 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::render::pixel::Linear;
 use crate::render::sample::place;
+use crate::render::trace::{limited, room_for_samples};
 use crate::render::{Renderer, WorkspaceView};
 use crate::shade::Color;
 use crate::shade::sampler::Sampler;
 use core::hint::black_box;
-
-/// The samples whose sum is in the range of `fixed`. Of more samples, quarters are added up.
-const FULL: u16 = 1024;
 
 /// A pixel that is being rendered: the number of its sample, and what was seen so far.
 #[derive(Clone, Copy, Debug)]
@@ -55,9 +53,10 @@ impl<N: Number> Samples<N> {
             return None;
         }
         // Clamped before they are averaged, so that the edge of a highlight is smooth.
-        let seen = self.radiance.displayable();
-        let part = if samples > FULL {
-            seen.scaled(N::ONE.half().half())
+        let seen = limited::<N, EFFECTS>(self.radiance);
+        let (full, shift) = const { room_for_samples::<EFFECTS>() };
+        let part = if samples > full {
+            seen.scaled(N::ratio(1 << (30 - shift)))
         } else {
             seen
         };
@@ -78,9 +77,10 @@ impl<N: Number> Samples<N> {
         } else {
             // `Renderer::with_settings` rejects 0 samples.
             let one = (1 << 30) / i32::from(samples.max(1));
-            let part = if samples > FULL { one << 2 } else { one };
+            let part = if samples > full { one << shift } else { one };
             self.sum.scaled(N::ratio(part))
         };
-        Some(renderer.to_linear(mean))
+        let shown = tracing.developed::<N, A, C, EFFECTS>(mean, space, count);
+        Some(renderer.to_linear(shown))
     }
 }

@@ -160,6 +160,55 @@ impl Loop<'_, '_> {
     }
 }
 
+impl Loop<'_, '_> {
+    /// What is shown of the mean of a pixel's samples.
+    #[inline(always)]
+    pub(super) fn developed<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
+        &self,
+        mut mean: Color<N>,
+        space: &mut WorkspaceView<'_, N>,
+        count: &mut C,
+    ) -> Color<N> {
+        if const { EFFECTS & All::DEVELOPING != 0 } {
+            let mut tracing = Tracing::<N, A, C, EFFECTS> {
+                scene: self.scene,
+                most: self.depth,
+                depth: 0,
+                kind: RayKind::Primary,
+                sampler: Sampler::new([0; 2], 0),
+                state: State::<N>::default(),
+                space,
+                count,
+                structure: PhantomData,
+            };
+            All::develop::<EFFECTS, N, _>(&mut tracing, &mut State::<N>::default(), &mut mean);
+        }
+        mean
+    }
+}
+
+/// A sample's radiance, limited to what is added up: to display white, unless effects act on what is brighter.
+#[inline(always)]
+pub(super) fn limited<N: Number, const EFFECTS: u32>(radiance: Color<N>) -> Color<N> {
+    if const { EFFECTS & All::DEVELOPING != 0 } {
+        radiance.limited(BRIGHTEST << 20)
+    } else {
+        radiance.displayable()
+    }
+}
+
+/// The most of a sample's radiance that counts where effects act on the mean, 1 being display white.
+const BRIGHTEST: i32 = 16;
+
+/// The most samples whose sum is in the range of `fixed`, and by how many bits those of more samples are shifted.
+pub(super) const fn room_for_samples<const EFFECTS: u32>() -> (u16, u32) {
+    if EFFECTS & All::DEVELOPING != 0 {
+        (64, 6)
+    } else {
+        (1024, 2)
+    }
+}
+
 /// One ray that is followed.
 struct Tracing<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
     scene: &'s Scene<'s>,
@@ -210,6 +259,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         self.state = state;
 
         let mut local = Color::radiance(scene.view.ambient).times(surface.diffuse);
+        All::emit::<EFFECTS, N, _>(self, &mut state, &surface, &mut local);
         for (number, light) in (0..).zip(scene.lights) {
             let lit = self.lit(number, light, &surface);
             local = local.plus(lit);

@@ -23,6 +23,7 @@ pub struct Scene<'a> {
     pub(crate) lights: &'a [Light],
     pub(crate) light_forms: &'a [LightForm],
     pub(crate) materials: &'a [Material],
+    pub(crate) emissions: &'a [[i32; 3]],
     pub(in crate::scene) object_first: Indices<'a>,
     pub(in crate::scene) object_material: Indices<'a>,
     pub(in crate::scene) order: Indices<'a>,
@@ -55,7 +56,7 @@ impl<'a> Scene<'a> {
     /// # static BLOB: &[u8] =
     /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
     /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
-    /// assert_eq!(scene.view().display_values, 0);
+    /// assert_eq!(scene.view().encoding, 0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn view(&self) -> &'a View {
@@ -78,6 +79,19 @@ impl<'a> Scene<'a> {
     /// The forms of lights, which lights name by their numbers.
     pub fn light_forms(&self) -> &'a [LightForm] {
         self.light_forms
+    }
+
+    /// For each of the first materials, the radiance of the light that it sends out, with 20 fraction bits; none where
+    /// no material glows.
+    pub fn emissions(&self) -> &'a [[i32; 3]] {
+        self.emissions
+    }
+
+    /// The radiance of the light that an object sends out.
+    #[inline(always)]
+    pub(crate) fn emission(&self, object: u32) -> Option<[i32; 3]> {
+        let number = self.material_number(object);
+        self.emissions.get(number as usize).copied()
     }
 
     /// The form of a light.

@@ -35,7 +35,11 @@ impl<'a> Scene<'a> {
     /// If a number is out of its range, or this build lacks what the view calls for.
     pub fn with_view(&self, view: &'a View) -> Result<Self, BlobError> {
         check_view(view)?;
-        Ok(Self { view, ..*self })
+        Ok(Self {
+            view,
+            effects: self.effects.with(view.effects()),
+            ..*self
+        })
     }
 
     /// The scene under other lights, of which there may be more or fewer than before.

@@ -90,6 +90,11 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
         required = required.with(material.effects());
     }
     required = required.with(check_smooth(scene)?);
+    required = required.with(check_glow(scene)?);
+    let view = scene.view.effects();
+    let called = Effects(header.effects).contains(view);
+    Location::Section(SectionKind::View).ensure(called, Reason::MissingEffect)?;
+    required = required.with(view);
     // Without objects lights require nothing.
     if header.objects > 0 {
         let lights = scene.lights.iter();
@@ -111,6 +116,19 @@ fn check_smooth(scene: &Scene<'_>) -> Result<Effects, BlobError> {
     } else {
         SectionKind::Parts
     };
+    Location::Section(section).ensure(is_known, Reason::MissingEffect)?;
+    Ok(required)
+}
+
+/// What the light that materials send out requires; an error where it is out of its range, or the header does not
+/// require it.
+fn check_glow(scene: &Scene<'_>) -> Result<Effects, BlobError> {
+    let section = SectionKind::Emissions;
+    for (index, radiance) in scene.emissions.iter().enumerate() {
+        At { section, index }.all_within(Field::Emission, radiance, 0, i32::MAX.into())?;
+    }
+    let required = Effects::EMISSION.only_if(!scene.emissions.is_empty());
+    let is_known = Effects(scene.space.header.effects).contains(required);
     Location::Section(section).ensure(is_known, Reason::MissingEffect)?;
     Ok(required)
 }

@@ -111,8 +111,15 @@ pub(crate) fn scene<'a>(
         effects: Effects(header.effects),
         view,
         lights: sections.records(SectionKind::Lights)?,
-        light_forms: sections.records(SectionKind::LightForms)?,
+        light_forms: match const { Effects::AVAILABLE.contains(Effects::FALLOFF) } {
+            true => sections.records(SectionKind::LightForms)?,
+            false => &[],
+        },
         materials: sections.records(SectionKind::Materials)?,
+        emissions: match const { Effects::AVAILABLE.contains(Effects::EMISSION) } {
+            true => sections.records(SectionKind::Emissions)?,
+            false => &[],
+        },
         object_first: Indices::read(sections, SectionKind::ObjectFirst)?,
         object_material: Indices::read(sections, SectionKind::ObjectMaterial)?,
         order: Indices::read(sections, SectionKind::Order)?,
@@ -175,7 +182,7 @@ pub(super) fn check_view(view: &View) -> Result<(), BlobError> {
     let section = SectionKind::View;
     let at = At { section, index: 0 };
     view.check_ranges(at.location())?;
-    if !DISPLAY_VALUES && view.display_values != 0 {
+    if !DISPLAY_VALUES && view.encoding == View::DISPLAY_VALUES {
         let missing = "display-values";
         return Err(BlobError::MissingPart { missing });
     }

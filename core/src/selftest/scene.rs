@@ -13,7 +13,9 @@ use core::mem::size_of;
 /// The effects that the scene requires: its lights are points.
 pub(crate) const REQUIRED: Effects = Effects::ALL
     .without(Effects::FALLOFF)
-    .without(Effects::AREA_LIGHT);
+    .without(Effects::AREA_LIGHT)
+    .without(Effects::TONE_MAPPING)
+    .without(Effects::EMISSION);
 
 /// Sections of the blob.
 const SECTIONS: usize = 12;
@@ -166,7 +168,7 @@ fn view() -> View {
         height: TinyBlob::SIZE[1],
         samples: 2,
         depth: 4,
-        display_values: 0,
+        encoding: 0,
     }
 }
 

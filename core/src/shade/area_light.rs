@@ -2,7 +2,7 @@
 //!
 //! - **Sphere**: a direction of the cone in which it is seen, all alike (Shirley, Wang and Zimmerman, "Monte Carlo
 //!   Techniques for Direct Lighting Calculations", 1996). Nothing is drawn that the surface does not see.
-//! - **Rectangle and disc**: a point of the area, all alike, whose brightness the [falloff](super::falloff) weighs by
+//! - **Rectangle, triangle and disc**: a point of the area, all alike, whose brightness the [falloff](super::falloff) weighs by
 //!   distance and angle. Sampling the solid angle of a rectangle (Ureña, Fajardo and King, 2013) takes arc cosines,
 //!   which `fixed` does not have, and all formats must draw the same points.
 
@@ -76,6 +76,11 @@ fn at<N: Number>(form: &LightForm, aim: &Aim<N>, [u, v]: [u32; 2]) -> Aim<N> {
     let [along, across] = match form.shape {
         LightForm::SPHERE => return on_sphere(form, aim, ratio(u), turn()),
         LightForm::RECTANGLE => [ratio(u), ratio(v)],
+        // The half of a parallelogram beyond the third side is turned onto the other half.
+        LightForm::TRIANGLE if (u >> 2) + (v >> 2) > 1 << 30 => {
+            [N::ONE - ratio(u), N::ONE - ratio(v)]
+        }
+        LightForm::TRIANGLE => [ratio(u), ratio(v)],
         LightForm::DISC => {
             let (radius, [sine, cosine]) = (ratio(u).sqrt(), turn());
             [radius * cosine, radius * sine]

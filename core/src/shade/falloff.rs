@@ -72,7 +72,9 @@ fn cosine<N: Number>(form: &LightForm, to_light: [N; 3]) -> N {
 fn shines<N: Number>(form: &LightForm, to_light: [N; 3]) -> bool {
     match form.shape {
         LightForm::SPHERE => true,
-        LightForm::RECTANGLE | LightForm::DISC => cosine(form, to_light) > N::ZERO,
+        LightForm::RECTANGLE | LightForm::DISC | LightForm::TRIANGLE => {
+            cosine(form, to_light) > N::ZERO
+        }
         _ => !has_cone(form) || cosine(form, to_light) > N::ratio(form.cone_cosine),
     }
 }
@@ -121,7 +123,7 @@ fn falling<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>, color: Color
             let arriving = arriving.scaled(one.div(one + cos.half()));
             arriving.plus(arriving)
         }
-        LightForm::RECTANGLE | LightForm::DISC => {
+        LightForm::RECTANGLE | LightForm::DISC | LightForm::TRIANGLE => {
             arriving.scaled(cosine(form, lighting.to_light).max(N::ZERO))
         }
         _ if has_cone(form) => {

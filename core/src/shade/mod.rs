@@ -8,6 +8,7 @@
 //! | `camera` | a ray leaves the camera | |
 //! | `arrive` | a ray has come to a hit | absorption |
 //! | `surface` | a ray hits a surface | checker, smooth |
+//! | `emit` | a surface sends out light of its own | emission |
 //! | `aim` | a surface looks for a light | area light |
 //! | `face` | a surface faces a light | smooth, falloff |
 //! | `reflect` | a surface reflects a light | highlight |
@@ -17,6 +18,7 @@
 //! | `bounce` | a surface sends rays on | mirror, glass |
 //! | `leave` | a ray leaves a hit | smooth |
 //! | `pixel` | all rays of a sample were traced | |
+//! | `develop` | the mean of a pixel's samples is known | tone mapping |
 
 mod color;
 pub(crate) mod effect;

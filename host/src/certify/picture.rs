@@ -8,6 +8,7 @@ use super::reason::Reason;
 use super::search::{Open, Step, Tracer};
 use super::world::{NONE, World};
 use bytemuck::{Pod, Zeroable};
+use gridel_core::format::record::View;
 use gridel_core::render::Pixel as _;
 use gridel_core::{Rgb888, Settings};
 use std::cell::{Cell, RefCell};
@@ -221,7 +222,7 @@ fn evaluate<N: Enclosure>(
 fn code_of(world: &World<'_>, linear: [f64; 3]) -> [u8; 3] {
     code(linear.map(|x| {
         let value = (x * 65535.0 + 0.5).clamp(0.0, 65535.0) as u16;
-        if world.scene.view().display_values != 0 {
+        if world.scene.view().encoding == View::DISPLAY_VALUES {
             from_display(value)
         } else {
             value

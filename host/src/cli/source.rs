@@ -474,6 +474,12 @@ fn import_from(input: &Input, options: &SceneOptions) -> Result<Imported, Failur
     if let Some(cutoff) = options.cutoff {
         imported.scene.render.cutoff = cutoff;
     }
+    if let Some(exposure) = options.exposure {
+        imported.scene.render.exposure = exposure;
+    }
+    if let Some(tone_mapping) = options.tone_mapping {
+        imported.scene.render.tone_mapping = tone_mapping;
+    }
     options.view.apply(&mut imported.scene)?;
     for change in &options.lights {
         change.apply(&mut imported.scene.lights)?;

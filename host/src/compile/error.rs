@@ -70,6 +70,14 @@ pub enum CompileError {
         length: f64,
         most: f64,
     },
+    #[error("the {what} has a channel of {value:.4e} after exposure; it must be at most {most}")]
+    #[diagnostic(help("lower `exposure` or the light"))]
+    TooBright { what: String, value: f64, most: f64 },
+    #[error("tone mapping is for linear colors, and those of the scene are display values")]
+    #[diagnostic(help(
+        "leave `--tone-mapping` out, or write the scene as TOML with linear colors"
+    ))]
+    ToneMapping,
     #[error("{place}: track of {target}: {cause}")]
     #[diagnostic(help("{remedy}"))]
     Track {

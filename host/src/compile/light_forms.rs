@@ -12,6 +12,31 @@ const LONGEST: f64 = (1 << 17) as f64;
 /// The longest edge, in units.
 const LONGEST_EDGE: f64 = (1 << 15) as f64;
 
+/// By how many steps of the lattice light starts above a surface of the scene: more than the lattice moves that, and
+/// than arithmetic errs.
+const LIFT: f64 = 4.0;
+
+fn lift_length(form: &LightForm, lattice: &Lattice) -> f64 {
+    if form.is_surface {
+        LIFT * lattice.step()
+    } else {
+        0.0
+    }
+}
+
+/// From the position of a light to where it shines from: above the surface that it has in the scene, which must not
+/// stand in its way.
+pub fn lift(form: &LightForm, lattice: &Lattice) -> DVec3 {
+    let normal = match form.shape {
+        LightShape::Point | LightShape::Sphere { .. } => return DVec3::ZERO,
+        LightShape::Rectangle { edges } | LightShape::Triangle { edges } => {
+            edges[0].cross(edges[1])
+        }
+        LightShape::Disc { normal, .. } => normal,
+    };
+    unit(normal) * lift_length(form, lattice)
+}
+
 /// The record of a form, and the light's color in it: brought to the range where it is most precise, unless a track
 /// gives the light other colors.
 pub fn form_record(
@@ -42,7 +67,10 @@ pub fn form_record(
         LightShape::Sphere { radius } => (
             Record::SPHERE,
             DVec3::ZERO,
-            [DVec3::X * radius, DVec3::ZERO],
+            [
+                DVec3::X * (radius + lift_length(form, lattice)),
+                DVec3::ZERO,
+            ],
             radius,
         ),
         LightShape::Rectangle { edges } => {
@@ -53,6 +81,11 @@ pub fn form_record(
                 edges,
                 (across.length() / PI).sqrt(),
             )
+        }
+        LightShape::Triangle { edges } => {
+            let across = edges[0].cross(edges[1]);
+            let reference = (0.5 * across.length() / PI).sqrt();
+            (Record::TRIANGLE, unit(across), edges, reference)
         }
         LightShape::Disc { normal, radius } => {
             let normal = unit(normal);

@@ -11,6 +11,7 @@ mod cuts;
 mod dual_split;
 mod error;
 mod estimate;
+mod exposure;
 mod extent;
 mod flattened;
 mod framing;
@@ -134,6 +135,7 @@ pub fn compile_with_progress(
     on_progress: OnProgress<'_>,
 ) -> Result<Compiled, CompileError> {
     check(scene, options)?;
+    let scene = &*scene.with_emitters();
     let (parts, reports) = compile_parts(scene, options, on_progress)?;
     let (mut compiled, _) = compile_as(Role::Whole(&parts), scene, options, on_progress)?;
     reports

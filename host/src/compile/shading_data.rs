@@ -3,13 +3,14 @@
 use super::CompileError;
 use super::camera::place;
 use super::coordinates::Coordinates;
+use super::exposure::Exposure;
 use super::extent::Shapes;
 use super::framing::{BACKGROUND, framing_of};
 use super::joints;
-use super::light_forms::form_record;
+use super::light_forms::{form_record, lift};
 use super::section::Section;
 use super::tracks;
-use crate::scene::{Camera, Color, Diffuse, Light, Material, RenderSettings};
+use crate::scene::{Camera, Color, Diffuse, Light, Material, Scene, ToneMapping};
 use crate::shape::{Lattice, unit};
 use crate::table::printable;
 use bytemuck::Zeroable;
@@ -31,6 +32,8 @@ pub struct ShadingData {
     pub lights: Vec<record::Light>,
     /// What makes lights more than points.
     pub light_forms: Vec<LightForm>,
+    /// The radiance of each material that an object has; empty where none glows.
+    pub emissions: Vec<[i32; 3]>,
     /// Materials that an object has.
     pub materials: Vec<record::Material>,
     /// For each object, its place in `materials`.
@@ -106,6 +109,20 @@ impl ShadingData {
             });
             object_material.push(number);
         }
+        let exposure = Exposure::of(scene);
+        let mut emissions = Vec::new();
+        for (material, number) in scene.materials.iter().zip(&numbers) {
+            let Some(number) = number.filter(|_| material.emission != [0.0; 3]) else {
+                continue;
+            };
+            let what = || format!("material {}", printable(&material.name));
+            let emission = radiance(exposure.of_color(material.emission, what)?);
+            if emissions.len() <= number as usize {
+                emissions.resize(number as usize + 1, [0; 3]);
+            }
+            emissions[number as usize] = emission;
+            required_by.push((Effects::EMISSION, what()));
+        }
         let mut light_forms = Vec::new();
         let lights = lights
             .iter()
@@ -113,8 +130,11 @@ impl ShadingData {
             .map(|(number, light)| {
                 let form = scene.light_forms.get(number).copied().flatten();
                 let (Some(form), Light::Point { position, color }) = (form, *light) else {
-                    return light_record(light, lattice, size, number);
+                    let light = exposure.of_light(light, number)?;
+                    return light_record(&light, lattice, size, number);
                 };
+                let color = color.map(|channel| channel * exposure.factor);
+                let position = position + lift(&form, lattice);
                 let has_color_track = scene
                     .tracks
                     .iter()
@@ -137,6 +157,15 @@ impl ShadingData {
         } else {
             Effects::SHADOW
         };
+        let view = View {
+            background: radiance(exposure.of_color(background, || String::from("background"))?),
+            ambient: radiance(exposure.of_color(ambient, || String::from("ambient light"))?),
+            ..view_record(scene)?
+        };
+        required_by.push((
+            view.effects(),
+            String::from("the `tone_mapping` of pictures"),
+        ));
         if scene.all_objects().next().is_some() {
             let effects = (0..).zip(lights.iter().map(record::Light::effects));
             required_by.extend(effects.map(|(number, effects): (usize, _)| {
@@ -165,13 +194,9 @@ impl ShadingData {
         ways.extend(joints::places(scene));
         let coordinates =
             Coordinates::choose(lattice, [lowest, highest], camera.eye, &scene.lights, &ways);
-        let view = View {
-            background: radiance(background),
-            ambient: radiance(ambient),
-            ..view_record(&scene.render, scene.display_values)
-        };
         let placed = place(&camera, &coordinates.header)?;
-        let tracks = joints::kept_tracks(scene);
+        let mut tracks = joints::kept_tracks(scene);
+        exposure.change_tracks(&mut tracks);
         let mut tracks = tracks::sections(tracks, &camera, &numbers, &coordinates.header)?;
         tracks.extend(joints::sections(scene, &coordinates.header)?);
         Ok(Self {
@@ -179,6 +204,7 @@ impl ShadingData {
             coordinates,
             lights,
             light_forms,
+            emissions,
             materials,
             object_material,
             effects,
@@ -212,16 +238,24 @@ fn over_a_shoulder(shapes: &Shapes<'_>, camera: &Camera) -> (DVec3, &'static str
 }
 
 /// The defaults of a picture; the camera is placed afterwards.
-fn view_record(render: &RenderSettings, display_values: bool) -> View {
-    View {
+fn view_record(scene: &Scene) -> Result<View, CompileError> {
+    let render = &scene.render;
+    let encoding = match (render.tone_mapping, scene.display_values) {
+        (ToneMapping::None, false) => 0,
+        (ToneMapping::None, true) => View::DISPLAY_VALUES,
+        (_, true) => return Err(CompileError::ToneMapping),
+        (ToneMapping::Reinhard, false) => View::REINHARD,
+        (ToneMapping::Aces, false) => View::ACES,
+    };
+    Ok(View {
         cutoff: radiance([render.cutoff; 3])[0],
         width: render.width.clamp(1, u16::MAX.into()) as u16,
         height: render.height.clamp(1, u16::MAX.into()) as u16,
         samples: render.samples,
         depth: render.depth,
-        display_values: u8::from(display_values),
+        encoding,
         ..View::zeroed()
-    }
+    })
 }
 
 /// A place that may lie beyond the scene, in units with 13 fraction bits.

@@ -109,6 +109,7 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
     let mut sections = vec![section(SectionKind::View, &[shading_data.view])];
     sections.push(section(SectionKind::Lights, &shading_data.lights));
     sections.push(section(SectionKind::LightForms, &shading_data.light_forms));
+    sections.push(section(SectionKind::Emissions, &shading_data.emissions));
     sections.push(section(SectionKind::Materials, &shading_data.materials));
     if objects != total && objects > 1 {
         sections.push(indices(SectionKind::ObjectFirst, &object_first, 2));

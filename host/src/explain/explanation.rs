@@ -53,6 +53,9 @@ pub struct Ray {
     /// The smooth normal that the surface is shaded with.
     pub smooth: Option<[f64; 3]>,
     pub lights: Vec<Lighting>,
+    /// The radiance that the surface sends out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub emitted: Option<[f64; 3]>,
     /// The radiance that it adds to the sample, its weight included.
     pub added: [f64; 3],
     /// Whether that is the background.
@@ -263,6 +266,7 @@ impl<'t> Reader<'t> {
             absorbed: None,
             smooth: None,
             lights: Vec::new(),
+            emitted: None,
             added: [0.0; 3],
             background: false,
             reflected: None,
@@ -326,6 +330,7 @@ impl Ray {
                     lighting.outcome = LightOutcome::BehindTriangle;
                 }
             }
+            Event::Emitted { radiance } => self.emitted = Some(radiance),
             Event::FromArea { point } => {
                 if let Some(lighting) = self.lights.last_mut() {
                     lighting.from_area = Some(frame.place(point).to_array());

@@ -243,6 +243,9 @@ impl Shown<'_> {
                 color(weight)
             )?;
         }
+        if let Some(radiance) = ray.emitted {
+            writeln!(f, "{indent}  glows with {}", color(radiance))?;
+        }
         for lighting in &ray.lights {
             writeln!(f, "{indent}  {}", self.outcome(lighting))?;
         }

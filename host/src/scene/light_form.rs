@@ -11,6 +11,24 @@ pub struct LightForm {
     /// The distance at which light ends, in scene units.
     pub range: Option<f64>,
     pub spot: Option<Spot>,
+    /// Whether a light with an area is seen: it gets an object, by [`Scene::with_emitters`](super::Scene::with_emitters).
+    pub is_visible: bool,
+    /// Whether an object has the same surface, in whose way light must not start.
+    pub is_surface: bool,
+}
+
+impl Default for LightForm {
+    /// A point that falls off.
+    fn default() -> Self {
+        Self {
+            shape: LightShape::Point,
+            falls_off: true,
+            range: None,
+            spot: None,
+            is_visible: false,
+            is_surface: false,
+        }
+    }
 }
 
 /// What shines.
@@ -22,6 +40,8 @@ pub enum LightShape {
     Sphere { radius: f64 },
     /// A rectangle with a corner at the position; it shines to the side of the cross product of its edges.
     Rectangle { edges: [DVec3; 2] },
+    /// A triangle with a corner at the position; it shines to the side of the cross product of its edges.
+    Triangle { edges: [DVec3; 2] },
     /// A disc around the position; it shines to the side of its normal.
     Disc { normal: DVec3, radius: f64 },
 }
@@ -47,6 +67,9 @@ impl LightForm {
                     radius: radius * scale,
                 },
                 LightShape::Rectangle { edges } => LightShape::Rectangle {
+                    edges: edges.map(turned),
+                },
+                LightShape::Triangle { edges } => LightShape::Triangle {
                     edges: edges.map(turned),
                 },
                 LightShape::Disc { normal, radius } => LightShape::Disc {

@@ -11,6 +11,7 @@ mod access;
 mod bad;
 #[cfg(test)]
 mod damaged;
+mod emitters;
 mod error;
 mod flatten;
 mod gzip;
@@ -36,6 +37,7 @@ mod without;
 mod words;
 
 pub use crate::shape::Shape;
+pub use emitters::MOST_FACES;
 pub use error::SceneError;
 pub use importer::Importer;
 pub(crate) use joint::JointTracks;
@@ -43,6 +45,7 @@ pub use joint::{LARGEST_SCALE, LEAST_SCALE};
 pub use light_form::{LightForm, LightShape, Spot};
 pub use model::{
     Camera, Color, Diffuse, Instance, Joint, Light, Material, Object, Part, RenderSettings, Scene,
+    ToneMapping,
 };
 pub use normals::{Normals, NormalsChoice};
 pub use options::{
@@ -156,6 +159,21 @@ fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, S
         }
         imported.copied = scene.instances.len();
         imported.scene = imported.scene.into_flattened()?;
+    }
+    let dark: Vec<_> = imported.scene.emitters_without_light().collect();
+    if let [first, rest @ ..] = &dark[..] {
+        let more = match rest.len() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        imported.warnings.push(format!(
+            "object {}{more} glows, and does not light other objects: spheres, discs, boxes and meshes of up to \
+             {MOST_FACES} triangles do that, outside of parts; add a `[[light]]`, or set the material's `lights = false`",
+            crate::table::printable(first)
+        ));
+    }
+    if let std::borrow::Cow::Owned(scene) = imported.scene.with_emitters() {
+        imported.scene = scene;
     }
     Ok(imported)
 }

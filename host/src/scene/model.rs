@@ -114,6 +114,36 @@ pub struct Material {
     pub ior: f64,
     /// Absorption inside glass: the coefficient of Beer's law per scene unit of path length.
     pub absorption: Color,
+    /// Radiance that leaves the front of the surface; black for none.
+    pub emission: Color,
+    /// Whether objects that send out light are lights, too.
+    pub lights: bool,
+}
+
+/// How the brightness of pixels is mapped to the range of a display.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ToneMapping {
+    /// Not at all: what is brighter than white is white.
+    #[default]
+    None,
+    /// By x / (1 + x).
+    Reinhard,
+    /// By a curve like that of ACES.
+    Aces,
+}
+
+impl ToneMapping {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::None, Self::Reinhard, Self::Aces];
+
+    /// Its name in scene files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Reinhard => "reinhard",
+            Self::Aces => "aces",
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -189,7 +219,7 @@ pub struct RenderSettings {
     /// Picture size in pixels.
     pub width: u32,
     pub height: u32,
-    /// Samples a pixel: 1 to 256.
+    /// Samples a pixel: 1 to 4,096.
     pub samples: u16,
     /// How many times a ray may be reflected or refracted: 0 to 16.
     pub depth: u8,
@@ -198,6 +228,9 @@ pub struct RenderSettings {
     pub cutoff: f64,
     /// Whether objects stand in each other's light.
     pub shadows: bool,
+    /// All light is multiplied with 2 to this power: -32 to 32.
+    pub exposure: f64,
+    pub tone_mapping: ToneMapping,
 }
 
 impl Default for RenderSettings {
@@ -209,6 +242,8 @@ impl Default for RenderSettings {
             depth: 5,
             cutoff: 1.0 / 512.0,
             shadows: true,
+            exposure: 0.0,
+            tone_mapping: ToneMapping::None,
         }
     }
 }
@@ -224,6 +259,8 @@ impl Default for Material {
             transmit: [0.0; 3],
             ior: 1.5,
             absorption: [0.0; 3],
+            emission: [0.0; 3],
+            lights: true,
         }
     }
 }

@@ -5,6 +5,7 @@ use super::model::{Light, Scene};
 use super::track::Track;
 use glam::DVec3;
 use gridel_core::format::track::TrackTarget;
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 /// The light of an area that a point in its middle has instead: its color at a distance of 1 over its radiance.
@@ -13,6 +14,7 @@ fn brightness(shape: &LightShape) -> f64 {
         LightShape::Point => 1.0,
         LightShape::Sphere { radius } | LightShape::Disc { radius, .. } => radius * radius,
         LightShape::Rectangle { edges } => edges[0].cross(edges[1]).length() / PI,
+        LightShape::Triangle { edges } => 0.5 * edges[0].cross(edges[1]).length() / PI,
     }
 }
 
@@ -20,6 +22,7 @@ fn brightness(shape: &LightShape) -> f64 {
 fn to_middle(shape: &LightShape) -> DVec3 {
     match *shape {
         LightShape::Rectangle { edges } => 0.5 * (edges[0] + edges[1]),
+        LightShape::Triangle { edges } => (edges[0] + edges[1]) / 3.0,
         _ => DVec3::ZERO,
     }
 }
@@ -28,13 +31,18 @@ fn to_middle(shape: &LightShape) -> DVec3 {
 fn side(shape: &LightShape) -> Option<DVec3> {
     match *shape {
         LightShape::Point | LightShape::Sphere { .. } => None,
-        LightShape::Rectangle { edges } => Some(edges[0].cross(edges[1])),
+        LightShape::Rectangle { edges } | LightShape::Triangle { edges } => {
+            Some(edges[0].cross(edges[1]))
+        }
         LightShape::Disc { normal, .. } => Some(normal),
     }
 }
 
 /// Makes points of areas, as bright from far away.
 pub(super) fn shrink_areas(scene: &mut Scene) {
+    if let Cow::Owned(expanded) = scene.with_emitters() {
+        *scene = expanded;
+    }
     for (number, form) in scene.light_forms.iter_mut().enumerate() {
         let Some(form) = form.as_mut().filter(|it| it.shape != LightShape::Point) else {
             continue;
@@ -49,6 +57,7 @@ pub(super) fn shrink_areas(scene: &mut Scene) {
         change_tracks(&mut tracks, number, factor, middle);
         *form = LightForm {
             shape: LightShape::Point,
+            is_surface: false,
             spot: side(&form.shape).map(|direction| Spot {
                 direction,
                 inner: 0.0,

@@ -4,9 +4,10 @@
 //! and its program no instruction of it. Each effect has a row below, which takes away what calls for it.
 
 use super::plain_lights::{remove_falloff, shrink_areas};
-use super::{Diffuse, Material, Normals, Scene};
+use super::{Diffuse, Material, Normals, Scene, ToneMapping};
 use gridel_core::Effects;
 use gridel_core::format::track::TrackTarget;
+use std::borrow::Cow;
 
 /// Takes away what calls for an effect.
 type Removal = fn(&mut Scene);
@@ -71,6 +72,21 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
         Effects::AREA_LIGHT,
         "lights shine from their middles, and shadows have hard edges",
         shrink_areas,
+    ),
+    (
+        Effects::TONE_MAPPING,
+        "what is brighter than white is white",
+        |scene| scene.render.tone_mapping = ToneMapping::None,
+    ),
+    (
+        Effects::EMISSION,
+        "what glows lights others and is dark itself",
+        |scene| {
+            if let Cow::Owned(expanded) = scene.with_emitters() {
+                *scene = expanded;
+            }
+            each_material(scene, |material| material.emission = [0.0; 3]);
+        },
     ),
 ];
 
@@ -163,6 +179,15 @@ mod tests {
         kind = 'point'
         position = [4, 5, 6]
         color = [1, 1, 1]
+        [render]
+        tone_mapping = 'aces'
+        [material.lamp]
+        emission = 2
+        [[object]]
+        kind = 'sphere'
+        center = [9, 9, 9]
+        radius = 1
+        material = 'lamp'
         [[light]]
         kind = 'rectangle'
         corner = [4, 5, 6]

@@ -7,7 +7,7 @@ use gridel_core::{Kind, Structure};
 use gridel_host::compile::Options;
 use gridel_host::scene::{
     Camera, Diffuse, Instance, Light, LightForm, LightShape, Material, Normals, Object, Part,
-    Placement, Scene, Shape, SourceSpan, Spot,
+    Placement, Scene, Shape, SourceSpan, Spot, ToneMapping,
 };
 use gridel_host::shape::{Cuboid, Sphere};
 use gridel_tests::shapes::examples;
@@ -21,7 +21,7 @@ const TRIANGLE: &str = Kind::Triangle.name();
 const INSTANCES: &str = "instances";
 
 /// A part's name, and how to require it.
-type Effects = [(&'static str, fn(&mut Scene)); 9];
+type Effects = [(&'static str, fn(&mut Scene)); 11];
 
 const EFFECTS: Effects = [
     ("shadow", |scene| scene.render.shadows = true),
@@ -54,6 +54,13 @@ const EFFECTS: Effects = [
     ("area-light", |scene| {
         shine(scene, LightShape::Sphere { radius: 0.5 }, None)
     }),
+    ("tone-mapping", |scene| {
+        scene.render.tone_mapping = ToneMapping::Aces;
+    }),
+    ("emission", |scene| {
+        scene.materials[0].emission = [0.2; 3];
+        scene.materials[0].lights = false;
+    }),
 ];
 
 /// Gives the light a form.
@@ -64,9 +71,8 @@ fn shine(scene: &mut Scene, shape: LightShape, spot: Option<Spot>) {
     };
     scene.light_forms = vec![Some(LightForm {
         shape,
-        falls_off: true,
-        range: None,
         spot,
+        ..LightForm::default()
     })];
 }
 

@@ -195,6 +195,8 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
         ("smooth", "base"),
         ("falloff", "base"),
         ("area-light", "falloff"),
+        ("tone-mapping", "base"),
+        ("emission", "base"),
         ("sphere, triangle, shadow", "base"),
     ];
     let mut table = String::from(

@@ -45,11 +45,10 @@ fn blobs() -> Vec<Vec<u8>> {
         None,
         Some(scene::LightForm {
             shape: scene::LightShape::Sphere { radius: 0.5 },
-            falls_off: true,
-            range: None,
-            spot: None,
+            ..scene::LightForm::default()
         }),
     ];
+    scene.materials[0].emission = [2.0; 3];
     scene.tracks = vec![scene::Track {
         target: TrackTarget::CameraOrbit,
         index: 0,

@@ -9,6 +9,15 @@ const RADIANCE: i64 = i32::MAX as i64;
 /// The ratio 1.
 const ONE: i64 = 1 << 30;
 
+impl View {
+    /// The [encoding](Self::encoding) of display values.
+    pub const DISPLAY_VALUES: u8 = 1;
+    /// The [encoding](Self::encoding) of tones that are mapped by the curve of Reinhard.
+    pub const REINHARD: u8 = 2;
+    /// The [encoding](Self::encoding) of tones that are mapped by a curve like that of ACES.
+    pub const ACES: u8 = 3;
+}
+
 records! {
     /// Camera, surroundings and rendering defaults.
     ///
@@ -52,10 +61,11 @@ records! {
         /// How often a ray may be reflected or refracted.
         #[valid(RayDepth: 0..=MAX_RAY_DEPTH as i64)]
         pub depth: u8,
-        /// 1 where all colors and lights are display values, which are added up and shown as they are; 0
-        /// where they are linear and the picture is encoded in sRGB.
-        #[valid(DisplayValues: 0..=1)]
-        pub display_values: u8,
+        /// 1 where all colors and lights are display values, which are added up and shown as they are. Else they are
+        /// linear and the picture is encoded in sRGB: 0 as it is, 2 and 3 after its tones were mapped, by the curve of
+        /// Reinhard or one like that of ACES.
+        #[valid(Encoding: 0..=3)]
+        pub encoding: u8,
     }
 
     /// A light.

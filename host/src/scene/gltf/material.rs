@@ -10,6 +10,7 @@
 //! | shininess n | 2 / r^4 - 2, from 1 to 1024, the Blinn-Phong exponent of that roughness |
 //! | transmit | c t (1 - m) |
 //! | index of refraction | that of `KHR_materials_ior` where the glass has a volume, else 1: a pane |
+//! | emission | emissive factor times `KHR_materials_emissive_strength`: 1 is display white |
 //! | absorption | -ln(attenuation color) / attenuation distance |
 //!
 //! Where the alpha mode is `BLEND`, alpha is what of the material is there, and the rest is a pane.
@@ -30,11 +31,9 @@ fn name(material: &gltf::Material<'_>) -> String {
 /// Sentences on what of a material is ignored or taken otherwise.
 pub(super) fn ignored(material: &gltf::Material<'_>) -> impl Iterator<Item = String> {
     let name = name(material);
-    let glows = material.emissive_factor().iter().any(|&x| x > 0.0);
     let masked = material.alpha_mode() == AlphaMode::Mask;
     let index = material.ior().filter(|ior| !(1.0..=4.0).contains(ior));
     [
-        glows.then(|| format!("material {name:?} glows, which is ignored; it is not brighter")),
         masked.then(|| format!("the alpha mask of material {name:?} is ignored; it is opaque")),
         index.map(|ior| {
             let taken = taken_ior(ior);
@@ -86,6 +85,11 @@ pub(super) fn read(material: &gltf::Material<'_>) -> Material {
         absorption: volume.map_or([0.0; 3], |volume| {
             absorption(volume.attenuation_color(), volume.attenuation_distance())
         }),
+        emission: material.emissive_factor().map(|factor| {
+            let strength = material.emissive_strength().unwrap_or(1.0);
+            f64::from(factor * strength).clamp(0.0, 2047.0)
+        }),
+        lights: true,
         name,
     }
 }

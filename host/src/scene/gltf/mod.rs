@@ -100,7 +100,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     }
     let Importer {
         mut scene,
-        view,
+        mut view,
         mut motion,
         place,
         mut warnings,
@@ -195,6 +195,7 @@ impl Importer<'_> {
         }
         let known = [
             "KHR_lights_punctual",
+            "KHR_materials_emissive_strength",
             "KHR_materials_ior",
             "KHR_materials_transmission",
             "KHR_materials_volume",

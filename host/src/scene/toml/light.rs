@@ -10,7 +10,7 @@ pub(super) type Lit = (Light, String, Option<LightForm>);
 const KINDS: [&str; 6] = ["point", "directional", "spot", "sphere", "rectangle", "disc"];
 
 /// The keys that belong to some kinds only, with these.
-const OWN: [(&str, &[&str]); 13] = [
+const OWN: [(&str, &[&str]); 14] = [
     ("position", &["point", "spot"]),
     ("direction", &["directional", "spot"]),
     ("color", &["point", "directional", "spot"]),
@@ -24,6 +24,7 @@ const OWN: [(&str, &[&str]); 13] = [
     ("corner", &["rectangle"]),
     ("edges", &["rectangle"]),
     ("radiance", &["sphere", "rectangle", "disc"]),
+    ("visible", &["sphere", "rectangle", "disc"]),
 ];
 
 /// Reads lights.
@@ -65,9 +66,8 @@ fn light(table: Value<'_>) -> Result<Lit, SceneError> {
             let color = fields.require("radiance")?.radiance()?;
             let form = LightForm {
                 shape,
-                falls_off: true,
-                range: None,
-                spot: None,
+                is_visible: fields.or("visible", false, Value::boolean)?,
+                ..LightForm::default()
             };
             (Light::Point { position, color }, Some(form))
         }
@@ -106,6 +106,7 @@ fn of_point(kind: &str, fields: &Fields<'_>) -> Result<Option<LightForm>, SceneE
         falls_off,
         range,
         spot,
+        ..LightForm::default()
     }))
 }
 

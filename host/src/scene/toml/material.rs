@@ -15,6 +15,8 @@ const KEYS: &[&str] = &[
     "transmit",
     "ior",
     "absorption",
+    "emission",
+    "lights",
 ];
 
 /// The materials of a scene, each with a name of its own.
@@ -119,6 +121,8 @@ fn material(table: Value<'_>) -> Result<Material, SceneError> {
         transmit: fields.or("transmit", default.transmit, Value::reflectance)?,
         ior: fields.or("ior", default.ior, |value| value.number_in(1.0..=4.0))?,
         absorption: fields.or("absorption", default.absorption, Value::coefficients)?,
+        emission: fields.or("emission", default.emission, Value::radiance)?,
+        lights: fields.or("lights", default.lights, Value::boolean)?,
         ..default
     })
 }

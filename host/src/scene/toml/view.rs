@@ -1,7 +1,7 @@
 //! The tables that say how a scene is seen: `[camera]` and `[render]`.
 
 use super::value::Value;
-use crate::scene::{Camera, RenderSettings, SceneError};
+use crate::scene::{Camera, RenderSettings, SceneError, ToneMapping};
 use glam::DVec3;
 use gridel_core::format::limits::MAX_SAMPLES;
 
@@ -56,7 +56,9 @@ pub(super) fn field_of_view(value: Value<'_>) -> Result<f64, SceneError> {
 }
 
 pub(super) fn render(table: Value<'_>) -> Result<RenderSettings, SceneError> {
-    let keys = ["width", "height", "samples", "depth", "cutoff", "shadows"];
+    let keys = [
+        "width", "height", "samples", "depth", "cutoff", "shadows", "exposure", "tone_mapping",
+    ];
     let fields = table.fields("render table", &[&keys])?;
     let default = RenderSettings::default();
     let side = |value: Value<'_>| value.integer_in(1..=MAX_SIDE);
@@ -81,5 +83,11 @@ pub(super) fn render(table: Value<'_>) -> Result<RenderSettings, SceneError> {
         })?,
         cutoff: fields.or("cutoff", default.cutoff, |value| value.number_in(0.0..=1.0))?,
         shadows: fields.or("shadows", default.shadows, Value::boolean)?,
+        exposure: fields.or("exposure", 0.0, |value| value.number_in(-32.0..=32.0))?,
+        tone_mapping: fields.or("tone_mapping", ToneMapping::None, |value| {
+            let name = value.word(&ToneMapping::ALL.map(ToneMapping::name))?;
+            let mut all = ToneMapping::ALL.into_iter();
+            Ok(all.find(|it| it.name() == name).unwrap_or_default())
+        })?,
     })
 }

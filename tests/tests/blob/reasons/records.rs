@@ -27,7 +27,7 @@ pub(super) fn shading_data() -> Errors {
         (Field::Samples, &|it| it.samples = 0),
         (Field::Samples, &|it| it.samples = 4097),
         (Field::RayDepth, &|it| it.depth = 17),
-        (Field::DisplayValues, &|it| it.display_values = 2),
+        (Field::Encoding, &|it| it.encoding = 4),
     ];
     for (field, forge) in fields {
         errors.field(view, field, |it| it.change(SectionKind::View, 0, forge));
@@ -79,7 +79,7 @@ pub(super) fn light_forms() -> Errors {
         gridel_host::scene::read("lights.toml".as_ref(), text.into(), &Default::default());
     let mut errors = alone(&imported.expect("a scene").scene, Structure::List, 24);
     let forms: [Forgery<LightForm>; 7] = [
-        (Field::Kind, &|it| it.shape = 4),
+        (Field::Kind, &|it| it.shape = 5),
         (Field::LightReference, &|it| it.reference = -1),
         (Field::LightRange, &|it| it.range = -1),
         (Field::ConeCosine, &|it| it.cone_cosine = i32::MAX),

@@ -53,7 +53,8 @@ fn a_camera_and_lights() {
     document["extensions"] = json!({"KHR_lights_punctual": {"lights": [
         {"type": "point", "intensity": 800, "color": [1, 0.5, 0]},
         {"type": "directional", "intensity": 4},
-        {"type": "spot", "intensity": 0, "spot": {}},
+        {"type": "spot", "intensity": 0, "range": 7,
+         "spot": {"innerConeAngle": 0.25, "outerConeAngle": 0.5}},
     ]}});
     let light = |number: usize| json!({"KHR_lights_punctual": {"light": number}});
     document["nodes"] = json!([
@@ -75,13 +76,13 @@ fn a_camera_and_lights() {
     );
     assert!((camera.fov_degrees - 90.0).abs() < 1e-4);
     assert_eq!((scene.render.width, scene.render.height), (360, 240));
-    // 800 candela ten units away are 8, the strongest.
+    // 800 candela ten units away are 8 lux, the strongest, and 1 there.
     assert_eq!(
         scene.lights[..2],
         [
             Light::Point {
                 position: DVec3::Y * 10.0,
-                color: [1.0, 0.5, 0.0]
+                color: [100.0, 50.0, 0.0]
             },
             Light::Directional {
                 direction: DVec3::Z,
@@ -89,8 +90,18 @@ fn a_camera_and_lights() {
             },
         ]
     );
-    assert_eq!(warnings.len(), 2, "{warnings:?}");
-    assert!(warnings[0].contains("several cameras") && warnings[1].contains("spot lights"));
+    let [Some(point), None, Some(spot)] = scene.light_forms[..] else {
+        panic!("{:?}", scene.light_forms);
+    };
+    assert_eq!(point, LightForm::default());
+    assert_eq!(spot.range, Some(7.0));
+    let cone = spot.spot.unwrap();
+    assert_eq!(cone.direction, -DVec3::Z);
+    for (found, radians) in [(cone.inner, 0.25_f64), (cone.outer, 0.5)] {
+        assert!((found - radians.to_degrees()).abs() < 1e-5);
+    }
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(warnings[0].contains("several cameras"));
     assert!(matches!(scene.camera, Some(Camera { .. })));
 }
 
@@ -108,7 +119,6 @@ fn ignored_attributes_are_counted_in_one_warning_each() {
             "COLOR_0 of a primitive is ignored; its surface has its material's color (and 2 times \
              more)",
             "the alpha mask of material \"leaf\" is ignored; it is opaque",
-            "material \"lamp\" glows, which is ignored; it is not brighter",
         ]
     );
 }

@@ -49,7 +49,7 @@ fn the_documented_example_holds_what_it_says() {
         samples: 4,
         depth: 6,
         cutoff: 0.002,
-        shadows: true,
+        ..RenderSettings::default()
     };
     assert_eq!(scene.render, render);
     assert_eq!(scene.ambient, [0.1; 3]);
