@@ -3,7 +3,6 @@
 //! Lengths are in steps of the storage lattice, 1/256 unit.
 
 use super::number::Enclosure;
-use super::world::Item;
 use gridel_core::format::record::UnitBox;
 
 /// A box in lattice steps, low and high on every axis.
@@ -33,8 +32,8 @@ impl Bounds {
 }
 
 /// A hierarchy of boxes: halves along the longest side.
-#[derive(Clone, Debug, Default)]
-pub struct Tree {
+#[derive(Clone, Debug)]
+pub struct Tree<Item> {
     nodes: Vec<Node>,
     items: Vec<Item>,
 }
@@ -51,7 +50,16 @@ struct Node {
 /// Most items of a leaf.
 const LEAF: usize = 2;
 
-impl Tree {
+impl<Item> Default for Tree<Item> {
+    fn default() -> Self {
+        Self {
+            nodes: Vec::new(),
+            items: Vec::new(),
+        }
+    }
+}
+
+impl<Item: Copy> Tree<Item> {
     pub(super) fn of(mut boxes: Vec<(Bounds, Item)>) -> Self {
         let mut tree = Self::default();
         if boxes.is_empty() {
@@ -140,7 +148,7 @@ impl Tree {
     }
 }
 
-fn around(boxes: &[(Bounds, Item)]) -> Bounds {
+fn around<Item>(boxes: &[(Bounds, Item)]) -> Bounds {
     let first = boxes[0].0;
     boxes.iter().fold(first, |all, (it, _)| all.with(*it))
 }

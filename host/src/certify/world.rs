@@ -109,7 +109,7 @@ pub struct Space {
     pub solids: Vec<Solid>,
     /// Those without a box.
     pub unbounded: Vec<u32>,
-    pub tree: Tree,
+    pub tree: Tree<Item>,
 }
 
 /// A whole scene.
