@@ -1,7 +1,8 @@
 //! Scenes as Python holds them.
 
 use crate::closed::closed;
-use crate::query::{self, Any, Closest, FirstPrimitive, Found, How, NONE};
+use crate::hit_arrays::{Arrays, Cast, HitArrays, MeshHitArrays, append, column, rows, zeros};
+use crate::query::{self, Any, FirstPrimitive, Found, How, NONE};
 use crate::rays::{Array, Points, Rays};
 use glam::DVec3;
 use gridel_core::{BlobError, Format, Scene, Settings, Structure};
@@ -11,7 +12,7 @@ use gridel_host::picture::srgb;
 use gridel_host::render::{Job, render};
 use gridel_host::scene::{self, ImportOptions, Imported, Material, Object, Shape, SourceSpan};
 use gridel_host::trace::SceneRay;
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArray};
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArray};
 use pyo3::exceptions::{PyFileNotFoundError, PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -41,9 +42,7 @@ pub struct NativeScene {
     closed: OnceLock<Vec<bool>>,
 }
 
-type Arrays<'py, T> = Bound<'py, PyArray1<T>>;
-
-fn invalid(error: impl std::fmt::Display) -> PyErr {
+pub fn invalid(error: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
@@ -164,6 +163,8 @@ impl NativeScene {
 
     /// Where a ray meets a triangle as it was given, in double precision, and the weights of its second and third corner;
     /// by the hit's own t where the triangle is not a mesh's, or nearly parallel to the ray.
+    // Inlined, it computes what is used there, and nothing else.
+    #[inline(always)]
     fn place(&self, ray: &SceneRay, hit: &Found) -> (f64, DVec3, [f64; 2]) {
         let own = ray.origin + ray.direction * hit.t;
         if hit.instance != NONE {
@@ -190,35 +191,12 @@ impl NativeScene {
         let (u, v) = (weight(relative.cross(to_c)), weight(to_b.cross(relative)));
         (t, place, [u, v])
     }
-}
 
-/// Hits as arrays: t, object, primitive, instance, normal, uv.
-type HitArrays<'py> = (
-    Arrays<'py, f64>,
-    Arrays<'py, u32>,
-    Arrays<'py, u32>,
-    Arrays<'py, u32>,
-    Bound<'py, PyArray2<f32>>,
-    Bound<'py, PyArray2<f32>>,
-);
-
-/// Collects one number of each hit.
-fn column<'py, T: numpy::Element>(
-    py: Python<'py>,
-    hits: &[(usize, Found)],
-    number: impl Fn(&(usize, Found)) -> T,
-) -> Arrays<'py, T> {
-    hits.iter().map(number).collect::<Vec<_>>().into_pyarray(py)
-}
-
-fn rows<'py, T: numpy::Element, const WIDTH: usize>(
-    py: Python<'py>,
-    rows: Vec<[T; WIDTH]>,
-) -> PyResult<Bound<'py, PyArray2<T>>> {
-    let length = rows.len();
-    rows.into_flattened()
-        .into_pyarray(py)
-        .reshape([length, WIDTH])
+    /// The t of a hit, and the weights of the corners of its triangle.
+    fn weights(&self, ray: &SceneRay, hit: &Found) -> (f64, [f32; 2]) {
+        let (t, _, uv) = self.place(ray, hit);
+        (t, uv.map(|weight| weight as f32))
+    }
 }
 
 #[pymethods]
@@ -326,31 +304,50 @@ impl NativeScene {
             Array::borrow(rays, "rays")?,
         );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
-        let (hits, uvs) = py.detach(|| {
-            let mut hits = query::ask::<Closest>(&scene, rays, how);
-            let uvs = query::map(how, &mut hits, |number, hit| {
-                if hit.primitive == NONE {
-                    return [0.0; 2];
-                }
-                let (t, _, uv) = self.place(&rays.get(number), hit);
-                hit.t = t;
-                uv.map(|weight| weight as f32)
-            });
-            (hits, uvs)
-        });
-        let each = |number: fn(&Found) -> u32| -> Arrays<'py, u32> {
-            hits.iter().map(number).collect::<Vec<_>>().into_pyarray(py)
-        };
+        let number = |hit: &Found| (hit.t, hit.primitive);
+        let place = |ray: &SceneRay, hit: &Found| self.weights(ray, hit);
+        let found = Cast::of(py, (&scene, rays, how), true, place, number)?;
         Ok((
-            hits.iter()
-                .map(|hit| hit.t)
-                .collect::<Vec<_>>()
-                .into_pyarray(py),
-            each(|hit| hit.object),
-            each(|hit| hit.primitive),
-            each(|hit| hit.instance),
-            rows(py, hits.iter().map(|hit| hit.normal).collect())?,
-            rows(py, uvs)?,
+            found.t,
+            found.object,
+            found.primitive,
+            found.instance,
+            found.normal,
+            found.uv,
+        ))
+    }
+
+    /// The first hits as Open3D has them: t in single precision, object, primitive counted from its object's first,
+    /// normal, uv.
+    fn cast_rays<'py>(
+        &self,
+        py: Python<'py>,
+        rays: &Bound<'py, PyUntypedArray>,
+        threads: usize,
+    ) -> PyResult<MeshHitArrays<'py>> {
+        let (how, array) = (
+            self.how("f32", None, threads)?,
+            Array::borrow(rays, "rays")?,
+        );
+        let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
+        let number = |hit: &Found| {
+            // A ray without a direction hits nothing there.
+            let t = if hit.t.is_nan() {
+                f32::INFINITY
+            } else {
+                hit.t as f32
+            };
+            let first = self.firsts.get(hit.object as usize).copied();
+            (t, first.map_or(NONE, |first| hit.primitive - first))
+        };
+        let place = |ray: &SceneRay, hit: &Found| self.weights(ray, hit);
+        let found = Cast::of(py, (&scene, rays, how), false, place, number)?;
+        Ok((
+            found.t,
+            found.object,
+            found.primitive,
+            found.normal,
+            found.uv,
         ))
     }
 
@@ -497,16 +494,28 @@ impl NativeScene {
         ];
         let rays = Rays::two(arrays[0].rows("origins")?, arrays[1].rows("directions")?)?;
         let scene = self.chosen(how)?;
-        let (places, numbers, triangles) = py.detach(|| {
+        let chunks = py.detach(|| {
             query::locations(&scene, rays, how, multiple_hits, max_hits, |ray, hit| {
                 self.place(ray, hit).1.to_array()
             })
         });
-        Ok((
-            rows(py, places)?,
-            numbers.into_pyarray(py),
-            triangles.into_pyarray(py),
-        ))
+        let length = chunks.iter().map(|chunk| chunk.0.len()).sum();
+        let places = zeros(py, 3 * length);
+        let [numbers, triangles] = [length; 2].map(|length| zeros(py, length));
+        {
+            let mut places = places.readwrite();
+            let [mut numbers, mut triangles] =
+                [&numbers, &triangles].map(|array| array.readwrite());
+            let mut places = places.as_slice_mut().map_err(invalid)?;
+            let mut numbers = numbers.as_slice_mut().map_err(invalid)?;
+            let mut triangles = triangles.as_slice_mut().map_err(invalid)?;
+            for chunk in chunks {
+                places = append(places, chunk.0.as_flattened());
+                numbers = append(numbers, &chunk.1);
+                triangles = append(triangles, &chunk.2);
+            }
+        }
+        Ok((places.reshape([length, 3])?, numbers, triangles))
     }
 
     /// Whether each point lies in a closed object, or with `closed_only` false in any object by parity.

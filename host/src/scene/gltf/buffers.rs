@@ -4,7 +4,6 @@
 
 use crate::scene::SceneError;
 use crate::scene::access::Access;
-use crate::scene::text::read_file;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use gltf::accessor::sparse::IndexType;
@@ -286,7 +285,7 @@ fn fetch(
     let file = access
         .resolve(path, &name)
         .map_err(|[cause, remedy]| wrong(format!("is in a file: {cause}"), &remedy))?;
-    read_file(&file).map_err(|error| {
+    access.read(&file).map_err(|error| {
         wrong(
             format!("is in {}: {}", file.display(), error.cause),
             "put the file of the buffer beside the scene file",
