@@ -35,6 +35,12 @@ macro_rules! effects {
             /// Smooth normals: meshes are shaded by the normals of their vertices.
             SMOOTH = 6, "smooth", Smooth in smooth, casts 0,
                 required by "a mesh with normals that are not those of its faces";
+            /// Vertex colors: the diffuse color of a mesh is weighted by the colors of its vertices.
+            VERTEX_COLORS = 7, "vertex-colors", VertexColors in vertex_colors, casts 0,
+                required by "a mesh with colors of its vertices";
+            /// Textures: the diffuse color of a mesh is weighted by that of an image.
+            TEXTURE = 8, "texture", Texture in texture, casts 0,
+                required by "a material with a texture";
         }
     };
 }
@@ -122,7 +128,7 @@ impl Effects {
     /// use gridel_core::Effects;
     ///
     /// let opaque = Effects::ALL.without(Effects::GLASS).without(Effects::ABSORPTION);
-    /// assert_eq!(opaque.to_string(), "shadow, highlight, mirror, checker, smooth");
+    /// assert_eq!(opaque.to_string(), "shadow, highlight, mirror, checker, smooth, vertex-colors, texture");
     /// ```
     pub const fn without(self, other: Effects) -> Effects {
         Effects(self.0 & !other.0)

@@ -3,6 +3,7 @@
 //! `search` tests the primitives to which a structure leads, `clusters` those in leaves of eight, `unbounded`
 //! those that lie in no structure; `hit` is the answer, and `smooth` its normal for shading.
 
+mod attributes;
 mod clusters;
 #[cfg(feature = "all-structures")]
 mod dynamic;

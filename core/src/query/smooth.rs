@@ -95,7 +95,7 @@ impl<N: Number> Hit<N> {
 
     /// The slot of a triangle that has one.
     #[inline(always)]
-    fn triangle_slot(&self) -> Option<usize> {
+    pub(super) fn triangle_slot(&self) -> Option<usize> {
         let leaf = Leaf::from_word(self.place)?;
         (leaf.kind == Kind::Triangle).then_some(leaf.first as usize)
     }

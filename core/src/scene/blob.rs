@@ -1,12 +1,13 @@
 //! A scene: a checked view of a blob.
 
 use crate::accel::{Space, StructureViews};
-use crate::format::record::{Header, Light, Material, UnitBox, View};
+use crate::format::record::{Header, Light, Material, Texture, UnitBox, View};
 use crate::format::{Effects, Indices, Kind, Structure};
 use crate::geometry::{Geometry, PrimitiveId};
 use crate::instances::placed::Placed;
+use crate::scene::textures::Textures;
 use crate::simd::SimdLevel;
-use crate::target::{InstancesOnly, WideOnly, inline_on_hosts_hint_on_boards};
+use crate::target::{InstancesOnly, TextureOnly, WideOnly, inline_on_hosts_hint_on_boards};
 
 /// A checked view of a blob: a few hundred bytes that borrow from it.
 ///
@@ -25,6 +26,8 @@ pub struct Scene<'a> {
     pub(in crate::scene) object_material: Indices<'a>,
     pub(in crate::scene) order: Indices<'a>,
     pub(in crate::scene) effects: Effects,
+    /// Its textures.
+    pub(crate) textures: TextureOnly<Textures<'a>>,
     /// Its instances and parts.
     pub(crate) placed: InstancesOnly<Placed<'a, Scene<'a>>>,
     /// Whether any primitive's test needs the norm of the ray's direction.
@@ -163,6 +166,21 @@ impl<'a> Scene<'a> {
     /// Number of vertices that have a normal: see [`smooth`](crate::geometry::smooth).
     pub fn normals(&self) -> usize {
         self.space.shapes.normals().len()
+    }
+
+    /// The colors of the first vertices: see [`attributes`](crate::geometry::attributes).
+    pub fn vertex_colors(&self) -> &'a [[u8; 4]] {
+        self.space.shapes.colors()
+    }
+
+    /// Number of vertices that have texture coordinates: see [`attributes`](crate::geometry::attributes).
+    pub fn texture_coordinates(&self) -> usize {
+        self.space.shapes.coordinates().len()
+    }
+
+    /// The textures.
+    pub fn textures(&self) -> &'a [Texture] {
+        self.textures.get().map_or(&[], |it| it.textures)
     }
 
     /// The box of a primitive, given by its kind and its slot among those of that kind; `None` for one without bounds.

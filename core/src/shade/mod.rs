@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | `camera` | a ray leaves the camera | |
 //! | `arrive` | a ray has come to a hit | absorption |
-//! | `surface` | a ray hits a surface | checker, smooth |
+//! | `surface` | a ray hits a surface | checker, smooth, vertex colors, texture |
 //! | `face` | a surface faces a light | smooth |
 //! | `reflect` | a surface reflects a light | highlight |
 //! | `light` | light arrives at a surface | shadow |

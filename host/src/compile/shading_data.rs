@@ -282,7 +282,7 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
             }
         }),
         shininess: material.shininess.clamp(1, 1024),
-        spare: 0,
+        maps: 0,
     }
 }
 
