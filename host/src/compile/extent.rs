@@ -178,6 +178,7 @@ mod tests {
         shapes.extend((0..40).map(|_| ball(random)));
         let object = |shape| Object {
             normals: Normals::default(),
+            attributes: Attributes::default(),
             name: String::new(),
             material: 0,
             shape,

@@ -301,6 +301,7 @@ fn object(shape: Shape, normals: Normals) -> Object {
         material: 0,
         shape,
         normals,
+        attributes: Attributes::default(),
         place: SourceSpan::default(),
     }
 }

@@ -7,6 +7,7 @@
 //! [`Scene::display_values`] says otherwise.
 
 mod access;
+mod attributes;
 #[cfg(test)]
 mod bad;
 #[cfg(test)]
@@ -14,6 +15,7 @@ mod damaged;
 mod error;
 mod flatten;
 mod gzip;
+mod image;
 mod importer;
 mod joint;
 mod model;
@@ -29,11 +31,14 @@ pub(crate) mod test_chains;
 #[cfg(test)]
 mod test_scenes;
 mod text;
+mod texture;
 mod track;
 mod words;
 
 pub use crate::shape::Shape;
+pub use attributes::Attributes;
 pub use error::SceneError;
+pub use image::Image;
 pub use importer::Importer;
 pub(crate) use joint::JointTracks;
 pub use joint::{LARGEST_SCALE, LEAST_SCALE};
@@ -47,6 +52,7 @@ pub use options::{
 pub use placement::Placement;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
+pub use texture::{Texture, Wrap, linear_of_srgb};
 pub use track::{Interpolation, Key, TICKS_PER_SECOND, Track, TrackTarget};
 
 use access::Access;

@@ -1,8 +1,10 @@
 //! The scene as data.
 
+use super::attributes::Attributes;
 use super::normals::{Normals, NormalsChoice};
 use super::placement::Placement;
 use super::source_span::SourceSpan;
+use super::texture::Texture;
 use super::track::Track;
 use crate::shape::{Shape, unit};
 use glam::DVec3;
@@ -111,6 +113,8 @@ pub struct Material {
     pub ior: f64,
     /// Absorption inside glass: the coefficient of Beer's law per scene unit of path length.
     pub absorption: Color,
+    /// The image that weights the diffuse color of meshes with texture coordinates.
+    pub texture: Option<Texture>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,6 +140,8 @@ pub struct Object {
     pub shape: Shape,
     /// The normals that a mesh is shaded with. Other shapes have none.
     pub normals: Normals,
+    /// Colors of vertices, and texture coordinates. Other shapes have none.
+    pub attributes: Attributes,
     /// Where the scene file says so, for messages.
     pub place: SourceSpan,
 }
@@ -221,6 +227,7 @@ impl Default for Material {
             transmit: [0.0; 3],
             ior: 1.5,
             absorption: [0.0; 3],
+            texture: None,
         }
     }
 }

@@ -94,6 +94,7 @@ pub fn chain(random: &mut Random, all_scale: bool) -> Scene {
         name: String::new(),
         objects: vec![Object {
             normals: Normals::default(),
+            attributes: Attributes::default(),
             name: String::new(),
             material: 0,
             shape: Shape::Sphere(Sphere {

@@ -257,6 +257,7 @@ pub fn thirty_two_balls() -> Compiled {
         name: String::from("ball"),
         objects: vec![Object {
             normals: Normals::default(),
+            attributes: Attributes::default(),
             name: String::from("ball"),
             material: 0,
             shape: Shape::Sphere(Sphere {

@@ -206,6 +206,7 @@ impl<'a> Importer<'a> {
             shape,
             place: self.source.place(line.number),
             normals: Normals::default(),
+            attributes: Attributes::default(),
         });
     }
 }

@@ -161,6 +161,7 @@ impl<'p> Placer<'p> {
                         material,
                         shape,
                         normals: Normals::default(),
+                        attributes: item.attributes.transformed(&transform),
                         place,
                     };
                     if let Some(degrees) = item.smooth {
@@ -204,6 +205,7 @@ impl<'p> Placer<'p> {
             name,
             material: materials[object.material],
             normals: Normals::default(),
+            attributes: object.attributes.transformed(&site.transform),
             place: object.place.clone(),
         };
         match item.smooth {
