@@ -153,7 +153,7 @@ impl<'s> Shapes<'s> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Material, Normals, SourceSpan};
+    use crate::scene::{Attributes, Material, Normals, SourceSpan};
     use crate::shape::random::Random;
     use glam::DQuat;
 

@@ -34,6 +34,7 @@ mod shading_data;
 mod sizes;
 mod structures;
 mod support;
+mod textures;
 mod tracks;
 mod vertices;
 mod volumes;
@@ -183,11 +184,13 @@ fn compile_as(
     }
     let (lattice, snapped, placed) = snap(role, scene, extent, options.lattice_bits)?;
     let structures = held(&options.structures);
-    let smooth = match role {
-        Role::Part { .. } => snapped.smooth.clone(),
-        Role::Whole(parts) => [&snapped.smooth[..], &parts.smooth[..]].concat(),
+    let required_by = match role {
+        Role::Part { .. } => snapped.required_by.clone(),
+        Role::Whole(parts) => [&snapped.required_by[..], &parts.required_by[..]].concat(),
     };
-    let shading_data = shading_data::ShadingData::of(&shapes, &lattice, extent, smooth)?;
+    let budget = options.texture_bytes;
+    let shading_data =
+        shading_data::ShadingData::of(&shapes, &lattice, extent, required_by, budget)?;
     // WebAssembly without a system has no clock, and asking for the time would panic.
     let has_clock = !cfg!(all(target_family = "wasm", target_os = "unknown"));
     let started = has_clock.then(Instant::now);
@@ -389,9 +392,9 @@ impl Hierarchies {
         };
         // The eight-wide hierarchy holds triangles and spheres itself; alone it needs no slots of them.
         let has_wide = structures.contains(&Structure::Wide);
-        // Normals belong to vertices, which slots lead to.
+        // What vertices carry is found by slots.
         let wide_alone = has_wide
-            && snapped.normals.is_empty()
+            && snapped.corners.is_empty()
             && structures
                 .iter()
                 .all(|it| [Structure::Wide, Structure::List].contains(it));

@@ -1,6 +1,7 @@
-//! Distinct vertices of meshes: places on the lattice, with the normals that they are shaded with.
+//! Distinct vertices of meshes: places on the lattice, with normals, colors and texture coordinates.
 
-use crate::scene::Normals;
+use super::textures;
+use crate::scene::{Attributes, Color, Normals};
 use crate::shape::unit;
 use glam::DVec3;
 use gridel_core::geometry::smooth::{LARGEST, encode};
@@ -12,42 +13,136 @@ type Place = [i32; 3];
 /// A normal as a blob holds it.
 pub type Stored = [i16; 2];
 
+/// What a vertex carries beside its place.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Corner {
+    pub normal: Option<Stored>,
+    /// Red, green, blue and alpha as a blob holds them.
+    pub color: Option<[u8; 4]>,
+    /// Texture coordinates with 20 fraction bits.
+    pub coordinates: Option<[i32; 2]>,
+}
+
+impl Corner {
+    const PLAIN: Self = Self {
+        normal: None,
+        color: None,
+        coordinates: None,
+    };
+
+    /// What comes first among the vertices of a blob has the lowest rank.
+    pub fn rank(&self) -> usize {
+        usize::from(self.normal.is_none()) << 2
+            | usize::from(self.coordinates.is_none()) << 1
+            | usize::from(self.color.is_none())
+    }
+
+    /// The most that a rank can be.
+    pub const RANKS: usize = 8;
+}
+
 /// Vertices that were numbered, in order.
 #[derive(Debug, Default)]
 pub struct Vertices {
-    numbers: HashMap<(Place, Option<Stored>), u32>,
+    plain: HashMap<Place, u32>,
+    numbers: HashMap<(Place, Corner), u32>,
     places: Vec<Place>,
-    /// Empty until there is one.
-    normals: Vec<Option<Stored>>,
+    /// Empty until there is one that is not plain.
+    corners: Vec<Corner>,
 }
 
 impl Vertices {
     /// The number of a vertex.
-    pub fn number(&mut self, place: Place, normal: Option<Stored>) -> u32 {
-        *self.numbers.entry((place, normal)).or_insert_with(|| {
-            if normal.is_some() || !self.normals.is_empty() {
-                self.normals.resize(self.places.len(), None);
-                self.normals.push(normal);
+    pub fn number(&mut self, place: Place, corner: Corner) -> u32 {
+        let next = self.places.len() as u32;
+        let number = if corner == Corner::PLAIN {
+            *self.plain.entry(place).or_insert(next)
+        } else {
+            *self.numbers.entry((place, corner)).or_insert(next)
+        };
+        if number == next {
+            if corner != Corner::PLAIN || !self.corners.is_empty() {
+                self.corners.resize(self.places.len(), Corner::PLAIN);
+                self.corners.push(corner);
             }
             self.places.push(place);
-            self.places.len() as u32 - 1
-        })
+        }
+        number
     }
 
     /// A vertex that was numbered.
-    pub fn get(&self, number: u32) -> (Place, Option<Stored>) {
-        let normal = self.normals.get(number as usize).copied().flatten();
-        (self.places[number as usize], normal)
+    pub fn get(&self, number: u32) -> (Place, Corner) {
+        let corner = self.corners.get(number as usize).copied();
+        (self.places[number as usize], corner.unwrap_or_default())
     }
 
-    /// All places, and all normals or none.
-    pub fn into_parts(self) -> (Vec<Place>, Vec<Option<Stored>>) {
-        (self.places, self.normals)
+    /// All places, and what all carry, or nothing.
+    pub fn into_parts(self) -> (Vec<Place>, Vec<Corner>) {
+        (self.places, self.corners)
+    }
+}
+
+/// What the corners of a mesh's triangles carry beside their places.
+#[derive(Debug, Default)]
+pub struct Corners {
+    normals: Vec<Option<[Stored; 3]>>,
+    /// For each vertex.
+    colors: Vec<[u8; 4]>,
+    /// For each triangle.
+    coordinates: Vec<Option<[[i32; 2]; 3]>>,
+}
+
+/// How far texture coordinates reach: 2048 repetitions.
+pub const MOST_COORDINATE: f64 = 2048.0;
+
+impl Corners {
+    /// Those of a mesh, whose attributes are in place. `None` where texture coordinates are out of range.
+    pub fn of(normals: &Normals, attributes: &Attributes, display_values: bool) -> Option<Self> {
+        let coordinates = attributes.coordinates.iter().map(|it| {
+            let is_valid = it.abs().max_element() < MOST_COORDINATE;
+            is_valid.then(|| {
+                (*it * f64::from(1 << 20))
+                    .round()
+                    .to_array()
+                    .map(|it| it as i32)
+            })
+        });
+        let coordinates: Vec<[i32; 2]> = coordinates.collect::<Option<_>>()?;
+        let at = |corner: u32| coordinates.get(corner as usize).copied();
+        let of_triangle = |&[a, b, c]: &[u32; 3]| Some([at(a)?, at(b)?, at(c)?]);
+        let root = |channel: f64| textures::root(channel, display_values);
+        let color = |it: &Color| [root(it[0]), root(it[1]), root(it[2]), 255];
+        Some(Self {
+            normals: stored(normals),
+            colors: attributes.colors.iter().map(color).collect(),
+            coordinates: attributes.triangles.iter().map(of_triangle).collect(),
+        })
+    }
+
+    /// Whether no corner carries anything.
+    pub fn is_plain(&self) -> bool {
+        self.normals.is_empty() && self.colors.is_empty() && self.coordinates.is_empty()
+    }
+
+    /// Whether vertices have colors.
+    pub fn is_colored(&self) -> bool {
+        !self.colors.is_empty()
+    }
+
+    /// The corners of a triangle, given its number and vertices.
+    pub fn of_triangle(&self, number: usize, vertices: [u32; 3]) -> [Corner; 3] {
+        let normals = self.normals.get(number).copied().flatten();
+        let coordinates = self.coordinates.get(number).copied().flatten();
+        [0, 1, 2].map(|k: usize| Corner {
+            normal: normals.map(|it| it[k]),
+            color: self.colors.get(vertices[k] as usize).copied(),
+            coordinates: coordinates.map(|it| it[k]),
+        })
     }
 }
 
 /// The stored normals of the corners of each triangle of a mesh, `None` for one that is flat; nothing for a flat mesh.
-pub fn stored(normals: &Normals) -> Vec<Option<[Stored; 3]>> {
+fn stored(normals: &Normals) -> Vec<Option<[Stored; 3]>> {
     let vectors: Vec<Stored> = normals
         .vectors
         .iter()
@@ -60,35 +155,47 @@ pub fn stored(normals: &Normals) -> Vec<Option<[Stored; 3]>> {
         .collect()
 }
 
-/// The normal of a point on an edge of a triangle, or at a corner.
-pub fn normal_at(
-    point: Place,
-    corners: [Place; 3],
-    normals: [Option<Stored>; 3],
-) -> Option<Stored> {
-    let [Some(a), Some(b), Some(c)] = normals else {
-        return None;
-    };
-    let normals = [a, b, c];
-    if let Some(corner) = corners.iter().position(|it| *it == point) {
-        return Some(normals[corner]);
+/// What a point on an edge of a triangle carries, or at a corner.
+pub fn corner_at(point: Place, places: [Place; 3], corners: [Corner; 3]) -> Corner {
+    if let Some(corner) = places.iter().position(|it| *it == point) {
+        return corners[corner];
     }
     let place = |place: Place| DVec3::from_array(place.map(f64::from));
     // The edge that it lies on, and how far along it.
-    let (mut nearest, mut mean) = (f64::INFINITY, DVec3::Z);
+    let (mut nearest, mut edge) = (f64::INFINITY, (0, 1, 0.0));
     for (from, to) in [(0, 1), (1, 2), (2, 0)] {
-        let (start, way) = (
-            place(corners[from]),
-            place(corners[to]) - place(corners[from]),
-        );
+        let (start, way) = (place(places[from]), place(places[to]) - place(places[from]));
         let along = (place(point) - start).dot(way) / way.length_squared();
         let apart = (start + way * along - place(point)).length();
         if apart < nearest {
             nearest = apart;
-            mean = decoded(normals[from]).lerp(decoded(normals[to]), along.clamp(0.0, 1.0));
+            edge = (from, to, along.clamp(0.0, 1.0));
         }
     }
-    Some(encode(mean.to_array()))
+    let (from, to, along) = edge;
+    let (from, to) = (corners[from], corners[to]);
+    let is_smooth = corners.iter().all(|it| it.normal.is_some());
+    let normal = from.normal.zip(to.normal).filter(|_| is_smooth);
+    let mixed = |from: f64, to: f64| from + (to - from) * along;
+    let color = from.color.zip(to.color);
+    let coordinates = from.coordinates.zip(to.coordinates);
+    Corner {
+        normal: normal.map(|(from, to)| {
+            let mean = decoded(from).lerp(decoded(to), along);
+            encode(mean.to_array())
+        }),
+        color: color.map(|(from, to)| {
+            [0, 1, 2, 3].map(|k: usize| {
+                // Roots of linear light, but for alpha.
+                let power = if k < 3 { 2.0 } else { 1.0 };
+                let light = |it: u8| libm::pow(f64::from(it), power);
+                libm::pow(mixed(light(from[k]), light(to[k])), 1.0 / power).round() as u8
+            })
+        }),
+        coordinates: coordinates.map(|(from, to)| {
+            [0, 1].map(|k: usize| mixed(from[k].into(), to[k].into()).round() as i32)
+        }),
+    }
 }
 
 /// The direction of length 1 that a stored normal stands for.

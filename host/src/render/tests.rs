@@ -5,7 +5,7 @@ use crate::blob::Blob;
 use crate::compile::{Options, compile};
 use crate::sample::icosphere;
 use crate::scene::{
-    Camera, Instance, Light, Material, Normals, NormalsChoice, Object, Part, Placement,
+    Attributes, Camera, Instance, Light, Material, Normals, NormalsChoice, Object, Part, Placement,
     Scene as Model, Shape, SourceSpan,
 };
 use glam::{DQuat, DVec3};

@@ -1,8 +1,8 @@
 //! Random chains of joints for tests.
 
 use super::{
-    Instance, Interpolation, Joint, Key, Material, Normals, Object, Part, Placement, Scene,
-    SourceSpan, Track, TrackTarget,
+    Attributes, Instance, Interpolation, Joint, Key, Material, Normals, Object, Part, Placement,
+    Scene, SourceSpan, Track, TrackTarget,
 };
 use crate::shape::{Shape, Sphere};
 use glam::{DQuat, DVec3, DVec4};

@@ -278,6 +278,7 @@ fn object(shape: Shape) -> Object {
         name: String::from("thing"),
         material: 0,
         normals: Default::default(),
+        attributes: Default::default(),
         shape,
         place: SourceSpan::default(),
     }

@@ -4,7 +4,7 @@ use crate::shape::{Cone, Sphere};
 use super::Importer;
 use super::reader::{Line, Lines};
 use crate::scene::polygon::{self, MAX_CONCAVE};
-use crate::scene::{Material, Normals, Object, SceneError, Shape};
+use crate::scene::{Material, Attributes, Normals, Object, SceneError, Shape};
 use glam::DVec3;
 
 impl<'a> Importer<'a> {
