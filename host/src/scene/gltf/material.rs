@@ -87,6 +87,7 @@ pub(super) fn read(material: &gltf::Material<'_>) -> Material {
             absorption(volume.attenuation_color(), volume.attenuation_distance())
         }),
         name,
+        texture: None,
     }
 }
 
