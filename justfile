@@ -47,6 +47,10 @@ record-accuracy:
 peers:
     cd tests/peers && cargo run --release
 
+# Write the header of the library for C
+header:
+    cd core/c/header && cargo run
+
 # Check that the crates can be packaged
 package:
     cargo package --workspace --exclude gridel-tests --no-verify --allow-dirty

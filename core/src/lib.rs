@@ -6,7 +6,8 @@
 //! see [`Prevalidated`]. Two things can be asked of a scene:
 //!
 //! - **rays**: [`Scene::closest_hit`] and [`Scene::any_hit`] with a [`Ray`] of your own, or [`closest_hit`],
-//!   [`closest_primitive`] and [`any_hit`] for one structure and for counting;
+//!   [`closest_primitive`] and [`any_hit`] for one structure and for counting; [`all_hits`] lists every crossing in
+//!   order, [`count_hits`] counts them, and [`contains`] says whether a point lies in an object;
 //! - **pictures**: a [`Renderer`] gives pixels row by row or for any rectangle, and a
 //!   [`Cursor`](render::Cursor) gives them a bounded number of rays at a time, row by row or from coarse to
 //!   fine.
@@ -85,7 +86,10 @@ pub use format::{Aligned, BlobError, Effects, Kind, Requirements, Structure};
 pub use number::{Angle, Fixed, Format};
 pub use observe::count::{Counters, NoCount, Observer};
 pub use observe::event::{Event, RayKind};
-pub use query::{Hit, PrimitiveHit, any_hit, closest_hit, closest_primitive};
+pub use query::{
+    Hit, HitList, PrimitiveHit, Solid, all_hits, any_hit, closest_hit, closest_primitive,
+    containment_ray, contains, count_hits,
+};
 pub use ray::{Pencil, Ray, RayError};
 pub use render::{Camera, Renderer, Rgb565, Rgb888, Settings, Up, Workspace};
 pub use scene::{Motion, Names, Parts, Poses, PosesView, Position, Prevalidated, Scene};

@@ -123,10 +123,13 @@ impl Emitted<'_> {
              pub const WIDTH: usize = {width};\n\
              /// Rows.\n\
              pub const HEIGHT: usize = {height};\n\
-             /// A step of `gridel_core::Position` is 2 to this power scene units, counted from\n\
-             /// {origin}.\n\
+             /// A step of `gridel_core::Position` is 2 to this power scene units.\n\
              #[allow(dead_code)]\n\
              pub const COORDINATE_EXPONENT: i32 = {exponent};\n\
+             /// Where coordinates are counted from, in scene units.\n\
+             #[allow(dead_code)]\n\
+             pub const COORDINATE_ORIGIN: [f64; 3] = {origin:?};\n\
+             {unit}\
              \n\
              /// The number format.\n\
              pub type Number = {number};\n\
@@ -172,10 +175,8 @@ impl Emitted<'_> {
             mesh = self.mesh(),
             stack = scene.stack_depth(),
             exponent = scene.coordinate_exponent(),
-            origin = match scene.header() {
-                header if header.coordinate_origin == 0 => format!("{:?}", header.origin),
-                _ => String::from("the scene's origin"),
-            },
+            origin = coordinate_origin(scene),
+            unit = scene_unit(scene.coordinate_exponent()),
             waiting = scene.effects().work_depth(view.depth),
             effects = effects,
             bits = effects.0,
@@ -183,6 +184,29 @@ impl Emitted<'_> {
             height = view.height,
         )
     }
+}
+
+/// Where scene coordinates are counted from: the scene's own origin, or the lattice's where that is too far away.
+fn coordinate_origin(scene: &Scene<'_>) -> [f64; 3] {
+    let header = scene.header();
+    match header.coordinate_origin {
+        0 => header.origin,
+        _ => [0.0; 3],
+    }
+}
+
+/// The constant that states a scene unit in steps; nothing where a step is longer than a unit, or the number is beyond
+/// 64 bits.
+fn scene_unit(exponent: i32) -> String {
+    if !(-62..=0).contains(&exponent) {
+        return String::new();
+    }
+    format!(
+        "/// A scene unit in steps of `gridel_core::Position`.\n\
+         #[allow(dead_code)]\n\
+         pub const UNIT: i64 = 1 << {};\n",
+        -exponent
+    )
 }
 
 impl Emitted<'_> {

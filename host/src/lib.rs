@@ -21,6 +21,7 @@
 //! | view a scene live, from coarse to fine | [`view`] |
 //! | measure what accuracy costs in time | [`accuracy`] |
 //! | hold a scene to what is promised | [`verify`] |
+//! | enclose the exact picture | [`certify`] |
 //! | draw charts and heat maps | [`report`] |
 //! | know a shape, on the lattice and exactly | [`shape`] |
 //! | find objects that a number format cannot resolve | [`resolution`] |
@@ -50,6 +51,7 @@
 pub mod accuracy;
 pub mod animation;
 pub mod blob;
+pub mod certify;
 pub mod check;
 pub mod compare;
 pub mod compile;

@@ -2,7 +2,8 @@
 
 use gridel_core::{Format, Structure};
 use gridel_host::accuracy::{
-    Bench, Parameter, Point, Results, cheapest, frontier, page, reference_setting, sentences, sweep,
+    Bench, Limits, Parameter, Point, Results, answers, cheapest, cheapest_within, frontier,
+    given_up, most_accurate, page, plot, reference_setting, sentences, sweep, worths,
 };
 use gridel_host::measure::board::PICTURE_COSTS;
 use gridel_tests::scenes;
@@ -14,19 +15,22 @@ fn swept(name: &str) -> Results {
     let mut bench = Bench::new(&scene, Structure::Flagged, [32, 24]);
     let reference = bench.reference(64).expect("a reference");
     let mut points = Vec::new();
-    for setting in sweep(bench.base(), bench.is_secondary().expect("a blob")) {
+    for setting in sweep(bench.base(), bench.effects().expect("a blob")) {
         let (mut point, _) = bench.measure(&setting, &reference).expect("a point");
         let work = point.cost.tests + point.cost.rays;
         point.cost.seconds = vec![1e-6 * work as f64; 2];
         points.push(point);
     }
-    Results {
+    let mut results = Results {
         key: String::new(),
         instances: bench.instances().expect("a blob"),
         base: bench.base(),
         reference,
         points,
-    }
+        effects: Vec::new(),
+    };
+    results.effects = worths(&mut bench, &results).expect("blobs");
+    results
 }
 
 #[test]
@@ -70,14 +74,92 @@ fn more_work_is_more_right() {
     let board = cheapest(&results.points, bound, Some("cortex-m3")).expect("a setting");
     assert_eq!(board.setting.format, Format::Fixed);
     assert!(cheapest(&results.points, 0.0, None).is_none());
-    assert_eq!(sentences(&base, &results.points).len(), 6);
+    assert!(sentences(&base, &results.points).len() >= 5);
 
     let page = page("a <scene>", [32, 24], &results, &[]).expect("a page");
-    assert!(page.contains("a &lt;scene&gt;") && page.matches("<svg").count() == 3);
     assert!(
-        !page.contains("http://")
-            || page.matches("http://www.w3.org").count() == page.matches("http://").count()
+        page.contains("a &lt;scene&gt;") && !page.contains("{{") && !page.contains("src=\"http")
     );
+    assert_eq!(
+        page.matches("http://").count(),
+        page.matches("http://www.w3.org").count()
+    );
+    assert!(page.contains("What each effect is worth"));
+    assert!(plot(&results).expect("a plot").starts_with("<svg"));
+    assert_eq!(answers(&results).len(), 3);
+
+    parts_of_errors_are_those_of_formats_and_samples(&results);
+    effects_are_ordered_by_what_they_are_worth(&results);
+
+    // Limits of rays hold, alone and with one of the error.
+    let few = most_accurate(&results.points, 8.0, None).expect("a setting");
+    assert!(few.rays_per_pixel() <= 8.0);
+    let better = |it: &Point| it.rays_per_pixel() <= 8.0 && it.errors.rmse < few.errors.rmse;
+    assert!(!results.points.iter().any(better));
+    assert!(most_accurate(&results.points, 0.5, None).is_none());
+    let limits = Limits {
+        error: few.errors.rmse,
+        rays: 8.0,
+    };
+    let both = cheapest_within(&results.points, limits, None).expect("a setting");
+    assert!(limits.hold(both));
+}
+
+/// The error of `f64` is that of sampling alone, and no format adds as much as a sample does.
+fn parts_of_errors_are_those_of_formats_and_samples(results: &Results) {
+    for point in &results.points {
+        let (errors, parts) = (&point.errors, &point.parts);
+        if point.setting.format == Format::F64 {
+            assert_eq!((parts.arithmetic, parts.arithmetic_largest), (0.0, 0.0));
+            assert!(
+                (parts.sampling - errors.rmse).abs() < 1e-12,
+                "{}",
+                point.name
+            );
+        }
+        // A triangle's inequality.
+        assert!(
+            errors.rmse <= parts.sampling + parts.arithmetic + 1e-12,
+            "{}",
+            point.name
+        );
+        assert!(
+            parts.arithmetic <= parts.arithmetic_largest,
+            "{}",
+            point.name
+        );
+    }
+}
+
+/// Every effect of the scene has a setting without it, and the first to go changes the picture least for what it saves.
+fn effects_are_ordered_by_what_they_are_worth(results: &Results) {
+    let base = results.base;
+    let left_out = |it: &&Point| it.setting.differs(&base) == [Parameter::Effects];
+    let alone: Vec<&Point> = results.points.iter().filter(left_out).collect();
+    assert!(alone.len() > 2);
+    assert_eq!(results.effects.len(), alone.len());
+    let all = &results.points[0];
+    let work = (all.cost.rays + all.cost.tests) as f64 / all.cost.pixels as f64;
+    let prices = results.effects.iter().map(|worth| {
+        let point = alone
+            .iter()
+            .find(|it| it.name == worth.without)
+            .expect("a point");
+        assert_eq!(Some(worth.lost), point.lost);
+        worth.lost.rmse / ((worth.rays + worth.tests) / work).max(0.01)
+    });
+    assert!(prices.collect::<Vec<_>>().is_sorted());
+    let shadow = results
+        .effects
+        .iter()
+        .find(|it| it.effect == "shadow")
+        .expect("shadows");
+    assert!(shadow.lost.rmse > 0.0 && shadow.rays > 0.5 && shadow.instructions.is_some());
+    // One after the other, until none is left.
+    let given_up = given_up(&base, &results.effects);
+    assert_eq!(given_up.len() + 1, results.effects.len());
+    let last = given_up.last().expect("several effects");
+    assert_eq!(last.without.names().count(), results.effects.len());
 }
 
 /// The reference has no error against itself.

@@ -1,8 +1,8 @@
 //! Fixed point (hard cases E). The operations themselves are tested beside `Fixed` in the core,
 //! mirrors and scales in `transforms`, watertight meshes in `watertight`.
 //!
-//! With the feature `strict-ranges` a number that wraps panics, in these and in all other tests of
-//! this folder.
+//! A number that wraps panics, in these and in all other tests of the project: they are built with the core's feature
+//! `strict-ranges`.
 
 use glam::DVec3;
 use gridel_core::format::record::UnitBox;
@@ -24,7 +24,7 @@ use gridel_tests::shapes::reach;
 const END: f64 = 32_764.0;
 
 /// Every corner of the ranges: triangles whose corners are at the lattice's ends, middle and next
-/// to them, hit by rays from and to such places (E1, E2, E5). With `strict-ranges` a number that wraps panics.
+/// to them, hit by rays from and to such places (E1, E2, E5). A number that wraps panics.
 #[test]
 fn no_number_wraps_at_the_corners_of_the_lattice() {
     let places = [-END, -END + 1.0 / 256.0, 0.0, 1.0 / 256.0, END];

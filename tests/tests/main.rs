@@ -3,13 +3,17 @@
 //! own.
 
 mod accuracy;
+mod all_hits;
 mod apex;
 #[path = "blob/main.rs"]
 mod blob;
 mod boxes;
+mod c_header;
+mod certify;
 mod cylinder_cube;
 #[path = "deform/main.rs"]
 mod deform;
+mod distances;
 #[path = "documents/main.rs"]
 mod documents;
 mod explain;

@@ -11,6 +11,9 @@ pub(crate) type Part = u8;
 /// Added to the part where a ray leaves a solid.
 pub(crate) const LEAVING: Part = 1 << 7;
 
+/// Added to the part where a ray enters a solid for the second time, and where it leaves it then.
+pub(crate) const LATER: Part = 1 << 6;
+
 /// Where a line enters and leaves a primitive; the same place twice for a flat one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing<N> {

@@ -8,6 +8,7 @@ pub mod attributes;
 pub(crate) mod cluster;
 mod crossing;
 mod flat;
+mod half_open;
 mod layouts;
 pub(crate) mod pack;
 pub(crate) mod primitive;
@@ -21,11 +22,11 @@ mod surface;
 pub(crate) mod triangle;
 
 pub(crate) use cluster::{Clusters, Packs, Packs24, Strips};
-pub(crate) use crossing::{Crossing, LEAVING, Part, accept, cross_plane};
+pub(crate) use crossing::{Crossing, LATER, LEAVING, Part, accept, cross_plane};
 pub(crate) use primitive_id::PrimitiveId;
 pub use project::Project;
 pub use shapes::Geometry;
-pub(crate) use shapes::Shapes;
+pub(crate) use shapes::{Shapes, is_flat};
 pub(crate) use surface::Surface;
 
 use crate::format::kind::shapes;

@@ -35,6 +35,11 @@ pub(crate) trait Primitive: Pod {
     /// A shape that a line can enter more than once chooses the first interval that ends at or after the ray's `tmin`.
     fn cross<N: Arithmetic>(&self, ray: &Ray<N>, recip_norm2: N) -> Option<Crossing<N>>;
 
+    /// The crossing behind one that leaves the shape at `after`; `None` where the line enters it no more, as is the rule.
+    fn cross_after<N: Arithmetic>(&self, _: &Ray<N>, _: N, _after: N) -> Option<Crossing<N>> {
+        None
+    }
+
     /// The distance from a point of a ray to where its line crosses a shape without a box, for which
     /// [`cross`](Self::cross) is not called.
     fn cross_far<N: Arithmetic>(&self, _place: [N::Wide; 3], _slope: [N; 3]) -> Option<N::Wide> {

@@ -6,6 +6,7 @@ mod float;
 mod tests;
 
 use crate::number::Arithmetic;
+use core::cmp::Ordering;
 
 /// Arithmetic of vertices that are projected along a ray.
 pub trait Project: Arithmetic {
@@ -29,6 +30,8 @@ pub trait Project: Arithmetic {
     /// Whether the triangle of three points of the plane contains the origin, edges included; not if
     /// all edges lead through it. Exact for either orientation.
     fn surrounds_origin(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool;
+    /// On which side of the origin a line from one point of the plane to another runs: how `p x q` compares to 0, exactly.
+    fn side(p: [Self; 2], q: [Self; 2]) -> Ordering;
     /// Whether three numbers are certain to be all above or all below zero, where that is cheaper to
     /// see than what comes of it.
     #[inline(always)]

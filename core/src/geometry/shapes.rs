@@ -61,7 +61,7 @@ macro_rules! registry {
 
         /// Whether a shape has no inside: its front is the side to which its normal points.
         #[inline(always)]
-        const fn is_flat(kind: Kind) -> bool {
+        pub(crate) const fn is_flat(kind: Kind) -> bool {
             match kind {
                 Kind::Triangle => true,
                 Kind::Sphere => false,

@@ -225,5 +225,26 @@ pub(crate) fn moved<N: Arithmetic>(place: [N; 3], way: [N; 3]) -> [N; 3] {
     moved
 }
 
+/// The weights of a triangle's corners at a point of it, given its normal or the opposite: at least 0, and 1 in sum.
+pub(crate) fn barycentric<N: Arithmetic>(
+    corners: [[i32; 3]; 3],
+    point: [N; 3],
+    facing: [N; 3],
+) -> [N; 3] {
+    let triangle = SmoothTriangle {
+        corners,
+        normals: [[0; 2]; 3],
+    };
+    let (weights, _) = triangle.weights(point, facing);
+    let sum = weights[0] + weights[1] + weights[2];
+    if sum == N::ZERO {
+        return [N::ONE, N::ZERO, N::ZERO];
+    }
+    // Below 0 by rounding alone.
+    let weight = |weight: N| weight.div(sum).max(N::ZERO).min(N::ONE);
+    let [_, second, third] = weights.map(weight);
+    [(N::ONE - second - third).max(N::ZERO), second, third]
+}
+
 #[cfg(test)]
 mod tests;

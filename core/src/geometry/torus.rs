@@ -125,20 +125,15 @@ impl Torus {
     }
 }
 
-impl Primitive for Torus {
-    const NEEDS_NORM: bool = true;
-    const TESTS_BOX: bool = true;
-    // In a pit, where the way along the axis alone leads out, the normal stays.
-    const LEVELED: bool = false;
-
+impl Torus {
+    /// The first crossing whose end counts.
     #[inline(always)]
-    fn bounds(&self) -> UnitBox {
-        self.bounds
-    }
-
-    /// The first stretch of the line inside the solid that does not end before the ray's interval.
-    /// `recip_norm2` is [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2) of the ray's slopes.
-    fn cross<N: Arithmetic>(&self, ray: &Ray<N>, recip_norm2: N) -> Option<Crossing<N>> {
+    fn first_crossing<N: Arithmetic>(
+        &self,
+        ray: &Ray<N>,
+        recip_norm2: N,
+        counts: impl Fn(N) -> bool,
+    ) -> Option<Crossing<N>> {
         let axis = |k: usize| N::from_lattice(self.center[k]) - ray.origin[k];
         let relative = [axis(0), axis(1), axis(2)];
         let closest = N::from_wide(N::wide_scale(N::dot(relative, ray.slope), recip_norm2));
@@ -162,11 +157,38 @@ impl Primitive for Torus {
         let profile = Profile::new(&Frame::new(self.axis), (apart, ray.slope), radii);
         let cuts = profile.cuts(half_chord, recip_norm2)?;
         let back = |s: N| closest + s.scale_down(bits);
-        let (enter, leave) = profile.first_inside(cuts, |leave| back(leave) >= ray.tmin)?;
+        let (enter, leave) = profile.first_inside(cuts, |leave| counts(back(leave)))?;
         Some(Crossing {
             enter: (back(enter), 0),
             leave: (back(leave), 0),
         })
+    }
+}
+
+impl Primitive for Torus {
+    const NEEDS_NORM: bool = true;
+    const TESTS_BOX: bool = true;
+    // In a pit, where the way along the axis alone leads out, the normal stays.
+    const LEVELED: bool = false;
+
+    #[inline(always)]
+    fn bounds(&self) -> UnitBox {
+        self.bounds
+    }
+
+    /// The first stretch of the line inside the solid that does not end before the ray's interval.
+    /// `recip_norm2` is [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2) of the ray's slopes.
+    fn cross<N: Arithmetic>(&self, ray: &Ray<N>, recip_norm2: N) -> Option<Crossing<N>> {
+        self.first_crossing(ray, recip_norm2, |leave| leave >= ray.tmin)
+    }
+
+    fn cross_after<N: Arithmetic>(
+        &self,
+        ray: &Ray<N>,
+        recip_norm2: N,
+        after: N,
+    ) -> Option<Crossing<N>> {
+        self.first_crossing(ray, recip_norm2, |leave| leave > after)
     }
 
     /// Outward.

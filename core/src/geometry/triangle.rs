@@ -17,7 +17,7 @@ use crate::format::{BlobError, Field, Kind, SectionKind, Sections};
 use crate::geometry::Project;
 use crate::geometry::primitive::InScene;
 use crate::geometry::project::AxisProjection;
-use crate::geometry::{Surface, cross_plane, flat};
+use crate::geometry::{Surface, cross_plane, flat, half_open};
 use crate::number::Arithmetic;
 use crate::number::fixed::halves::product;
 use crate::ray::Ray;
@@ -219,6 +219,27 @@ impl<N: Project> Projection<N> {
             N::surrounds_origin([x[0], y[0]], [x[1], y[1]], [x[2], y[2]])
         }
     );
+}
+
+/// Whether a ray passes through a triangle by the [half-open rule](crate::geometry::half_open): of two triangles that
+/// share an edge it passes through one there, or through both or neither where both lie on one side of it.
+#[inline(never)]
+pub(crate) fn passes<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> bool {
+    // As coarser coordinates are projected: their steps differ by a power of two.
+    let Projection { axes, shear, major } = Projection::<N>::of::<ANY, Vertex24>(ray);
+    let corner = |corner: [i32; 3]| {
+        let seen = |role: usize| {
+            let coordinate = pick(corner, axis::<ANY>(major, role));
+            N::project(coordinate, &pick(axes, role))
+        };
+        let depth = seen(2);
+        [
+            seen(0) + N::shear_by(depth, shear[0]),
+            seen(1) + N::shear_by(depth, shear[1]),
+        ]
+    };
+    let [a, b, c] = corners;
+    half_open::encloses_origin(corner(a), corner(b), corner(c))
 }
 
 /// Where a ray meets the plane of a triangle that it [meets](Projection::meets), and whether it does so

@@ -23,6 +23,8 @@ pub trait Convert: Scalar {
     fn far_from_f64(units: f64) -> Self::Wide;
     /// A far coordinate in units in double precision, for reports.
     fn far_to_f64(wide: Self::Wide) -> f64;
+    /// A far coordinate in units as an integer with 13 fraction bits: rounded to nearest, saturating, NaN to 0.
+    fn far_to_q13(wide: Self::Wide) -> i64;
     /// A ratio in -2 to 2 from double precision: rounded, saturating, NaN to 0.
     fn ratio_from_f64(value: f64) -> Self;
     /// A length or a ratio in single precision, for culling on machines with SIMD registers.

@@ -189,6 +189,12 @@ macro_rules! float_number {
                 wide as f64
             }
 
+            fn far_to_q13(wide: Self) -> i64 {
+                let q13 = wide * 8192.0;
+                let half = if q13 < 0.0 { -0.5 } else { 0.5 };
+                (q13 + half) as i64
+            }
+
             #[inline(always)]
             fn to_f32(self) -> f32 {
                 self as f32

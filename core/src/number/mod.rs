@@ -39,6 +39,8 @@ pub use convert::Convert;
 pub use error_bounds::ErrorBounds;
 pub(crate) use extent::extent;
 pub use fixed::base::Fixed;
+#[cfg(feature = "strict-ranges")]
+pub use fixed::strict::let_numbers_wrap;
 pub use format::Format;
 pub use powers::Powers;
 pub use products::Products;

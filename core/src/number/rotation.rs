@@ -1,31 +1,37 @@
 //! Rotations in integers.
 
+use crate::number::fixed::base::RATIO_BITS;
 use crate::number::{Angle, Fixed, Scalar, Vectors};
 
 /// The matrix of a quaternion of any length, x, y, z and w: its columns are where the axes are turned to, as ratios.
 /// `None` if it has no length.
 pub(crate) fn columns(rotation: [i32; 4]) -> Option<[[Fixed; 3]; 3]> {
     let [x, y, z, w] = unit_quaternion(rotation)?;
-    let one = Fixed::ONE;
+    let half = Fixed(1 << (RATIO_BITS - 1));
     let twice = |a: Fixed, b: Fixed| {
         let product = a * b;
         product + product
     };
+    // Doubled last: after half a turn the sum of both squares is 1, and twice that is out of a ratio's range.
+    let diagonal = |a: Fixed, b: Fixed| {
+        let halved = half - a * a - b * b;
+        halved + halved
+    };
     Some([
         [
-            one - twice(y, y) - twice(z, z),
+            diagonal(y, z),
             twice(x, y) + twice(z, w),
             twice(x, z) - twice(y, w),
         ],
         [
             twice(x, y) - twice(z, w),
-            one - twice(x, x) - twice(z, z),
+            diagonal(x, z),
             twice(y, z) + twice(x, w),
         ],
         [
             twice(x, z) + twice(y, w),
             twice(y, z) - twice(x, w),
-            one - twice(x, x) - twice(y, y),
+            diagonal(x, y),
         ],
     ])
 }

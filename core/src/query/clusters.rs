@@ -7,10 +7,11 @@ use crate::format::{Kind, Leaf};
 use crate::geometry::{Packs, PrimitiveId, Strips, pack, sphere};
 use crate::number::Format;
 use crate::observe::count::Observer;
+use crate::query::collect::Collect;
 use crate::query::search::Search;
 use crate::simd::{Portable, Simd, SimdLevel, with_simd};
 
-impl<N: Number, K: Culling<N>> Search<'_, '_, N, K> {
+impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
     /// Tests the primitives of a cluster, or, where `ANY` hit will do, of a pack only until one is hit.
     #[inline(always)]
     pub(super) fn cluster<C: Observer, const ANY: bool>(&mut self, leaf: Leaf, count: &mut C) {
@@ -123,7 +124,7 @@ impl<N: Number, K: Culling<N>> Search<'_, '_, N, K> {
             self.consider(crossing, place(lane));
             self.observe(place(lane), Some(&crossing), count);
             // Lanes have tested the others, too, so observers get all of them.
-            if ANY && !C::ENABLED && self.best.is_some() {
+            if ANY && !C::ENABLED && self.found.is_any() {
                 return;
             }
         }

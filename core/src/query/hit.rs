@@ -1,12 +1,13 @@
 //! Answers of queries: the primitive that a ray meets, the point, and the surface there.
 
 use crate::accel::Number;
-use crate::format::Leaf;
 use crate::format::instance::Instance;
 use crate::format::limits::UNBOUNDED;
+use crate::format::{Kind, Leaf};
+use crate::geometry::{LEAVING, is_flat};
 use crate::instances::map::{Map, PlacedSurface};
 use crate::observe::event::QueryHit;
-use crate::query::search::Candidate;
+use crate::query::candidate::Candidate;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::target::{InstancesOnly, inline_on_hosts};
@@ -32,6 +33,24 @@ pub(super) struct InInstance<N> {
 }
 
 impl<N: Number> PrimitiveHit<N> {
+    /// The place of the instance that was hit among the scene's [instances](Scene::instances); `None` for a hit of the
+    /// scene's own objects.
+    pub fn instance(&self) -> Option<u32> {
+        let placed = self.placed.get().copied().flatten()?;
+        Some(placed.index)
+    }
+
+    /// Whether the ray leaves a solid here; never of triangles and other flat surfaces.
+    pub fn leaves(&self) -> bool {
+        self.best.part & LEAVING != 0
+    }
+
+    /// Whether surfaces of the primitive's kind can enclose something: not discs and planes.
+    pub fn encloses(&self) -> bool {
+        let kind = self.best.place.kind;
+        kind == Kind::Triangle || !is_flat(kind)
+    }
+
     inline_on_hosts!(
         /// Returns the whole hit, with point and surface. `scene` and `ray` are those of the
         /// query.

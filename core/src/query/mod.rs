@@ -1,10 +1,20 @@
-//! Queries: the first hit of a ray, and any hit.
+//! Queries: the first hit of a ray, any hit, and all hits.
 //!
 //! `search` tests the primitives to which a structure leads, `clusters` those in leaves of eight, `unbounded`
-//! those that lie in no structure; `hit` is the answer, and `smooth` its normal for shading.
+//! those that lie in no structure. `collect` is what a search does with what it finds. `all_hits` lists all hits, for
+//! which `crossings` is the search, and `contains` counts them; `hit` is the answer, `smooth` its normal for shading, `attributes` what
+//! its vertices carry,
+//! and `distance` what range finders make of it.
 
+mod all_hits;
 mod attributes;
+mod barycentric;
+mod candidate;
 mod clusters;
+mod collect;
+mod contains;
+mod crossings;
+mod distance;
 #[cfg(feature = "all-structures")]
 mod dynamic;
 mod hit;
@@ -13,6 +23,8 @@ mod search;
 mod smooth;
 mod unbounded;
 
+pub use all_hits::{HitList, all_hits, count_hits};
+pub use contains::{Solid, containment_ray, contains};
 pub use hit::{Hit, PrimitiveHit};
 
 use crate::accel::stack::StackView;
@@ -23,8 +35,9 @@ use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::target::{InstancesOnly, WIDE, inline_on_hosts, inline_on_hosts_hint_on_boards};
+use candidate::Candidate;
 use placed::{PartSearch, SearchPart};
-use search::{Candidate, search_apart, search_structure};
+use search::{search_apart, search_structure};
 
 inline_on_hosts_hint_on_boards!(
     /// The primitive that a ray meets first in its interval, found through the structure `A`.
@@ -93,7 +106,7 @@ fn search_own<N: Number, A: Accel, C: Observer, const ANY: bool>(
     let best = if A::ONE_COPY {
         search_apart::<N, A, C, ANY>(scene, ray, None, stack, count, any)
     } else {
-        search_structure::<N, A, C, ANY>(scene, ray, None, stack, count, any)
+        search_structure::<N, A, C, _, ANY>(scene, ray, None, stack, count, any)
     };
     Some(found(scene, ray, best?))
 }

@@ -1,11 +1,11 @@
 //! The search through instances: each ray is mapped into the parts that it can meet.
 
 use crate::accel::{Number, StackView};
-use crate::instances::map::{Map, beyond};
+use crate::instances::map::{Map, PlacedRay, beyond};
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
+use crate::query::candidate::Candidate;
 use crate::query::hit::{InInstance, PrimitiveHit};
-use crate::query::search::Candidate;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::target::{InstancesOnly, inline_on_boards};
@@ -19,6 +19,21 @@ pub(super) struct PartSearch<F> {
     /// Whether the first hit will do.
     pub(super) any: bool,
     pub(super) search: F,
+}
+
+/// A part with the walks that are chosen in its scene.
+#[inline(always)]
+pub(super) fn choose_as<'p, 'a>(
+    part: &'p Scene<'a>,
+    scene: &Scene<'_>,
+    chosen: &'p mut Option<Scene<'a>>,
+) -> &'p Scene<'a> {
+    if part.space.same_choice(&scene.space) {
+        return part;
+    }
+    let chosen = chosen.insert(*part);
+    chosen.space.choose_as(&scene.space);
+    chosen
 }
 
 inline_on_boards!(
@@ -55,14 +70,8 @@ inline_on_boards!(
                 let Some((part, first)) = placed.part(instance) else {
                     return Some(tmax);
                 };
-                let mut chosen;
-                let part = if part.space.same_choice(&scene.space) {
-                    part
-                } else {
-                    chosen = *part;
-                    chosen.space.choose_as(&scene.space);
-                    &chosen
-                };
+                let mut chosen = None;
+                let part = choose_as(part, scene, &mut chosen);
                 let end = best.map_or(ray.tmax, |(t, _)| ray.tmax.min(beyond(t)));
                 let Some(mapped) = Map::new(instance).ray(part.bounds(), ray, end) else {
                     return Some(tmax);
@@ -103,3 +112,67 @@ inline_on_boards!(
         nearest
     }
 );
+
+/// An instance that a ray enters.
+pub(super) struct Entered<'p, 'a, N: Number> {
+    pub(super) part: &'p Scene<'a>,
+    pub(super) mapped: PlacedRay<N>,
+    /// The instance's place among the scene's.
+    pub(super) index: u32,
+    /// Its number in scene-file order.
+    pub(super) number: u32,
+    pub(super) first_primitive: u32,
+}
+
+/// Calls `visit` with every instance that a ray can enter, given the t beyond which nothing counts, if there is one.
+/// `visit` returns it anew.
+#[inline(never)]
+pub(super) fn each<N: Number, C: Observer>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    limit: Option<N>,
+    count: &mut C,
+    mut visit: impl FnMut(Entered<'_, '_, N>, &mut C) -> Option<N>,
+) {
+    let Some(placed) = scene.placed.get() else {
+        return;
+    };
+    if ray.tmax < ray.tmin {
+        return;
+    }
+    let mut limit = limit;
+    let nearest = |limit: Option<N>| limit.map_or(ray.tmax, |limit| ray.tmax.min(limit));
+    placed
+        .top
+        .walk(ray, nearest(limit), count, |index, instance, count| {
+            let tmax = nearest(limit);
+            let Some((part, first_primitive)) = placed.part(instance) else {
+                return Some(tmax);
+            };
+            let mut chosen = None;
+            let part = choose_as(part, scene, &mut chosen);
+            let end = limit.map_or(ray.tmax, |limit| ray.tmax.min(beyond(limit)));
+            let Some(mapped) = Map::new(instance).ray(part.bounds(), ray, end) else {
+                return Some(tmax);
+            };
+            count.instances(1);
+            if C::ENABLED {
+                count.event(mapped.entered(index, first_primitive));
+            }
+            let number = instance.number;
+            limit = visit(
+                Entered {
+                    part,
+                    mapped,
+                    index,
+                    number,
+                    first_primitive,
+                },
+                count,
+            );
+            if C::ENABLED {
+                count.event(Event::InstanceLeft { nearest: false });
+            }
+            Some(nearest(limit))
+        });
+}

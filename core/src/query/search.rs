@@ -15,39 +15,28 @@ use crate::geometry::triangle::{self, Triangles, Vertices};
 use crate::geometry::{Crossing, Part, PrimitiveId, accept};
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
+use crate::query::candidate::Candidate;
+use crate::query::collect::Collect;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::target::{SMALL, WideOnly, inline_on_boards};
 
-/// The best hit so far.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Candidate<N> {
-    pub(super) t: N,
-    pub(super) place: PrimitiveId,
-    pub(super) part: Part,
-}
-
-/// The search for hits, one leaf at a time.
-pub(super) struct Search<'s, 'a, N: Number, K> {
+/// The search for hits, one leaf at a time: for the best of them, or for whatever `F` collects.
+pub(super) struct Search<'s, 'a, N: Number, K, F> {
     pub(super) scene: &'s Scene<'a>,
     pub(super) ray: &'s Ray<N>,
-    cull: &'s K,
+    pub(super) cull: &'s K,
     pub(super) recip_norm2: N,
     /// The ray as strips are tested with it.
     pub(super) strip_ray: WideOnly<StripRay<N>>,
     /// No hit beyond this counts.
     pub(super) tmax: N,
-    pub(super) best: Option<Candidate<N>>,
+    pub(super) found: F,
 }
 
-impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
+impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
     #[inline(always)]
-    pub(super) fn new(
-        scene: &'s Scene<'a>,
-        ray: &'s Ray<N>,
-        cull: &'s K,
-        best: Option<Candidate<N>>,
-    ) -> Self {
+    pub(super) fn new(scene: &'s Scene<'a>, ray: &'s Ray<N>, cull: &'s K, found: F) -> Self {
         Self {
             scene,
             ray,
@@ -59,13 +48,16 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
             },
             strip_ray: WideOnly::new(|| StripRay::new(ray, &scene.space.shapes.clusters().strips)),
             tmax: ray.tmax,
-            best,
+            found,
         }
     }
 
     /// Considers a crossing; it is committed if it beats the best hit: a smaller t, or the same t of an earlier primitive.
     #[inline(always)]
     pub(super) fn consider(&mut self, crossing: Crossing<N>, place: PrimitiveId) {
+        if F::ALL {
+            return self.consider_both(crossing, place);
+        }
         if let Some(hit) = accept(self.ray, crossing, self.tmax) {
             self.commit(hit, place);
         }
@@ -74,7 +66,15 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     /// Considers a crossing that may have been rounded out of the primitive's box.
     #[cfg_attr(not(feature = "small"), inline(always))]
     #[cfg_attr(feature = "small", inline(never))]
-    fn consider_in_box(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: PrimitiveId) {
+    pub(super) fn consider_in_box(
+        &mut self,
+        crossing: Crossing<N>,
+        bounds: UnitBox,
+        place: PrimitiveId,
+    ) {
+        if F::ALL {
+            return self.consider_both_in_box(crossing, bounds, place);
+        }
         if let Some(hit) = accept_in_box(self.ray, self.cull, crossing, bounds, self.tmax) {
             self.commit(hit, place);
         }
@@ -87,16 +87,12 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     }
 
     inline_on_boards!(
-        /// Commits a hit in the interval that is left, unless an earlier primitive is met at the same t.
+        /// Commits a hit in the interval that is left.
         // Out of line on hosts, where many places come here and few rays.
-        fn commit(&mut self, (t, part): (N, Part), place: PrimitiveId) {
-            // No hit lies beyond the best one, so this one is nearer, or as near.
-            let tie = self.best.filter(|best| t >= best.t);
-            if tie.is_some_and(|best| self.scene.key(best.place) <= self.scene.key(place)) {
-                return;
+        pub(super) fn commit(&mut self, hit: (N, Part), place: PrimitiveId) {
+            if let Some(tmax) = self.found.commit(self.scene, hit, place) {
+                self.tmax = tmax;
             }
-            self.tmax = t;
-            self.best = Some(Candidate { t, place, part });
         }
     );
 
@@ -113,7 +109,7 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                 kind: place.kind,
                 primitive: self.scene.primitive_at(place),
                 crossing: crossing.map(|c| [c.enter.0, c.leave.0].map(N::length_to_f64)),
-                nearest: self.best.is_some_and(|best| best.place == place),
+                nearest: self.found.is_at(place),
             });
         }
     }
@@ -203,6 +199,9 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
                     search.consider_out_of_line(crossing, record.bounds(), place);
                 } else {
                     search.consider(crossing, place);
+                }
+                if F::ALL {
+                    search.consider_later(crossing, record, place);
                 }
             },
         );
@@ -322,7 +321,9 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
         count: &mut C,
     ) {
         let crossing = triangle::cross(self.ray, corners);
-        if let Some((t, steeply)) = crossing {
+        if F::ALL {
+            self.triangle_half_open(corners, crossing, place);
+        } else if let Some((t, steeply)) = crossing {
             let crossing = Crossing::flat(t);
             if steeply {
                 self.consider(crossing, place);
@@ -335,21 +336,21 @@ impl<'s, 'a, N: Number, K: Culling<N>> Search<'s, 'a, N, K> {
     }
 }
 
-/// The best hit among the primitives of a structure, and a first one that was found before.
+/// The best hit among the primitives of a structure and those that were found before, or whatever `F` collects.
 // With instances it is searched for in several places: boards hold it once.
 #[cfg_attr(feature = "wide", inline(always))]
 #[cfg_attr(all(feature = "instances", not(feature = "wide")), inline(never))]
-pub(super) fn search_structure<N: Number, A: Accel, C: Observer, const ANY: bool>(
+pub(super) fn search_structure<N: Number, A: Accel, C: Observer, F: Collect<N>, const ANY: bool>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
-    first: Option<Candidate<N>>,
+    found: F,
     stack: &mut StackView,
     count: &mut C,
     any: bool,
-) -> Option<Candidate<N>> {
+) -> F {
     let views = A::views(&scene.structures);
     let cull = A::Cull::<N>::new(ray);
-    let mut search = Search::new(scene, ray, &cull, first);
+    let mut search = Search::new(scene, ray, &cull, found);
     if ANY {
         A::walk_any(
             &scene.space,
@@ -360,7 +361,7 @@ pub(super) fn search_structure<N: Number, A: Accel, C: Observer, const ANY: bool
             count,
             |leaf, count| {
                 search.leaf::<A, C, ANY>(leaf, count);
-                search.best.is_some()
+                search.found.is_any()
             },
         );
     } else {
@@ -373,12 +374,12 @@ pub(super) fn search_structure<N: Number, A: Accel, C: Observer, const ANY: bool
             count,
             |leaf, count| {
                 search.leaf::<A, C, ANY>(leaf, count);
-                let found = A::ONE_COPY && any && search.best.is_some();
+                let found = A::ONE_COPY && any && search.found.is_any();
                 (!found).then_some(search.tmax)
             },
         );
     }
-    search.best
+    search.found
 }
 
 inline_on_boards!(
@@ -392,7 +393,7 @@ inline_on_boards!(
         count: &mut C,
         any: bool,
     ) -> Option<Candidate<N>> {
-        search_structure::<N, A, C, ANY>(scene, ray, first, stack, count, any)
+        search_structure::<N, A, C, _, ANY>(scene, ray, first, stack, count, any)
     }
 );
 

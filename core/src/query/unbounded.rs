@@ -20,23 +20,37 @@ pub(super) fn nearest<N: Number, C: Observer>(
     count: &mut C,
 ) -> Option<(N::Wide, PrimitiveId)> {
     let mut best: Option<(N::Wide, PrimitiveId)> = None;
-    let [tmin, tmax] = ray.given_interval();
-    let mut consider = |t: Option<N::Wide>, place: PrimitiveId, count: &mut C| {
-        let hit = t.filter(|&t| t >= tmin && t <= tmax);
-        if let Some(t) = hit
-            && best.is_none_or(|(least, first)| {
-                t < least || t == least && scene.key(place) < scene.key(first)
-            })
-        {
+    each(scene, ray, count, |t, place| {
+        if best.is_none_or(|(least, first)| {
+            t < least || t == least && scene.key(place) < scene.key(first)
+        }) {
             best = Some((t, place));
         }
+        best.is_some_and(|best| best.1 == place)
+    });
+    best
+}
+
+/// Calls `hit` with every hit in the interval that the caller gave, in the order of their records. `hit` returns whether
+/// it is the nearest so far.
+#[inline(always)]
+pub(super) fn each<N: Number, C: Observer>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    count: &mut C,
+    mut hit: impl FnMut(N::Wide, PrimitiveId) -> bool,
+) {
+    let [tmin, tmax] = ray.given_interval();
+    let mut consider = |t: Option<N::Wide>, place: PrimitiveId, count: &mut C| {
+        let in_interval = t.filter(|&t| t >= tmin && t <= tmax);
+        let nearest = in_interval.is_some_and(|t| hit(t, place));
         count.objects(1);
         if C::ENABLED {
             count.event(Event::Candidate {
                 kind: place.kind,
                 primitive: scene.primitive_at(place),
                 crossing: t.map(|t| [N::far_to_f64(t - ray.start_t); 2]),
-                nearest: best.is_some_and(|best| best.1 == place),
+                nearest,
             });
         }
     };
@@ -57,5 +71,4 @@ pub(super) fn nearest<N: Number, C: Observer>(
         };
     }
     shapes!(each);
-    best
 }

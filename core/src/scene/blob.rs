@@ -193,6 +193,12 @@ impl<'a> Scene<'a> {
         self.space.shapes.triangle(slot)
     }
 
+    /// The normals of a triangle's corners as they are stored (see [`smooth`](crate::geometry::smooth)), given by the
+    /// triangle's slot; `None` of what is not smooth.
+    pub fn corner_normals(&self, slot: usize) -> Option<[[i16; 2]; 3]> {
+        Some(self.space.shapes.smooth_triangle(slot)?.normals)
+    }
+
     /// A primitive as it lies on the lattice, given by its kind and its slot among those of that kind.
     pub fn geometry(&self, kind: Kind, slot: usize) -> Option<Geometry> {
         self.space.shapes.geometry(kind, slot)

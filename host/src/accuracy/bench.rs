@@ -4,12 +4,14 @@ use super::setting::Setting;
 use crate::blob::Blob;
 use crate::compile::{self, CompileError, Quality};
 use crate::measure::board::instructions;
-use crate::measure::{Errors, FirstHit, InstanceCount, Rendered, board_memory, first_hits, time};
+use crate::measure::{
+    Errors, FirstHit, InstanceCount, Rendered, board_memory, first_hits, rmse_and_largest, time,
+};
 use crate::scene::Scene;
 use gridel_core::format::checksum;
 use gridel_core::format::limits::MAX_RAY_DEPTH;
 use gridel_core::render::RenderError;
-use gridel_core::{Format, Settings, Structure};
+use gridel_core::{Effects, Format, Settings, Structure};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
@@ -18,8 +20,26 @@ use std::collections::HashMap;
 pub struct Point {
     pub name: String,
     pub setting: Setting,
+    /// Against the reference.
     pub errors: Errors,
+    pub parts: ErrorParts,
+    /// Where effects are left out: against the picture that has them, of otherwise the same setting.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lost: Option<Errors>,
     pub cost: Cost,
+}
+
+/// The two parts of an error, each a root of the mean square difference of display values. They do not add up:
+/// one may cancel the other.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ErrorParts {
+    /// The picture of `f64` with this setting against the reference: what samples, depth, cut-off, lattice and left-out
+    /// effects do.
+    pub sampling: f64,
+    /// The picture of the setting's number format against that of `f64` with this setting.
+    pub arithmetic: f64,
+    /// The largest difference between these two.
+    pub arithmetic_largest: f64,
 }
 
 /// The cost of a picture.
@@ -67,10 +87,14 @@ impl Cost {
 }
 
 impl Point {
+    /// Rays per pixel.
+    pub fn rays_per_pixel(&self) -> f64 {
+        self.cost.rays as f64 / self.cost.pixels.max(1) as f64
+    }
+
     /// Instructions per pixel on a board: see [`instructions`].
     pub fn instructions(&self, board: &str) -> Option<[f64; 2]> {
-        let rays = self.cost.rays as f64 / self.cost.pixels.max(1) as f64;
-        instructions(board, self.setting.format, rays)
+        instructions(board, self.setting.format, self.rays_per_pixel())
     }
 }
 
@@ -123,8 +147,10 @@ pub struct Bench<'s> {
     pub size: [u16; 2],
     /// Instances of the scene file that were [copied](crate::scene::Imported::copied), for the report.
     pub copied: usize,
-    blobs: HashMap<(u8, u64), Blob>,
-    hits: HashMap<(u8, u64, &'static str), Vec<Option<FirstHit>>>,
+    blobs: HashMap<(u8, u64, u32), Blob>,
+    hits: HashMap<(u8, u64, u32, &'static str), Vec<Option<FirstHit>>>,
+    /// Pictures that others are measured against, by the names of their settings.
+    pictures: HashMap<String, Vec<[u16; 3]>>,
 }
 
 /// How the reference is made: double precision, the finest lattice, all reflections that a picture
@@ -136,6 +162,7 @@ pub fn reference_setting(samples: u16) -> Setting {
         samples,
         depth: MAX_RAY_DEPTH as u8,
         cutoff: f64::powi(2.0, -14),
+        without: Effects::NONE,
     }
 }
 
@@ -149,6 +176,7 @@ impl<'s> Bench<'s> {
             copied: 0,
             blobs: HashMap::new(),
             hits: HashMap::new(),
+            pictures: HashMap::new(),
         }
     }
 
@@ -161,6 +189,7 @@ impl<'s> Bench<'s> {
             samples: stated.samples,
             depth: stated.depth,
             cutoff: stated.cutoff,
+            without: Effects::NONE,
         }
     }
 
@@ -176,18 +205,20 @@ impl<'s> Bench<'s> {
         Ok(InstanceCount::of(&self.blob(&base)?.scene()?, copied))
     }
 
-    /// Returns whether anything in the scene reflects or refracts.
-    pub fn is_secondary(&mut self) -> Result<bool, MeasureError> {
+    /// Returns the effects that the scene calls for.
+    pub fn effects(&mut self) -> Result<Effects, MeasureError> {
         let base = self.base();
-        let effects = self.blob(&base)?.scene()?.effects();
-        Ok(effects.work_depth(1) > 0)
+        Ok(self.blob(&base)?.scene()?.effects_with_parts())
     }
 
-    fn blob(&mut self, setting: &Setting) -> Result<&Blob, MeasureError> {
-        let key = (setting.lattice_bits, setting.cutoff.to_bits());
+    /// The blob of a setting.
+    pub(super) fn blob(&mut self, setting: &Setting) -> Result<&Blob, MeasureError> {
+        let cutoff = setting.cutoff.to_bits();
+        let key = (setting.lattice_bits, cutoff, setting.without.0);
         if !self.blobs.contains_key(&key) {
             let mut scene = self.scene.clone();
             scene.render.cutoff = setting.cutoff;
+            scene.remove_effects(setting.without);
             [scene.render.width, scene.render.height] = self.size.map(u32::from);
             let options = compile::Options {
                 structures: vec![self.structure],
@@ -223,6 +254,17 @@ impl<'s> Bench<'s> {
         Ok(self.rendered(setting, false)?.seconds)
     }
 
+    /// Renders a picture that others are measured against, once.
+    fn picture(&mut self, setting: &Setting) -> Result<Vec<[u16; 3]>, MeasureError> {
+        let name = setting.name();
+        if let Some(pixels) = self.pictures.get(&name) {
+            return Ok(pixels.clone());
+        }
+        let pixels = self.rendered(setting, false)?.picture.pixels;
+        self.pictures.insert(name, pixels.clone());
+        Ok(pixels)
+    }
+
     /// Measures a setting but for its time; its pixels, too.
     pub fn measure(
         &mut self,
@@ -231,15 +273,38 @@ impl<'s> Bench<'s> {
     ) -> Result<(Point, Vec<[u16; 3]>), MeasureError> {
         let rendered = self.rendered(setting, true)?;
         let hits = self.first_hits(setting)?;
+        let exact = self.picture(&Setting {
+            format: Format::F64,
+            ..*setting
+        })?;
+        let full = match setting.without {
+            Effects::NONE => None,
+            _ => {
+                let with_all = Setting {
+                    without: Effects::NONE,
+                    ..*setting
+                };
+                let hits = self.first_hits(&with_all)?;
+                Some((self.picture(&with_all)?, hits))
+            }
+        };
         let blob = self.blob(setting)?;
         let blob_bytes = blob.bytes().len();
         let working = board_memory(&blob.scene()?, setting.format, setting.depth);
         let pixels = &rendered.picture.pixels;
         let found = (&pixels[..], &hits[..]);
+        let [sampling, _] = rmse_and_largest(&reference.pixels, &exact);
+        let [arithmetic, arithmetic_largest] = rmse_and_largest(&exact, pixels);
         let point = Point {
             name: setting.name(),
             setting: *setting,
             errors: Errors::of(self.size[0], (&reference.pixels, &reference.hits), found),
+            parts: ErrorParts {
+                sampling,
+                arithmetic,
+                arithmetic_largest,
+            },
+            lost: full.map(|(pixels, hits)| Errors::of(self.size[0], (&pixels, &hits), found)),
             cost: Cost {
                 seconds: Vec::new(),
                 pixels: pixels.len(),
@@ -255,7 +320,8 @@ impl<'s> Bench<'s> {
     /// Returns the first hits of the rays through the middles of pixels.
     fn first_hits(&mut self, setting: &Setting) -> Result<Vec<Option<FirstHit>>, MeasureError> {
         let name = setting.format.name();
-        let key = (setting.lattice_bits, setting.cutoff.to_bits(), name);
+        let cutoff = setting.cutoff.to_bits();
+        let key = (setting.lattice_bits, cutoff, setting.without.0, name);
         if let Some(hits) = self.hits.get(&key) {
             return Ok(hits.clone());
         }

@@ -1,17 +1,30 @@
 //! The cost of accuracy in time: settings are swept, their pictures measured against a reference, and
 //! the results are printed as a table, as sentences and as plots.
 //!
-//! `setting.rs` says what is swept, `bench.rs` renders and compares, `page.rs` draws, `instances.rs` says what became of
-//! instances.
+//! | file | what it does |
+//! |---|---|
+//! | `setting.rs` | what is swept |
+//! | `bench.rs` | renders and compares |
+//! | `effects.rs` | what each effect is worth |
+//! | `answers.rs` | the answers in three sentences |
+//! | `page.rs`, `page.html` | the page, and its template |
+//! | `plot.rs` | the plot for documents |
+//! | `instances.rs` | what became of instances |
 
+mod answers;
 mod bench;
+mod effects;
 mod instances;
 mod page;
+mod plot;
 mod setting;
 
-pub use bench::{Bench, Cost, MeasureError, Point, Reference, reference_setting};
+pub use answers::answers;
+pub use bench::{Bench, Cost, ErrorParts, MeasureError, Point, Reference, reference_setting};
+pub use effects::{BOARD, Worth, given_up, worths};
 pub use instances::instance_notes;
-pub use page::{Comparison, page};
+pub use page::{MOST_PICTURE_BYTES, PagePicture, page};
+pub use plot::plot;
 pub use setting::{Parameter, Setting, least_reference_samples, sweep};
 
 use crate::measure::InstanceCount;
@@ -29,6 +42,9 @@ pub struct Results {
     pub instances: Option<InstanceCount>,
     pub reference: Reference,
     pub points: Vec<Point>,
+    /// What each effect is worth, in the order in which to give them up; empty until all is measured.
+    #[serde(default)]
+    pub effects: Vec<Worth>,
 }
 
 impl Results {
@@ -79,16 +95,67 @@ impl Point {
     }
 }
 
+/// Limits of a search.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Largest root mean square error.
+    pub error: f64,
+    /// Most rays per pixel.
+    pub rays: f64,
+}
+
+impl Limits {
+    /// Limits of an error alone.
+    pub fn of_error(error: f64) -> Self {
+        Self {
+            error,
+            rays: f64::INFINITY,
+        }
+    }
+
+    /// Returns whether a point is within.
+    pub fn hold(&self, point: &Point) -> bool {
+        point.errors.rmse <= self.error && point.rays_per_pixel() <= self.rays
+    }
+}
+
+/// The point with the smallest error that casts no more rays per pixel; of several the one with the fewest rays and tests.
+pub fn most_accurate<'p>(points: &'p [Point], rays: f64, board: Option<&str>) -> Option<&'p Point> {
+    let key = |point: &&Point| {
+        (
+            point.errors.rmse,
+            (point.cost.rays + point.cost.tests) as f64,
+        )
+    };
+    points
+        .iter()
+        .filter(|point| point.rays_per_pixel() <= rays)
+        .filter(|point| board.is_none_or(|board| point.instructions(board).is_some()))
+        .min_by(|a, b| {
+            let ((a, more), (b, less)) = (key(a), key(b));
+            a.total_cmp(&b).then(more.total_cmp(&less))
+        })
+}
+
 /// The cheapest point whose root mean square error is within a bound: by time on this machine, or
 /// by instructions on a board, at the most that they may be.
 pub fn cheapest<'p>(points: &'p [Point], most: f64, board: Option<&str>) -> Option<&'p Point> {
+    cheapest_within(points, Limits::of_error(most), board)
+}
+
+/// The cheapest point within limits of error and rays: see [`cheapest`].
+pub fn cheapest_within<'p>(
+    points: &'p [Point],
+    limits: Limits,
+    board: Option<&str>,
+) -> Option<&'p Point> {
     let price = |point: &Point| match board {
         None => Some(point.cost.time()),
         Some(board) => point.instructions(board).map(|[_, most]| most),
     };
     points
         .iter()
-        .filter(|point| point.errors.rmse <= most)
+        .filter(|point| limits.hold(point))
         .filter_map(|point| Some((price(point)?, point)))
         .min_by(|(a, _), (b, _)| a.total_cmp(b))
         .map(|(_, point)| point)
@@ -281,7 +348,7 @@ fn part(share: f64) -> String {
 mod tests {
     use super::*;
     use crate::measure::Errors;
-    use gridel_core::Format;
+    use gridel_core::{Effects, Format};
 
     const BASE: Setting = Setting {
         format: Format::F32,
@@ -289,6 +356,7 @@ mod tests {
         samples: 16,
         depth: 6,
         cutoff: 0.0,
+        without: Effects::NONE,
     };
 
     fn point(setting: Setting, rmse: f64, seconds: &[f64], work: u64) -> Point {
@@ -304,6 +372,12 @@ mod tests {
                 other_objects: 0,
                 t_ulps: [0.0; 2],
             },
+            parts: ErrorParts {
+                sampling: rmse,
+                arithmetic: 0.0,
+                arithmetic_largest: 0.0,
+            },
+            lost: None,
             cost: Cost {
                 seconds: seconds.to_vec(),
                 pixels: 100,

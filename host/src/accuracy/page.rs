@@ -1,107 +1,97 @@
-//! A page that holds everything: plots, sentences, table, pictures. It loads nothing from anywhere.
+//! A page that holds everything: answers, chart, pictures, tables. It loads nothing from anywhere.
+//!
+//! `page.html` is the template, with the page's style and script; its marks `{{NAME}}` are replaced here.
 
-use super::{Point, Results, frontier, frontier_by, instance_notes, sentences};
+use super::{
+    Parameter, Point, Results, Setting, Worth, answers, frontier, frontier_by, instance_notes,
+    sentences,
+};
 use crate::measure::board::core_names;
 use crate::picture::write_png;
 use crate::table::{counted, grouped, significant};
 use base64::Engine;
-use plotters::prelude::*;
+use serde_json::json;
+use std::collections::HashMap;
 use std::fmt::Write;
 use std::io;
 
-/// A picture of a setting beside what differs from the reference, as sRGB pixels.
+const TEMPLATE: &str = include_str!("page.html");
+
+/// Most bytes of all pictures of a page. Those of the front come first, then those of parameters that were changed
+/// alone; pictures beyond are left out, and the page says so.
+pub const MOST_PICTURE_BYTES: usize = 3 << 20;
+
+/// The picture of a setting, as sRGB pixels.
 #[derive(Clone, Debug)]
-pub struct Comparison {
+pub struct PagePicture {
+    /// The name of its setting; empty for the reference.
     pub name: String,
-    pub picture: Vec<u8>,
-    /// Empty for the reference.
-    pub difference: Vec<u8>,
+    pub pixels: Vec<u8>,
 }
 
-/// An error that is plotted.
-type Metric = (&'static str, fn(&Point) -> f64);
-
-const METRICS: [Metric; 3] = [
-    ("RMSE of display values", |point| point.errors.rmse),
-    ("FLIP", |point| point.errors.flip),
-    ("1 - SSIM", |point| 1.0 - point.errors.ssim),
-];
-
-/// Writes the page.
+/// Writes the page. A setting whose picture is missing has none on the page.
 ///
 /// # Errors
-/// If a plot or a picture cannot be drawn.
+/// If a picture cannot be encoded.
 pub fn page(
     scene: &str,
     size: [u16; 2],
     results: &Results,
-    comparisons: &[Comparison],
+    pictures: &[PagePicture],
 ) -> io::Result<String> {
-    let mut page = String::from(HEAD);
     let name = escape(scene);
-    let best = frontier(&results.points);
-    let mut body = format!(
-        "<title>Accuracy and time of {name}</title>\n<h1>What accuracy costs in time: {name}</h1>\n\
-         <p>{} x {} pixels, one thread. The reference: f64, 24 lattice bits, ray depth 16, {} per \
-         pixel.</p>\n",
+    let mut about = format!(
+        "{} x {} pixels, one thread. The reference: <code>f64</code>, 24 lattice bits, ray depth 16, {} per pixel. \
+         Errors are of display values from 0 to 1.",
         size[0],
         size[1],
         counted(results.reference.samples.into(), "sample")
     );
     if let Some(instances) = &results.instances {
         let notes = instance_notes(instances).join(" ");
-        let _ = writeln!(body, "<p>{}</p>", code(&escape(&notes)));
+        let _ = write!(about, " {}", code(&escape(&notes)));
     }
-    body.push_str("<ul>\n");
-    for sentence in sentences(&results.base, &results.points) {
-        let _ = writeln!(body, "<li>{}</li>", code(&escape(&sentence)));
-    }
-    body.push_str(
-        "</ul>\n<h2>Error against time</h2>\n<p>Times are medians; a bar spans the repeats. Nothing \
-        beats the settings on the red line: no other is as right at a cost that is surely no higher. A \
-        cost is higher where all repeats of one take longer than all of the other, or, where repeats \
-        overlap, by rays and tests in the same number format. Numbers are those of the table; the \
-        pointer shows the names. Rings mark what nothing beats by RMSE.</p>\n",
+    let list = |sentences: Vec<String>| -> String {
+        let items = sentences.iter();
+        items
+            .map(|it| format!("<li>{}</li>\n", code(&escape(it))))
+            .collect()
+    };
+    let notes = format!(
+        "<ul>\n{}</ul>\n{NOTES}",
+        list(sentences(&results.base, &results.points))
     );
-    for metric in METRICS {
-        body.push_str(&plot(metric, results, &best)?);
+    let parts = [
+        ("SCENE", name),
+        ("ABOUT", about),
+        ("ANSWERS", list(answers(results))),
+        ("EFFECTS", effects(results)),
+        ("FRONT", front(results)),
+        ("TABLE", table(results)),
+        ("NOTES", notes),
+        ("DATA", data(size, results, pictures)?),
+    ];
+    // Marks are looked for in the template alone, not in what replaces them.
+    let mut pieces = TEMPLATE.split("{{");
+    let mut page = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        let (mark, rest) = piece.split_once("}}").unwrap_or((piece, ""));
+        let text = parts.iter().find(|(name, _)| *name == mark);
+        page.push_str(text.map_or("", |(_, text)| text));
+        page.push_str(rest);
     }
-    body.push_str(&table(results, &best));
-    body.push_str(
-        "<h2>Pictures</h2>\n<p>Below each: how display values differ from the \
-        reference, eight times enlarged.</p>\n<div class=\"pictures\">\n",
-    );
-    for exhibit in comparisons {
-        let _ = write!(body, "<figure>{}", image(size, &exhibit.picture)?);
-        if !exhibit.difference.is_empty() {
-            body.push_str(&image(size, &exhibit.difference)?);
-        }
-        let _ = writeln!(
-            body,
-            "<figcaption>{}</figcaption></figure>",
-            escape(&exhibit.name)
-        );
-    }
-    body.push_str("</div>\n</html>\n");
-    page.push_str(&body);
     Ok(page)
 }
 
-const HEAD: &str = "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<style>\n\
-    body { font: 15px/1.45 sans-serif; max-width: 1100px; margin: 2em auto; padding: 0 1em; }\n\
-    table { border-collapse: collapse; font-size: 12px; }\n\
-    td, th { padding: 2px 7px; text-align: right; white-space: nowrap; }\n\
-    td:nth-child(2), th:nth-child(2) { text-align: left; }\n\
-    tr:nth-child(even) { background: #f3f3f3; }\n\
-    tr.best td:nth-child(2) { color: #b3001b; font-weight: bold; }\n\
-    .pictures { display: flex; flex-wrap: wrap; gap: 12px; }\n\
-    figure { margin: 0; font-size: 11px; }\n\
-    figure img { display: block; image-rendering: pixelated; width: 192px; }\n\
-    .scroll { overflow-x: auto; }\n\
-    .front { font-size: 12px; color: #b3001b; }\n\
-    svg { max-width: 100%; height: auto; }\n</style>\n";
+const NOTES: &str = "<p>Sampling error: the picture of <code>f64</code> with a setting against the reference; it is \
+    what samples, depth, cut-off, lattice and left-out effects do. Arithmetic error: the picture of the setting's number \
+    format against that of <code>f64</code> with the same setting. Both are RMSEs, and need not add up.</p>\n\
+    <p>A bar spans the repeats of a time, or the least and the most instructions that rays of recorded pictures take. \
+    A time is higher where all repeats of one take longer than all of the other; where repeats overlap, rays and tests \
+    decide within a number format. t counts units of the last place of single precision. SSIM is structural similarity, \
+    1 for equal pictures; FLIP is the mean difference that an eye sees.</p>\n";
 
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     let text = text.replace('&', "&amp;").replace('<', "&lt;");
     text.replace('>', "&gt;").replace('"', "&quot;")
 }
@@ -120,151 +110,280 @@ fn image([width, height]: [u16; 2], pixels: &[u8]) -> io::Result<String> {
     let mut file = Vec::new();
     write_png(&mut file, [width.into(), height.into()], pixels, None)?;
     let data = base64::engine::general_purpose::STANDARD.encode(file);
-    Ok(format!(
-        "<img alt=\"\" src=\"data:image/png;base64,{data}\">"
-    ))
+    Ok(format!("data:image/png;base64,{data}"))
 }
 
-/// A plot of an error against time, both by their logarithms.
-fn plot((title, error): Metric, results: &Results, best: &[bool]) -> io::Result<String> {
-    const SIZE: (u32, u32) = (1060, 520);
-    let base = &results.base;
-    let places: Vec<(f64, f64)> = results
-        .points
-        .iter()
-        .map(|point| (1e3 * point.cost.time().max(1e-9), error(point).max(1e-7)))
-        .collect();
-    let repeats = results.points.iter().flat_map(|point| &point.cost.seconds);
-    let repeats = repeats.map(|seconds| 1e3 * seconds.max(1e-9));
-    let ends = |all: &mut dyn Iterator<Item = f64>| {
-        let (low, high) = all.fold((f64::INFINITY, 0.0_f64), |(low, high), x| {
-            (low.min(x), high.max(x))
-        });
-        (low / 1.25)..(high * 1.6)
-    };
-    let times = ends(&mut repeats.chain(places.iter().map(|place| place.0)));
-    let errors = ends(&mut places.iter().map(|place| place.1));
-    let (mut svg, mut names) = (String::new(), String::new());
-    let mut fastest_first = Vec::new();
-    let draw = |svg: &mut String| -> Result<(), Box<dyn std::error::Error>> {
-        let area = SVGBackend::with_string(svg, SIZE).into_drawing_area();
-        area.fill(&WHITE)?;
-        let mut chart = ChartBuilder::on(&area)
-            .caption(title, ("sans-serif", 20))
-            .margin(10)
-            .x_label_area_size(42)
-            .y_label_area_size(72)
-            .build_cartesian_2d(times.log_scale(), errors.log_scale())?;
-        chart
-            .configure_mesh()
-            .x_desc("milliseconds per frame, one thread")
-            .y_desc(title)
-            .x_label_formatter(&|x| significant((x * 1e3).round() / 1e3))
-            .y_label_formatter(&|y| format!("{y:.1e}"))
-            .light_line_style(RGBColor(240, 240, 240))
-            .draw()?;
-        // The front goes by this plot's own error.
-        let unbeaten = frontier_by(&results.points, error);
-        fastest_first.extend((0..places.len()).filter(|&number| unbeaten[number]));
-        fastest_first.sort_by(|&a, &b| places[a].0.total_cmp(&places[b].0));
-        let front: Vec<(f64, f64)> = fastest_first.iter().map(|&number| places[number]).collect();
-        chart.draw_series(LineSeries::new(front.iter().copied(), RGBColor(179, 0, 27)))?;
-        for (number, (&place, point)) in places.iter().zip(&results.points).enumerate() {
-            let turned = point.setting.differs(base).len();
-            let color = match turned {
-                0 => RGBColor(0, 0, 0),
-                1 => RGBColor(31, 99, 180),
-                _ => RGBColor(130, 150, 130),
-            };
-            if let Some(repeats) = point.cost.interval() {
-                let bar = repeats.map(|seconds| (1e3 * seconds.max(1e-9), place.1));
-                chart.draw_series(LineSeries::new(bar, color))?;
-            }
-            chart.draw_series([Circle::new(place, 4, color.filled())])?;
-            let color = if front.contains(&place) {
-                RGBColor(179, 0, 27)
-            } else {
-                RGBColor(90, 90, 90)
-            };
-            let font = ("sans-serif", 10).into_font().color(&color);
-            let label = Text::new((number + 1).to_string(), (6, -5), font);
-            chart.draw_series([EmptyElement::at(place) + label])?;
-            let (x, y) = chart.backend_coord(&place);
-            // Names appear where the pointer is: all at once they would cover the points.
-            let _ = writeln!(
-                names,
-                "<circle cx=\"{x}\" cy=\"{y}\" r=\"7\" fill=\"transparent\"><title>{} {}: {} ms, {}</title></circle>",
-                number + 1,
-                escape(&point.name),
-                significant(place.0),
-                significant(place.1)
-            );
-            if best.get(number).copied().unwrap_or(false) {
-                chart.draw_series([Circle::new(place, 7, RGBColor(179, 0, 27).stroke_width(1))])?;
-            }
-        }
-        area.present()?;
-        Ok(())
-    };
-    draw(&mut svg).map_err(|error| io::Error::other(error.to_string()))?;
-    let svg = svg.replace("</svg>", &format!("{names}</svg>"));
-    let front: Vec<String> = fastest_first
-        .into_iter()
-        .map(|number| format!("{} {}", number + 1, escape(&results.points[number].name)))
-        .collect();
-    Ok(format!(
-        "{svg}\n<p class=\"front\">On the line, the fastest first: {}.</p>\n",
-        front.join("; ")
-    ))
-}
-
-fn table(results: &Results, best: &[bool]) -> String {
-    let mut table = String::from(
-        "<h2>All settings</h2>\n<p>Black: what the scene file states; blue: one parameter changed; \
-         gray: several. Errors are of display values from 0 to 1; t counts units of the last place \
-         of single precision. Instructions per pixel on boards are estimates: the rays times the \
-         least and the most that a ray of a recorded picture takes.</p>\n<div class=\"scroll\"><table>\n\
-         <tr><th>#</th><th>setting</th><th>ms</th><th>spread</th><th>RMSE</th><th>largest</th>\
-         <th>pixels off</th><th>SSIM</th><th>FLIP</th><th>other objects</th><th>t, median</th>\
-         <th>t, largest</th><th>rays per pixel</th><th>tests per ray</th><th>blob</th><th>RAM</th>",
-    );
-    for board in core_names() {
-        let _ = write!(table, "<th>{board}</th>");
+/// What distinguishes a setting from the scene file's, as the page's colors call it.
+fn lever(setting: &Setting, base: &Setting) -> &'static str {
+    match setting.differs(base)[..] {
+        [] => "base",
+        [Parameter::Format] => "format",
+        [Parameter::LatticeBits] => "lattice-bits",
+        [Parameter::Samples] => "samples",
+        [Parameter::Depth] => "depth",
+        [Parameter::Cutoff] => "cutoff",
+        [Parameter::Effects] => "effects",
+        _ => "several",
     }
-    table.push_str("</tr>\n");
-    for (number, point) in results.points.iter().enumerate() {
+}
+
+/// The page's figures and pictures, as JSON that may stand in a script.
+fn data(size: [u16; 2], results: &Results, pictures: &[PagePicture]) -> io::Result<String> {
+    let base = &results.base;
+    let best = frontier(&results.points);
+    let mut images = Images::default();
+    let reference = pictures.iter().find(|it| it.name.is_empty());
+    let reference = match reference {
+        Some(it) => images.add(size, &it.pixels)?,
+        None => None,
+    };
+    let mut order: Vec<usize> = (0..results.points.len()).collect();
+    order.sort_by_key(|&number| {
+        let turned = results.points[number].setting.differs(base).len();
+        (turned > 0, !best[number], turned)
+    });
+    let mut numbers = vec![None; results.points.len()];
+    let by_name: HashMap<&str, &PagePicture> =
+        pictures.iter().map(|it| (it.name.as_str(), it)).collect();
+    for number in order {
+        if let Some(it) = by_name.get(results.points[number].name.as_str()) {
+            numbers[number] = images.add(size, &it.pixels)?;
+        }
+    }
+    let points = results.points.iter().zip(&numbers).map(|(point, picture)| {
         let (errors, cost) = (&point.errors, &point.cost);
-        let class = if best[number] { " class=\"best\"" } else { "" };
-        let _ = write!(
+        let ms = 1e3 * cost.time().max(1e-9);
+        let range = cost.interval().map_or([ms; 2], |it| it.map(|s| 1e3 * s.max(1e-9)));
+        let boards: serde_json::Map<String, serde_json::Value> = core_names()
+            .into_iter()
+            .filter_map(|board| Some((board.to_owned(), json!(point.instructions(board)?))))
+            .collect();
+        json!({
+            "name": point.name, "words": point.setting.words(base), "lever": lever(&point.setting, base),
+            "rmse": errors.rmse, "flip": errors.flip, "ssim": (1.0 - errors.ssim).max(0.0),
+            "sampling": point.parts.sampling, "arithmetic": point.parts.arithmetic,
+            "ms": ms, "range": range, "rays": point.rays_per_pixel(), "boards": boards,
+            "bytes": cost.blob_bytes, "ram": cost.working_bytes, "picture": picture,
+        })
+    });
+    let data = json!({
+        "points": points.collect::<Vec<_>>(),
+        "fronts": {
+            "rmse": best,
+            "flip": frontier_by(&results.points, |it| it.errors.flip),
+            "ssim": frontier_by(&results.points, |it| 1.0 - it.errors.ssim),
+        },
+        "boards": core_names(),
+        "pictures": images.images,
+        "reference": reference,
+    });
+    // A script ends at the first end mark, wherever it stands.
+    Ok(data.to_string().replace('<', "\\u003c"))
+}
+
+/// Encoded pictures, each once, within [`MOST_PICTURE_BYTES`].
+#[derive(Default)]
+struct Images {
+    images: Vec<String>,
+    numbers: HashMap<Vec<u8>, usize>,
+    bytes: usize,
+}
+
+impl Images {
+    /// The number of a picture; `None` where there is no room for it.
+    fn add(&mut self, size: [u16; 2], pixels: &[u8]) -> io::Result<Option<usize>> {
+        if let Some(&number) = self.numbers.get(pixels) {
+            return Ok(Some(number));
+        }
+        let image = image(size, pixels)?;
+        // The reference is always there, so that differences have something to differ from.
+        if !self.images.is_empty() && self.bytes + image.len() > MOST_PICTURE_BYTES {
+            return Ok(None);
+        }
+        self.bytes += image.len();
+        self.images.push(image);
+        let number = self.images.len() - 1;
+        self.numbers.insert(pixels.to_vec(), number);
+        Ok(Some(number))
+    }
+}
+
+/// A small figure, to five decimals.
+fn figure(value: f64) -> String {
+    significant((value * 1e5).round() / 1e5)
+}
+
+/// The table of the front, the fastest first.
+fn front(results: &Results) -> String {
+    let mut table = String::from(
+        "<table><caption>By RMSE and time, the fastest first: each has less error than those above it, or costs that \
+         are not surely higher.</caption>\n<thead><tr><th scope=\"col\">setting</th><th scope=\"col\">format</th>\
+         <th scope=\"col\">RMSE</th><th scope=\"col\">sampling error</th><th scope=\"col\">arithmetic error</th>\
+         <th scope=\"col\">ms</th><th scope=\"col\">spread</th><th scope=\"col\">rays per pixel</th></tr></thead>\n<tbody>",
+    );
+    let best = frontier(&results.points);
+    let points = results.points.iter().zip(best);
+    let mut points: Vec<&Point> = points.filter_map(|(it, best)| best.then_some(it)).collect();
+    points.sort_by(|a, b| a.cost.time().total_cmp(&b.cost.time()));
+    for point in points {
+        let cost = &point.cost;
+        let _ = writeln!(
             table,
-            "<tr{class}><td>{}</td><td>{}</td><td>{:.2}</td><td>{}</td><td>{:.5}</td><td>{:.4}</td>\
-             <td>{}</td><td>{:.5}</td><td>{:.5}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.2}</td>\
-             <td>{:.1}</td><td>{}</td><td>{}</td>",
-            number + 1,
-            point.name,
+            "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.2}</td><td>{}</td><td>{:.2}</td></tr>",
+            escape(&point.setting.words(&results.base)),
+            point.setting.format.name(),
+            figure(point.errors.rmse),
+            figure(point.parts.sampling),
+            figure(point.parts.arithmetic),
             1e3 * cost.time(),
             cost.spread_text(),
-            errors.rmse,
-            errors.largest,
+            point.rays_per_pixel(),
+        );
+    }
+    table + "</tbody></table>"
+}
+
+/// The section of effects; empty for a scene that calls for none.
+fn effects(results: &Results) -> String {
+    if results.effects.is_empty() {
+        return String::new();
+    }
+    let all = results.points.iter().find(|it| it.setting == results.base);
+    let work = all.map_or(1.0, |it| {
+        (it.cost.rays + it.cost.tests) as f64 / it.cost.pixels.max(1) as f64
+    });
+    let worst = results.effects.iter().map(|it| it.lost.rmse);
+    let worst = worst.fold(1e-9, f64::max);
+    let mut text = format!(
+        "\n<section aria-labelledby=\"effects-title\">\n<h2 id=\"effects-title\">What each effect is worth</h2>\n\
+         <div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"effects-title\"><table><caption>The picture \
+         without an effect against the picture with it, and what is saved. Give up the upper ones first: they change the \
+         picture least for the rays and tests that they save. Instructions per pixel, flash and RAM are those of {}.\
+         </caption>\n<thead><tr><th scope=\"col\">effect</th><th scope=\"col\">RMSE without</th><th scope=\"col\">FLIP</th>\
+         <th scope=\"col\">rays and tests</th><th scope=\"col\">time</th><th scope=\"col\">instructions</th>\
+         <th scope=\"col\">flash, RAM</th><th scope=\"col\">without it</th></tr></thead>\n<tbody>",
+        super::BOARD
+    );
+    for worth in &results.effects {
+        let saved = (worth.rays + worth.tests) / work.max(f64::MIN_POSITIVE);
+        let _ = writeln!(
+            text,
+            "<tr><th scope=\"row\">{}</th><td>{}<span class=\"bar\" style=\"width:{:.0}%\"></span></td><td>{}</td>\
+             <td>{:.0} %<span class=\"bar cost\" style=\"width:{:.0}%\"></span></td><td>{}</td><td>{}</td><td>{}</td>\
+             <td class=\"text\">{} <button type=\"button\" data-setting=\"{}\" aria-label=\"Compare without {}\">compare</button></td></tr>",
+            escape(&worth.effect),
+            figure(worth.lost.rmse),
+            100.0 * worth.lost.rmse / worst,
+            figure(worth.lost.flip),
+            100.0 * saved,
+            (100.0 * saved).clamp(0.0, 100.0),
+            worth.time_text(),
+            worth.instructions_text(),
+            worth.memory_text(),
+            escape(&worth.shown_without),
+            escape(&worth.without),
+            escape(&worth.effect),
+        );
+    }
+    text + "</tbody></table></div>\n</section>\n"
+}
+
+impl Worth {
+    /// The part of the time that is saved, or between what it lies.
+    pub fn time_text(&self) -> String {
+        let percent = |part: f64| (100.0 * part).round();
+        match self.time_range {
+            Some([low, high]) if low <= 0.0 && 0.0 <= high => String::from("noise"),
+            Some([low, high]) => format!("{} to {} %", percent(low), percent(high)),
+            None => format!("{} %, once", percent(self.time)),
+        }
+    }
+
+    /// The least and the most instructions per pixel.
+    pub fn instructions_text(&self) -> String {
+        let known = self
+            .instructions
+            .map(|range| range.map(|it| grouped(it.max(0.0).round() as u64)));
+        known.map_or(String::from("unknown"), |[least, most]| {
+            match least == most {
+                true => least,
+                false => format!("{least} to {most}"),
+            }
+        })
+    }
+
+    /// Bytes of flash and of RAM.
+    pub fn memory_text(&self) -> String {
+        let text = |bytes: i64| match bytes < 0 {
+            true => format!("-{}", grouped(bytes.unsigned_abs())),
+            false => grouped(bytes.unsigned_abs()),
+        };
+        let flash = self.flash.map_or(String::from("unknown"), text);
+        format!("{flash}, {}", text(self.ram))
+    }
+}
+
+fn table(results: &Results) -> String {
+    let best = frontier(&results.points);
+    let mut table = String::from(
+        "<table><caption>A star marks what nothing beats by RMSE and time. Instructions per pixel on boards are \
+         estimates.</caption>\n<thead><tr>",
+    );
+    let columns = [
+        "setting",
+        "",
+        "ms",
+        "spread",
+        "RMSE",
+        "sampling error",
+        "arithmetic error",
+        "largest",
+        "pixels off",
+        "SSIM",
+        "FLIP",
+        "other objects",
+        "t, median",
+        "t, largest",
+        "rays per pixel",
+        "tests per ray",
+        "blob",
+        "RAM",
+    ];
+    for column in columns.into_iter().chain(core_names()) {
+        let _ = write!(table, "<th scope=\"col\">{column}</th>");
+    }
+    table.push_str("</tr></thead>\n<tbody>");
+    for (point, best) in results.points.iter().zip(best) {
+        let (errors, cost) = (&point.errors, &point.cost);
+        let cells = [
+            String::from(if best { "*" } else { "" }),
+            format!("{:.2}", 1e3 * cost.time()),
+            cost.spread_text(),
+            format!("{:.5}", errors.rmse),
+            format!("{:.5}", point.parts.sampling),
+            format!("{:.5}", point.parts.arithmetic),
+            format!("{:.4}", errors.largest),
             grouped(errors.pixels_off),
-            errors.ssim,
-            errors.flip,
+            format!("{:.5}", errors.ssim),
+            format!("{:.5}", errors.flip),
             grouped(errors.other_objects),
             significant((100.0 * errors.t_ulps[0]).round() / 100.0),
             significant(errors.t_ulps[1].round()),
-            cost.rays as f64 / cost.pixels.max(1) as f64,
-            cost.tests as f64 / cost.rays.max(1) as f64,
+            format!("{:.2}", point.rays_per_pixel()),
+            format!("{:.1}", cost.tests as f64 / cost.rays.max(1) as f64),
             grouped(cost.blob_bytes),
             grouped(cost.working_bytes),
-        );
-        for board in core_names() {
-            let text = point
-                .instructions(board)
-                .map(|range| range.map(|n| grouped(n.round())).join(" to "));
-            let _ = write!(table, "<td>{}</td>", text.unwrap_or_default());
+        ];
+        let boards = core_names().into_iter().map(|board| {
+            let range = point.instructions(board);
+            let text = range.map(|range| range.map(|n| grouped(n.round())).join(" to "));
+            text.unwrap_or_default()
+        });
+        let _ = write!(table, "<tr><th scope=\"row\">{}</th>", escape(&point.name));
+        for cell in cells.into_iter().chain(boards) {
+            let _ = write!(table, "<td>{cell}</td>");
         }
         table.push_str("</tr>\n");
     }
-    table.push_str("</table></div>\n");
-    table
+    table + "</tbody></table>"
 }

@@ -1,7 +1,7 @@
-//! The settings of a sweep: five parameters, each alone and together.
+//! The settings of a sweep: six parameters, each alone and together.
 
-use gridel_core::Format;
 use gridel_core::format::limits::MAX_SAMPLES;
+use gridel_core::{Effects, Format};
 use serde::{Deserialize, Serialize};
 
 /// A way to build and render a scene.
@@ -14,6 +14,31 @@ pub struct Setting {
     pub depth: u8,
     /// A secondary ray that can change no channel by more than this is not traced.
     pub cutoff: f64,
+    /// Effects of the scene that are left out.
+    #[serde(default, skip_serializing_if = "is_none", with = "effect_names")]
+    pub without: Effects,
+}
+
+fn is_none(effects: &Effects) -> bool {
+    *effects == Effects::NONE
+}
+
+mod effect_names {
+    use crate::scene::effect_named;
+    use gridel_core::Effects;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    pub fn serialize<S: Serializer>(effects: &Effects, to: S) -> Result<S::Ok, S::Error> {
+        effects.names().collect::<Vec<_>>().serialize(to)
+    }
+
+    pub fn deserialize<'d, D: Deserializer<'d>>(from: D) -> Result<Effects, D::Error> {
+        let names = Vec::<String>::deserialize(from)?;
+        let effects = names.iter().map(|name| effect_named(name));
+        let all = effects.reduce(|all, one| Some(all?.with(one?)));
+        let all = all.unwrap_or(Some(Effects::NONE));
+        all.ok_or_else(|| D::Error::custom("no such effect"))
+    }
 }
 
 mod format_name {
@@ -32,7 +57,7 @@ mod format_name {
     }
 }
 
-/// One of the five.
+/// One of the six.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Parameter {
@@ -41,15 +66,17 @@ pub enum Parameter {
     Samples,
     Depth,
     Cutoff,
+    Effects,
 }
 
 impl Parameter {
-    pub const ALL: [Parameter; 5] = [
+    pub const ALL: [Parameter; 6] = [
         Parameter::Format,
         Parameter::LatticeBits,
         Parameter::Samples,
         Parameter::Depth,
         Parameter::Cutoff,
+        Parameter::Effects,
     ];
 
     /// Its name.
@@ -60,6 +87,7 @@ impl Parameter {
             Parameter::Samples => "samples per pixel",
             Parameter::Depth => "ray depth",
             Parameter::Cutoff => "contribution cut-off",
+            Parameter::Effects => "effects",
         }
     }
 }
@@ -76,16 +104,43 @@ const CUTOFFS: [f64; 6] = [
 ];
 
 impl Setting {
-    /// Its short name: `f32-24bit-4spp-6deep-0.002`.
+    /// Its short name: `f32-24bit-4spp-6deep-0.002`, and `-without-glass` where effects are left out.
     pub fn name(&self) -> String {
+        let effects: String = self
+            .without
+            .names()
+            .map(|name| format!("-{name}"))
+            .collect();
+        let without = if effects.is_empty() { "" } else { "-without" };
         format!(
-            "{}-{}bit-{}spp-{}deep-{}",
+            "{}-{}bit-{}spp-{}deep-{}{without}{effects}",
             self.format.name(),
             self.lattice_bits,
             self.samples,
             self.depth,
             cutoff_text(self.cutoff)
         )
+    }
+
+    /// Says in words how it differs from another: `4 samples, without glass`.
+    pub fn words(&self, base: &Self) -> String {
+        let words = self.differs(base).into_iter().map(|parameter| {
+            let value = self.value(parameter);
+            match parameter {
+                Parameter::Format => value,
+                Parameter::LatticeBits => format!("{value} bits"),
+                Parameter::Samples if self.samples == 1 => String::from("1 sample"),
+                Parameter::Samples => format!("{value} samples"),
+                Parameter::Depth => format!("depth {value}"),
+                Parameter::Cutoff => format!("cut-off {value}"),
+                Parameter::Effects => format!("without {value}"),
+            }
+        });
+        let words = words.collect::<Vec<_>>().join(", ");
+        match words.is_empty() {
+            true => String::from("as the scene file states"),
+            false => words,
+        }
     }
 
     /// The parameters in which it differs from another.
@@ -96,6 +151,7 @@ impl Setting {
             Parameter::Samples => self.samples != other.samples,
             Parameter::Depth => self.depth != other.depth,
             Parameter::Cutoff => self.cutoff != other.cutoff,
+            Parameter::Effects => self.without != other.without,
         };
         Parameter::ALL.into_iter().filter(differs).collect()
     }
@@ -108,6 +164,7 @@ impl Setting {
             Parameter::Samples => self.samples.to_string(),
             Parameter::Depth => self.depth.to_string(),
             Parameter::Cutoff => cutoff_text(self.cutoff),
+            Parameter::Effects => self.without.to_string(),
         }
     }
 }
@@ -120,9 +177,10 @@ fn cutoff_text(cutoff: f64) -> String {
 }
 
 /// The settings of a sweep around the one that the scene file states: first that one, then each parameter
-/// alone, then together. `secondary` says whether anything in the scene reflects or refracts; without,
-/// depth and cut-off change nothing and are left alone.
-pub fn sweep(base: Setting, secondary: bool) -> Vec<Setting> {
+/// alone, then together. `effects` are those of the scene, each of which is left out alone. Where none of them
+/// sends rays on, depth and cut-off change nothing and are left alone.
+pub fn sweep(base: Setting, effects: Effects) -> Vec<Setting> {
+    let secondary = effects.work_depth(1) > 0;
     let mut settings = vec![base];
     let mut add = |setting: Setting| {
         if !settings.contains(&setting) {
@@ -148,6 +206,14 @@ pub fn sweep(base: Setting, secondary: bool) -> Vec<Setting> {
         }
         for cutoff in CUTOFFS {
             add(Setting { cutoff, ..base });
+        }
+    }
+    for (effect, _) in Effects::NAMED {
+        if effects.contains(effect) {
+            add(Setting {
+                without: base.without.with(effect),
+                ..base
+            });
         }
     }
     // Together: what a board can choose between, and what raises samples at less depth.
@@ -203,8 +269,9 @@ mod tests {
             samples: 1,
             depth: 6,
             cutoff: 1.0 / 512.0,
+            without: Effects::NONE,
         };
-        let settings = sweep(base, true);
+        let settings = sweep(base, Effects::SHADOW.with(Effects::MIRROR));
         for parameter in Parameter::ALL {
             let alone = settings.iter().filter(|s| s.differs(&base) == [parameter]);
             assert!(alone.count() >= 2, "{parameter:?}");
@@ -212,12 +279,25 @@ mod tests {
         for (number, setting) in settings.iter().enumerate() {
             assert!(!settings[..number].contains(setting), "{setting:?}");
         }
-        let plain = sweep(base, false);
+        let plain = sweep(base, Effects::NONE);
         assert!(
             plain
                 .iter()
                 .all(|s| s.depth == 6 && s.cutoff == base.cutoff)
         );
         assert_eq!(settings[0].name(), "f32-24bit-1spp-6deep-0.00195");
+        let bare = Setting {
+            samples: 4,
+            without: Effects::SHADOW.with(Effects::MIRROR),
+            ..base
+        };
+        assert_eq!(
+            bare.name(),
+            "f32-24bit-4spp-6deep-0.00195-without-shadow-mirror"
+        );
+        assert_eq!(bare.words(&base), "4 samples, without shadow, mirror");
+        let text = serde_json::to_string(&bare).unwrap();
+        assert_eq!(serde_json::from_str::<Setting>(&text).unwrap(), bare);
+        assert!(!serde_json::to_string(&base).unwrap().contains("without"));
     }
 }

@@ -49,6 +49,10 @@ pub struct Check {
     pub hash: Option<BTreeMap<String, String>>,
     pub reference: Option<Reference>,
     pub budget: Budget,
+    /// The least part of pixels that is proved by exact arithmetic.
+    pub certified: Option<f64>,
+    /// The largest proved error of a format, in 255ths.
+    pub max_proved_error: Option<u64>,
     /// The board whose memory the scene must fit.
     pub target: Option<&'static Target>,
     pub boards: Vec<Board>,
@@ -202,6 +206,8 @@ impl Check {
             "reference",
             "tolerance",
             "budget",
+            "certified",
+            "max_proved_error",
             "target",
             "board",
         ];
@@ -256,6 +262,12 @@ impl Check {
             budget: fields.or("budget", Budget::default(), |table| {
                 Budget::read(table, target.is_some())
             })?,
+            certified: fields.or("certified", None, |value| {
+                value.number_in(0.0..=1.0).map(Some)
+            })?,
+            max_proved_error: fields.or("max_proved_error", None, |value| {
+                Ok(Some(value.integer_in(0..=255)? as u64))
+            })?,
             target,
             boards: fields.or("board", Vec::new(), |list| {
                 list.items("`[[check.board]]` above the keys of each")?
@@ -294,6 +306,8 @@ impl Check {
             && self.reference.is_none()
             && bytes.iter().all(Option::is_none)
             && tests_per_ray.is_none()
+            && self.certified.is_none()
+            && self.max_proved_error.is_none()
             && self.target.is_none()
             && self.boards.iter().all(idle)
     }

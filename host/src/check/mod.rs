@@ -2,6 +2,7 @@
 
 mod bless;
 mod board;
+mod certified;
 mod diff;
 mod explained;
 mod image;

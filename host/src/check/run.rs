@@ -73,9 +73,8 @@ impl Run<'_> {
     fn all(&mut self, progress: &dyn Fn()) -> Result<(), String> {
         let check = self.check;
         let blob = self.blob()?;
-        let scene = blob
-            .scene()
-            .map_err(|error| format!("{}: {error}", check.scene.path.display()))?;
+        let invalid = |error| format!("{}: {error}", check.scene.path.display());
+        let scene = blob.scene().map_err(invalid)?;
         let state = self.state(&scene, blob.bytes())?;
         let shown = match &state {
             Some(state) => state.apply(&scene).map_err(|error| error.to_string())?,
@@ -102,6 +101,7 @@ impl Run<'_> {
             self.format(&shown, structure, format, name)?;
             progress();
         }
+        self.certify(&shown, structure)?;
         for number in 0..check.boards.len() {
             self.board(number, &blob, &scene, structure)?;
             progress();
@@ -232,7 +232,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    fn settings(&self, scene: &Scene<'_>) -> Settings {
+    pub(super) fn settings(&self, scene: &Scene<'_>) -> Settings {
         let mut settings = Settings::of(scene);
         if let Some([width, height]) = self.check.size {
             (settings.width, settings.height) = (width, height);

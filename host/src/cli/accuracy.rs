@@ -13,9 +13,10 @@ use super::failure::Failure;
 use super::output::{check_writable, print, print_json_warned, write_texts};
 use super::source::import;
 use choice::{Choice, choice};
-use folder::{CSV, PAGE, comparisons, kept};
+use folder::{CSV, PAGE, PLOT, kept, pictures};
 use gridel_host::accuracy::{
-    Bench, MeasureError, Point, frontier, least_reference_samples, page, sentences, sweep,
+    Bench, MeasureError, Point, Worth, answers, frontier, least_reference_samples, page, plot,
+    sentences, sweep,
 };
 use gridel_host::measure::InstanceCount;
 use gridel_host::table::{counted, grouped, significant};
@@ -37,6 +38,10 @@ struct Printed<'t> {
     points: &'t [Point],
     /// Which points nothing beats in cost and RMSE.
     frontier: Vec<bool>,
+    /// Which setting for a given error, what the number format changes, what to give up first.
+    answers: Vec<String>,
+    /// What each effect is worth, in the order in which to give them up.
+    effects: &'t [Worth],
     sentences: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     cheapest: Option<&'t Choice>,
@@ -80,7 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut bench = Bench::new(&imported.scene, arguments.accel, size);
     bench.quality = arguments.quality.unwrap_or_default();
     bench.copied = imported.copied;
-    let settings = sweep(bench.base(), bench.is_secondary().map_err(failed)?);
+    let settings = sweep(bench.base(), bench.effects().map_err(failed)?);
     let least = least_reference_samples(&settings);
     if arguments.reference_samples < least {
         return Err(Failure::usage(
@@ -101,15 +106,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let kept = kept(&folder, &key)?;
     std::fs::create_dir_all(folder.join("pictures"))
         .map_err(|error| Failure::writing(&folder, &error))?;
-    for name in [PAGE, CSV] {
+    for name in [PAGE, CSV, PLOT] {
         check_writable(&folder.join(name))?;
     }
     let results = measure(arguments, &mut bench, &folder, (key, kept), &settings)?;
-    let comparisons = comparisons(&folder, size, &results)?;
-    let page = page(&stem, size, &results, &comparisons)
-        .map_err(|error| Failure::failed(error.to_string(), "report this as a fault of gridel"))?;
+    let pictures = pictures(&folder, size, &results)?;
+    let fault = |error: std::io::Error| {
+        Failure::failed(error.to_string(), "report this as a fault of gridel")
+    };
+    let page = page(&stem, size, &results, &pictures).map_err(fault)?;
+    let plot = plot(&results).map_err(fault)?;
     let csv = csv(&results.points);
-    write_texts(&folder, &[(PAGE, page), (CSV, csv)])?;
+    write_texts(&folder, &[(PAGE, page), (CSV, csv), (PLOT, plot)])?;
 
     let choice = choice(arguments, &stem, &results);
     if arguments.json {
@@ -119,6 +127,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             instances: results.instances,
             points: &results.points,
             frontier: frontier(&results.points),
+            answers: answers(&results),
+            effects: &results.effects,
             sentences: sentences(&results.base, &results.points),
             cheapest: choice.as_ref(),
         };
@@ -126,28 +136,46 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         print(text(&folder, size, &results, choice.as_ref()))?;
     }
-    match arguments.max_error {
-        Some(most) if choice.is_none() => Err(nothing_within(arguments, most, &results.points)),
-        _ => Ok(()),
+    let limited = arguments.max_error.is_some() || arguments.max_rays.is_some();
+    match limited && choice.is_none() {
+        true => Err(nothing_within(arguments, &results.points)),
+        false => Ok(()),
     }
 }
 
 /// No setting keeps within the bound.
-fn nothing_within(arguments: &Arguments, most: f64, points: &[Point]) -> Failure {
+fn nothing_within(arguments: &Arguments, points: &[Point]) -> Failure {
     let on = arguments.board.as_deref();
     let measured = points
         .iter()
         .filter(|point| on.is_none_or(|board| point.instructions(board).is_some()));
-    let least = measured
-        .map(|point| point.errors.rmse)
-        .fold(f64::INFINITY, f64::min);
-    Failure::failed(
-        format!(
-            "no setting keeps within an RMSE of {most}; the least is {}",
-            significant(least)
+    let measured: Vec<&Point> = measured.collect();
+    let least = |figure: fn(&Point) -> f64| {
+        let figures = measured.iter().map(|point| figure(point));
+        significant(figures.fold(f64::INFINITY, f64::min))
+    };
+    let (cause, remedy) = match (arguments.max_error, arguments.max_rays) {
+        (Some(most), None) => (
+            format!(
+                "no setting keeps within an RMSE of {most}; the least is {}",
+                least(|it| it.errors.rmse)
+            ),
+            "allow a larger error, or give the scene file more samples and depth",
         ),
-        "allow a larger error, or give the scene file more samples and depth",
-    )
+        (None, rays) => (
+            format!(
+                "no setting casts at most {} rays per pixel; the fewest are {}",
+                rays.unwrap_or_default(),
+                least(Point::rays_per_pixel)
+            ),
+            "allow more rays",
+        ),
+        (Some(most), Some(rays)) => (
+            format!("no setting keeps within an RMSE of {most} with at most {rays} rays per pixel"),
+            "allow a larger error or more rays",
+        ),
+    };
+    Failure::failed(cause, remedy)
 }
 
 /// A picture's size, made smaller.

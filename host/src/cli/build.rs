@@ -244,12 +244,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let name = arguments.output.display().to_string();
     let unresolved = source.warn_of_unresolved(&scene, None);
-    let built = Built {
+    let mut built = Built {
         memory: memory.as_ref(),
         unresolved: &unresolved,
         instances: InstanceCount::of(&scene, source.copied),
         ..Built::new(&name, &scene, report, &source.warnings)
     };
+    if let Some(memory) = &memory {
+        for effect in &mut built.effects {
+            effect.add_costs(&scene, memory);
+        }
+    }
     let report = match arguments.json {
         true => json(&built)?,
         false => built.text(),

@@ -3,6 +3,9 @@
 use gridel_core::format::record::{Light, Material};
 use gridel_core::{Effects, Scene};
 use gridel_host::compile::Report;
+use gridel_host::measure::board::{MemoryReport, WORK_LIST};
+use gridel_host::scene::effect_named;
+use gridel_host::table::grouped;
 use serde::Serialize;
 use std::fmt;
 
@@ -11,13 +14,39 @@ use std::fmt;
 pub struct CalledFor {
     effect: String,
     by: Vec<String>,
+    /// Bytes of its code on a board, where programs were built with and without it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    code: Option<u64>,
+    /// Bytes of RAM on a board that the scene needs for this effect alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ram: Option<u64>,
 }
 
 impl CalledFor {
     /// The effects of a scene file, whose lights and materials have names.
     pub fn in_report(report: &Report) -> Vec<Self> {
         let effects = report.effects.iter().cloned();
-        effects.map(|(effect, by)| Self { effect, by }).collect()
+        effects
+            .map(|(effect, by)| Self {
+                effect,
+                by,
+                code: None,
+                ram: None,
+            })
+            .collect()
+    }
+
+    /// Adds what it costs on a board.
+    pub fn add_costs(&mut self, scene: &Scene<'_>, report: &MemoryReport) {
+        self.code = report.code_of(&self.effect);
+        let (all, depth) = (scene.effects(), scene.view().depth);
+        let rest = effect_named(&self.effect).map_or(all, |effect| all.without(effect));
+        // Places for waiting rays, which no other effect needs.
+        if all.work_depth(depth) > 0 && rest.work_depth(depth) == 0 {
+            let mut items = report.ram.items.iter();
+            let work_list = items.find(|item| item.what == WORK_LIST);
+            self.ram = work_list.and_then(|item| item.bytes);
+        }
     }
 
     /// The effects of a blob, whose lights and materials have numbers.
@@ -45,6 +74,8 @@ impl CalledFor {
             .map(|(effect, name)| Self {
                 effect: name.to_owned(),
                 by: callers(effect),
+                code: None,
+                ram: None,
             })
             .collect()
     }
@@ -69,6 +100,12 @@ impl fmt::Display for CalledFor {
         write!(f, "{}, for {}", self.effect, shown.join(", "))?;
         if self.by.len() > SHOWN {
             write!(f, " and {} more", self.by.len() - SHOWN)?;
+        }
+        if let Some(code) = self.code {
+            write!(f, "; {} bytes of code", grouped(code))?;
+        }
+        if let Some(ram) = self.ram {
+            write!(f, "; {} bytes of RAM", grouped(ram))?;
         }
         Ok(())
     }

@@ -3,16 +3,18 @@
 use super::arguments::TargetPoint;
 use super::arguments::{PictureOptions, SceneOptions, TraceOptions, seconds};
 use super::failure::Failure;
-use super::output::{print, print_json_warned};
+use super::output::{print, print_json, print_json_warned};
 use super::source::Source;
 use clap::{ArgGroup, Args};
 use glam::DVec3;
-use gridel_core::{Settings, Structure};
+use gridel_core::{Scene, Settings, Structure};
+use gridel_host::certify::{self, World};
 use gridel_host::compile::Names;
 use gridel_host::explain::{ExplainError, Explanation, LightOutcome, Shown, Subject, explain};
 use gridel_host::trace::SceneRay;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::fmt::Write;
 use std::path::PathBuf;
 
 /// Explain the color of a pixel, or the hit of a ray
@@ -56,6 +58,10 @@ pub struct Arguments {
     /// Show the nodes of every ray, of shadow rays too
     #[arg(long)]
     all_walks: bool,
+
+    /// Show the exact pixel as `certify` encloses it: the intervals along its rays, of linear values
+    #[arg(long, conflicts_with_all = ["ray", "all_walks"])]
+    interval: bool,
 
     /// Show a scene that moves at this time, in seconds [default: as its file states it, without tracks]
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
@@ -113,6 +119,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         // The command line asks for one of them.
         (None, None) => return Ok(()),
     };
+    if let (true, Subject::Pixel(pixel)) = (arguments.interval, subject) {
+        return intervals(arguments, &scene, &settings, pixel);
+    }
     let explanation = explain(&scene, arguments.with.format, structure, settings, subject)
         .map_err(|error| failure(&error))?;
     let names = source.names(&scene);
@@ -131,6 +140,93 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         names: &names,
         all_walks: arguments.all_walks,
     })
+}
+
+/// Explains what is known of the exact pixel.
+fn intervals(
+    arguments: &Arguments,
+    scene: &Scene<'_>,
+    settings: &Settings,
+    pixel: [u16; 2],
+) -> Result<(), Failure> {
+    let world = World::of(scene).map_err(|unknown| {
+        Failure::rejected(
+            format!("{}: {unknown}", arguments.input.display()),
+            "leave out `--interval`",
+        )
+    })?;
+    let (enclosed, steps, open) = certify::explain(&world, settings, pixel);
+    let intervals = Intervals {
+        pixel,
+        bits: certify::LEVELS[usize::from(enclosed.level)],
+        linear: enclosed.linear,
+        low: enclosed.low,
+        high: enclosed.high,
+        proved: enclosed.proved().is_some(),
+        open,
+        steps,
+    };
+    if arguments.json {
+        return print_json(&intervals);
+    }
+    print(intervals.text())
+}
+
+/// What is known of the exact pixel.
+#[derive(Serialize)]
+struct Intervals {
+    pixel: [u16; 2],
+    /// Of the numbers that decided the pixel, or were the last.
+    bits: usize,
+    linear: [[f64; 2]; 3],
+    low: [u8; 3],
+    high: [u8; 3],
+    proved: bool,
+    open: Vec<certify::Open>,
+    steps: Vec<certify::Step>,
+}
+
+impl Intervals {
+    fn text(&self) -> String {
+        let Self {
+            pixel: [x, y],
+            bits,
+            low,
+            high,
+            ..
+        } = self;
+        let mut text = if self.proved {
+            format!("pixel {x},{y} is {low:?}, proved with {bits} bits\n")
+        } else {
+            format!("pixel {x},{y} lies between {low:?} and {high:?}, open with {bits} bits\n")
+        };
+        // Writing to a string cannot fail.
+        for open in &self.open {
+            let [px, py, pz] = open.point;
+            let _ = writeln!(
+                text,
+                "open: {} at depth {}, at {px:.6}, {py:.6}, {pz:.6} in lattice units",
+                open.reason.text(),
+                open.depth
+            );
+        }
+        for step in &self.steps {
+            let indent = "  ".repeat(usize::from(step.depth) + 1);
+            let _ = write!(text, "{indent}{}", step.event);
+            if let (Some(primitive), Some(object)) = (step.primitive, step.object) {
+                let _ = write!(text, ", primitive {primitive} of object {object}");
+            }
+            text.push('\n');
+            for (name, numbers) in &step.values {
+                let _ = write!(text, "{indent}  {name}");
+                for [low, high] in numbers {
+                    let _ = write!(text, " [{low:?}, {high:?}]");
+                }
+                text.push('\n');
+            }
+        }
+        text
+    }
 }
 
 /// An explanation, with the names of its objects.

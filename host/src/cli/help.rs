@@ -19,17 +19,21 @@ Topics (`gridel help TOPIC` prints a document):
   scene       the scene file: every table and key
   check       the manifest of `gridel check`: every table and key
   structures  acceleration structures, and when to use which
+  python      the Python package: rays and points in NumPy arrays
   memory      bytes of blobs, of RAM and of flash on boards
   benchmarks  speed against other libraries, and what accuracy costs
+  exact       the exact picture that `gridel certify` proves
   paper       the tables of the paper, measured again";
 
 /// The documents by their topics.
-const TOPICS: [(&str, &str); 6] = [
+const TOPICS: [(&str, &str); 8] = [
     ("scene", include_str!("../../docs/SCENE.md")),
     ("check", include_str!("../../docs/CHECK.md")),
     ("structures", include_str!("../../docs/STRUCTURES.md")),
+    ("python", include_str!("../../docs/PYTHON.md")),
     ("memory", include_str!("../../docs/MEMORY.md")),
     ("benchmarks", include_str!("../../docs/BENCHMARKS.md")),
+    ("exact", include_str!("../../docs/EXACT.md")),
     ("paper", include_str!("../../docs/PAPER.md")),
 ];
 

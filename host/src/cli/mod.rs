@@ -21,6 +21,7 @@ mod source;
 
 mod accuracy;
 mod build;
+mod certify;
 mod changes;
 mod check;
 mod compare;
@@ -66,6 +67,7 @@ enum Command {
     Trace(trace::Arguments),
     Accuracy(accuracy::Arguments),
     Verify(verify::Arguments),
+    Certify(certify::Arguments),
     Explain(explain::Arguments),
     Sample(sample::Arguments),
     Check(check::Arguments),
@@ -97,6 +99,7 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
         Command::Trace(arguments) => trace::run(&arguments),
         Command::Accuracy(arguments) => accuracy::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
+        Command::Certify(arguments) => certify::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Sample(arguments) => sample::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),

@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::input::Input;
 use super::output::warn;
 use super::progress::Progress;
-use gridel_core::{BlobError, Format, Scene, Structure, Tracks};
+use gridel_core::{BlobError, Effects, Format, Scene, Structure, Tracks};
 use gridel_host::blob::{self, Blob};
 use gridel_host::compile::{self, CompileError, Compiled, Names};
 use gridel_host::measure::board::{Fit, MemoryReport};
@@ -18,7 +18,7 @@ use gridel_host::scene::{self, Imported, Posed, Track};
 use gridel_host::state::{self, State, StateError};
 use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::Path;
-use warnings::{far_moved, names_changed};
+use warnings::{far_moved, leave_out, names_changed};
 
 /// A blob, from wherever it came.
 pub struct Source {
@@ -38,6 +38,8 @@ pub struct Source {
     posed: Option<Posed>,
     /// Number of instances of a scene file that were copied.
     pub copied: usize,
+    /// Effects of a scene file that were left out.
+    without: Effects,
     /// How a scene file was read and compiled.
     made_by: Option<(scene::ImportOptions, compile::Options)>,
 }
@@ -135,6 +137,7 @@ impl Source {
             names: None,
             posed: None,
             copied: 0,
+            without: Effects::NONE,
             made_by: None,
         })
     }
@@ -197,6 +200,7 @@ impl Source {
             names: Some(names),
             posed: imported.posed,
             copied: imported.copied,
+            without: options.geometry.import.left_out(),
             made_by: Some((options.for_import(), compiling)),
         })
     }
@@ -219,7 +223,8 @@ impl Source {
     /// Returns advice that makes the blob of a scene file smaller, from a build that allows no byte.
     fn smaller(&self) -> Option<String> {
         let (importing, compiling) = self.made_by.as_ref()?;
-        let imported = self.input.scene(importing).ok()?;
+        let mut imported = self.input.scene(importing).ok()?;
+        imported.scene.remove_effects(self.without);
         let nothing = compile::Options {
             max_bytes: Some(0),
             ..compiling.clone()
@@ -460,6 +465,9 @@ fn import_from(input: &Input, options: &SceneOptions) -> Result<Imported, Failur
             "leave the option out",
         ));
     }
+    imported
+        .warnings
+        .extend(leave_out(&mut imported.scene, path, &importing.without));
     for warning in &imported.warnings {
         warn(warning);
     }

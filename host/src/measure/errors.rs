@@ -95,6 +95,19 @@ impl Errors {
     }
 }
 
+/// The root of the mean square difference of display values of two pictures, and the largest difference.
+pub fn rmse_and_largest(reference: &[[u16; 3]], pixels: &[[u16; 3]]) -> [f64; 2] {
+    let pairs = reference.iter().flatten().zip(pixels.iter().flatten());
+    let (mut squares, mut largest) = (0.0, 0.0_f64);
+    for (&a, &b) in pairs {
+        let apart = (display(a) - display(b)).abs();
+        squares += apart * apart;
+        largest = largest.max(apart);
+    }
+    let rmse = (squares / (3 * pixels.len()).max(1) as f64).sqrt();
+    [rmse, largest]
+}
+
 /// How display values differ, eight times enlarged, as sRGB pixels: black is the same.
 ///
 /// ```

@@ -27,7 +27,7 @@ pub mod time;
 
 pub use bytes::{MemoryMap, Part, WorkingMemory, board_memory, working_memory};
 pub use deforming::Deforming;
-pub use errors::{Errors, difference_picture};
+pub use errors::{Errors, difference_picture, rmse_and_largest};
 pub use first_hits::{FirstHit, first_hits};
 pub use instances::{InstanceCount, primitives};
 pub use picture::Rendered;

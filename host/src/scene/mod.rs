@@ -33,6 +33,7 @@ mod test_scenes;
 mod text;
 mod texture;
 mod track;
+mod without;
 mod words;
 
 pub use crate::shape::Shape;
@@ -54,6 +55,7 @@ pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
 pub use texture::{Texture, Wrap, linear_of_srgb};
 pub use track::{Interpolation, Key, TICKS_PER_SECOND, Track, TrackTarget};
+pub use without::{effect_named, leave_out, shown_without};
 
 use access::Access;
 use importer::{Choices, Importers};

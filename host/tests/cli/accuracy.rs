@@ -38,8 +38,10 @@ fn single_repeat_reports_no_spread() {
     assert_eq!(columns[name + 2], "-", "{line}");
     let page = String::from_utf8(folder.read("out/page.html")).unwrap();
     assert!(page.contains("256 samples per pixel"), "no samples");
-    assert!(page.contains("<code>fixed</code>") && !page.contains('`'));
+    let (body, _) = page.split_once("<script").unwrap();
+    assert!(body.contains("<code>fixed</code>") && !body.contains('`'));
     assert!(page.contains("<td>-</td>"));
+    assert!(folder.path("out/rmse.svg").exists());
 }
 
 #[test]
@@ -132,10 +134,99 @@ fn the_choice_is_written_with_all_options() {
     ];
     let text = folder.done(&run);
     for part in [
-        "gridel build 'my c60.pdb' --style ball-and-stick -o 'my c60.gridel' --accel wide --quality fast",
+        "gridel build 'my c60.pdb' --style ball-and-stick",
+        " -o 'my c60.gridel' --accel wide --quality fast",
         " --cutoff 0.25",
         "gridel render 'my c60.gridel' -o 'my c60.png'",
     ] {
         assert!(text.contains(part), "{part}: {text}");
     }
+}
+
+#[test]
+fn effects_are_left_out_and_priced() {
+    let folder = folder();
+    let report = folder.json(&[&SMALL[..], &["--max-rays", "1000"]].concat());
+    let effects = report["effects"].as_array().unwrap();
+    assert_eq!(effects.len(), 1);
+    assert_eq!(effects[0]["effect"], "shadow");
+    assert!(effects[0]["rays"].as_f64().unwrap() > 0.0);
+    assert!(report["answers"].as_array().unwrap().len() >= 2);
+    assert!(report["points"][0]["parts"]["sampling"].is_number());
+    let csv = String::from_utf8(folder.read("out/results.csv")).unwrap();
+    let columns: Vec<_> = csv.lines().map(|line| line.split(',').count()).collect();
+    assert!(
+        columns.iter().all(|&count| count == columns[0]),
+        "{columns:?}"
+    );
+    // A limit that nothing keeps, and one that is none.
+    let run = folder.run(&[&SMALL[..], &["--max-rays", "0.25"]].concat());
+    assert_eq!(run.code, Some(1), "{}", run.stderr);
+    assert!(run.said().contains("the fewest are"), "{}", run.stderr);
+    folder.fails(
+        2,
+        &[&SMALL[..], &["--max-rays", "0"]].concat(),
+        &["a number above 0"],
+    );
+}
+
+/// A blob without effects is that of a scene that does not call for them.
+#[test]
+fn build_leaves_effects_out_and_says_what_is_lost() {
+    let folder = Folder::with_quick();
+    let build = ["build", "quick.toml", "-o", "without.gridel", "--without"];
+    let run = folder.run(&[&build[..], &["glass,mirror"]].concat());
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let said = run.said();
+    for part in [
+        "without glass",
+        "glass is opaque",
+        "without mirror",
+        "diffuse color",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    let inspection = folder.json(&["inspect", "without.gridel"]);
+    let effects = inspection["effects"].to_string();
+    assert!(effects.contains("shadow"), "{effects}");
+    assert!(
+        !effects.contains("glass") && !effects.contains("mirror"),
+        "{effects}"
+    );
+    // What is left has a price on a board.
+    let board = [
+        "build",
+        "quick.toml",
+        "-o",
+        "b.gridel",
+        "--target",
+        "mps2-an386",
+    ];
+    let report = folder.json(&board);
+    let mut effects = report["effects"].as_array().unwrap().iter();
+    assert!(
+        effects.all(|it| it["code"].as_u64().is_some_and(|bytes| bytes > 0)),
+        "{report}"
+    );
+    // Unknown names are rejected with the list, and blobs hold what they hold.
+    folder.fails(
+        2,
+        &[&build[..], &["glas"]].concat(),
+        &["glas", "glass", "shadow", "smooth"],
+    );
+    let render = [
+        "render",
+        "quick.gridel",
+        "-o",
+        "out.png",
+        "--without",
+        "glass",
+    ];
+    folder.fails(2, &render, &["--without", "is for scene files"]);
+    let run = folder.run(&[&build[..], &["smooth"]].concat());
+    assert!(
+        run.said().contains("does not call for smooth"),
+        "{}",
+        run.stderr
+    );
 }

@@ -367,7 +367,8 @@ fn little_is_asked_of_every_board_for_a_scene_that_calls_for_little() {
         assert!(items.contains("code: sphere"), "{items}");
         assert!(!items.contains("cone"), "{items}");
         let format = report["memory_report"]["format"].as_str().unwrap();
-        let [most, _] = everything(board, format, "dual-split").map(|build| build.code);
+        let measured = Board::named(board).unwrap().measured;
+        let [most, _] = everything(measured, format, "dual-split").map(|build| build.code);
         assert!(5 * code < 4 * most, "{board}: {code} of {most}");
         folder.done(&[
             "build",
@@ -379,6 +380,44 @@ fn little_is_asked_of_every_board_for_a_scene_that_calls_for_little() {
             "--flash",
             "80K",
         ]);
+    }
+}
+
+/// Microcontrollers go by their names; their figures are those of the emulated board with the same kind of core.
+#[test]
+fn microcontrollers_have_the_figures_of_their_cores_kind() {
+    let folder = Folder::new();
+    folder.write("quick.toml", &fixture("quick"));
+    for (name, measured, flash, ram) in [
+        ("RP2040", "microbit", 2 << 20, 264 << 10),
+        ("RP2350", "mps2-an505", 4 << 20, 520 << 10),
+        ("rp2350-riscv", "sifive_e", 4 << 20, 520 << 10),
+        ("nRF52840", "mps2-an386", 1 << 20, 256 << 10),
+        ("STM32F411", "mps2-an386", 512 << 10, 128 << 10),
+        ("STM32H743", "mps2-an500", 2 << 20, 512 << 10),
+        ("ESP32-C3", "sifive_e", 4 << 20, 384 << 10),
+        ("ESP32-C6", "sifive_e", 4 << 20, 512 << 10),
+    ] {
+        let report = |board: &str| {
+            let report = folder.json(&["inspect", "quick.toml", "--target", board]);
+            report["memory_report"].clone()
+        };
+        let (chip, kind) = (report(name), report(measured));
+        assert_eq!(chip["board"], name.to_lowercase());
+        assert_eq!(chip["kind"], measured);
+        assert_eq!(kind["kind"], Value::Null);
+        for figures in ["fast", "small", "format", "measured_on", "measured"] {
+            assert_eq!(chip[figures], kind[figures], "{name}: {figures}");
+        }
+        assert_eq!(chip["flash"]["items"], kind["flash"]["items"], "{name}");
+        assert_eq!(chip["flash"]["available"], flash, "{name}");
+        assert_eq!(chip["ram"]["available"], ram, "{name}");
+        let shown = folder.done(&["inspect", "quick.toml", "--target", name]);
+        assert!(
+            shown.contains(&format!("The figures are those of {measured}")),
+            "{}",
+            shown
+        );
     }
 }
 

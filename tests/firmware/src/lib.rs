@@ -9,7 +9,7 @@
 //! | `emitted` | renders from what `gridel build --emit-rust` wrote |
 //! | `selftest` | runs the core's own tests |
 //! | `bare` | renders and talks to nobody: what it links is what a product would flash |
-//! | `range` | casts rays down onto the scene and prints their lengths |
+//! | `range` | casts rays down onto the scene and prints how far they go, in scene coordinates |
 //! | `orbit` | turns a camera around the scene in 64 frames |
 //! | `arm` | bends the joints of an arm of instances, and casts rays from its hand |
 //! | `deform` | moves the vertices of a mesh, refits its boxes and casts rays, and counts what that costs |
@@ -27,6 +27,7 @@
 pub mod arm;
 pub mod board;
 pub mod casts;
+pub mod finder;
 pub mod measure;
 pub mod orbit;
 pub mod rays;

@@ -17,6 +17,7 @@ use std::{env, fs};
 pub const WASM: Board = Board {
     name: "wasm32",
     core: "WebAssembly",
+    measured: "wasm32",
     target: "wasm32-unknown-unknown",
     flash: u32::MAX as u64,
     ram: u32::MAX as u64,
@@ -29,6 +30,17 @@ pub const AARCH64: Board = Board {
     core: "Armv8-A",
     target: "aarch64-unknown-linux-gnu",
     ..WASM
+};
+
+/// The core of an ESP32-C3, without atomic instructions, in the memory of a board whose core has them.
+pub const RV32IMC: Board = Board {
+    name: "sifive_e",
+    core: "RV32IMC",
+    measured: "sifive_e",
+    target: "riscv32imc-unknown-none-elf",
+    flash: 12 << 20,
+    ram: 16 << 10,
+    formats: &[Format::Fixed],
 };
 
 /// A big-endian machine, as a program of Linux.
@@ -48,7 +60,7 @@ pub fn board(name: &str) -> &'static Board {
 fn emulator(board: &Board) -> &'static str {
     match board.target.split_once('-') {
         Some(("wasm32", _)) => "node",
-        Some(("riscv32imac", _)) => "qemu-system-riscv32",
+        Some(("riscv32imac" | "riscv32imc", _)) => "qemu-system-riscv32",
         Some(("aarch64", _)) => "qemu-aarch64",
         Some(("s390x", _)) => "qemu-s390x",
         _ => "qemu-system-arm",
@@ -270,6 +282,7 @@ impl<'b> Build<'b> {
         // Scenes of one name differ, and tests run at the same time.
         let mut hasher = DefaultHasher::new();
         self.scene.blob.bytes().hash(&mut hasher);
+        self.board.target.hash(&mut hasher);
         let folder = format!("{name} {self} {:016x}", hasher.finish());
         let folder = tmp.join(folder.replace([' ', ','], "-"));
         fs::create_dir_all(&folder).expect("the target folder can be written to");

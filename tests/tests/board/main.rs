@@ -9,6 +9,7 @@
 
 #[path = "../../firmware/src/arm.rs"]
 mod arm;
+mod c_library;
 #[path = "../../firmware/src/casts.rs"]
 mod casts;
 mod costs;
@@ -16,6 +17,8 @@ mod deform;
 mod elf;
 mod emitted;
 mod figures;
+#[path = "../../firmware/src/finder.rs"]
+mod finder;
 mod firmware;
 mod live;
 #[path = "../../firmware/src/orbit.rs"]
@@ -31,7 +34,7 @@ mod structures;
 mod waves;
 
 use figures::Figures;
-use firmware::{AARCH64, Build, Program, S390X, WASM, board};
+use firmware::{AARCH64, Build, Program, RV32IMC, S390X, WASM, board};
 use gridel_core::{Format, Structure};
 use gridel_host::measure::board::{BOARDS, Board};
 use libtest_mimic::Arguments;
@@ -42,7 +45,10 @@ use std::fs;
 
 /// Every board in every number format that it computes itself.
 fn boards() -> impl Iterator<Item = (&'static Board, Format)> {
-    let boards = BOARDS.iter().chain([&WASM]);
+    let boards = BOARDS
+        .iter()
+        .filter(|board| board.is_emulated())
+        .chain([&WASM]);
     boards.flat_map(|board| board.formats.iter().map(move |&format| (board, format)))
 }
 
@@ -55,6 +61,7 @@ fn main() {
     programs::plan(&mut plan);
     emitted::plan(&mut plan);
     rays::plan(&mut plan);
+    c_library::plan(&mut plan);
     live::plan(&mut plan);
     deform::plan(&mut plan);
     structures::plan(&mut plan);
@@ -83,6 +90,13 @@ fn pictures(plan: &mut Plan) {
                 compare_with_the_hosts(board, format, &parts::every_shape());
             });
     }
+
+    plan.test("every_effect_without_atomic_instructions::rv32imc")
+        .on(&RV32IMC)
+        .in_full()
+        .run(|| {
+            compare_with_the_hosts(&RV32IMC, Format::Fixed, &scenes::quick());
+        });
 
     let names = [
         "microbit",
@@ -305,7 +319,7 @@ fn linked(plan: &mut Plan) {
 
 /// The linker knows the boards that the host knows.
 fn memory_maps_are_the_boards() {
-    for board in &BOARDS {
+    for board in BOARDS.iter().filter(|board| board.is_emulated()) {
         let path = format!("tests/firmware/src/board/memory/{}.x", board.name);
         let map = fs::read_to_string(scenes::repository().join(&path)).expect(&path);
         let region = |name: &str| {

@@ -8,6 +8,7 @@ use gridel_host::measure::board::Board;
 use libtest_mimic::{Failed, Trial};
 use std::collections::BTreeSet;
 use std::env;
+use std::process::Command;
 
 /// The tests of this program.
 #[derive(Default)]
@@ -50,6 +51,15 @@ impl Planned<'_> {
     /// Needs what emulates a board and builds programs for it.
     pub fn on(mut self, board: &Board) -> Self {
         self.tools.extend(missing_for(board));
+        self
+    }
+
+    /// Needs a program of this machine.
+    pub fn with_tool(mut self, name: &str) -> Self {
+        let version = Command::new(name).arg("--version").output();
+        if version.is_err() {
+            self.tools.insert(name.into());
+        }
         self
     }
 

@@ -1,11 +1,13 @@
 //! Rays without shading: what one costs, with a camera and without.
 
 use crate::casts::Casts;
+use crate::elf::{computes_in_floating_point, panics};
 use crate::figures::Figures;
+use crate::finder;
 use crate::firmware::{Build, board};
 use crate::plan::Plan;
 use crate::scenes::{self, Compiled};
-use gridel_core::{Fixed, Format, List, NoCount, Ray, Stack, Structure, closest_hit};
+use gridel_core::{Fixed, Format, List, NoCount, Number, Scene, Stack, Structure, closest_hit};
 use gridel_host::measure::board::Board;
 
 /// Stack and workspace of the suzanne workload at most: loading, and tracing primary rays.
@@ -41,9 +43,9 @@ pub fn plan(plan: &mut Plan) {
             .in_full()
             .run(move || rays_without_a_camera(board, format, &scenes::suzanne()));
     }
-    for board in ["mps2-an386", "microbit"].map(board) {
+    for board in ["mps2-an386", "mps2-an385", "microbit", "sifive_e"].map(board) {
         plan.test_on("the_range_finder_measures_distances", board, board.format())
-            .in_full()
+            .in_full_if(board.core != "RV32IMAC")
             .run(move || the_range_finder_measures_distances(board));
     }
     for board in ["mps2-an386", "mps2-an385"].map(board) {
@@ -62,32 +64,61 @@ pub fn plan(plan: &mut Plan) {
     }
 }
 
-/// The example of a range finder prints what the host finds, to the unit.
+/// The range finder prints what the host finds, to the step, and near to what double precision and brute force find.
+/// Nothing of it panics, and in `fixed` nothing computes in floating point.
 fn the_range_finder_measures_distances(board: &'static Board) {
     let compiled = scenes::torus_mesh();
-    let build = Build::new(board, board.format(), Structure::DualSplit, &compiled);
-    let printed = build.program("range").lines();
+    let format = board.format();
+    let build = Build::new(board, format, Structure::DualSplit, &compiled);
+    let program = build.program("range");
+    let printed = program.lines();
     let scene = compiled.blob.scene().expect("the compiler's own blob");
-    let [x, y, z] = scene.bounds().0.map(|side| side.map(i64::from));
-    let distance = |step: i64| {
-        let origin = [x[0] + (x[1] - x[0]) * step / 7, y[1] + 1, (z[0] + z[1]) / 2];
-        let (origin, down) = (origin.map(|it| it as f64), [0.0, -1.0, 0.0]);
-        let ray = Ray::<f64>::from_f64(scene.bounds(), origin, down, 0.0, f64::INFINITY);
-        let (ray, mut stack) = (ray.expect("a ray"), Stack::<0>::new());
-        let hit = closest_hit::<f64, List, _>(&scene, &ray, stack.as_view(), &mut NoCount);
-        hit.map(|hit| hit.t)
+    let expected = match format {
+        Format::Fixed => fan::<Fixed>(&scene),
+        Format::F32 => fan::<f32>(&scene),
+        Format::F64 => fan::<f64>(&scene),
     };
-    assert_eq!(printed.len(), 8, "{build}: {printed:?}");
-    let mut hits = 0;
-    for (step, (name, value)) in printed.iter().enumerate() {
-        let right = match distance(step as i64) {
-            Some(t) => name == "distance" && (*value as f64 + 0.5 - t).abs() < 1.0,
-            None => name == "miss" && *value == step as u64,
-        };
-        hits += usize::from(name == "distance");
-        assert!(right, "{build}: {printed:?}, at {step}");
+    let lines = expected
+        .iter()
+        .zip(0..)
+        .map(|(distance, number)| match distance {
+            Some(steps) => (String::from("distance"), *steps),
+            None => (String::from("miss"), number),
+        });
+    assert_eq!(printed, lines.collect::<Vec<_>>(), "{build}");
+    let hits = expected.iter().flatten().count();
+    assert!((3..expected.len()).contains(&hits), "{build}: {printed:?}");
+    for (found, exact) in expected.iter().zip(fan::<f64>(&scene)) {
+        let apart = found.zip(exact).map(|(a, b)| a.abs_diff(b));
+        let near = exact.unwrap_or_default() >> if format == Format::F32 { 18 } else { 24 };
+        assert!(
+            apart.is_some_and(|apart| apart <= near + 64) || *found == exact,
+            "{build}: {found:?}, {exact:?}"
+        );
     }
-    assert!(hits > 3, "{build}: {printed:?}");
+    let elf = program.elf();
+    let panicking = elf.functions(panics);
+    assert!(panicking.is_empty(), "{build} can panic: {panicking:#?}");
+    if format == Format::Fixed {
+        let float = elf.functions(computes_in_floating_point);
+        assert!(float.is_empty(), "{build} has soft floats: {float:#?}");
+    }
+}
+
+/// Distances that the range finder measures, through brute force.
+fn fan<N: Number>(scene: &Scene<'_>) -> Vec<Option<u64>> {
+    let mut stack = Stack::<0>::new();
+    let measure = |number| {
+        let ray = scene.ray_within::<N>(
+            finder::place(scene),
+            finder::direction(number),
+            finder::reach(scene),
+        );
+        let ray = ray.expect("a ray");
+        let hit = closest_hit::<N, List, _>(scene, &ray, stack.as_view(), &mut NoCount);
+        hit.map(|hit| scene.distance(&ray, &hit))
+    };
+    (0..finder::RAYS).map(measure).collect()
 }
 
 fn primary_rays_of_suzanne(board: &'static Board, format: Format) {

@@ -3,7 +3,7 @@
 use super::{BENCHMARKS, MEMORY, PAPER, README, STRUCTURES, repository, text};
 use std::path::Path;
 
-const DOCUMENTS: [&str; 12] = [
+const DOCUMENTS: [&str; 15] = [
     README,
     "core/README.md",
     "core/x86/README.md",
@@ -12,6 +12,9 @@ const DOCUMENTS: [&str; 12] = [
     "CHANGELOG.md",
     "host/docs/SCENE.md",
     "host/docs/CHECK.md",
+    "host/docs/EXACT.md",
+    "host/docs/PYTHON.md",
+    "host/python/README.md",
     STRUCTURES,
     MEMORY,
     BENCHMARKS,

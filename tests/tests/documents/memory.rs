@@ -2,11 +2,13 @@
 
 use super::{MEMORY, holds_table};
 use gridel_host::compile::{Options, compile};
+use gridel_host::measure::board::BOARDS;
 use gridel_host::measure::working_memory;
 use gridel_host::sample::{DIAMOND_2_800, DIAMOND_27_000, diamond, icosphere, nanotube, obj, pdb};
 use gridel_host::scene::Scene;
 use gridel_host::table::grouped;
 use gridel_tests::scenes;
+use std::fmt::Write;
 
 fn fixture(name: &str) -> Scene {
     scenes::read(&scenes::fixture_folder().join(name))
@@ -65,4 +67,33 @@ fn memory_page_shows_bytes_of_blobs() {
         );
     }
     holds_table(MEMORY, "blobs", &table);
+}
+
+#[test]
+fn memory_page_names_all_boards() {
+    let mut table = String::from(
+        "| name | core | number formats | flash, KiB | RAM, KiB | figures of |\n|---|---|---|---|---|---|\n",
+    );
+    for board in BOARDS {
+        let formats = board
+            .formats
+            .iter()
+            .map(|format| format!("`{}`", format.name()));
+        let figures = if board.is_emulated() {
+            "itself"
+        } else {
+            board.measured
+        };
+        writeln!(
+            table,
+            "| {} | {} | {} | {} | {} | {figures} |",
+            board.name,
+            board.core,
+            formats.collect::<Vec<_>>().join(", "),
+            grouped(board.flash >> 10),
+            grouped(board.ram >> 10)
+        )
+        .expect("a string");
+    }
+    holds_table(MEMORY, "names", &table);
 }

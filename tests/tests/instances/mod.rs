@@ -1,5 +1,6 @@
 //! Parts and instances: hits lie where maps place them, and a part is exact and closed under every map.
 
+mod all_hits;
 mod blobs;
 mod closed;
 mod poses;

@@ -12,6 +12,8 @@ use crate::number::fixed::halves;
 use crate::number::fixed::halves::product;
 use crate::number::fixed::wide::Product;
 use crate::target::{NARROW_PRODUCTS, SMALL, inline_unless_small};
+use core::cmp::Ordering;
+
 /// [`Project::surrounds_origin`](crate::geometry::Project::surrounds_origin) by the sides on which the edges leave the origin, where they differ: those that
 /// lead through it are on neither.
 fn surround_by_sides(sides: [i64; 3]) -> bool {
@@ -80,6 +82,10 @@ impl Project for Fixed {
             u | v | w != 0
         }
     );
+
+    fn side(p: [Self; 2], q: [Self; 2]) -> Ordering {
+        (p[0].wide(q[1]) - p[1].wide(q[0])).0.cmp(&0)
+    }
 
     #[inline(always)]
     fn same_sign(v: [Self; 3]) -> bool {

@@ -84,6 +84,10 @@ macro_rules! project {
                 }
                 first > 0.0 && second > 0.0 || surround_exactly(a, b, c, $compare_products)
             }
+
+            fn side(p: [Self; 2], q: [Self; 2]) -> Ordering {
+                $compare_products(p[0], q[1], p[1], q[0])
+            }
         }
     };
 }

@@ -15,9 +15,10 @@ pub struct Fixed(pub i32);
 /// documentation says it keeps.
 #[inline(always)]
 pub(crate) fn assert_in_range(in_range: impl FnOnce() -> bool) {
-    if cfg!(feature = "strict-ranges") {
-        assert!(in_range(), "a number left its range");
-    }
+    #[cfg(feature = "strict-ranges")]
+    super::strict::check(in_range());
+    #[cfg(not(feature = "strict-ranges"))]
+    let _ = in_range;
 }
 
 /// Fraction bits of a length.

@@ -7,6 +7,8 @@ mod number;
 mod quotient;
 pub(crate) mod reciprocal;
 mod root;
+#[cfg(feature = "strict-ranges")]
+pub(crate) mod strict;
 #[cfg(test)]
 mod tests;
 mod vector;

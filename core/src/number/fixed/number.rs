@@ -138,6 +138,11 @@ impl Convert for Fixed {
         wide.0 as f64 / f64::from(1 << LENGTH_BITS)
     }
 
+    #[inline(always)]
+    fn far_to_q13(wide: Product) -> i64 {
+        wide.0
+    }
+
     fn to_f32(self) -> f32 {
         self.0 as f32 / (1 << LENGTH_BITS) as f32
     }

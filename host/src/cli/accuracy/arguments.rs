@@ -10,9 +10,9 @@ use std::path::PathBuf;
 
 /// Show what accuracy costs in time
 ///
-/// Changes five settings, each alone and in combinations: number format, lattice bits (10, 12, 16, 20,
-/// 24), samples per pixel (1 to 64), ray depth, and the cutoff below which a secondary ray is not
-/// traced. Builds and renders the scene with every setting, and compares the picture with a reference:
+/// Changes six settings, each alone and in combinations: number format, lattice bits (10, 12, 16, 20,
+/// 24), samples per pixel (1 to 64), ray depth, the cutoff below which a secondary ray is not traced, and the
+/// effects that the scene calls for, each of which is left out. Builds and renders the scene with every setting, and compares the picture with a reference:
 /// f64, 24 bits, ray depth 16, and the samples of --reference-samples.
 ///
 /// Errors, of display values (sRGB) from 0 to 1:
@@ -24,6 +24,10 @@ use std::path::PathBuf;
 ///   other objects  rays through the middles of pixels that hit another object, or none
 ///   t              error of the distance of the others, in units of the last place of single
 ///                  precision: the median and the largest
+///
+/// The RMSE has two parts:
+///   sampling       the picture of f64 with the setting against the reference
+///   arithmetic     the picture of the setting's number format against that of f64
 ///
 /// Costs:
 ///   time           milliseconds per frame on one thread: the median of the runs, and their spread
@@ -38,11 +42,15 @@ use std::path::PathBuf;
 /// surely not higher. A cost is higher if every run takes longer than every run of the other setting.
 /// Where runs overlap, rays and tests decide within a number format.
 ///
-/// Writes a folder: page.html with plots, sentences and pictures, which loads nothing else;
+/// Effects are listed in the order in which to give them up: first those that change the picture least for the
+/// rays and tests that they save.
+///
+/// Writes a folder: page.html with answers, chart and pictures, which loads nothing else; rmse.svg, a plot;
 /// results.csv; and results.json, which grows with every step. After an interruption, the same command
 /// continues where it stopped.
 #[derive(Args)]
 #[command(after_help = crate::cli::failure::EXIT_CODES, verbatim_doc_comment)]
+#[command(group = clap::ArgGroup::new("limit").args(["max_error", "max_rays"]).multiple(true))]
 pub struct Arguments {
     #[arg(help = scene_help(), long_help = scene_long_help())]
     pub scene: PathBuf,
@@ -57,8 +65,13 @@ pub struct Arguments {
     #[arg(long, value_name = "E", value_parser = share)]
     pub max_error: Option<f64>,
 
-    /// Cost for --max-error: instructions on this board [default: time on this machine]
-    #[arg(long, value_name = "NAME", value_parser = board(), requires = "max_error")]
+    /// Most rays per pixel: find the most accurate setting within them, or with --max-error the cheapest
+    /// within both
+    #[arg(long, value_name = "R", value_parser = rays)]
+    pub max_rays: Option<f64>,
+
+    /// Cost for --max-error and --max-rays: instructions on this board [default: time on this machine]
+    #[arg(long, value_name = "NAME", value_parser = board(), requires = "limit")]
     pub board: Option<String>,
 
     /// Size of the pictures, such as 80x60 [default: that of the scene file, reduced to at most 128
@@ -104,6 +117,13 @@ fn share(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok();
     let value = value.filter(|value| (0.0..=1.0).contains(value));
     value.ok_or_else(|| String::from("write a number from 0 to 1, such as 0.02"))
+}
+
+/// Reads a limit of rays per pixel.
+fn rays(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok();
+    let value = value.filter(|value| value.is_finite() && *value > 0.0);
+    value.ok_or_else(|| String::from("write a number above 0, such as 12.5"))
 }
 
 fn board() -> impl TypedValueParser<Value = String> {

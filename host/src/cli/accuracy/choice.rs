@@ -3,7 +3,8 @@
 use super::arguments::Arguments;
 use crate::cli::arguments::quoted;
 use clap::ValueEnum;
-use gridel_host::accuracy::{Point, Results, cheapest};
+use gridel_core::Effects;
+use gridel_host::accuracy::{Limits, Point, Results, cheapest_within, most_accurate};
 use gridel_host::table::counted;
 use serde::Serialize;
 
@@ -12,6 +13,7 @@ use serde::Serialize;
 pub struct Choice {
     pub name: String,
     pub rmse: f64,
+    pub rays_per_pixel: f64,
     /// How surely it is the cheapest, where time on this machine decides.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise: Option<String>,
@@ -19,15 +21,29 @@ pub struct Choice {
     pub render: String,
 }
 
-/// The cheapest setting within the bound that was asked for, as options.
+/// The setting within the limits that were asked for, as options: the cheapest where an error is given, else the most
+/// accurate.
 pub fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Option<Choice> {
-    let most = arguments.max_error?;
-    let point = cheapest(&results.points, most, arguments.board.as_deref())?;
+    let board = arguments.board.as_deref();
+    let limits = Limits {
+        error: arguments.max_error.unwrap_or(f64::INFINITY),
+        rays: arguments.max_rays.unwrap_or(f64::INFINITY),
+    };
+    let point = match (arguments.max_error, arguments.max_rays) {
+        (None, None) => None,
+        (None, Some(rays)) => most_accurate(&results.points, rays, board),
+        (Some(_), _) => cheapest_within(&results.points, limits, board),
+    }?;
     let setting = &point.setting;
     let stated = setting.cutoff == results.base.cutoff && arguments.cutoff.is_none();
     let cutoff = match stated {
         true => String::new(),
         false => format!(" --cutoff {}", setting.cutoff),
+    };
+    let names = setting.without.names().collect::<Vec<_>>().join(",");
+    let without = match setting.without {
+        Effects::NONE => String::new(),
+        _ => format!(" --without {names}"),
     };
     let quality = arguments.quality.and_then(|it| it.to_possible_value());
     let quality = quality.map_or(String::new(), |it| format!(" --quality {}", it.get_name()));
@@ -35,12 +51,11 @@ pub fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Option<Ch
     Some(Choice {
         name: point.name.clone(),
         rmse: point.errors.rmse,
-        noise: arguments
-            .board
-            .is_none()
-            .then(|| noise(point, &results.points, most)),
+        rays_per_pixel: point.rays_per_pixel(),
+        noise: (arguments.board.is_none() && arguments.max_error.is_some())
+            .then(|| noise(point, &results.points, limits)),
         build: format!(
-            "gridel build {}{} -o {blob} --accel {}{quality} --lattice-bits {}{cutoff}",
+            "gridel build {}{}{without} -o {blob} --accel {}{quality} --lattice-bits {}{cutoff}",
             quoted(&arguments.scene.to_string_lossy()),
             arguments.import.written(),
             arguments.accel.name(),
@@ -56,11 +71,11 @@ pub fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Option<Ch
 }
 
 /// How surely a point is the fastest within a bound.
-fn noise(fastest: &Point, points: &[Point], most: f64) -> String {
+fn noise(fastest: &Point, points: &[Point], limits: Limits) -> String {
     let Some(repeats) = fastest.cost.interval() else {
         return String::from(", timed once, so its noise is unknown");
     };
-    let within = points.iter().filter(|point| point.errors.rmse <= most);
+    let within = points.iter().filter(|point| limits.hold(point));
     let others = within.filter(|point| !fastest.cost.is_below(&point.cost));
     let [least, largest] = repeats.map(|seconds| 1e3 * seconds);
     let took = format!(" in {least:.2} to {largest:.2} ms");

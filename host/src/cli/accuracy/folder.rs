@@ -4,7 +4,7 @@ use crate::cli::failure::Failure;
 use crate::cli::output::write_file;
 use gridel_core::Rgb888;
 use gridel_core::render::Pixel;
-use gridel_host::accuracy::{Comparison, Results};
+use gridel_host::accuracy::{PagePicture, Results};
 use gridel_host::picture::write_png;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 pub const RESULTS: &str = "results.json";
 pub const PAGE: &str = "page.html";
 pub const CSV: &str = "results.csv";
+pub const PLOT: &str = "rmse.svg";
 
 /// The pixels of a picture as a display takes them.
 pub fn encoded(pixels: &[[u16; 3]]) -> Vec<u8> {
@@ -35,7 +36,7 @@ pub fn kept(folder: &Path, key: &str) -> Result<Option<Results>, Failure> {
         ))
     };
     if !file.exists() {
-        let mut others = [PAGE, CSV].map(|name| folder.join(name)).into_iter();
+        let mut others = [PAGE, CSV, PLOT].map(|name| folder.join(name)).into_iter();
         return match others.find(|path| path.exists()) {
             Some(path) => foreign(&path),
             None => Ok(None),
@@ -75,12 +76,12 @@ pub fn write_picture(
     })
 }
 
-/// The reference, and the pictures of parameters that were changed alone.
-pub fn comparisons(
+/// The reference, and the pictures of all settings.
+pub fn pictures(
     folder: &Path,
     size: [u16; 2],
     results: &Results,
-) -> Result<Vec<Comparison>, Failure> {
+) -> Result<Vec<PagePicture>, Failure> {
     let read = |name: &str| -> Result<Vec<u8>, Failure> {
         let path = picture(folder, name);
         let pixels = || -> io::Result<Vec<u8>> {
@@ -92,19 +93,15 @@ pub fn comparisons(
         };
         pixels().map_err(|error| Failure::reading(&path, &error))
     };
-    let mut comparisons = vec![Comparison {
-        name: String::from("the reference"),
-        picture: encoded(&results.reference.pixels),
-        difference: Vec::new(),
+    let mut pictures = vec![PagePicture {
+        name: String::new(),
+        pixels: encoded(&results.reference.pixels),
     }];
-    for (number, point) in results.points.iter().enumerate() {
-        if point.setting.differs(&results.base).len() <= 1 {
-            comparisons.push(Comparison {
-                name: format!("{} {}", number + 1, point.name),
-                picture: read(&point.name)?,
-                difference: read(&format!("{}-difference", point.name))?,
-            });
-        }
+    for point in &results.points {
+        pictures.push(PagePicture {
+            name: point.name.clone(),
+            pixels: read(&point.name)?,
+        });
     }
-    Ok(comparisons)
+    Ok(pictures)
 }

@@ -5,12 +5,20 @@ use super::folder::{RESULTS, encoded, write_picture};
 use crate::cli::failure::Failure;
 use crate::cli::output::write_file;
 use crate::cli::progress::Progress;
-use gridel_host::accuracy::{Bench, MeasureError, Point, Results, Setting};
+use gridel_host::accuracy::{Bench, MeasureError, Point, Results, Setting, given_up, worths};
 use gridel_host::measure::difference_picture;
 use std::io;
 use std::path::Path;
 
-/// Measures what is not measured yet, and writes down every step.
+/// What a run measures with, and where it writes.
+struct Run<'r, 's> {
+    arguments: &'r Arguments,
+    bench: &'r mut Bench<'s>,
+    folder: &'r Path,
+}
+
+/// Measures what is not measured yet, and writes down every step: the settings, then effects that are given up one
+/// after the other.
 pub fn measure(
     arguments: &Arguments,
     bench: &mut Bench<'_>,
@@ -18,66 +26,92 @@ pub fn measure(
     (key, kept): (String, Option<Results>),
     settings: &[Setting],
 ) -> Result<Results, Failure> {
-    let failed = |error: MeasureError| Failure::in_file(&arguments.scene, error);
-    let file = folder.join(RESULTS);
-    let repeats = usize::from(arguments.repeat);
-    let progress = Progress::steps("measuring", (settings.len() * (repeats + 1)) as u64 + 1);
-    let instances = bench.instances().map_err(failed)?;
+    let mut run = Run {
+        arguments,
+        bench,
+        folder,
+    };
+    let instances = run.bench.instances().map_err(|it| run.failed(it))?;
     let mut results = match kept {
         Some(results) => Results {
             instances,
             ..results
         },
-        None => Results {
-            key,
-            base: bench.base(),
-            instances,
-            reference: bench
-                .reference(arguments.reference_samples)
-                .map_err(failed)?,
-            points: Vec::new(),
-        },
-    };
-    progress.step();
-    let write = |results: &Results| {
-        let text = serde_json::to_vec(results).map_err(io::Error::other);
-        write_file(&file, |out| text.and_then(|text| out.write_all(&text)))
-    };
-    write(&results)?;
-    // One thread, so that times do not depend on the machine's other work.
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
-        .build()
-        .map_err(|error| Failure::failed(error.to_string(), "end other programs"))?;
-    for setting in settings {
-        if results.point(setting).is_none() {
-            let (point, pixels) = bench.measure(setting, &results.reference).map_err(failed)?;
-            let difference = difference_picture(&results.reference.pixels, &pixels);
-            let name = setting.name();
-            write_picture(folder, bench.size, &name, &encoded(&pixels))?;
-            write_picture(
-                folder,
-                bench.size,
-                &format!("{name}-difference"),
-                &difference,
-            )?;
-            results.points.push(point);
-            write(&results)?;
+        None => {
+            let progress = Progress::unknown("rendering the reference");
+            let reference = run.bench.reference(arguments.reference_samples);
+            drop(progress);
+            Results {
+                key,
+                base: run.bench.base(),
+                instances,
+                reference: reference.map_err(|it| run.failed(it))?,
+                points: Vec::new(),
+                effects: Vec::new(),
+            }
         }
-        progress.step();
+    };
+    run.write(&results)?;
+    run.all(settings, &mut results)?;
+    results.effects = worths(run.bench, &results).map_err(|it| run.failed(it))?;
+    let more = given_up(&results.base, &results.effects);
+    run.all(&more, &mut results)?;
+    run.write(&results)?;
+    Ok(results)
+}
+
+impl Run<'_, '_> {
+    fn failed(&self, error: MeasureError) -> Failure {
+        Failure::in_file(&self.arguments.scene, error)
     }
-    for repeat in 0..repeats {
+
+    fn write(&self, results: &Results) -> Result<(), Failure> {
+        let text = serde_json::to_vec(results).map_err(io::Error::other);
+        let file = self.folder.join(RESULTS);
+        write_file(&file, |out| text.and_then(|text| out.write_all(&text)))
+    }
+
+    /// Measures all of some settings that are not measured yet.
+    fn all(&mut self, settings: &[Setting], results: &mut Results) -> Result<(), Failure> {
+        let repeats = usize::from(self.arguments.repeat);
+        let progress = Progress::steps("measuring", (settings.len() * (repeats + 1)) as u64);
         for setting in settings {
-            let missing = |point: &&mut Point| point.cost.seconds.len() <= repeat;
-            if results.point(setting).filter(missing).is_some() {
-                let seconds = pool.install(|| bench.time(setting)).map_err(failed)?;
-                if let Some(point) = results.point(setting) {
-                    point.cost.seconds.push(seconds);
-                }
-                write(&results)?;
+            if results.point(setting).is_none() {
+                let measured = self.bench.measure(setting, &results.reference);
+                let (point, pixels) = measured.map_err(|it| self.failed(it))?;
+                let difference = difference_picture(&results.reference.pixels, &pixels);
+                let (name, size) = (setting.name(), self.bench.size);
+                write_picture(self.folder, size, &name, &encoded(&pixels))?;
+                write_picture(
+                    self.folder,
+                    size,
+                    &format!("{name}-difference"),
+                    &difference,
+                )?;
+                results.points.push(point);
+                self.write(results)?;
             }
             progress.step();
         }
+        // One thread, so that times do not depend on the machine's other work.
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(1)
+            .build()
+            .map_err(|error| Failure::failed(error.to_string(), "end other programs"))?;
+        for repeat in 0..repeats {
+            for setting in settings {
+                let missing = |point: &&mut Point| point.cost.seconds.len() <= repeat;
+                if results.point(setting).filter(missing).is_some() {
+                    let seconds = pool.install(|| self.bench.time(setting));
+                    let seconds = seconds.map_err(|it| self.failed(it))?;
+                    if let Some(point) = results.point(setting) {
+                        point.cost.seconds.push(seconds);
+                    }
+                    self.write(results)?;
+                }
+                progress.step();
+            }
+        }
+        Ok(())
     }
-    Ok(results)
 }

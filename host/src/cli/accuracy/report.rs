@@ -1,7 +1,7 @@
 //! The results as text and as a table of comma-separated values.
 
 use super::choice::Choice;
-use gridel_host::accuracy::{Point, Results, frontier, instance_notes, sentences};
+use gridel_host::accuracy::{BOARD, Point, Results, answers, frontier, instance_notes, sentences};
 use gridel_host::measure::board as boards;
 use gridel_host::table::{Align, Table, counted, grouped, significant};
 use std::fmt::Write;
@@ -16,6 +16,8 @@ pub fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Ch
         ("ms", Align::Right),
         ("spread", Align::Right),
         ("RMSE", Align::Right),
+        ("sampling", Align::Right),
+        ("arithmetic", Align::Right),
         ("largest", Align::Right),
         ("pixels off", Align::Right),
         ("SSIM", Align::Right),
@@ -35,6 +37,8 @@ pub fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Ch
             format!("{:.2}", 1e3 * cost.time()),
             cost.spread_text(),
             format!("{:.5}", errors.rmse),
+            format!("{:.5}", point.parts.sampling),
+            format!("{:.5}", point.parts.arithmetic),
             format!("{:.4}", errors.largest),
             grouped(errors.pixels_off),
             format!("{:.4}", errors.ssim),
@@ -57,20 +61,26 @@ pub fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Ch
     for note in results.instances.iter().flat_map(instance_notes) {
         let _ = writeln!(text, "{note}");
     }
+    text.push_str(&effects(results));
+    for sentence in answers(results) {
+        let _ = writeln!(text, "{sentence}");
+    }
+    text.push('\n');
     for sentence in sentences(&results.base, &results.points) {
         let _ = writeln!(text, "{sentence}");
     }
     let _ = writeln!(
         text,
-        "\n{}: plots and pictures",
+        "\n{}: answers, chart and pictures",
         folder.join("page.html").display()
     );
     if let Some(choice) = choice {
         let _ = writeln!(
             text,
-            "\nThe cheapest within the bound is {}, with an RMSE of {}{}:\n  {}\n  {}",
+            "\nThe best within the limits is {}, with an RMSE of {} and {} rays per pixel{}:\n  {}\n  {}",
             choice.name,
             significant(choice.rmse),
+            significant(choice.rays_per_pixel),
             choice.noise.as_deref().unwrap_or_default(),
             choice.build,
             choice.render
@@ -79,10 +89,43 @@ pub fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Ch
     text
 }
 
+/// What each effect is worth; empty for a scene that calls for none.
+fn effects(results: &Results) -> String {
+    if results.effects.is_empty() {
+        return String::new();
+    }
+    let memory = format!("flash, RAM of {BOARD}");
+    let mut table = Table::new([
+        ("effect", Align::Left),
+        ("RMSE without", Align::Right),
+        ("FLIP", Align::Right),
+        ("rays per pixel", Align::Right),
+        ("tests", Align::Right),
+        ("time", Align::Right),
+        ("instructions", Align::Right),
+        (&memory, Align::Right),
+    ]);
+    for worth in &results.effects {
+        table.row([
+            worth.effect.clone(),
+            format!("{:.5}", worth.lost.rmse),
+            format!("{:.4}", worth.lost.flip),
+            format!("{:.2}", worth.rays),
+            format!("{:.1}", worth.tests),
+            worth.time_text(),
+            worth.instructions_text(),
+            worth.memory_text(),
+        ]);
+    }
+    format!(
+        "Effects, in the order in which to give them up, and what each of them costs\n{table}\n"
+    )
+}
+
 /// The results for spreadsheets.
 pub fn csv(points: &[Point]) -> String {
     let mut csv = String::from(
-        "name,format,lattice_bits,samples,depth,cutoff,rmse,largest,pixels_off,ssim,flip,\
+        "name,format,lattice_bits,samples,depth,cutoff,without,rmse,sampling,arithmetic,largest,pixels_off,ssim,flip,\
          other_objects,t_ulps_median,t_ulps_largest,seconds,spread,rays,tests,pixels,blob_bytes,\
          working_bytes",
     );
@@ -96,16 +139,20 @@ pub fn csv(points: &[Point]) -> String {
             setting,
             errors,
             cost,
+            ..
         } = point;
         let _ = write!(
             csv,
-            "{name},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
+            "{name},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
             setting.format.name(),
             setting.lattice_bits,
             setting.samples,
             setting.depth,
             setting.cutoff,
+            setting.without.names().collect::<Vec<_>>().join(" "),
             errors.rmse,
+            point.parts.sampling,
+            point.parts.arithmetic,
             errors.largest,
             errors.pixels_off,
             errors.ssim,

@@ -6,6 +6,7 @@ use super::view::ViewOptions;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
+use gridel_core::Effects;
 use gridel_host::scene::{self, Instances, MoleculeStyle, NormalsChoice};
 use std::num::NonZeroUsize;
 
@@ -98,6 +99,11 @@ pub struct ImportOptions {
     #[arg(long, value_name = "ID")]
     assembly: Option<String>,
 
+    /// Effects to leave out, separated by commas; it is said what is lost. The blob and its program hold nothing of
+    /// them
+    #[arg(long, value_name = "EFFECT", value_parser = effect(), value_delimiter = ',')]
+    pub without: Vec<Effects>,
+
     #[command(flatten)]
     pub molecule: MoleculeOptions,
 }
@@ -145,6 +151,7 @@ impl GeometryOptions {
             (self.import.instances.is_some(), "--instances"),
             (self.import.normals.is_some(), "--normals"),
             (self.import.assembly.is_some(), "--assembly"),
+            (!self.import.without.is_empty(), "--without"),
         ])
         .or(self.import.given_choice())
         .or(self.import.molecule.given())
@@ -208,8 +215,13 @@ impl ImportOptions {
             Some(NormalsChoice::Smooth(degrees)) => format!(" --normals smooth={degrees}"),
             None => String::new(),
         };
+        let without: Vec<_> = self.without.iter().map(|it| it.to_string()).collect();
+        let without = match without.is_empty() {
+            true => String::new(),
+            false => format!(" --without {}", without.join(",")),
+        };
         let molecule = self.molecule.written();
-        format!("{outside}{camera}{animation}{instances}{assembly}{normals}{molecule}")
+        format!("{outside}{camera}{animation}{instances}{assembly}{normals}{without}{molecule}")
     }
 
     /// The name of an option for glTF files, if one was given.
@@ -223,6 +235,12 @@ impl ImportOptions {
     /// The name of an option for files with assemblies, if one was given.
     pub fn given_assembly(&self) -> Option<&'static str> {
         first_given([(self.assembly.is_some(), "--assembly")])
+    }
+
+    /// The effects to leave out.
+    pub fn left_out(&self) -> Effects {
+        let each = self.without.iter();
+        each.fold(Effects::NONE, |all, effect| all.with(*effect))
     }
 
     /// The options for importers.
@@ -302,6 +320,11 @@ fn normals(text: &str) -> Result<NormalsChoice, String> {
             "write file, flat, or smooth= and an angle from 0 to 180 degrees, such as smooth=40",
         )),
     }
+}
+
+fn effect() -> impl TypedValueParser<Value = Effects> {
+    PossibleValuesParser::new(Effects::NAMED.map(|(_, name)| name))
+        .try_map(|name| scene::effect_named(&name).ok_or("no such effect"))
 }
 
 fn instances() -> impl TypedValueParser<Value = Instances> {

@@ -18,7 +18,7 @@ pub struct TargetOptions {
     /// stm32vldiscovery, if --ram or --flash is given]
     ///
     /// A point X,Y,Z is not a board, but what the camera of a scene file looks at.
-    #[arg(long, value_name = "BOARD|X,Y,Z", value_parser = TargetParser, allow_hyphen_values = true)]
+    #[arg(long, value_name = "BOARD|X,Y,Z", value_parser = TargetParser, allow_hyphen_values = true, ignore_case = true)]
     target: Vec<BoardOrPoint>,
 
     /// Bytes of RAM, such as 8192 or 8K [default: the board's]

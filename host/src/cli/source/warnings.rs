@@ -1,7 +1,10 @@
 //! What the compiler did to a scene that its author would want to know.
 
+use gridel_core::Effects;
 use gridel_host::compile::{LATTICE_BITS, Report};
-use gridel_host::table::grouped;
+use gridel_host::scene::{self, Scene};
+use gridel_host::table::{grouped, printable};
+use std::path::Path;
 
 /// Names the primitives that the lattice moves far.
 pub fn far_moved(report: &Report, lattice_bits: u8) -> Option<String> {
@@ -37,4 +40,38 @@ pub fn names_changed(report: &Report) -> Option<String> {
             }
         )
     })
+}
+
+/// Leaves effects out of the scene of a file, and says of each what is lost.
+pub fn leave_out(scene: &mut Scene, path: &Path, effects: &[Effects]) -> Vec<String> {
+    let file = path.display();
+    let lost = effects
+        .iter()
+        .map(|&effect| match scene::leave_out(scene, effect) {
+            None => format!("{file}: the scene does not call for {effect}, so nothing is left out"),
+            Some(names) => format!(
+                "{file}: without {effect}{}: {}",
+                lost_by(&names),
+                scene::shown_without(effect)
+            ),
+        });
+    lost.collect()
+}
+
+/// Names what loses an effect.
+fn lost_by(names: &[String]) -> String {
+    const NAMED: usize = 5;
+    let shown: Vec<_> = names
+        .iter()
+        .take(NAMED)
+        .map(|name| printable(name))
+        .collect();
+    let more = match names.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    match shown.is_empty() {
+        true => String::new(),
+        false => format!(" ({}{more})", shown.join(", ")),
+    }
 }

@@ -13,7 +13,7 @@
 
 use super::Board;
 use super::account::Account;
-use super::estimate::{PROFILES, ProgramEstimate};
+use super::estimate::{CODE, PROFILES, ProgramEstimate};
 use super::programs::{Known, Profile, Programs};
 use crate::blob::best_structures;
 use crate::measure::bytes::{MemoryMap, board_memory};
@@ -42,6 +42,8 @@ pub struct MemoryReport {
     pub structure: &'static str,
     /// The core and number format on which parts and structures were measured.
     pub measured_on: String,
+    /// The emulated board whose core is of the same kind and whose figures these are, if it is not the board itself.
+    pub kind: Option<&'static str>,
     /// Whether the scene's own program was built and measured, in both profiles.
     pub measured: bool,
     pub flash: Account,
@@ -68,6 +70,9 @@ pub enum Fit {
     /// The parts that are not known.
     Undecided(String),
 }
+
+/// The item of places for waiting rays.
+pub const WORK_LIST: &str = "work list";
 
 /// A structure of which nothing was measured on boards.
 #[derive(Clone, Copy, Debug)]
@@ -128,7 +133,7 @@ impl MemoryReport {
         let required: Vec<&str> = scene.features().collect();
         let program = ProgramEstimate {
             programs,
-            here: (board, format),
+            here: (board.measured_on(), format),
             similar: board.similar(format),
             structure,
             parts: &required,
@@ -159,7 +164,7 @@ impl MemoryReport {
             format!("traversal stack, {} entries", scene.stack_depth()),
             Some(need.stack as u64),
         );
-        ram.add("work list", Some((need.workspace - need.stack) as u64));
+        ram.add(WORK_LIST, Some((need.workspace - need.stack) as u64));
         let width = scene.view().width;
         let row = u64::from(width) * size_of::<Rgb565>() as u64;
         ram.add(format!("row of {width} pixels, RGB565"), Some(row));
@@ -186,6 +191,7 @@ impl MemoryReport {
             format: format.name(),
             structure: structure.name(),
             measured_on: format!("{} in {}", similar.core, its_format.name()),
+            kind: (!board.is_emulated()).then_some(board.measured),
             measured: all_measured && measured(program.code(Profile::Fast)),
             flash,
             ram,
@@ -194,11 +200,22 @@ impl MemoryReport {
         })
     }
 
+    /// Bytes of the code of one part, such as an effect, in the fast program; `None` where no programs were built with
+    /// and without it.
+    pub fn code_of(&self, part: &str) -> Option<u64> {
+        let name = format!("{CODE}{part}");
+        let item = self.flash.items.iter().find(|item| item.what == name);
+        item.and_then(|item| item.bytes)
+    }
+
     /// The builds that the figures hold for.
     pub fn holds_for(&self) -> String {
         let Self { fast, small, .. } = self;
         let bytes = |bytes: Option<u64>| bytes.map_or(String::from("unknown"), grouped);
-        let own = format!("{} in {}", self.core, self.format);
+        let own = match self.kind.and_then(Board::named) {
+            Some(kind) => format!("{} in {}", kind.core, self.format),
+            None => format!("{} in {}", self.core, self.format),
+        };
         let how = match (&self.measured_on, self.measured) {
             (_, true) => String::from("\nThis program was built and measured."),
             (there, false) if *there != own => {
@@ -217,6 +234,18 @@ impl MemoryReport {
             bytes(fast.call_stack),
             bytes(small.call_stack),
             bytes(small.code)
+        ) + &self.kind_of_core()
+    }
+
+    /// Names the board that the figures come from, where it is another one.
+    fn kind_of_core(&self) -> String {
+        let Some(kind) = self.kind.and_then(Board::named) else {
+            return String::new();
+        };
+        format!(
+            "\nThe {}'s core is a {}. The figures are those of {}, a {} in QEMU: a core of the same kind.\n\
+             A start-up program of the chip's maker takes flash of its own.",
+            self.board, self.core, kind.name, kind.core
         )
     }
 

@@ -21,16 +21,19 @@ pub mod programs;
 
 pub use account::{Account, Item};
 pub use instructions::{PICTURE_COSTS, PictureCost, core_names, instructions, names};
-pub use memory::{Fit, MemoryReport, NotMeasured, Sizes, Target};
+pub use memory::{Fit, MemoryReport, NotMeasured, Sizes, Target, WORK_LIST};
 
 use gridel_core::Format;
 
-/// A board, as QEMU and its maker name it.
+/// A board, as QEMU or its maker names it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
     pub name: &'static str,
     /// The name of its processor core.
     pub core: &'static str,
+    /// The board that QEMU plays, on whose core programs were built and measured: the board itself, or one with a core
+    /// of the same kind.
+    pub measured: &'static str,
     /// The Rust target of its core.
     pub target: &'static str,
     /// Bytes of flash for a program.
@@ -44,11 +47,16 @@ pub struct Board {
 const KIB: u64 = 1 << 10;
 const MIB: u64 = 1 << 20;
 
-/// All boards, the smallest first.
-pub const BOARDS: [Board; 7] = [
+/// All boards: those that QEMU plays, the smallest first, then microcontrollers and their usual modules.
+///
+/// Flash of an RP2040, an RP2350 and an ESP32 is a chip of its own: it is that of a Raspberry Pi Pico, a Pico 2, and the
+/// smallest usual module. RAM is what one range of addresses has: of an STM32H743 the AXI SRAM, of an ESP32-C3 what its
+/// cache leaves. A Wi-Fi or Bluetooth stack takes RAM of its own.
+pub const BOARDS: [Board; 15] = [
     Board {
         name: "stm32vldiscovery",
         core: "Cortex-M3",
+        measured: "stm32vldiscovery",
         target: "thumbv7m-none-eabi",
         flash: 128 * KIB,
         ram: 8 * KIB,
@@ -57,6 +65,7 @@ pub const BOARDS: [Board; 7] = [
     Board {
         name: "microbit",
         core: "Cortex-M0",
+        measured: "microbit",
         target: "thumbv6m-none-eabi",
         flash: 256 * KIB,
         ram: 16 * KIB,
@@ -65,6 +74,7 @@ pub const BOARDS: [Board; 7] = [
     Board {
         name: "sifive_e",
         core: "RV32IMAC",
+        measured: "sifive_e",
         target: "riscv32imac-unknown-none-elf",
         flash: 12 * MIB,
         ram: 16 * KIB,
@@ -73,6 +83,7 @@ pub const BOARDS: [Board; 7] = [
     Board {
         name: "mps2-an385",
         core: "Cortex-M3",
+        measured: "mps2-an385",
         target: "thumbv7m-none-eabi",
         flash: 4 * MIB,
         ram: 4 * MIB,
@@ -81,6 +92,7 @@ pub const BOARDS: [Board; 7] = [
     Board {
         name: "mps2-an386",
         core: "Cortex-M4F",
+        measured: "mps2-an386",
         target: "thumbv7em-none-eabihf",
         flash: 4 * MIB,
         ram: 4 * MIB,
@@ -89,6 +101,7 @@ pub const BOARDS: [Board; 7] = [
     Board {
         name: "mps2-an500",
         core: "Cortex-M7",
+        measured: "mps2-an500",
         target: "thumbv7em-none-eabihf",
         flash: 4 * MIB,
         ram: 4 * MIB,
@@ -97,27 +110,114 @@ pub const BOARDS: [Board; 7] = [
     Board {
         name: "mps2-an505",
         core: "Cortex-M33F",
+        measured: "mps2-an505",
         target: "thumbv8m.main-none-eabihf",
         flash: 4 * MIB,
         ram: 2 * MIB,
         formats: &[Format::F32, Format::Fixed],
     },
+    Board {
+        name: "rp2040",
+        core: "Cortex-M0+",
+        measured: "microbit",
+        target: "thumbv6m-none-eabi",
+        flash: 2 * MIB,
+        ram: 264 * KIB,
+        formats: &[Format::Fixed],
+    },
+    Board {
+        name: "rp2350",
+        core: "Cortex-M33F",
+        measured: "mps2-an505",
+        target: "thumbv8m.main-none-eabihf",
+        flash: 4 * MIB,
+        ram: 520 * KIB,
+        formats: &[Format::F32, Format::Fixed],
+    },
+    Board {
+        name: "rp2350-riscv",
+        core: "Hazard3 (RV32IMAC)",
+        measured: "sifive_e",
+        target: "riscv32imac-unknown-none-elf",
+        flash: 4 * MIB,
+        ram: 520 * KIB,
+        formats: &[Format::Fixed],
+    },
+    Board {
+        name: "nrf52840",
+        core: "Cortex-M4F",
+        measured: "mps2-an386",
+        target: "thumbv7em-none-eabihf",
+        flash: MIB,
+        ram: 256 * KIB,
+        formats: &[Format::F32, Format::Fixed],
+    },
+    Board {
+        name: "stm32f411",
+        core: "Cortex-M4F",
+        measured: "mps2-an386",
+        target: "thumbv7em-none-eabihf",
+        flash: 512 * KIB,
+        ram: 128 * KIB,
+        formats: &[Format::F32, Format::Fixed],
+    },
+    Board {
+        name: "stm32h743",
+        core: "Cortex-M7",
+        measured: "mps2-an500",
+        target: "thumbv7em-none-eabihf",
+        flash: 2 * MIB,
+        ram: 512 * KIB,
+        formats: &[Format::F32, Format::Fixed, Format::F64],
+    },
+    Board {
+        name: "esp32-c3",
+        core: "RV32IMC",
+        measured: "sifive_e",
+        target: "riscv32imc-unknown-none-elf",
+        flash: 4 * MIB,
+        ram: 384 * KIB,
+        formats: &[Format::Fixed],
+    },
+    Board {
+        name: "esp32-c6",
+        core: "RV32IMAC",
+        measured: "sifive_e",
+        target: "riscv32imac-unknown-none-elf",
+        flash: 4 * MIB,
+        ram: 512 * KIB,
+        formats: &[Format::Fixed],
+    },
 ];
 
 impl Board {
-    /// The board of a name.
+    /// The board of a name, in capitals or not.
     pub fn named(name: &str) -> Option<&'static Self> {
-        BOARDS.iter().find(|board| board.name == name)
+        BOARDS
+            .iter()
+            .find(|board| board.name.eq_ignore_ascii_case(name))
+    }
+
+    /// Whether QEMU plays this board.
+    pub fn is_emulated(&self) -> bool {
+        self.name == self.measured
+    }
+
+    /// The board on whose core programs were built and measured: this one, or one with a core of the same kind.
+    pub fn measured_on(&self) -> &'static Self {
+        Self::named(self.measured).unwrap_or(&BOARDS[0])
     }
 
     /// The board and number format on which parts and structures were measured, each alone: these, or
     /// those of a similar core.
     pub fn similar(&self, format: Format) -> (&'static Self, Format) {
-        let [m3, m0, risc_v, _, m4f, _, _] = &BOARDS;
+        let [m3, m0, risc_v, _, m4f, ..] = &BOARDS;
         match (self.target, format) {
             (_, Format::F32 | Format::F64) => (m4f, Format::F32),
             ("thumbv6m-none-eabi", Format::Fixed) => (m0, Format::Fixed),
-            ("riscv32imac-unknown-none-elf", Format::Fixed) => (risc_v, Format::Fixed),
+            ("riscv32imac-unknown-none-elf" | "riscv32imc-unknown-none-elf", Format::Fixed) => {
+                (risc_v, Format::Fixed)
+            }
             (_, Format::Fixed) => (m3, Format::Fixed),
         }
     }

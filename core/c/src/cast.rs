@@ -1,0 +1,348 @@
+//! Rays.
+//!
+//! In steps of scene coordinates there is no floating point in `fixed`, and rays and hits are those of
+//! `Scene::ray_within` and `Scene::distance`. In scene units a ray is brought to the scene in double precision and then
+//! rounded to the number format, as `gridel trace` does, with the same bits.
+
+use crate::load::{read, status};
+use crate::memory::{output, scene, stack};
+use crate::{
+    Accel, GRIDEL_NONE, gridel_buffer, gridel_hit, gridel_hit_f32, gridel_hit_f64, gridel_ray,
+    gridel_ray_f32, gridel_ray_f64, gridel_scene, gridel_status,
+};
+use gridel_core::{
+    Fixed, Hit, NoCount, Number, Position, Ray, Scene, StackView, any_hit, closest_hit,
+};
+
+/// Finds what a ray hits first, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_cast_fixed(
+    loaded: *const gridel_scene,
+    ray: *const gridel_ray,
+    stack: gridel_buffer,
+    hit: *mut gridel_hit,
+) -> gridel_status {
+    // SAFETY: the caller's promise.
+    status(unsafe { cast_steps::<Fixed>(loaded, ray, stack, hit) })
+}
+
+/// Finds what a ray in steps hits first, in single precision.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_cast_steps_f32(
+    loaded: *const gridel_scene,
+    ray: *const gridel_ray,
+    stack: gridel_buffer,
+    hit: *mut gridel_hit,
+) -> gridel_status {
+    // SAFETY: the caller's promise.
+    status(unsafe { cast_steps::<f32>(loaded, ray, stack, hit) })
+}
+
+/// Finds what a ray in scene units hits first, in single precision.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_cast_f32(
+    loaded: *const gridel_scene,
+    ray: *const gridel_ray_f32,
+    stack: gridel_buffer,
+    hit: *mut gridel_hit_f32,
+) -> gridel_status {
+    let cast = || {
+        // SAFETY: the caller's promise.
+        let (ray, hit) = unsafe { (read(ray)?, output(hit)?) };
+        // SAFETY: the caller's promise.
+        let found = unsafe { cast_units::<f32>(loaded, &ray.into(), stack) }?;
+        hit.write(gridel_hit_f32 {
+            t: found.t as f32,
+            point: found.point.map(|x| x as f32),
+            normal: found.normal.map(|x| x as f32),
+            object: found.object,
+            primitive: found.primitive,
+            instance: found.instance,
+            front: found.front,
+        });
+        Ok(())
+    };
+    status(cast())
+}
+
+/// Finds what a ray in scene units hits first, in double precision.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_cast_f64(
+    loaded: *const gridel_scene,
+    ray: *const gridel_ray_f64,
+    stack: gridel_buffer,
+    hit: *mut gridel_hit_f64,
+) -> gridel_status {
+    let cast = || {
+        // SAFETY: the caller's promise.
+        let (ray, hit) = unsafe { (read(ray)?, output(hit)?) };
+        // SAFETY: the caller's promise.
+        hit.write(unsafe { cast_units::<f64>(loaded, &ray, stack) }?);
+        Ok(())
+    };
+    status(cast())
+}
+
+/// Writes 1 if a ray hits anything, else 0: in integers. Takes less time than `gridel_cast_fixed`.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_any_fixed(
+    loaded: *const gridel_scene,
+    ray: *const gridel_ray,
+    stack: gridel_buffer,
+    any: *mut u32,
+) -> gridel_status {
+    // SAFETY: the caller's promise.
+    status(unsafe { any_steps::<Fixed>(loaded, ray, stack, any) })
+}
+
+/// Writes 1 if a ray in steps hits anything, else 0: in single precision.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_any_steps_f32(
+    loaded: *const gridel_scene,
+    ray: *const gridel_ray,
+    stack: gridel_buffer,
+    any: *mut u32,
+) -> gridel_status {
+    // SAFETY: the caller's promise.
+    status(unsafe { any_steps::<f32>(loaded, ray, stack, any) })
+}
+
+/// Writes 1 if a ray in scene units hits anything, else 0: in single precision.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_any_f32(
+    loaded: *const gridel_scene,
+    ray: *const gridel_ray_f32,
+    stack: gridel_buffer,
+    any: *mut u32,
+) -> gridel_status {
+    let cast = || {
+        // SAFETY: the caller's promise.
+        let ray = unsafe { read(ray) }?;
+        // SAFETY: the caller's promise.
+        unsafe { any_units::<f32>(loaded, &ray.into(), stack, any) }
+    };
+    status(cast())
+}
+
+/// Writes 1 if a ray in scene units hits anything, else 0: in double precision.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_any_f64(
+    loaded: *const gridel_scene,
+    ray: *const gridel_ray_f64,
+    stack: gridel_buffer,
+    any: *mut u32,
+) -> gridel_status {
+    let cast = || {
+        // SAFETY: the caller's promise.
+        let ray = unsafe { read(ray) }?;
+        // SAFETY: the caller's promise.
+        unsafe { any_units::<f64>(loaded, &ray, stack, any) }
+    };
+    status(cast())
+}
+
+/// # Safety
+/// Pointers are null, or lead to what they say.
+unsafe fn cast_steps<N: Number>(
+    loaded: *const gridel_scene,
+    ray: *const gridel_ray,
+    memory: gridel_buffer,
+    to: *mut gridel_hit,
+) -> Result<(), gridel_status> {
+    // SAFETY: the caller's promise.
+    let (scene, ray, to) = unsafe { (scene(loaded)?, read(ray)?, output(to)?) };
+    // SAFETY: the caller's promise.
+    let stack = unsafe { stack(scene, memory) }?;
+    let ray = ready::<N>(scene, &ray)?;
+    let Some(hit) = closest_hit::<N, Accel, _>(scene, &ray, stack, &mut NoCount) else {
+        to.write(gridel_hit {
+            distance: u64::MAX,
+            position: [0; 3],
+            normal: [0; 3],
+            object: GRIDEL_NONE,
+            primitive: GRIDEL_NONE,
+            instance: GRIDEL_NONE,
+            front: 0,
+        });
+        return Ok(());
+    };
+    to.write(gridel_hit {
+        distance: scene.distance(&ray, &hit),
+        position: scene.hit_position(&hit).0,
+        normal: hit.normal.map(N::to_q30),
+        object: hit.object,
+        primitive: hit.primitive,
+        instance: instance(scene, &hit),
+        front: hit.front.into(),
+    });
+    Ok(())
+}
+
+/// # Safety
+/// Pointers are null, or lead to what they say.
+unsafe fn any_steps<N: Number>(
+    loaded: *const gridel_scene,
+    ray: *const gridel_ray,
+    memory: gridel_buffer,
+    to: *mut u32,
+) -> Result<(), gridel_status> {
+    // SAFETY: the caller's promise.
+    let (scene, ray, to) = unsafe { (scene(loaded)?, read(ray)?, output(to)?) };
+    // SAFETY: the caller's promise.
+    let stack = unsafe { stack(scene, memory) }?;
+    let ray = ready::<N>(scene, &ray)?;
+    to.write(any_hit::<N, Accel, _>(scene, &ray, stack, &mut NoCount).into());
+    Ok(())
+}
+
+fn ready<N: Number>(scene: &Scene<'_>, ray: &gridel_ray) -> Result<Ray<N>, gridel_status> {
+    let interval = [ray.nearest, ray.farthest];
+    Ok(scene.ray_within(Position(ray.position), ray.direction, interval)?)
+}
+
+/// # Safety
+/// Pointers are null, or lead to what they say.
+unsafe fn cast_units<N: Number>(
+    loaded: *const gridel_scene,
+    ray: &gridel_ray_f64,
+    memory: gridel_buffer,
+) -> Result<gridel_hit_f64, gridel_status> {
+    // SAFETY: the caller's promise.
+    let scene = unsafe { scene(loaded) }?;
+    // SAFETY: the caller's promise.
+    let stack: &mut StackView = unsafe { stack(scene, memory) }?;
+    let units = Units::of(scene);
+    let (ray, factor) = units.ray::<N>(scene, ray)?;
+    let Some(hit) = closest_hit::<N, Accel, _>(scene, &ray, stack, &mut NoCount) else {
+        return Ok(gridel_hit_f64 {
+            t: f64::INFINITY,
+            point: [0.0; 3],
+            normal: [0.0; 3],
+            object: GRIDEL_NONE,
+            primitive: GRIDEL_NONE,
+            instance: GRIDEL_NONE,
+            front: 0,
+        });
+    };
+    Ok(gridel_hit_f64 {
+        t: N::far_to_f64(hit.t) / factor,
+        point: units.place(hit.point.map(N::length_to_f64)),
+        normal: hit.normal.map(N::ratio_to_f64),
+        object: hit.object,
+        primitive: hit.primitive,
+        instance: instance(scene, &hit),
+        front: hit.front.into(),
+    })
+}
+
+/// # Safety
+/// Pointers are null, or lead to what they say.
+unsafe fn any_units<N: Number>(
+    loaded: *const gridel_scene,
+    ray: &gridel_ray_f64,
+    memory: gridel_buffer,
+    to: *mut u32,
+) -> Result<(), gridel_status> {
+    // SAFETY: the caller's promise.
+    let (scene, to) = unsafe { (scene(loaded)?, output(to)?) };
+    // SAFETY: the caller's promise.
+    let stack = unsafe { stack(scene, memory) }?;
+    let (ray, _) = Units::of(scene).ray::<N>(scene, ray)?;
+    to.write(any_hit::<N, Accel, _>(scene, &ray, stack, &mut NoCount).into());
+    Ok(())
+}
+
+/// The instance of a hit, in scene-file order.
+fn instance<N: Number>(scene: &Scene<'_>, hit: &Hit<N>) -> u32 {
+    let index = hit.instance().map(|index| index as usize);
+    let instance = index.and_then(|index| scene.instances().get(index));
+    instance.map_or(GRIDEL_NONE, |instance| instance.number)
+}
+
+impl From<gridel_ray_f32> for gridel_ray_f64 {
+    fn from(ray: gridel_ray_f32) -> Self {
+        Self {
+            origin: ray.origin.map(f64::from),
+            direction: ray.direction.map(f64::from),
+            t_min: ray.t_min.into(),
+            t_max: ray.t_max.into(),
+        }
+    }
+}
+
+/// How scene units relate to the core's.
+struct Units {
+    origin: [f64; 3],
+    /// A power of two.
+    unit: f64,
+    per_unit: f64,
+}
+
+/// Lengths of a direction, in units of either kind, with which no product leaves the range of numbers.
+const ORDINARY: core::ops::Range<f64> = 1.0 / (1_u128 << 100) as f64..(1_u128 << 100) as f64;
+
+impl Units {
+    fn of(scene: &Scene<'_>) -> Self {
+        let header = scene.header();
+        // Its magnitude is at most 1,000.
+        let power = |exponent: i64| f64::from_bits(((1023 + exponent) as u64) << 52);
+        let exponent = i64::from(header.unit_exponent).clamp(-1000, 1000);
+        Self {
+            origin: header.origin,
+            unit: power(exponent),
+            per_unit: power(-exponent),
+        }
+    }
+
+    /// A place in scene units.
+    fn place(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        let [a, b, c] = self.origin;
+        [a + x * self.unit, b + y * self.unit, c + z * self.unit]
+    }
+
+    /// A ray in the core's form, and by how much its t is larger.
+    fn ray<N: Number>(
+        &self,
+        scene: &Scene<'_>,
+        ray: &gridel_ray_f64,
+    ) -> Result<(Ray<N>, f64), gridel_status> {
+        let larger = |a: f64, b: f64| if a < b { b } else { a };
+        let [x, y, z] = ray.direction.map(|x| if x < 0.0 { -x } else { x });
+        let largest = larger(larger(x, y), z);
+        let factor = largest * self.per_unit;
+        // Of NaN as well.
+        if !ORDINARY.contains(&largest) || !ORDINARY.contains(&factor) {
+            return Err(gridel_status::RayDirection);
+        }
+        let ([x, y, z], [a, b, c]) = (ray.origin, self.origin);
+        let origin = [x - a, y - b, z - c].map(|x| x * self.per_unit);
+        let length = |t: f64| if t == 0.0 { 0.0 } else { t * factor };
+        let (t_min, t_max) = (length(ray.t_min), length(ray.t_max));
+        let ray = Ray::from_f64(scene.bounds(), origin, ray.direction, t_min, t_max)?;
+        Ok((ray, factor))
+    }
+}

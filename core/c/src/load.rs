@@ -1,0 +1,210 @@
+//! From a blob to a scene.
+
+use crate::memory::{PartViews, bytes, clear, input, output, scene, stack_bytes, store};
+use crate::{STRUCTURE, gridel_buffer, gridel_info, gridel_scene, gridel_status};
+use core::ffi::{c_char, c_void};
+use core::fmt::{self, Write};
+use gridel_core::scene::part_blobs;
+use gridel_core::{BlobError, Scene};
+
+/// Checks a blob and fills in a scene. The blob starts at a multiple of 16 bytes and stays where it is, unchanged, for as
+/// long as the scene is used. Takes time linear in its length, and about 2 KiB of stack. A scene with parts is loaded by
+/// `gridel_load_with_parts`.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_load(
+    to: *mut gridel_scene,
+    blob: *const c_void,
+    blob_bytes: usize,
+) -> gridel_status {
+    let load = || {
+        // SAFETY: the caller's promise.
+        unsafe { clear(to) }?;
+        // SAFETY: the caller's promise.
+        let blob = unsafe { bytes(blob.cast(), blob_bytes) }?;
+        let loaded = held(Scene::from_bytes(blob)?)?;
+        // SAFETY: the caller's promise.
+        unsafe { store(to, loaded) }
+    };
+    status(load())
+}
+
+/// Writes the bytes of memory that `gridel_load_with_parts` needs; 0 for a blob without parts.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_parts_bytes(
+    blob: *const c_void,
+    blob_bytes: usize,
+    needed: *mut usize,
+) -> gridel_status {
+    let count = || {
+        // SAFETY: the caller's promise.
+        let needed = unsafe { output(needed) }?;
+        // SAFETY: the caller's promise.
+        let blob = unsafe { bytes(blob.cast(), blob_bytes) }?;
+        let count = part_blobs(blob)?.count();
+        needed.write(count.saturating_mul(size_of::<Scene<'_>>()));
+        Ok(())
+    };
+    status(count())
+}
+
+/// Checks a blob that has parts and fills in a scene. The memory of the parts starts at a multiple of 8 bytes, has as many
+/// as `gridel_parts_bytes` states, and belongs to the scene for as long as that is used.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_load_with_parts(
+    to: *mut gridel_scene,
+    blob: *const c_void,
+    blob_bytes: usize,
+    parts: gridel_buffer,
+) -> gridel_status {
+    let load = || {
+        // SAFETY: the caller's promise.
+        unsafe { clear(to) }?;
+        // SAFETY: the caller's promise.
+        let blob = unsafe { bytes(blob.cast(), blob_bytes) }?;
+        // SAFETY: the caller's promise.
+        let mut views = unsafe { PartViews::new(parts) }?;
+        for part in part_blobs(blob)? {
+            views.push(Scene::from_bytes(part)?)?;
+        }
+        let loaded = held(Scene::with_parts(blob, views.finish())?)?;
+        // SAFETY: the caller's promise.
+        unsafe { store(to, loaded) }
+    };
+    status(load())
+}
+
+/// A scene that this library can trace.
+fn held(scene: Scene<'static>) -> Result<Scene<'static>, gridel_status> {
+    if scene.holds(STRUCTURE) {
+        Ok(scene)
+    } else {
+        Err(gridel_status::BlobMissingStructure)
+    }
+}
+
+/// Writes why a blob is rejected, with the section, the record and what is expected, as a sentence that ends with 0 and is
+/// cut off where the buffer ends. Returns the code. Takes some KiB of code and of stack; a program that does not call it
+/// does not hold it.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_blob_error(
+    blob: *const c_void,
+    blob_bytes: usize,
+    text: *mut c_char,
+    text_bytes: usize,
+) -> gridel_status {
+    let explain = || {
+        let buffer = gridel_buffer {
+            memory: text.cast(),
+            bytes: text_bytes,
+        };
+        // SAFETY: the caller's promise.
+        let text = unsafe { crate::memory::elements::<u8>(buffer, text_bytes) }?;
+        // SAFETY: the caller's promise.
+        let blob = unsafe { bytes(blob.cast(), blob_bytes) }?;
+        let mut sentence = Sentence { text, used: 0 };
+        match Scene::from_bytes(blob) {
+            // It is rejected for want of its parts, which are checked one by one.
+            Err(BlobError::Parts { .. }) => part_blobs(blob)
+                .and_then(|mut parts| parts.try_for_each(|part| Scene::from_bytes(part).map(drop))),
+            result => result.map(drop),
+        }
+        .map_err(|error| {
+            // What does not fit is cut off.
+            let _ = write!(sentence, "{error}");
+            gridel_status::from(error)
+        })
+    };
+    status(explain())
+}
+
+/// A text in memory of the caller's, before the 0 at its end.
+struct Sentence<'t> {
+    text: &'t mut [u8],
+    used: usize,
+}
+
+impl Write for Sentence<'_> {
+    fn write_str(&mut self, more: &str) -> fmt::Result {
+        let last = self.text.len().saturating_sub(1);
+        let room = self.text.get_mut(self.used..last).unwrap_or_default();
+        for (to, from) in room.iter_mut().zip(more.bytes()) {
+            *to = from;
+            self.used = self.used.saturating_add(1);
+        }
+        Ok(())
+    }
+}
+
+/// Writes what a scene is and needs.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_info_of(
+    loaded: *const gridel_scene,
+    info: *mut gridel_info,
+) -> gridel_status {
+    let tell = || {
+        // SAFETY: the caller's promise.
+        let (scene, info) = unsafe { (scene(loaded)?, output(info)?) };
+        let header = scene.header();
+        info.write(gridel_info {
+            coordinate_origin: match header.coordinate_origin {
+                0 => header.origin,
+                _ => [0.0; 3],
+            },
+            coordinate_exponent: scene.coordinate_exponent(),
+            stack_depth: header.stack_depth.into(),
+            objects: header.objects,
+            primitives: header.primitives,
+        });
+        Ok(())
+    };
+    status(tell())
+}
+
+/// Writes the bytes of the stack that rays need, which starts at a multiple of 8 bytes.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_stack_bytes(
+    loaded: *const gridel_scene,
+    needed: *mut usize,
+) -> gridel_status {
+    let count = || {
+        // SAFETY: the caller's promise.
+        let (scene, needed) = unsafe { (scene(loaded)?, output(needed)?) };
+        needed.write(stack_bytes(scene));
+        Ok(())
+    };
+    status(count())
+}
+
+pub(crate) fn status(done: Result<(), gridel_status>) -> gridel_status {
+    match done {
+        Ok(()) => gridel_status::Ok,
+        Err(why) => why,
+    }
+}
+
+/// A value to read, for the other files.
+///
+/// # Safety
+/// As [`input`].
+pub(crate) unsafe fn read<T: Copy>(value: *const T) -> Result<T, gridel_status> {
+    // SAFETY: the caller's promise.
+    Ok(*unsafe { input(value) }?)
+}

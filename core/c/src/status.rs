@@ -1,0 +1,144 @@
+//! The codes that functions return, and their texts.
+
+use core::ffi::{CStr, c_char};
+use gridel_core::render::RenderError;
+use gridel_core::{BlobError, RayError};
+
+/// What a function returns: 0, or why it did nothing. `gridel_text` gives the sentence.
+#[repr(u32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum gridel_status {
+    /// Done.
+    Ok = 0,
+    /// A pointer is null.
+    NullPointer = 1,
+    /// A pointer is not aligned for its type; memory for stacks and workspaces needs 8 bytes.
+    Misaligned = 2,
+    /// A buffer has fewer bytes than are needed.
+    BufferTooSmall = 3,
+    /// The scene was not loaded, or loading it failed.
+    NotLoaded = 4,
+    /// The blob does not start at a multiple of 16 bytes.
+    BlobMisaligned = 10,
+    /// The blob is shorter or longer than it says.
+    BlobTruncated = 11,
+    /// The bytes are not a blob's.
+    BlobMagic = 12,
+    /// Blob and machine differ in byte order.
+    BlobEndianness = 13,
+    /// The blob has another version of the format.
+    BlobVersion = 14,
+    /// The bytes were changed after the blob was written.
+    BlobChecksum = 15,
+    /// The library was built without an effect that the scene requires.
+    BlobMissingEffects = 16,
+    /// The library was built without a shape, or a form of storage, that the scene requires.
+    BlobMissingPart = 17,
+    /// The blob does not hold the structure that the library was built for.
+    BlobMissingStructure = 18,
+    /// The blob has parts, for which there is too little memory.
+    BlobParts = 19,
+    /// A record of the blob is invalid.
+    BlobInvalid = 20,
+    /// The ray's direction is zero, infinite or NaN.
+    RayDirection = 30,
+    /// The ray's origin is infinite or NaN.
+    RayOrigin = 31,
+    /// The ray's origin is too far from the scene.
+    RayDistance = 32,
+    /// The ray's interval ends before it begins, or is NaN.
+    RayInterval = 33,
+    /// The picture has no pixels, or is more than 64 times as wide as high.
+    PictureSize = 40,
+    /// The samples per pixel are not 1 to 256.
+    PictureSamples = 41,
+    /// The ray depth is above 16.
+    PictureDepth = 42,
+    /// The format of the pixels is unknown.
+    PictureFormat = 43,
+    /// The pixels are too narrow for the number format.
+    PictureResolution = 44,
+    /// A row or a rectangle leaves the picture.
+    PictureRectangle = 45,
+}
+
+impl From<BlobError> for gridel_status {
+    fn from(error: BlobError) -> Self {
+        match error {
+            BlobError::Misaligned => Self::BlobMisaligned,
+            BlobError::Truncated { .. } => Self::BlobTruncated,
+            BlobError::Magic => Self::BlobMagic,
+            BlobError::Endianness { .. } => Self::BlobEndianness,
+            BlobError::Version { .. } => Self::BlobVersion,
+            BlobError::Checksum { .. } => Self::BlobChecksum,
+            BlobError::MissingEffects { .. } => Self::BlobMissingEffects,
+            BlobError::MissingPart { .. } => Self::BlobMissingPart,
+            BlobError::MissingStructure { .. } => Self::BlobMissingStructure,
+            BlobError::Parts { .. } => Self::BlobParts,
+            _ => Self::BlobInvalid,
+        }
+    }
+}
+
+impl From<RayError> for gridel_status {
+    fn from(error: RayError) -> Self {
+        match error {
+            RayError::Direction => Self::RayDirection,
+            RayError::Origin => Self::RayOrigin,
+            RayError::Distance => Self::RayDistance,
+            RayError::Interval => Self::RayInterval,
+        }
+    }
+}
+
+impl From<RenderError> for gridel_status {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::Size { .. } => Self::PictureSize,
+            RenderError::Samples(_) => Self::PictureSamples,
+            RenderError::Depth(_) => Self::PictureDepth,
+            RenderError::Structure(_) => Self::BlobMissingStructure,
+            RenderError::Effects(_) => Self::BlobMissingEffects,
+            RenderError::Resolution(_) => Self::PictureResolution,
+            RenderError::Workspace { .. } => Self::BufferTooSmall,
+        }
+    }
+}
+
+/// Returns the sentence for a code, which says what to do; it lives forever.
+#[unsafe(no_mangle)]
+pub extern "C" fn gridel_text(status: u32) -> *const c_char {
+    text(status).as_ptr()
+}
+
+fn text(status: u32) -> &'static CStr {
+    match status {
+        0 => c"done",
+        1 => c"a pointer is null",
+        2 => c"a pointer is not aligned: memory for stacks and workspaces starts at a multiple of 8 bytes",
+        3 => c"a buffer is too small: ask gridel_stack_bytes, gridel_workspace_bytes_* or gridel_parts_bytes",
+        4 => c"the scene was not loaded: call gridel_load, and look at what it returns",
+        10 => c"the blob does not start at a multiple of 16 bytes: align it, or copy it into aligned memory",
+        11 => c"the blob is shorter or longer than it says: was it cut off, or was something added to it?",
+        12 => c"these bytes are not a Gridel blob: compile the scene with `gridel build`",
+        13 => c"the blob is little-endian, and this machine must be too",
+        14 => c"the blob has another version of the format: compile the scene with the matching `gridel build`",
+        15 => c"the blob's checksum differs: its bytes were changed after it was written",
+        16 => c"the scene requires an effect that this library was built without: enable its Cargo feature",
+        17 => c"the scene requires a shape or storage that this library was built without: enable its Cargo feature",
+        18 => c"the blob does not hold the structure of this library: build it with `gridel build --accel`",
+        19 => c"the scene has parts: load it by gridel_load_with_parts, with the memory that gridel_parts_bytes states",
+        20 => c"a record of the blob is invalid: gridel_blob_error says which",
+        30 => c"the ray's direction is zero, infinite, NaN, or too short or long for the scene's units",
+        31 => c"the ray's origin is infinite or NaN",
+        32 => c"the ray's origin is too far from the scene: move it closer along the ray",
+        33 => c"the ray's interval ends before it begins, or is NaN",
+        40 => c"the picture has no pixels, or is more than 64 times as wide as high",
+        41 => c"the samples per pixel must be 1 to 256",
+        42 => c"the ray depth must be 0 to 16",
+        43 => c"the format of the pixels is unknown: use one of gridel_pixel_format",
+        44 => c"the pixels are too narrow for the number format: use fewer pixels, or gridel_render_f64",
+        45 => c"the rectangle leaves the picture",
+        _ => c"unknown status",
+    }
+}

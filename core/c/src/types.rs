@@ -1,0 +1,197 @@
+//! What goes into the library and comes out of it.
+
+use core::ffi::c_void;
+
+/// An object, primitive or instance that there is not: of a ray that hits nothing, and the instance of a hit of the
+/// scene's own objects.
+pub const GRIDEL_NONE: u32 = 0xffff_ffff;
+
+/// Words of a `gridel_scene`.
+pub const GRIDEL_SCENE_WORDS: usize = 64;
+
+/// Bytes of a stack that is deep enough for every scene.
+pub const GRIDEL_STACK_BYTES_MAX: usize = 1928;
+
+/// Bytes of a workspace that is large enough for every scene, in `fixed` and in `f32`.
+pub const GRIDEL_WORKSPACE_BYTES_MAX: usize = 3072;
+
+/// Bytes of a workspace that is large enough for every scene, in `f64`.
+pub const GRIDEL_WORKSPACE_BYTES_MAX_F64: usize = 4096;
+
+/// A scene: memory of the caller's that `gridel_load` fills in. It refers to the blob, which stays where it is. It may be
+/// moved and copied.
+#[repr(C)]
+pub struct gridel_scene {
+    /// The library's own.
+    pub(crate) memory: [usize; GRIDEL_SCENE_WORDS],
+}
+
+/// Memory of the caller's.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct gridel_buffer {
+    /// Where it begins.
+    pub memory: *mut c_void,
+    /// Its bytes.
+    pub bytes: usize,
+}
+
+/// What a scene is and needs.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct gridel_info {
+    /// Where `gridel_ray` counts from, in scene units.
+    pub coordinate_origin: [f64; 3],
+    /// A step of `gridel_ray` is 2 to this power scene units.
+    pub coordinate_exponent: i32,
+    /// Entries of the stack.
+    pub stack_depth: u32,
+    /// Objects, in scene-file order.
+    pub objects: u32,
+    /// Primitives of all objects.
+    pub primitives: u32,
+}
+
+/// A ray in steps of scene coordinates, without floating point: see `gridel_info`.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct gridel_ray {
+    /// Where it begins.
+    pub position: [i32; 3],
+    /// Its direction, of any length but 0.
+    pub direction: [i32; 3],
+    /// The least distance of a hit from `position`, in a straight line.
+    pub nearest: u64,
+    /// The greatest; `UINT64_MAX` is endless.
+    pub farthest: u64,
+}
+
+/// What a `gridel_ray` hits first.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct gridel_hit {
+    /// The distance from the ray's position, in a straight line, in steps; `UINT64_MAX` if nothing is hit.
+    pub distance: u64,
+    /// The place that is hit, in steps.
+    pub position: [i32; 3],
+    /// The surface's normal, of length 2^30.
+    pub normal: [i32; 3],
+    /// The object, in scene-file order; `GRIDEL_NONE` if nothing is hit.
+    pub object: u32,
+    /// The primitive, in scene-file order over all objects.
+    pub primitive: u32,
+    /// The instance, in scene-file order; `GRIDEL_NONE` for the scene's own objects.
+    pub instance: u32,
+    /// 1 if the ray came from the side to which the normal points, else 0.
+    pub front: u32,
+}
+
+/// A ray in scene units, in single precision.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct gridel_ray_f32 {
+    /// Where it begins.
+    pub origin: [f32; 3],
+    /// Its direction, of any length but 0.
+    pub direction: [f32; 3],
+    /// The least t of a hit, in multiples of the direction.
+    pub t_min: f32,
+    /// The greatest, which may be infinite.
+    pub t_max: f32,
+}
+
+/// What a `gridel_ray_f32` hits first.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct gridel_hit_f32 {
+    /// Where on the ray, in multiples of the direction; infinite if nothing is hit.
+    pub t: f32,
+    /// The place that is hit, in scene units.
+    pub point: [f32; 3],
+    /// The surface's normal, of length 1.
+    pub normal: [f32; 3],
+    /// The object, in scene-file order; `GRIDEL_NONE` if nothing is hit.
+    pub object: u32,
+    /// The primitive, in scene-file order over all objects.
+    pub primitive: u32,
+    /// The instance, in scene-file order; `GRIDEL_NONE` for the scene's own objects.
+    pub instance: u32,
+    /// 1 if the ray came from the side to which the normal points, else 0.
+    pub front: u32,
+}
+
+/// A ray in scene units, in double precision.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct gridel_ray_f64 {
+    /// Where it begins.
+    pub origin: [f64; 3],
+    /// Its direction, of any length but 0.
+    pub direction: [f64; 3],
+    /// The least t of a hit, in multiples of the direction.
+    pub t_min: f64,
+    /// The greatest, which may be infinite.
+    pub t_max: f64,
+}
+
+/// What a `gridel_ray_f64` hits first.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct gridel_hit_f64 {
+    /// Where on the ray, in multiples of the direction; infinite if nothing is hit.
+    pub t: f64,
+    /// The place that is hit, in scene units.
+    pub point: [f64; 3],
+    /// The surface's normal, of length 1.
+    pub normal: [f64; 3],
+    /// The object, in scene-file order; `GRIDEL_NONE` if nothing is hit.
+    pub object: u32,
+    /// The primitive, in scene-file order over all objects.
+    pub primitive: u32,
+    /// The instance, in scene-file order; `GRIDEL_NONE` for the scene's own objects.
+    pub instance: u32,
+    /// 1 if the ray came from the side to which the normal points, else 0.
+    pub front: u32,
+}
+
+/// A picture's settings; `gridel_picture_of` gives those of the scene file.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct gridel_picture {
+    /// Pixels from left to right.
+    pub width: u16,
+    /// Pixels from top to bottom.
+    pub height: u16,
+    /// Samples per pixel, 1 to 256.
+    pub samples: u16,
+    /// How often a ray may be reflected or refracted, 0 to 16.
+    pub depth: u16,
+    /// 1 to dither, else 0.
+    pub dither: u16,
+    /// A `gridel_pixel_format`.
+    pub pixel_format: u16,
+}
+
+/// The form of a pixel in memory.
+#[repr(u16)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum gridel_pixel_format {
+    /// Three bytes: red, green, blue.
+    Rgb888 = 0,
+    /// 16 bits in the machine's order, aligned: 5 of red, the uppermost, 6 of green, 5 of blue.
+    Rgb565 = 1,
+}
+
+/// A rectangle of a picture, in pixels from its upper left corner.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct gridel_rectangle {
+    /// The first column.
+    pub x: u16,
+    /// The first row.
+    pub y: u16,
+    /// Columns.
+    pub width: u16,
+    /// Rows.
+    pub height: u16,
+}

@@ -1,0 +1,350 @@
+//! All hits of a ray, in order, as many at a time as the caller has room for.
+//!
+//! Hits are ordered by t, then by instance and primitive, and of a solid the way in comes before the way out. A walk
+//! through the structure keeps the first hits behind the last one that was listed before. So nothing is listed twice,
+//! even where a structure leads to a primitive in several cells, and nothing is lost between two lists.
+
+use crate::accel::{Accel, Number, StackView};
+use crate::format::limits::{INSTANCES, UNBOUNDED};
+use crate::geometry::{LATER, LEAVING, Part, PrimitiveId};
+use crate::instances::map::PlacedRay;
+use crate::observe::count::Observer;
+use crate::query::candidate::Candidate;
+use crate::query::collect::Collect;
+use crate::query::hit::{InInstance, PrimitiveHit};
+use crate::query::placed;
+use crate::query::search::search_structure;
+use crate::query::unbounded;
+use crate::ray::Ray;
+use crate::scene::Scene;
+use crate::target::InstancesOnly;
+use heapless::{Vec, VecView};
+
+/// The order of hits: by t as it is counted from the ray's start, t as the caller counts it, instance (none first),
+/// primitive, and which end of a solid it is.
+type Order<N> = (
+    N,
+    <N as crate::number::Scalar>::Wide,
+    [u32; 2],
+    (u32, u8, u32),
+    u8,
+);
+
+/// A hit with its place in the order.
+#[derive(Clone, Copy, Debug)]
+struct Entry<N: Number> {
+    order: Order<N>,
+    hit: PrimitiveHit<N>,
+}
+
+/// Room for some of the hits of a ray, in order: what [`all_hits`] fills, and where it goes on.
+///
+/// `SIZE` is at least 1. An entry takes some 70 bytes in `f32` and `fixed` and 90 in `f64`. A list of `k` entries that
+/// is filled once holds the nearest `k` hits.
+#[derive(Debug)]
+pub struct HitList<N: Number, const SIZE: usize> {
+    entries: Vec<Entry<N>, SIZE>,
+    last: Option<Order<N>>,
+    is_done: bool,
+}
+
+impl<N: Number, const SIZE: usize> Default for HitList<N, SIZE> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<N: Number, const SIZE: usize> HitList<N, SIZE> {
+    /// An empty list, to begin with a ray's first hit.
+    pub const fn new() -> Self {
+        const { assert!(SIZE > 0, "a list of hits has at least one entry") };
+        Self {
+            entries: Vec::new(),
+            last: None,
+            is_done: false,
+        }
+    }
+
+    /// Empties the list, to begin with the first hit of another ray.
+    pub fn clear(&mut self) {
+        *self = Self::new();
+    }
+
+    /// Number of hits that were listed last.
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Whether no hit was listed last.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// The hits that were listed last, in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &PrimitiveHit<N>> {
+        self.entries.iter().map(|entry| &entry.hit)
+    }
+}
+
+/// Lists the hits of a ray in its interval: the first ones, and when it is called again with the list, those behind
+/// them. Returns whether there may be more, because the list is full.
+///
+/// Hits are ordered by t; at the same t those of the scene's own objects come first, then those of instances in
+/// scene-file order; then the primitive that comes first in the scene file, and the way into a solid before the way
+/// out. The order and the bits are those of every structure.
+///
+/// Every crossing is a hit: of spheres, boxes and other solids the way in and the way out, also where both have the
+/// same t, and of a torus up to four. Triangles are met by the half-open rule: a ray through an edge or a vertex of a
+/// closed mesh meets as many triangles as a ray beside it, so the number of hits of a whole line is even.
+/// [`closest_hit`](crate::closest_hit) follows the closed rule instead: it may report an edge that the ray only
+/// touches, at a silhouette or the border of an open mesh, where this function lists nothing. A hit that both
+/// report has the same bits, except a hit in the plane where the scene's box begins, of which rounding can keep
+/// `closest_hit` alone. A ray that lies in the plane of a triangle does not meet it, in either rule.
+///
+/// `stack` needs [`stack_depth`](Scene::stack_depth) entries. Each call walks through the structure once, so the cost is
+/// that of a ray without end, for each list that is filled.
+///
+/// ```
+/// # static BLOB: &[u8] =
+/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+/// use gridel_core::{DualSplit, HitList, NoCount, Ray, Scene, Stack, all_hits};
+///
+/// let scene = Scene::from_bytes(BLOB)?;
+/// let mut stack = Stack::<32>::new();
+/// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+/// let (mut list, mut ts) = (HitList::<f32, 2>::new(), Vec::new());
+/// loop {
+///     let more = all_hits::<f32, DualSplit, _, 2>(&scene, &down, stack.as_view(), &mut list, &mut NoCount);
+///     ts.extend(list.iter().map(|hit| hit.t));
+///     if !more {
+///         break;
+///     }
+/// }
+/// // Into a ball and out of it, and whatever lies below.
+/// assert!(ts.len() >= 2 && ts.is_sorted());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn all_hits<N: Number, A: Accel, C: Observer, const SIZE: usize>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    stack: &mut StackView,
+    list: &mut HitList<N, SIZE>,
+    count: &mut C,
+) -> bool {
+    list.entries.clear();
+    if list.is_done {
+        return false;
+    }
+    let mut collector = Collector {
+        entries: list.entries.as_mut_view(),
+        after: list.last,
+        start_t: ray.start_t,
+        placed: None,
+    };
+    collect::<N, A, C>(scene, ray, &mut collector, stack, count);
+    list.last = list.entries.last().map(|entry| entry.order);
+    list.is_done = !list.entries.is_full();
+    !list.is_done
+}
+
+/// Entries of the lists that hits are counted by.
+pub(super) const COUNTED: usize = 16;
+
+/// Returns the number of hits of a ray in its interval, as [`all_hits`] lists them.
+///
+/// Of a closed mesh a whole line has an even number, and a ray an odd one if it begins inside and ends outside.
+/// `stack` needs [`stack_depth`](Scene::stack_depth) entries. The cost is that of a ray without end, for every 16 hits.
+///
+/// ```
+/// # static BLOB: &[u8] =
+/// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+/// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, count_hits};
+///
+/// let scene = Scene::from_bytes(BLOB)?;
+/// let mut stack = Stack::<32>::new();
+/// let up = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, 1.0, 0.0], 0.0, 1e9)?;
+/// assert_eq!(count_hits::<f32, DualSplit, _>(&scene, &up, stack.as_view(), &mut NoCount), 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn count_hits<N: Number, A: Accel, C: Observer>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    stack: &mut StackView,
+    count: &mut C,
+) -> u32 {
+    let mut list = HitList::<N, COUNTED>::new();
+    let mut hits = 0_u32;
+    loop {
+        let more = all_hits::<N, A, C, COUNTED>(scene, ray, stack, &mut list, count);
+        hits = hits.saturating_add(list.len() as u32);
+        if !more {
+            return hits;
+        }
+    }
+}
+
+/// Lists hits behind the last one.
+struct Collector<'l, N: Number> {
+    entries: &'l mut VecView<Entry<N>>,
+    /// The last hit that was listed before.
+    after: Option<Order<N>>,
+    /// The t of the ray's start.
+    start_t: N::Wide,
+    /// The instance that is searched; none for the scene's own objects.
+    placed: Option<PlacedSearch<N>>,
+}
+
+/// The instance that is searched.
+#[derive(Clone, Copy)]
+struct PlacedSearch<N: Number> {
+    mapped: PlacedRay<N>,
+    index: u32,
+    number: u32,
+    first_primitive: u32,
+    /// That of the scene's ray.
+    interval: [N; 2],
+}
+
+impl<N: Number> Collector<'_, N> {
+    /// Inserts a hit in order, unless it was listed before.
+    fn insert(&mut self, order: Order<N>, hit: PrimitiveHit<N>) {
+        if self.after.as_ref().is_some_and(|after| order <= *after) {
+            return;
+        }
+        let before = |entry: &&Entry<N>| order <= entry.order;
+        let behind = self.entries.iter().rev().take_while(before).count();
+        let place = self.entries.len().saturating_sub(behind);
+        let next = self.entries.get(place);
+        if next.is_some_and(|next| next.order == order) {
+            return;
+        }
+        if self.entries.is_full() {
+            if behind == 0 {
+                return;
+            }
+            self.entries.pop();
+        }
+        let inserted = self.entries.insert(place, Entry { order, hit });
+        debug_assert!(inserted.is_ok(), "there is room");
+    }
+
+    /// The t beyond which nothing counts; `None` while there is room.
+    fn limit(&self) -> Option<N> {
+        let last = self.entries.last().filter(|_| self.entries.is_full());
+        last.map(|last| last.order.0)
+    }
+}
+
+impl<N: Number> Collect<N> for &mut Collector<'_, N> {
+    const ALL: bool = true;
+
+    fn is_any(&self) -> bool {
+        !self.entries.is_empty()
+    }
+
+    fn is_at(&self, place: PrimitiveId) -> bool {
+        let mut entries = self.entries.iter();
+        entries.any(|entry| entry.hit.best.place == place)
+    }
+
+    fn commit(&mut self, scene: &Scene<'_>, (t, part): (N, Part), place: PrimitiveId) -> Option<N> {
+        let best = Candidate { t, place, part };
+        let key = scene.key(place);
+        // In first, out, in again, out.
+        let end = u8::from(part & LATER != 0) << 1 | u8::from(part & LEAVING != 0);
+        let Some(placed) = self.placed else {
+            let far = t.widen() + self.start_t;
+            let hit = PrimitiveHit {
+                t: far,
+                primitive: key.0,
+                best,
+                placed: InstancesOnly::new(|| None),
+            };
+            self.insert((t, far, [0; 2], key, end), hit);
+            return self.limit();
+        };
+        let [tmin, tmax] = placed.interval;
+        let in_scene = placed
+            .mapped
+            .t_in_scene(t.widen() + placed.mapped.ray.start_t);
+        let t = tmax.min(tmin.max(in_scene));
+        let far = t.widen() + self.start_t;
+        let index = placed.index;
+        let hit = PrimitiveHit {
+            t: far,
+            primitive: placed.first_primitive.wrapping_add(key.0),
+            best,
+            placed: InstancesOnly::new(|| Some(InInstance { index, t })),
+        };
+        let instance = [placed.number.wrapping_add(1), index];
+        self.insert((t, far, instance, key, end), hit);
+        // That of the part's ray stays.
+        None
+    }
+}
+
+/// Finds the hits of a ray.
+#[inline(never)]
+fn collect<N: Number, A: Accel, C: Observer>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    collector: &mut Collector<'_, N>,
+    stack: &mut StackView,
+    count: &mut C,
+) {
+    if C::ENABLED {
+        count.event(ray.query(false));
+    }
+    if UNBOUNDED && scene.has_unbounded {
+        unbounded::each(scene, ray, count, |t, place| {
+            // Farther than kernels count, the t that the caller counts decides.
+            let near = ray.until(t).tmax;
+            let best = Candidate {
+                t: near,
+                place,
+                part: 0,
+            };
+            let key = scene.key(place);
+            let hit = PrimitiveHit {
+                t,
+                primitive: key.0,
+                best,
+                placed: InstancesOnly::new(|| None),
+            };
+            collector.insert((near, t, [0; 2], key, 0), hit);
+            false
+        });
+    }
+    if scene.has_own() {
+        search_structure::<N, A, C, _, false>(scene, ray, &mut *collector, stack, count, false);
+    }
+    if INSTANCES && !scene.instances().is_empty() {
+        let tmax = collector.limit();
+        placed::each(scene, ray, tmax, count, |entered, count| {
+            let placed::Entered {
+                part,
+                mapped,
+                index,
+                number,
+                first_primitive,
+            } = entered;
+            collector.placed = Some(PlacedSearch {
+                mapped,
+                index,
+                number,
+                first_primitive,
+                interval: [ray.tmin, ray.tmax],
+            });
+            search_structure::<N, A, C, _, false>(
+                part,
+                &mapped.ray,
+                &mut *collector,
+                stack,
+                count,
+                false,
+            );
+            collector.limit()
+        });
+        collector.placed = None;
+    }
+}

@@ -1,0 +1,43 @@
+//! Barycentric coordinates of hits.
+
+use crate::accel::Number;
+use crate::geometry::smooth::barycentric;
+use crate::instances::map::{Map, PlacedSurface};
+use crate::query::hit::{Hit, find};
+use crate::scene::Scene;
+
+impl<N: Number> Hit<N> {
+    /// Returns the weights of a triangle's corners at the hit's point, in the order in which the blob holds them, which
+    /// may begin with another corner than the scene file does: each is at least 0, and their sum is 1 but for rounding.
+    /// `None` of what is not a triangle. `scene` is that of the query.
+    ///
+    /// The weights are taken from the point, so they are off by the hit's [error](Hit::error) over the triangle's heights.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{Ray, Scene, Stack};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut stack = Stack::<32>::new();
+    /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+    /// let ball = scene.closest_hit(&down, stack.as_view()).expect("a sphere");
+    /// assert_eq!(ball.barycentric(&scene), None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn barycentric(&self, scene: &Scene<'_>) -> Option<[N; 3]> {
+        let slot = self.triangle_slot()?;
+        let Some(instance) = self.instance() else {
+            let corners = scene.space.shapes.triangle(slot)?;
+            return Some(barycentric(corners, self.point, self.normal));
+        };
+        let (instance, part) = find(scene, instance)?;
+        let there = Map::<N>::new(instance).in_part(&PlacedSurface {
+            point: self.point,
+            normal: self.normal,
+            error: self.error,
+        });
+        let corners = part.space.shapes.triangle(slot)?;
+        Some(barycentric(corners, there.point, there.normal))
+    }
+}

@@ -1,0 +1,47 @@
+//! What a search does with the hits that it finds.
+
+use crate::accel::Number;
+use crate::geometry::{Part, PrimitiveId};
+use crate::query::candidate::Candidate;
+use crate::scene::Scene;
+
+/// What a search does with the hits that it finds: it keeps the best one, or lists all of them.
+pub(super) trait Collect<N: Number> {
+    /// Whether both ends of every crossing are hits, and triangles are met by the [half-open
+    /// rule](crate::geometry::half_open).
+    const ALL: bool = false;
+
+    /// Whether there is a hit.
+    fn is_any(&self) -> bool;
+
+    /// Whether the last hit that counts is one of this primitive; for observers.
+    fn is_at(&self, place: PrimitiveId) -> bool;
+
+    /// Takes a hit of the interval that is left. Returns the t beyond which nothing counts from here on, if that changes.
+    fn commit(&mut self, scene: &Scene<'_>, hit: (N, Part), place: PrimitiveId) -> Option<N>;
+}
+
+/// The best hit so far.
+impl<N: Number> Collect<N> for Option<Candidate<N>> {
+    #[inline(always)]
+    fn is_any(&self) -> bool {
+        self.is_some()
+    }
+
+    #[inline(always)]
+    fn is_at(&self, place: PrimitiveId) -> bool {
+        self.is_some_and(|best| best.place == place)
+    }
+
+    /// Takes the hit unless an earlier primitive is met at the same t.
+    #[inline(always)]
+    fn commit(&mut self, scene: &Scene<'_>, (t, part): (N, Part), place: PrimitiveId) -> Option<N> {
+        // No hit lies beyond the best one, so this one is nearer, or as near.
+        let tie = self.filter(|best| t >= best.t);
+        if tie.is_some_and(|best| scene.key(best.place) <= scene.key(place)) {
+            return None;
+        }
+        *self = Some(Candidate { t, place, part });
+        Some(t)
+    }
+}

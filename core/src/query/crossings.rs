@@ -1,0 +1,117 @@
+//! The search where all hits are listed: both ends of every crossing, and triangles by the half-open rule.
+
+use crate::accel::Number;
+use crate::accel::cull::Culling;
+use crate::format::record::UnitBox;
+use crate::geometry::primitive::Primitive;
+use crate::geometry::{Crossing, LATER, LEAVING, Part, PrimitiveId, is_flat, triangle};
+use crate::query::collect::Collect;
+use crate::query::search::Search;
+
+/// Searches that list all hits.
+impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
+    /// Takes both ends of a crossing, or the one of a flat primitive.
+    #[inline(never)]
+    pub(super) fn consider_both(&mut self, crossing: Crossing<N>, place: PrimitiveId) {
+        let Crossing { enter, leave } = crossing;
+        self.consider_end(enter, place);
+        if !is_flat(place.kind) {
+            self.consider_end((leave.0, leave.1 | LEAVING), place);
+        }
+    }
+
+    /// Takes an end of a crossing that lies in the interval. All that is crossed lies in the scene's box: what is met
+    /// before a ray that starts where the box begins is rounded there.
+    fn consider_end(&mut self, (t, part): (N, Part), place: PrimitiveId) {
+        let t = if t < N::ZERO && self.starts_at_box() {
+            N::ZERO
+        } else {
+            t
+        };
+        if t >= self.ray.tmin && t <= self.tmax {
+            self.commit((t, part), place);
+        }
+    }
+
+    fn starts_at_box(&self) -> bool {
+        let major = self.ray.major;
+        let sides = self.scene.bounds().0.get(major);
+        let (Some(&[first, last]), Some(&start)) = (sides, self.ray.origin.get(major)) else {
+            return false;
+        };
+        let is_forward = self.ray.slope.get(major).is_some_and(|&x| x > N::ZERO);
+        let before = if is_forward {
+            start <= N::from_unit(first)
+        } else {
+            start >= N::from_unit(last)
+        };
+        before && self.ray.tmin == N::ZERO
+    }
+
+    /// Takes both ends of a crossing that may have been rounded out of the primitive's box.
+    #[inline(never)]
+    pub(super) fn consider_both_in_box(
+        &mut self,
+        crossing: Crossing<N>,
+        bounds: UnitBox,
+        place: PrimitiveId,
+    ) {
+        let interval = self.cull.exact(self.ray).interval(&bounds);
+        if interval.near > interval.far {
+            return;
+        }
+        let (near, far) = (N::from_cull(interval.near), N::from_cull(interval.far));
+        let clamp = |t: N| t.max(near).min(far);
+        let Crossing { enter, leave } = crossing;
+        let clamped = Crossing {
+            enter: (clamp(enter.0), enter.1),
+            leave: (clamp(leave.0), leave.1),
+        };
+        self.consider_both(clamped, place);
+    }
+
+    /// Takes the second crossing of a primitive that a line can enter twice.
+    #[inline(always)]
+    pub(super) fn consider_later<T: Primitive>(
+        &mut self,
+        first: Crossing<N>,
+        record: &T,
+        place: PrimitiveId,
+    ) {
+        let next = record.cross_after(self.ray, self.recip_norm2, first.leave.0);
+        if let Some(Crossing { enter, leave }) = next {
+            let later = Crossing {
+                enter: (enter.0, enter.1 | LATER),
+                leave: (leave.0, leave.1 | LATER),
+            };
+            self.consider_both_in_box(later, record.bounds(), place);
+        }
+    }
+
+    /// Takes a triangle that the ray meets by the closed rule, where it does so by the half-open one, given the crossing
+    /// with its plane.
+    ///
+    /// One that the ray passes edge on, by what was rounded, counts as well, somewhere in its box: else the number of
+    /// crossings of a closed mesh would be odd.
+    #[inline(never)]
+    pub(super) fn triangle_half_open(
+        &mut self,
+        corners: [[i32; 3]; 3],
+        crossing: Option<(N, bool)>,
+        place: PrimitiveId,
+    ) {
+        if !triangle::passes(self.ray, corners) {
+            return;
+        }
+        match crossing {
+            Some((t, true)) => self.consider_both(Crossing::flat(t), place),
+            Some((t, false)) => {
+                self.consider_both_in_box(Crossing::flat(t), triangle::bounds(corners), place);
+            }
+            None => {
+                let start = Crossing::flat(self.ray.tmin);
+                self.consider_both_in_box(start, triangle::bounds(corners), place);
+            }
+        }
+    }
+}

@@ -1,0 +1,272 @@
+"""Scenes and their queries."""
+
+from __future__ import annotations
+
+import os
+from typing import NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._gridel import NativeScene
+
+#: Object, primitive and instance of a ray that meets nothing, and instance of what is in none.
+MISS = 0xFFFFFFFF
+
+Accel = Union[str, Sequence[str]]
+
+
+class Hits(NamedTuple):
+    """The first hits of n rays, as :meth:`Scene.cast` returns them; arrays have the shape of the rays."""
+
+    #: (n,) float64: multiples of the direction; inf on a miss, nan for a ray that is invalid.
+    t: NDArray[np.float64]
+    #: (n,) uint32: the object, in the order of the scene file; :data:`MISS` on a miss.
+    object: NDArray[np.uint32]
+    #: (n,) uint32: the primitive, counted over all objects; :data:`MISS` on a miss.
+    primitive: NDArray[np.uint32]
+    #: (n,) uint32: the instance; :data:`MISS` on a miss and for objects of no instance.
+    instance: NDArray[np.uint32]
+    #: (n, 3) float32: the geometric normal, of length 1: outward, or to where corners run counter-clockwise.
+    normal: NDArray[np.float32]
+    #: (n, 2) float32: weights of a triangle's second and third corner; nan where the scene's meshes are not at hand
+    #: (scenes from blobs, instances) and for other shapes, 0 on a miss.
+    uv: NDArray[np.float32]
+
+
+class AllHits(NamedTuple):
+    """All m hits of some rays, as :meth:`Scene.all` returns them: ray by ray, in the order of t."""
+
+    #: (m,) int64: the number of the ray.
+    ray: NDArray[np.int64]
+    #: (m,) float64: multiples of the direction.
+    t: NDArray[np.float64]
+    #: (m,) uint32: the object, in the order of the scene file.
+    object: NDArray[np.uint32]
+    #: (m,) uint32: the primitive, counted over all objects.
+    primitive: NDArray[np.uint32]
+    #: (m,) uint32: the instance; :data:`MISS` for objects of no instance.
+    instance: NDArray[np.uint32]
+    #: (m, 3) float32: the geometric normal.
+    normal: NDArray[np.float32]
+    #: (m, 2) float32: as of :class:`Hits`.
+    uv: NDArray[np.float32]
+    #: (m,) bool: whether the ray leaves a solid such as a sphere; never of triangles.
+    leaves: NDArray[np.bool_]
+
+
+def _names(accel: Accel) -> list[str]:
+    return [accel] if isinstance(accel, str) else list(accel)
+
+
+def _rows(values: ArrayLike, widths: Tuple[int, ...], what: str) -> NDArray:
+    """An array in C order of float32 or float64, without a copy where it is one already."""
+    array = np.asarray(values)
+    if array.dtype not in (np.float32, np.float64):
+        if array.dtype.kind not in "iuf" and array.size:
+            raise TypeError(f"{what}: the array has the type {array.dtype}; it must be a type of numbers")
+        array = array.astype(np.float64)
+    if array.ndim == 0 or (array.shape[-1] not in widths):
+        if array.size == 0:
+            return np.zeros((0, widths[0]))
+        expected = " or ".join(str(width) for width in widths)
+        raise ValueError(f"{what}: the array has the shape {array.shape}; its last axis must be {expected}")
+    return np.ascontiguousarray(array)
+
+
+class Scene:
+    """A scene, compiled for queries. Make one by :meth:`load`, :meth:`from_arrays` or :meth:`from_blob`.
+
+    A scene does not change. Queries release the GIL and run on all cores, or on ``threads`` of them; the results are the
+    same, bit for bit, with any number of threads. Arrays of float32 and float64 in C order are read in place.
+
+    ``format`` is the number format of a query: ``"f32"``, ``"f64"`` or ``"fixed"`` (integers). ``accel`` is the name of
+    an acceleration structure that the scene holds; the default is the fastest. It changes no result.
+    """
+
+    __slots__ = ("_native", "__weakref__")
+
+    def __init__(self, native: NativeScene):
+        self._native = native
+
+    @classmethod
+    def load(
+        cls, path: Union[str, os.PathLike], *, accel: Accel = "wide", lattice_bits: int = 24
+    ) -> "Scene":
+        """Reads a scene file of any format that ``gridel`` reads, or a scene blob.
+
+        ``accel`` names the structures to build and ``lattice_bits`` (16 to 24) the precision of coordinates; a blob is
+        taken as it is. Raises FileNotFoundError, and ValueError with file, place, cause and remedy.
+        """
+        return cls(NativeScene.load(os.fspath(path), _names(accel), lattice_bits))
+
+    @classmethod
+    def from_arrays(
+        cls,
+        vertices: ArrayLike,
+        faces: ArrayLike,
+        *,
+        accel: Accel = "wide",
+        lattice_bits: int = 24,
+    ) -> "Scene":
+        """Compiles a triangle mesh: vertices (n, 3) of numbers, faces (m, 3) of integers.
+
+        Vertices are centered in float64 before they are rounded to the lattice, whose step is about 1e-7 of the mesh's
+        size at 24 bits, wherever the mesh lies; :attr:`displacement` says how far they moved. Raises ValueError for
+        vertices that are not finite and faces that name no vertex.
+        """
+        return cls._from_meshes([(vertices, faces)], accel=accel, lattice_bits=lattice_bits)
+
+    @classmethod
+    def _from_meshes(
+        cls,
+        meshes: Sequence[Tuple[ArrayLike, ArrayLike]],
+        *,
+        accel: Accel = "wide",
+        lattice_bits: int = 24,
+    ) -> "Scene":
+        arrays = []
+        for vertices, faces in meshes:
+            vertices = np.ascontiguousarray(vertices, dtype=np.float64)
+            faces = np.asarray(faces)
+            if faces.size and faces.dtype.kind not in "iu":
+                raise TypeError(f"faces: the array has the type {faces.dtype}; it must be a type of integers")
+            faces = np.ascontiguousarray(faces, dtype=np.int64)
+            for what, array in (("vertices", vertices), ("faces", faces)):
+                if array.ndim != 2 or array.shape[1] != 3:
+                    raise ValueError(f"{what}: the array has the shape {array.shape}; it must be (n, 3)")
+            arrays.append((vertices, faces))
+        return cls(NativeScene.from_meshes(arrays, _names(accel), lattice_bits))
+
+    @classmethod
+    def from_blob(cls, blob: bytes) -> "Scene":
+        """Takes a scene blob, as ``gridel build`` and :meth:`to_blob` make them. Raises ValueError if it is invalid."""
+        return cls(NativeScene.from_blob(bytes(blob)))
+
+    def cast(
+        self, rays: ArrayLike, *, format: str = "f32", accel: Optional[str] = None, threads: int = 0
+    ) -> Hits:
+        """Returns the first hit of each ray: rays (..., 6) or (..., 8), hits of shape (...).
+
+        A ray that touches an edge or a vertex hits it. At the same t the primitive that comes first counts. ``t`` and
+        ``uv`` of triangles are computed from the vertices as they were given, in float64.
+        """
+        rays = _rows(rays, (6, 8), "rays")
+        shape = rays.shape[:-1]
+        t, obj, primitive, instance, normal, uv = self._native.cast(rays, format, accel, threads)
+        return Hits(
+            t.reshape(shape),
+            obj.reshape(shape),
+            primitive.reshape(shape),
+            instance.reshape(shape),
+            normal.reshape(shape + (3,)),
+            uv.reshape(shape + (2,)),
+        )
+
+    def any(
+        self, rays: ArrayLike, *, format: str = "f32", accel: Optional[str] = None, threads: int = 0
+    ) -> NDArray[np.bool_]:
+        """Returns whether each ray hits anything: rays (..., 6) or (..., 8), the result (...) bool."""
+        rays = _rows(rays, (6, 8), "rays")
+        return self._native.any(rays, format, accel, threads).reshape(rays.shape[:-1])
+
+    def all(
+        self, rays: ArrayLike, *, format: str = "f64", accel: Optional[str] = None, threads: int = 0
+    ) -> AllHits:
+        """Returns every crossing of each ray: rays (n, 6) or (n, 8), m hits ray by ray in the order of t.
+
+        Nothing is listed twice, capped or lost: a ray through an edge or a vertex of a closed mesh crosses as many
+        triangles as a ray beside it. Where a ray only touches a silhouette, or the border of an open mesh, it has no
+        crossing, or two, or one at a border; :meth:`cast` may report a hit there.
+        """
+        rays = _rows(rays, (6, 8), "rays")
+        ray, hits, leaves = self._native.all(rays, format, accel, threads)
+        return AllHits(ray, *hits, leaves)
+
+    def count(
+        self, rays: ArrayLike, *, format: str = "f64", accel: Optional[str] = None, threads: int = 0
+    ) -> NDArray[np.uint32]:
+        """Returns the number of crossings of each ray, as :meth:`all` lists them: (...) uint32."""
+        rays = _rows(rays, (6, 8), "rays")
+        return self._native.count(rays, format, accel, threads).reshape(rays.shape[:-1])
+
+    def contains(
+        self,
+        points: ArrayLike,
+        *,
+        closed_only: bool = True,
+        format: str = "f64",
+        accel: Optional[str] = None,
+        threads: int = 0,
+    ) -> NDArray[np.bool_]:
+        """Returns whether each point lies in a closed object: points (..., 3), the result (...) bool.
+
+        Solids are closed, and so are meshes each of whose edges an even number of triangles share. A point nearer to a
+        surface than :attr:`displacement` may be on either side of it. Raises ValueError if no object is closed; with
+        ``closed_only=False`` open meshes contain what one ray leaves through an odd number of their triangles.
+        """
+        points = _rows(points, (3,), "points")
+        inside = self._native.contains(points, closed_only, format, accel, threads)
+        return inside.reshape(points.shape[:-1])
+
+    def render(
+        self,
+        width: Optional[int] = None,
+        height: Optional[int] = None,
+        *,
+        samples: Optional[int] = None,
+        depth: Optional[int] = None,
+        format: str = "f32",
+        accel: Optional[str] = None,
+        threads: int = 0,
+    ) -> NDArray[np.uint8]:
+        """Renders the scene from its camera: (height, width, 3) uint8 in sRGB, the first row at the top.
+
+        Defaults are those of the scene; give both ``width`` and ``height`` or neither. The pixels are those of
+        ``gridel render`` with the same settings.
+        """
+        if (width is None) != (height is None):
+            raise ValueError("give both width and height, or neither")
+        size = None if width is None else [width, height]
+        return self._native.render(size, samples, depth, format, accel, threads)
+
+    def to_blob(
+        self, *, accel: Optional[Accel] = None, lattice_bits: Optional[int] = None
+    ) -> bytes:
+        """Returns the scene blob, for files and for devices; compiled anew if structures or bits are given."""
+        names = None if accel is None else _names(accel)
+        return self._native.to_blob(names, lattice_bits)
+
+    @property
+    def accels(self) -> Tuple[str, ...]:
+        """The structures that the scene holds, the fastest first."""
+        return tuple(self._native.accels)
+
+    @property
+    def objects(self) -> int:
+        """Number of objects."""
+        return self._native.counts[0]
+
+    @property
+    def primitives(self) -> int:
+        """Number of primitives of all objects, those that have no area included."""
+        return self._native.counts[1]
+
+    @property
+    def instances(self) -> int:
+        """Number of instances."""
+        return self._native.counts[2]
+
+    @property
+    def displacement(self) -> float:
+        """The farthest that rounding to the lattice moved a surface, in the scene's units; nan of a blob."""
+        return self._native.displacement
+
+    @property
+    def bounds(self) -> NDArray[np.float64]:
+        """(2, 3) float64: the lowest and the highest corner of a box around the scene."""
+        return np.array(self._native.bounds)
+
+    def __repr__(self) -> str:
+        objects, primitives, instances = self._native.counts
+        return f"<gridel.Scene: {objects} objects, {primitives} primitives, {instances} instances>"

@@ -1,0 +1,16 @@
+//! The Python module `gridel._gridel`: scenes, and queries of NumPy arrays. The package's Python files are what users
+//! import.
+
+mod closed;
+mod query;
+mod rays;
+mod scene;
+
+use pyo3::prelude::*;
+
+/// Native code of the package gridel.
+#[pymodule]
+mod _gridel {
+    #[pymodule_export]
+    use crate::scene::NativeScene;
+}

@@ -1,0 +1,624 @@
+//! Scenes as Python holds them.
+
+use crate::closed::closed;
+use crate::query::{self, Any, Closest, FirstPrimitive, Found, How, NONE};
+use crate::rays::{Array, Points, Rays};
+use glam::DVec3;
+use gridel_core::{BlobError, Format, Scene, Settings, Structure};
+use gridel_host::blob::{Blob, best_structures};
+use gridel_host::compile::{Options, compile};
+use gridel_host::picture::srgb;
+use gridel_host::render::{Job, render};
+use gridel_host::scene::{self, ImportOptions, Imported, Material, Object, Shape, SourceSpan};
+use gridel_host::trace::SceneRay;
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArray};
+use pyo3::exceptions::{PyFileNotFoundError, PyKeyError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+type Checked<'b> = Result<Scene<'b>, BlobError>;
+
+self_cell::self_cell!(
+    /// A blob and its checked view.
+    struct Held {
+        owner: Blob,
+        #[covariant]
+        dependent: Checked,
+    }
+);
+
+/// A scene, compiled and checked.
+#[pyclass(frozen, name = "NativeScene")]
+pub struct NativeScene {
+    held: Held,
+    /// What it was compiled from; `None` of a blob.
+    model: Option<scene::Scene>,
+    /// The number of the first primitive of each object of `model`.
+    firsts: Vec<u32>,
+    displacement: f64,
+    closed: OnceLock<Vec<bool>>,
+}
+
+type Arrays<'py, T> = Bound<'py, PyArray1<T>>;
+
+fn invalid(error: impl std::fmt::Display) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}
+
+fn structure(name: &str) -> PyResult<Structure> {
+    let found = Structure::ALL.into_iter().find(|it| it.name() == name);
+    found.ok_or_else(|| {
+        let names = Structure::ALL.map(Structure::name).join(", ");
+        invalid(format!(
+            "unknown structure `{name}`; the structures are {names}"
+        ))
+    })
+}
+
+fn format(name: &str) -> PyResult<Format> {
+    let found = Format::ALL.into_iter().find(|it| it.name() == name);
+    found.ok_or_else(|| {
+        invalid(format!(
+            "unknown number format `{name}`; use fixed, f32 or f64"
+        ))
+    })
+}
+
+fn options(accel: &[String], lattice_bits: u8) -> PyResult<Options> {
+    if !(16..=24).contains(&lattice_bits) {
+        return Err(invalid(format!(
+            "lattice_bits is {lattice_bits}; it must be 16 to 24"
+        )));
+    }
+    Ok(Options {
+        structures: accel
+            .iter()
+            .map(|name| structure(name))
+            .collect::<PyResult<_>>()?,
+        lattice_bits,
+        ..Options::default()
+    })
+}
+
+impl NativeScene {
+    fn of_blob(blob: Blob, model: Option<scene::Scene>, displacement: f64) -> PyResult<Self> {
+        let held = Held::new(blob, |blob| blob.scene());
+        if let Err(error) = held.borrow_dependent() {
+            return Err(invalid(format!("invalid scene blob: {error}")));
+        }
+        let mut next = 0;
+        let firsts = model
+            .iter()
+            .flat_map(scene::Scene::all_objects)
+            .map(|object| {
+                let first = next;
+                next += match &object.shape {
+                    Shape::Mesh { triangles, .. } => triangles.len() as u32,
+                    _ => 1,
+                };
+                first
+            });
+        let firsts = firsts.collect();
+        Ok(Self {
+            held,
+            model,
+            firsts,
+            displacement,
+            closed: OnceLock::new(),
+        })
+    }
+
+    fn compiled(model: scene::Scene, options: &Options) -> PyResult<Self> {
+        let compiled = compile(&model, options).map_err(invalid)?;
+        let displacement = compiled.report.largest_displacement;
+        Self::of_blob(compiled.blob, Some(model), displacement)
+    }
+
+    fn scene(&self) -> PyResult<&Scene<'_>> {
+        self.held.borrow_dependent().as_ref().map_err(invalid)
+    }
+
+    fn how(&self, format_name: &str, accel: Option<&str>, threads: usize) -> PyResult<How> {
+        let scene = self.scene()?;
+        let structure = match accel {
+            Some(name) => structure(name)?,
+            None => best_structures(scene).next().unwrap_or(Structure::List),
+        };
+        if !scene.holds(structure) {
+            return Err(PyKeyError::new_err(format!(
+                "the scene does not hold the structure `{}`; compile it with accel=[...]",
+                structure.name()
+            )));
+        }
+        Ok(How {
+            format: format(format_name)?,
+            structure,
+            threads,
+        })
+    }
+
+    /// The scene with a structure chosen.
+    fn chosen(&self, how: How) -> PyResult<Scene<'_>> {
+        let chosen = self.scene()?.choose(how.structure);
+        chosen.ok_or_else(|| invalid("the structure is not there"))
+    }
+
+    /// The corners of a triangle of a mesh as they were given, by its number; `None` of other primitives, and of those of
+    /// instances.
+    fn triangle(&self, primitive: u32) -> Option<[DVec3; 3]> {
+        let model = self.model.as_ref()?;
+        let object = self.firsts.partition_point(|&first| first <= primitive);
+        let object = object.checked_sub(1)?;
+        let Shape::Mesh {
+            vertices,
+            triangles,
+        } = &model.objects.get(object)?.shape
+        else {
+            return None;
+        };
+        let corners = triangles.get((primitive - self.firsts[object]) as usize)?;
+        Some(corners.map(|corner| vertices[corner as usize]))
+    }
+
+    /// Where a ray meets a triangle as it was given, in double precision, and the weights of its second and third corner;
+    /// by the hit's own t where the triangle is not a mesh's, or nearly parallel to the ray.
+    fn place(&self, ray: &SceneRay, hit: &Found) -> (f64, DVec3, [f64; 2]) {
+        let own = ray.origin + ray.direction * hit.t;
+        if hit.instance != NONE {
+            return (hit.t, own, [f64::NAN; 2]);
+        }
+        let Some([a, b, c]) = self.triangle(hit.primitive) else {
+            return (hit.t, own, [f64::NAN; 2]);
+        };
+        let (to_b, to_c) = (b - a, c - a);
+        let normal = to_b.cross(to_c);
+        let approach = normal.dot(ray.direction);
+        // Steeper than one in a thousand.
+        let is_steep =
+            approach * approach > 1e-6 * normal.length_squared() * ray.direction.length_squared();
+        let (t, place) = if is_steep {
+            let t = normal.dot(a - ray.origin) / approach;
+            (t, ray.origin + ray.direction * t)
+        } else {
+            (hit.t, own)
+        };
+        let relative = place - a;
+        let square = normal.length_squared();
+        let weight = |area: DVec3| (area.dot(normal) / square).clamp(0.0, 1.0);
+        let (u, v) = (weight(relative.cross(to_c)), weight(to_b.cross(relative)));
+        (t, place, [u, v])
+    }
+}
+
+/// Hits as arrays: t, object, primitive, instance, normal, uv.
+type HitArrays<'py> = (
+    Arrays<'py, f64>,
+    Arrays<'py, u32>,
+    Arrays<'py, u32>,
+    Arrays<'py, u32>,
+    Bound<'py, PyArray2<f32>>,
+    Bound<'py, PyArray2<f32>>,
+);
+
+/// Collects one number of each hit.
+fn column<'py, T: numpy::Element>(
+    py: Python<'py>,
+    hits: &[(usize, Found)],
+    number: impl Fn(&(usize, Found)) -> T,
+) -> Arrays<'py, T> {
+    hits.iter().map(number).collect::<Vec<_>>().into_pyarray(py)
+}
+
+fn rows<'py, T: numpy::Element, const WIDTH: usize>(
+    py: Python<'py>,
+    rows: Vec<[T; WIDTH]>,
+) -> PyResult<Bound<'py, PyArray2<T>>> {
+    let length = rows.len();
+    rows.into_flattened()
+        .into_pyarray(py)
+        .reshape([length, WIDTH])
+}
+
+#[pymethods]
+impl NativeScene {
+    #[staticmethod]
+    #[pyo3(signature = (path, accel, lattice_bits))]
+    fn load(py: Python<'_>, path: PathBuf, accel: Vec<String>, lattice_bits: u8) -> PyResult<Self> {
+        if !path.is_file() {
+            return Err(PyFileNotFoundError::new_err(format!(
+                "{}: no such file",
+                path.display()
+            )));
+        }
+        let options = options(&accel, lattice_bits)?;
+        py.detach(|| {
+            if gridel_host::blob::is_blob(&path)? {
+                return Self::of_blob(Blob::read(&path)?, None, f64::NAN);
+            }
+            let imported = scene::load_with(&path, &ImportOptions::default());
+            let Imported { scene, .. } = imported.map_err(invalid)?;
+            Self::compiled(scene, &options)
+        })
+    }
+
+    #[staticmethod]
+    fn from_blob(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+        py.detach(|| Self::of_blob(Blob::new(bytes), None, f64::NAN))
+    }
+
+    /// Meshes of vertices (n, 3) float64 and faces (m, 3) int64, each an object.
+    #[staticmethod]
+    fn from_meshes(
+        py: Python<'_>,
+        meshes: Vec<(PyReadonlyArray2<'_, f64>, PyReadonlyArray2<'_, i64>)>,
+        accel: Vec<String>,
+        lattice_bits: u8,
+    ) -> PyResult<Self> {
+        let options = options(&accel, lattice_bits)?;
+        let mut objects = Vec::new();
+        for (number, (vertices, faces)) in meshes.iter().enumerate() {
+            let rows = |values: &[f64]| -> Vec<DVec3> {
+                let (rows, _) = values.as_chunks::<3>();
+                rows.iter().map(|&row| DVec3::from_array(row)).collect()
+            };
+            let (vertices, faces) = (
+                vertices.as_slice().map_err(invalid)?,
+                faces.as_slice().map_err(invalid)?,
+            );
+            let vertices = rows(vertices);
+            let (faces, _) = faces.as_chunks::<3>();
+            if let Some(place) = vertices.iter().position(|vertex| !vertex.is_finite()) {
+                return Err(invalid(format!(
+                    "mesh {number}: vertex {place} is not finite"
+                )));
+            }
+            let count = vertices.len();
+            let corner = |(place, face): (usize, &[i64; 3])| -> PyResult<[u32; 3]> {
+                if face
+                    .iter()
+                    .any(|&corner| corner < 0 || corner >= count as i64)
+                {
+                    return Err(invalid(format!(
+                        "mesh {number}: face {place} is {face:?}; vertices are numbered 0 to {}",
+                        count as i64 - 1
+                    )));
+                }
+                Ok(face.map(|corner| corner as u32))
+            };
+            let triangles = faces
+                .iter()
+                .enumerate()
+                .map(corner)
+                .collect::<PyResult<Vec<_>>>()?;
+            objects.push(Object {
+                name: format!("mesh {number}"),
+                material: 0,
+                shape: Shape::Mesh {
+                    vertices,
+                    triangles,
+                },
+                place: SourceSpan::default(),
+                normals: Default::default(),
+            });
+        }
+        let model = scene::Scene {
+            materials: vec![Material::default()],
+            objects,
+            ..scene::Scene::default()
+        };
+        py.detach(|| Self::compiled(model, &options))
+    }
+
+    /// The first hits: t, object, primitive, instance, normal, uv.
+    #[pyo3(signature = (rays, format, accel, threads))]
+    fn cast<'py>(
+        &self,
+        py: Python<'py>,
+        rays: &Bound<'py, PyUntypedArray>,
+        format: &str,
+        accel: Option<&str>,
+        threads: usize,
+    ) -> PyResult<HitArrays<'py>> {
+        let (how, array) = (
+            self.how(format, accel, threads)?,
+            Array::borrow(rays, "rays")?,
+        );
+        let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
+        let (hits, uvs) = py.detach(|| {
+            let mut hits = query::ask::<Closest>(&scene, rays, how);
+            let uvs = query::map(how, &mut hits, |number, hit| {
+                if hit.primitive == NONE {
+                    return [0.0; 2];
+                }
+                let (t, _, uv) = self.place(&rays.get(number), hit);
+                hit.t = t;
+                uv.map(|weight| weight as f32)
+            });
+            (hits, uvs)
+        });
+        let each = |number: fn(&Found) -> u32| -> Arrays<'py, u32> {
+            hits.iter().map(number).collect::<Vec<_>>().into_pyarray(py)
+        };
+        Ok((
+            hits.iter()
+                .map(|hit| hit.t)
+                .collect::<Vec<_>>()
+                .into_pyarray(py),
+            each(|hit| hit.object),
+            each(|hit| hit.primitive),
+            each(|hit| hit.instance),
+            rows(py, hits.iter().map(|hit| hit.normal).collect())?,
+            rows(py, uvs)?,
+        ))
+    }
+
+    /// The first primitive of each ray, -1 for none.
+    fn first<'py>(
+        &self,
+        py: Python<'py>,
+        origins: &Bound<'py, PyUntypedArray>,
+        directions: &Bound<'py, PyUntypedArray>,
+        format: &str,
+        threads: usize,
+    ) -> PyResult<Arrays<'py, i32>> {
+        let how = self.how(format, None, threads)?;
+        let arrays = [
+            Array::borrow(origins, "origins")?,
+            Array::borrow(directions, "directions")?,
+        ];
+        let rays = Rays::two(arrays[0].rows("origins")?, arrays[1].rows("directions")?)?;
+        let scene = self.chosen(how)?;
+        Ok(py
+            .detach(|| query::ask::<FirstPrimitive>(&scene, rays, how))
+            .into_pyarray(py))
+    }
+
+    /// Whether each ray of two arrays meets anything.
+    fn any_of<'py>(
+        &self,
+        py: Python<'py>,
+        origins: &Bound<'py, PyUntypedArray>,
+        directions: &Bound<'py, PyUntypedArray>,
+        format: &str,
+        threads: usize,
+    ) -> PyResult<Arrays<'py, bool>> {
+        let how = self.how(format, None, threads)?;
+        let arrays = [
+            Array::borrow(origins, "origins")?,
+            Array::borrow(directions, "directions")?,
+        ];
+        let rays = Rays::two(arrays[0].rows("origins")?, arrays[1].rows("directions")?)?;
+        let scene = self.chosen(how)?;
+        Ok(py
+            .detach(|| query::ask::<Any>(&scene, rays, how))
+            .into_pyarray(py))
+    }
+
+    /// Whether each ray meets anything.
+    fn any<'py>(
+        &self,
+        py: Python<'py>,
+        rays: &Bound<'py, PyUntypedArray>,
+        format: &str,
+        accel: Option<&str>,
+        threads: usize,
+    ) -> PyResult<Arrays<'py, bool>> {
+        let (how, array) = (
+            self.how(format, accel, threads)?,
+            Array::borrow(rays, "rays")?,
+        );
+        let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
+        Ok(py
+            .detach(|| query::ask::<Any>(&scene, rays, how))
+            .into_pyarray(py))
+    }
+
+    /// The number of hits of each ray.
+    fn count<'py>(
+        &self,
+        py: Python<'py>,
+        rays: &Bound<'py, PyUntypedArray>,
+        format: &str,
+        accel: Option<&str>,
+        threads: usize,
+    ) -> PyResult<Arrays<'py, u32>> {
+        let (how, array) = (
+            self.how(format, accel, threads)?,
+            Array::borrow(rays, "rays")?,
+        );
+        let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
+        Ok(py
+            .detach(|| query::count(&scene, rays, how))
+            .into_pyarray(py))
+    }
+
+    /// All hits: ray, t, object, primitive, instance, leaves, normal, uv.
+    fn all<'py>(
+        &self,
+        py: Python<'py>,
+        rays: &Bound<'py, PyUntypedArray>,
+        format: &str,
+        accel: Option<&str>,
+        threads: usize,
+    ) -> PyResult<(Arrays<'py, i64>, HitArrays<'py>, Arrays<'py, bool>)> {
+        let (how, array) = (
+            self.how(format, accel, threads)?,
+            Array::borrow(rays, "rays")?,
+        );
+        let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
+        let (hits, uvs) = py.detach(|| {
+            let mut hits = query::all(&scene, rays, how).concat();
+            let uvs: Vec<[f32; 2]> = hits
+                .iter_mut()
+                .map(|(number, hit)| {
+                    let (t, _, uv) = self.place(&rays.get(*number), hit);
+                    hit.t = t;
+                    uv.map(|weight| weight as f32)
+                })
+                .collect();
+            (hits, uvs)
+        });
+        let arrays = (
+            column(py, &hits, |(_, hit)| hit.t),
+            column(py, &hits, |(_, hit)| hit.object),
+            column(py, &hits, |(_, hit)| hit.primitive),
+            column(py, &hits, |(_, hit)| hit.instance),
+            rows(py, hits.iter().map(|(_, hit)| hit.normal).collect())?,
+            rows(py, uvs)?,
+        );
+        let leaves = column(py, &hits, |(_, hit)| hit.leaves);
+        Ok((column(py, &hits, |&(ray, _)| ray as i64), arrays, leaves))
+    }
+
+    /// Locations, rays and triangles of the hits of rays: all, or the first of each ray.
+    #[expect(clippy::type_complexity, reason = "a tuple of arrays")]
+    #[pyo3(signature = (origins, directions, multiple_hits, max_hits, format, threads))]
+    #[expect(clippy::too_many_arguments, reason = "the arguments of trimesh")]
+    fn locations<'py>(
+        &self,
+        py: Python<'py>,
+        origins: &Bound<'py, PyUntypedArray>,
+        directions: &Bound<'py, PyUntypedArray>,
+        multiple_hits: bool,
+        max_hits: Option<usize>,
+        format: &str,
+        threads: usize,
+    ) -> PyResult<(
+        Bound<'py, PyArray2<f64>>,
+        Arrays<'py, i64>,
+        Arrays<'py, i64>,
+    )> {
+        let how = self.how(format, None, threads)?;
+        let arrays = [
+            Array::borrow(origins, "origins")?,
+            Array::borrow(directions, "directions")?,
+        ];
+        let rays = Rays::two(arrays[0].rows("origins")?, arrays[1].rows("directions")?)?;
+        let scene = self.chosen(how)?;
+        let (places, numbers, triangles) = py.detach(|| {
+            query::locations(&scene, rays, how, multiple_hits, max_hits, |ray, hit| {
+                self.place(ray, hit).1.to_array()
+            })
+        });
+        Ok((
+            rows(py, places)?,
+            numbers.into_pyarray(py),
+            triangles.into_pyarray(py),
+        ))
+    }
+
+    /// Whether each point lies in a closed object, or with `closed_only` false in any object by parity.
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
+    fn contains<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyUntypedArray>,
+        closed_only: bool,
+        format: &str,
+        accel: Option<&str>,
+        threads: usize,
+    ) -> PyResult<Arrays<'py, bool>> {
+        let (how, array) = (
+            self.how(format, accel, threads)?,
+            Array::borrow(points, "points")?,
+        );
+        let (scene, points) = (self.chosen(how)?, Points::rows(array.rows("points")?)?);
+        let closed = closed_only.then(|| self.closed.get_or_init(|| py.detach(|| closed(&scene))));
+        if closed.is_some_and(|closed| !closed.contains(&true)) {
+            return Err(invalid(
+                "no object of the scene is closed; pass closed_only=False to count crossings all the same",
+            ));
+        }
+        let closed = closed.map(Vec::as_slice);
+        Ok(py
+            .detach(|| query::contains(&scene, points, closed, how))
+            .into_pyarray(py))
+    }
+
+    /// A picture: (height, width, 3) uint8.
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
+    fn render<'py>(
+        &self,
+        py: Python<'py>,
+        size: Option<[u16; 2]>,
+        samples: Option<u16>,
+        depth: Option<u8>,
+        format: &str,
+        accel: Option<&str>,
+        threads: usize,
+    ) -> PyResult<Bound<'py, numpy::PyArray3<u8>>> {
+        let how = self.how(format, accel, threads)?;
+        let scene = self.scene()?;
+        let own = Settings::of(scene);
+        let [width, height] = size.unwrap_or([own.width, own.height]);
+        let settings = Settings {
+            width,
+            height,
+            samples: samples.unwrap_or(own.samples),
+            depth: depth.unwrap_or(own.depth),
+            ..own
+        };
+        let job = Job::whole(how.format, how.structure, settings);
+        let picture = py.detach(|| query::with_threads(threads, || render(scene, &job, &|| ())));
+        let pixels = srgb(&picture.map_err(invalid)?, false);
+        let shape = [usize::from(height), usize::from(width), 3];
+        pixels.into_pyarray(py).reshape(shape)
+    }
+
+    /// The scene as a blob, compiled anew where structures or bits are given.
+    fn to_blob<'py>(
+        &self,
+        py: Python<'py>,
+        accel: Option<Vec<String>>,
+        lattice_bits: Option<u8>,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        if accel.is_none() && lattice_bits.is_none() {
+            return Ok(PyBytes::new(py, self.held.borrow_owner().bytes()));
+        }
+        let Some(model) = &self.model else {
+            return Err(invalid(
+                "a scene that was read from a blob cannot be compiled anew; load the scene file",
+            ));
+        };
+        let accel = accel.unwrap_or_else(|| self.accels());
+        let options = options(&accel, lattice_bits.unwrap_or(24))?;
+        let compiled = py.detach(|| compile(model, &options)).map_err(invalid)?;
+        Ok(PyBytes::new(py, compiled.blob.bytes()))
+    }
+
+    /// The names of the structures, the fastest first.
+    #[getter]
+    fn accels(&self) -> Vec<String> {
+        let names = self.scene().map(|scene| {
+            best_structures(scene)
+                .map(|structure| structure.name().to_owned())
+                .collect()
+        });
+        names.unwrap_or_default()
+    }
+
+    /// Numbers of objects, primitives and instances.
+    #[getter]
+    fn counts(&self) -> PyResult<(u32, u32, usize)> {
+        let scene = self.scene()?;
+        let header = scene.header();
+        Ok((header.objects, header.primitives, scene.instances().len()))
+    }
+
+    /// The farthest that rounding to the lattice moved a surface, NaN of a blob.
+    #[getter]
+    fn displacement(&self) -> f64 {
+        self.displacement
+    }
+
+    /// The box of the scene, in scene units: lowest and highest corner.
+    #[getter]
+    fn bounds(&self) -> PyResult<([f64; 3], [f64; 3])> {
+        let scene = self.scene()?;
+        let frame = gridel_host::trace::Frame::of(scene);
+        let corner = |side: usize| frame.place(scene.bounds().0.map(|it| f64::from(it[side])));
+        Ok((corner(0).to_array(), corner(1).to_array()))
+    }
+}

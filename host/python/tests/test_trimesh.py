@@ -1,0 +1,177 @@
+"""Beside trimesh's own intersectors, on the same calls, and on the cases of trimesh's open issues."""
+
+import copy
+import inspect
+import pickle
+
+import numpy as np
+import pytest
+
+import gridel.trimesh
+
+trimesh = pytest.importorskip("trimesh")
+embree = pytest.importorskip("trimesh.ray.ray_pyembree", reason="embreex is not installed")
+
+
+def ours(mesh):
+    return gridel.trimesh.RayMeshIntersector(mesh)
+
+
+@pytest.fixture(scope="module")
+def ball():
+    return trimesh.creation.icosphere(subdivisions=4)
+
+
+@pytest.fixture(scope="module")
+def random_rays():
+    rng = np.random.default_rng(5)
+    return rng.uniform(-1.5, 1.5, (20_000, 3)), rng.normal(size=(20_000, 3))
+
+
+def signature(of, name):
+    """The parameters of a method, behind the decorator by which trimesh logs times."""
+    method = getattr(of, name)
+    inner = inspect.getclosurevars(method).nonlocals.get("method", method)
+    return list(inspect.signature(inner).parameters)
+
+
+def test_signatures_are_those_of_trimesh():
+    for name in ["intersects_location", "intersects_id", "intersects_first", "intersects_any", "contains_points"]:
+        mine = signature(gridel.trimesh.RayMeshIntersector, name)
+        assert mine == signature(embree.RayMeshIntersector, name), name
+
+
+def test_answers_are_those_of_trimesh_with_its_types(ball, random_rays):
+    mine, theirs = ours(ball), embree.RayMeshIntersector(ball)
+    origins, directions = random_rays
+    first, expected = mine.intersects_first(origins, directions), theirs.intersects_first(origins, directions)
+    assert first.dtype == expected.dtype and (first == expected).mean() > 0.9999
+    hit, expected = mine.intersects_any(origins, directions), theirs.intersects_any(origins, directions)
+    assert hit.dtype == expected.dtype and (hit == expected).mean() > 0.9999
+    for multiple in (True, False):
+        found = mine.intersects_location(origins, directions, multiple_hits=multiple)
+        expected = theirs.intersects_location(origins, directions, multiple_hits=multiple)
+        for a, b in zip(found, expected):
+            assert a.dtype == b.dtype and a.ndim == b.ndim
+            assert abs(len(a) - len(b)) <= 4
+        pairs = set(zip(found[1].tolist(), found[2].tolist()))
+        theirs_pairs = set(zip(expected[1].tolist(), expected[2].tolist()))
+        assert len(pairs ^ theirs_pairs) <= 8
+        places = ball.triangles_cross[found[2]]
+        off = ((found[0] - ball.triangles[found[2], 0]) * places).sum(1) / np.linalg.norm(places, axis=1)
+        assert np.abs(off).max() < 1e-12
+    triangles, rays, places = mine.intersects_id(origins, directions, return_locations=True)
+    assert triangles.dtype == rays.dtype == np.int64 and places.shape == (len(rays), 3)
+    assert (np.bincount(mine.intersects_id(origins, directions, max_hits=1)[1]) <= 1).all()
+    points = origins[:5000]
+    inside = mine.contains_points(points)
+    assert inside.dtype == theirs.contains_points(points).dtype
+    assert (inside == theirs.contains_points(points)).mean() > 0.999
+
+
+def test_edges_of_the_interface(ball):
+    mine = ours(ball)
+    none = mine.intersects_location(np.zeros((0, 3)), np.zeros((0, 3)))
+    assert [len(it) for it in none] == [0, 0, 0] and none[0].shape == (0, 3)
+    away = mine.intersects_location([[0, 0, 5.0]], [[0, 0, 1.0]])
+    assert away[0].shape == (0, 3) and away[1].dtype == np.int64
+    assert mine.intersects_first([[0, 0, 5]], [[0, 0, 0]]).tolist() == [-1]
+    with pytest.raises(ValueError, match="match"):
+        mine.intersects_any(np.zeros((2, 3)), np.zeros((3, 3)))
+    assert mine.contains_points([[0, 0, 0]]).tolist() == [True]
+    for other in (copy.copy(mine), copy.deepcopy(mine), pickle.loads(pickle.dumps(mine))):
+        assert other.intersects_any([[0, 0, 5]], [[0, 0, -1]]).tolist() == [True]
+    empty = ours(trimesh.Trimesh())
+    assert empty.intersects_first([[0, 0, 5]], [[0, 0, -1]]).tolist() == [-1]
+    assert empty.contains_points([[0, 0, 5]]).tolist() == [False]
+
+
+def test_mesh_ray_is_all_that_a_user_changes(ball):
+    mesh = ball.copy()
+    mesh.ray = gridel.trimesh.RayMeshIntersector(mesh)
+    assert mesh.contains([[0, 0, 0], [2, 0, 0]]).tolist() == [True, False]
+    mesh.apply_translation([2, 0, 0])
+    assert mesh.ray.contains_points([[0, 0, 0], [2, 0, 0]]).tolist() == [False, True]
+
+
+def test_issue_242_contains_is_right_everywhere():
+    # "Inaccuracies in mesh.contains": points near surfaces, and meshes of any scale and place.
+    ball = trimesh.creation.icosphere(subdivisions=3)
+    rng = np.random.default_rng(242)
+    for scale, offset in [(1e-6, 0.0), (1.0, 0.0), (1e7, 0.0), (1.0, 1e7), (1e-3, 50.0)]:
+        mesh = trimesh.Trimesh(ball.vertices * scale + offset, ball.faces, process=False)
+        inner = mesh.triangles[rng.integers(len(mesh.faces), size=20_000)]
+        weights = rng.dirichlet(np.ones(3), size=len(inner))
+        normal = np.cross(inner[:, 1] - inner[:, 0], inner[:, 2] - inner[:, 0])
+        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+        ray = ours(mesh)
+        # Farther from the surface than it was moved, and than float64 places points there.
+        depth = 1.1 * ray.scene.displacement + 4e-16 * abs(offset)
+        assert depth < 2.5e-7 * scale + 1e-15 * abs(offset)
+        surface = (inner * weights[:, :, None]).sum(1)
+        assert ray.contains_points(surface - depth * normal).all()
+        assert not ray.contains_points(surface + depth * normal).any()
+
+
+def test_issue_1180_no_ray_is_lost():
+    # "missing hit location": 1024 x 512 rays from inside, one location each.
+    sphere = trimesh.creation.uv_sphere(radius=2.0, count=[32, 32])
+    theta, phi = np.meshgrid(np.linspace(0, np.pi, 512), np.linspace(0, 2 * np.pi, 1024, endpoint=False))
+    directions = np.stack(
+        [np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1
+    ).reshape(-1, 3)
+    locations, rays, _ = ours(sphere).intersects_location(
+        np.zeros_like(directions), directions, multiple_hits=False
+    )
+    assert locations.shape == (1024 * 512, 3)
+    assert np.array_equal(rays, np.arange(len(directions)))
+
+
+def test_issue_1496_any_and_id_agree():
+    # Rays through vertices and edges of the small box, from its middle.
+    small = trimesh.creation.box(extents=np.full(3, 40.0)).subdivide_to_size(20)
+    big = trimesh.creation.box(extents=np.full(3, 60.0)).subdivide_to_size(20)
+    origins = np.zeros_like(big.vertices)
+    mine = ours(small)
+    assert mine.intersects_any(origins, big.vertices).all()
+    for multiple in (True, False):
+        rays = mine.intersects_id(origins, big.vertices, multiple_hits=multiple)[1]
+        assert np.array_equal(rays, np.arange(len(origins)))
+
+
+def test_issue_1766_border_between_triangles_is_hit():
+    mesh = trimesh.Trimesh(
+        vertices=[[-1, -1, 0], [-1, 1, 0], [1, 1, 0], [1, -1, 0]], faces=[(0, 1, 2), (2, 3, 0)]
+    )
+    for multiple in (True, False):
+        places, _, _ = ours(mesh).intersects_location([[0, 0, 1]], [[0, 0, -1]], multiple_hits=multiple)
+        assert places.tolist() == [[0, 0, 0]]
+
+
+def test_issue_2317_edges_and_vertices_count_once(ball):
+    # From inside, at every vertex and at the middle of every edge: one hit each.
+    edges = ball.vertices[ball.edges_unique].mean(axis=1)
+    targets = np.concatenate([ball.vertices, edges, ball.triangles_center])
+    origins = np.zeros_like(targets)
+    locations, rays, _ = ours(ball).intersects_location(origins, targets)
+    assert np.array_equal(rays, np.arange(len(targets)))
+    assert np.abs(locations - targets).max() < 1e-6
+    # Through the whole ball, and from outside: an even number.
+    outside = ours(ball).intersects_id(-3 * targets, targets)[1]
+    assert (np.bincount(outside, minlength=len(targets)) == 2).all()
+
+
+def test_thin_walls_are_told_apart():
+    # A wall of four steps of the lattice.
+    outer = trimesh.creation.box(extents=[1.0, 1.0, 1.0])
+    wall = 4 * 2.0**-24
+    inner = trimesh.creation.box(extents=np.full(3, 1.0 - 2 * wall))
+    inner.invert()
+    shell = trimesh.util.concatenate([outer, inner])
+    rng = np.random.default_rng(4)
+    across = rng.uniform(-0.4, 0.4, (3000, 2))
+    points = lambda x: np.column_stack([np.full(3000, x), across])  # noqa: E731
+    mine = ours(shell)
+    assert mine.contains_points(points(0.5 - 0.5 * wall)).all()
+    assert not mine.contains_points(points(0.5 - 1.6 * wall)).any()
+    assert not mine.contains_points(points(0.5 + 0.6 * wall)).any()

@@ -1,0 +1,177 @@
+//! The answers at the top of the page: which setting for a given error, what the number format changes, and what to
+//! give up first.
+
+use super::{Cost, Parameter, Point, Results, cheapest};
+use crate::table::{counted, significant};
+use gridel_core::Format;
+
+/// Errors that are asked for, the largest first.
+const BOUNDS: [f64; 9] = [0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005];
+
+/// Three sentences, or fewer where the results do not have the figures.
+pub fn answers(results: &Results) -> Vec<String> {
+    let all = results.points.iter().find(|it| it.setting == results.base);
+    let Some(all) = all else { return Vec::new() };
+    let answers = [
+        setting_answer(results),
+        format_answer(results, all),
+        sacrifice_answer(results, all),
+    ];
+    answers.into_iter().flatten().collect()
+}
+
+/// The cheapest settings within two bounds, which differ.
+fn setting_answer(results: &Results) -> Option<String> {
+    let found = BOUNDS
+        .iter()
+        .filter_map(|&bound| Some((bound, cheapest(&results.points, bound, None)?)));
+    let mut found: Vec<(f64, &Point)> = found.collect();
+    found.dedup_by(|later, earlier| later.1.name == earlier.1.name);
+    // The two smallest bounds that settings keep: what is coarser is rarely wanted.
+    let kept = found.split_off(found.len().saturating_sub(2));
+    let clauses: Vec<String> = kept
+        .into_iter()
+        .map(|(bound, point)| {
+            let within = results.points.iter().filter(|it| it.errors.rmse <= bound);
+            let rivals = within.filter(|it| !point.cost.is_below(&it.cost)).count();
+            let rivals = match rivals.saturating_sub(1) {
+                0 => String::new(),
+                rivals => format!("; {} may be as fast", counted(rivals, "other setting")),
+            };
+            format!(
+                "for an error (RMSE) of at most {bound} use {}: {}, error {}{rivals}",
+                setting_text(results, point),
+                time_text(&point.cost),
+                figure(point.errors.rmse),
+            )
+        })
+        .collect();
+    let text = clauses.join("; ");
+    (!text.is_empty()).then(|| format!("{}.", capital(&text)))
+}
+
+/// A setting's words, with the number format of the base where they name none.
+fn setting_text(results: &Results, point: &Point) -> String {
+    let words = point.setting.words(&results.base);
+    match point.setting.format == results.base.format {
+        true => format!("`{}`, {words}", point.setting.format.name()),
+        false => words.replacen(
+            point.setting.format.name(),
+            &format!("`{}`", point.setting.format.name()),
+            1,
+        ),
+    }
+}
+
+/// What the other formats change at the scene file's own setting.
+fn format_answer(results: &Results, all: &Point) -> Option<String> {
+    let clause = |format: Format| {
+        let point = results.points.iter().find(|it| {
+            it.setting.format == format
+                && it
+                    .setting
+                    .differs(&results.base)
+                    .iter()
+                    .all(|it| *it == Parameter::Format)
+        })?;
+        let apart = match point.parts.arithmetic_largest {
+            0.0 => String::from("draws the picture of `f64` exactly"),
+            largest => format!(
+                "differs from `f64` by an RMSE of {} (largest difference {} of 255)",
+                figure(point.parts.arithmetic),
+                (255.0 * largest).ceil()
+            ),
+        };
+        let own = format == results.base.format;
+        let time = if own {
+            String::new()
+        } else {
+            format!(" and {}", ratio_text(&point.cost, &all.cost))
+        };
+        Some(format!("`{}` {apart}{time}", format.name()))
+    };
+    let base = results.base.format;
+    let others = Format::ALL
+        .into_iter()
+        .filter(|&it| it != base && it != Format::F64);
+    let clauses: Vec<String> = [base]
+        .into_iter()
+        .chain(others)
+        .filter_map(clause)
+        .collect();
+    let text = clauses.join("; ");
+    (!text.is_empty()).then(|| {
+        format!(
+            "The number format: {text}; samples and the other settings make an error of {}.",
+            figure(all.parts.sampling)
+        )
+    })
+}
+
+/// The change of one parameter that adds the least error for the rays and tests that it saves.
+fn sacrifice_answer(results: &Results, all: &Point) -> Option<String> {
+    let work = |point: &Point| (point.cost.rays + point.cost.tests) as f64;
+    let saved = |point: &Point| 1.0 - work(point) / work(all).max(1.0);
+    let added = |point: &Point| {
+        let lost = point.lost.map_or(0.0, |lost| lost.rmse);
+        (point.errors.rmse - all.errors.rmse).max(lost).max(0.0)
+    };
+    let price = |point: &Point| added(point) / saved(point);
+    let alone = results.points.iter().filter(|it| {
+        let differs = it.setting.differs(&results.base);
+        let single = matches!(differs[..], [one] if one != Parameter::Format);
+        let one_effect = it.setting.without.names().count() <= 1;
+        single && one_effect && saved(it) > 0.02
+    });
+    let Some(first) = alone.min_by(|a, b| price(a).total_cmp(&price(b))) else {
+        return Some(String::from(
+            "Nothing saves more than 2 % of the rays and tests when it is given up alone.",
+        ));
+    };
+    let error = match added(first) {
+        added if added < 5e-6 => String::from("adds no error"),
+        added => format!("adds an error of {}", figure(added)),
+    };
+    Some(format!(
+        "Give up first: {}, which saves {:.0} % of the rays and tests, {}, and {error}.",
+        first.setting.words(&results.base),
+        100.0 * saved(first),
+        ratio_text(&first.cost, &all.cost),
+    ))
+}
+
+fn figure(value: f64) -> String {
+    if 0.0 < value && value < 5e-6 {
+        return String::from("less than 0.00001");
+    }
+    significant((value * 1e5).round() / 1e5)
+}
+
+fn time_text(cost: &Cost) -> String {
+    let time = 1e3 * cost.time();
+    match cost.interval() {
+        Some([least, most]) => format!("{time:.1} ms ({:.1} to {:.1})", 1e3 * least, 1e3 * most),
+        None => format!("{time:.1} ms (timed once, so its noise is unknown)"),
+    }
+}
+
+/// How a time compares with another, with its range.
+fn ratio_text(cost: &Cost, to: &Cost) -> String {
+    let ratio = cost.time() / to.time().max(f64::MIN_POSITIVE);
+    let Some(([low, high], [least, most])) = cost.interval().zip(to.interval()) else {
+        return format!("takes {ratio:.2} times the time (timed once, so its noise is unknown)");
+    };
+    let [low, high] = [low / most, high / least];
+    if low <= 1.0 && 1.0 <= high {
+        return format!(
+            "shows no difference in time beyond the noise ({low:.2} to {high:.2} times)"
+        );
+    }
+    format!("takes {ratio:.2} times the time ({low:.2} to {high:.2})")
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|it| it.to_ascii_uppercase());
+    first.into_iter().chain(letters).collect()
+}

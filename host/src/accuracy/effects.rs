@@ -1,0 +1,139 @@
+//! What each effect of a scene is worth: what the picture loses without it, what it costs, and in which order to give
+//! effects up.
+
+use super::{Bench, MeasureError, Parameter, Point, Results, Setting};
+use crate::measure::board::{Board, MemoryReport, Target, instructions};
+use crate::measure::{Errors, time};
+use crate::scene::shown_without;
+use gridel_core::Effects;
+use serde::{Deserialize, Serialize};
+
+/// An effect, what is lost without it, and what it costs in the picture that the scene file states.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Worth {
+    pub effect: String,
+    /// The name of the setting without it.
+    pub without: String,
+    /// What shows where it was.
+    pub shown_without: String,
+    /// The picture without it against the same picture with it.
+    pub lost: Errors,
+    /// Rays per pixel.
+    pub rays: f64,
+    /// Boxes and primitives tested per pixel.
+    pub tests: f64,
+    /// Part of the time that is saved without it, by the medians; negative where it takes longer.
+    pub time: f64,
+    /// Between what this part lies by the repeats; `None` where they were timed once.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_range: Option<[f64; 2]>,
+    /// Bytes of the blob.
+    pub blob_bytes: i64,
+    /// Instructions per pixel, the least and the most, on [`BOARD`] in its best number format; `None` where the format
+    /// was not measured there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub instructions: Option<[f64; 2]>,
+    /// Bytes of flash on that board, of code and blob; `None` where no programs were built with the effect and
+    /// without it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flash: Option<i64>,
+    /// Bytes of the workspace on a 32-bit board.
+    pub ram: i64,
+}
+
+/// The board whose figures are given where none is asked for.
+pub const BOARD: &str = "mps2-an386";
+
+/// The least part of the work that counts as saved, so that effects that cost no rays are compared, too.
+const LEAST_SAVING: f64 = 0.01;
+
+impl Worth {
+    /// The error that giving it up adds for each part of the rays and tests that it saves: the smaller, the sooner it
+    /// is to be given up.
+    fn price(&self, all: &Point) -> f64 {
+        let pixels = all.cost.pixels.max(1) as f64;
+        let work = (all.cost.rays + all.cost.tests) as f64 / pixels;
+        let saved = (self.rays + self.tests) / work.max(f64::MIN_POSITIVE);
+        self.lost.rmse / saved.max(LEAST_SAVING)
+    }
+}
+
+/// What every effect of a scene is worth, in the order in which to give them up: first those that change the picture
+/// least for the rays and tests that they save.
+///
+/// # Errors
+/// If a setting cannot be built.
+pub fn worths(bench: &mut Bench<'_>, results: &Results) -> Result<Vec<Worth>, MeasureError> {
+    let Some(all) = results.points.iter().find(|it| it.setting == results.base) else {
+        return Ok(Vec::new());
+    };
+    let mut worths = Vec::new();
+    for (effect, name) in Effects::NAMED {
+        let found = results.points.iter().find(|it| {
+            it.setting.differs(&results.base) == [Parameter::Effects]
+                && it.setting.without == effect
+        });
+        let Some((point, lost)) = found.and_then(|it| Some((it, it.lost?))) else {
+            continue;
+        };
+        let pixels = all.cost.pixels.max(1) as f64;
+        let saved = |count: fn(&Point) -> u64| (count(all) as f64 - count(point) as f64) / pixels;
+        let rays = saved(|it| it.cost.rays);
+        let [least, most] = [false, true].map(|most| {
+            let ends = time::interval(&point.cost.seconds).zip(time::interval(&all.cost.seconds));
+            ends.map(|([low, high], [least, most_of_all])| match most {
+                true => 1.0 - low / most_of_all,
+                false => 1.0 - high / least,
+            })
+        });
+        let blob_bytes = all.cost.blob_bytes as i64 - point.cost.blob_bytes as i64;
+        let code = code(bench, &results.base, name)?;
+        let format = Board::named(BOARD).map(Board::format);
+        worths.push(Worth {
+            effect: name.to_owned(),
+            without: point.name.clone(),
+            shown_without: shown_without(effect).to_owned(),
+            lost,
+            rays,
+            tests: saved(|it| it.cost.tests),
+            time: 1.0 - point.cost.time() / all.cost.time().max(f64::MIN_POSITIVE),
+            time_range: least.zip(most).map(|(least, most)| [least, most]),
+            blob_bytes,
+            instructions: format.and_then(|format| instructions(BOARD, format, rays)),
+            flash: code.map(|code| code + blob_bytes),
+            ram: all.cost.working_bytes as i64 - point.cost.working_bytes as i64,
+        });
+    }
+    worths.sort_by(|a, b| a.price(all).total_cmp(&b.price(all)));
+    Ok(worths)
+}
+
+/// Settings that give effects up one after the other, from the second on.
+pub fn given_up(base: &Setting, worths: &[Worth]) -> Vec<Setting> {
+    let named = |worth: &Worth| crate::scene::effect_named(&worth.effect);
+    let mut without = base.without;
+    let settings = worths.iter().filter_map(named).map(|effect| {
+        without = without.with(effect);
+        Setting { without, ..*base }
+    });
+    settings.skip(1).collect()
+}
+
+/// Bytes of an effect's own code on the board, where programs with and without it were built: see
+/// [`MemoryReport`].
+fn code(bench: &mut Bench<'_>, base: &Setting, effect: &str) -> Result<Option<i64>, MeasureError> {
+    let Some(board) = Board::named(BOARD) else {
+        return Ok(None);
+    };
+    let target = Target {
+        board,
+        flash: board.flash,
+        ram: board.ram,
+    };
+    let blob = bench.blob(base)?;
+    let report = MemoryReport::of(&blob.scene()?, blob.bytes(), &target, board.format());
+    let report = report.ok();
+    Ok(report
+        .and_then(|it| it.code_of(effect))
+        .map(|bytes| bytes as i64))
+}

@@ -1,0 +1,92 @@
+//! Rays, and where they cross surfaces.
+
+use super::number::*;
+use std::cmp::Ordering;
+
+/// A ray. Lengths are in lattice steps; t counts directions, of any length.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray<N> {
+    pub origin: Three<N>,
+    pub direction: Three<N>,
+    pub start: Start,
+}
+
+/// What a ray starts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    Free,
+    On {
+        instance: u32,
+        /// The first primitive of its form: of those, each is left alike.
+        twin: u32,
+        part: u8,
+        /// The plane of a flat surface.
+        plane: u32,
+        /// Whether it goes to the other side than that of the normal.
+        inward: bool,
+    },
+}
+
+/// A crossing of a primitive's surface ahead of a ray's start.
+#[derive(Clone, Copy, Debug)]
+pub struct Crossing<N> {
+    pub t: N,
+    /// Numerator and divisor of t, so that it can be compared without a rounding.
+    pub fraction: Option<[N; 2]>,
+    /// The face of a box; mantle, base and other cap of a cone.
+    pub part: u8,
+    /// Whether the ray leaves a solid.
+    pub leaves: bool,
+    /// Whether it is certain that the ray crosses here.
+    pub sure: bool,
+}
+
+/// A ray runs so nearly along a surface that it is open where it crosses it, if at all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Grazes;
+
+/// Compares the t of two crossings; `None` if that is open.
+pub fn compare<N: Enclosure>(a: &Crossing<N>, b: &Crossing<N>) -> Option<Ordering> {
+    if let Some(sign) = (a.t - b.t).sign() {
+        return Some(sign);
+    }
+    let ([p, q], [r, s]) = (a.fraction?, b.fraction?);
+    let (difference, divisor) = ((p * s - r * q).sign()?, (q * s).sign()?);
+    Some(if divisor == Ordering::Less {
+        difference.reverse()
+    } else {
+        difference
+    })
+}
+
+/// An exact vector of integers.
+pub fn exact<N: Enclosure>(v: [i64; 3]) -> Three<N> {
+    v.map(N::int)
+}
+
+impl<N: Enclosure> Crossing<N> {
+    /// Adds a crossing if its t is above 0, as far as is known.
+    pub fn keep(mut self, found: &mut Vec<Self>) {
+        match positive(self.t) {
+            Some(true) => found.push(self),
+            Some(false) => {}
+            None => {
+                self.sure = false;
+                found.push(self);
+            }
+        }
+    }
+}
+
+/// The axis of a normal that has one.
+pub fn axis_of(normal: [i64; 3]) -> Option<usize> {
+    let is = |k: usize| normal[k] != 0 && normal[(k + 1) % 3] == 0 && normal[(k + 2) % 3] == 0;
+    (0..3).find(|&k| is(k))
+}
+
+pub fn flat_normal<N: Enclosure>(normal: [i64; 3]) -> Option<Three<N>> {
+    match axis_of(normal) {
+        Some(_) => Some(exact(normal.map(i64::signum))),
+        None => unit(exact(normal)),
+    }
+}

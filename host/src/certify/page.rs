@@ -1,0 +1,173 @@
+//! The page about a certified picture. It loads nothing from anywhere.
+
+use super::report::Report;
+use crate::picture::write_png;
+use crate::table::{counted, grouped};
+use base64::Engine;
+use std::fmt::Write;
+use std::io;
+
+/// The pictures of a page, as sRGB pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Pictures<'p> {
+    pub map: &'p [u8],
+    pub exact: &'p [u8],
+}
+
+/// Writes the page. `explain` is the command that explains a pixel, up to its place.
+///
+/// # Errors
+/// If a picture cannot be encoded.
+pub fn page(
+    name: &str,
+    report: &Report,
+    pictures: &Pictures<'_>,
+    explain: &str,
+) -> io::Result<String> {
+    let mut page = String::from(HEAD);
+    let name = escape(name);
+    // Writing to a string cannot fail.
+    let _ = write!(
+        page,
+        "<title>Certified pixels of {name}</title>\n<h1>Certified pixels: {name}</h1>\n<p class=\"lead\">{}</p>\n\
+         <p>The blob defines one exact picture: its geometry, camera, samples, lights and effects in real \
+         arithmetic. A pixel is proved if an interval around its exact value gives one 8-bit value. It is the \
+         sampled picture that is certified, with {} per pixel and ray depth {}, not the integral behind it.</p>\n",
+        escape(&sentence(report)),
+        counted(report.samples.into(), "sample"),
+        report.ray_depth,
+    );
+    page.push_str(&formats(report, explain));
+    let _ = write!(
+        page,
+        "<div class=\"pictures\"><figure>{}<figcaption>What is known: gray, proved equal in all formats; \
+         orange, one format proved different by 1/255; red, by more; blue, open.</figcaption></figure>\n\
+         <figure>{}<figcaption>The exact picture.</figcaption></figure></div>\n",
+        image(report.size, pictures.map)?,
+        image(report.size, pictures.exact)?,
+    );
+    page.push_str(&reasons(report, explain));
+    page.push_str(&widths(report));
+    page.push_str("</html>\n");
+    Ok(page)
+}
+
+/// The result in one sentence.
+pub fn sentence(report: &Report) -> String {
+    format!(
+        "{:.3} % of {} pixels are proved: {} with 53 bits, {} with 128 and {} with 256.",
+        100.0 * report.certified,
+        grouped(report.pixels),
+        grouped(report.proved_with_bits[0].1),
+        grouped(report.proved_with_bits[1].1),
+        grouped(report.proved_with_bits[2].1),
+    )
+}
+
+fn formats(report: &Report, explain: &str) -> String {
+    let mut table = String::from(
+        "<h2>Number formats</h2>\n<div class=\"wide\"><table><tr><th>format<th>proved equal<th>proved different\
+         <th>open<th>largest proved error<th>explain it</tr>\n",
+    );
+    let part = |count: usize| 100.0 * count as f64 / report.pixels.max(1) as f64;
+    for format in &report.formats {
+        let command = format.worst.map_or(String::new(), |[x, y]| {
+            format!(
+                "<code>{}</code>",
+                escape(&format!("{explain}{x},{y} --format {}", format.format))
+            )
+        });
+        let _ = writeln!(
+            table,
+            "<tr><td>{}<td>{} ({:.3} %)<td>{}<td>{}<td>{}/255<td>{command}</tr>",
+            format.format,
+            grouped(format.equal),
+            part(format.equal),
+            grouped(format.different),
+            grouped(format.open),
+            format.max_proved_error,
+        );
+    }
+    table + "</table></div>\n"
+}
+
+fn reasons(report: &Report, explain: &str) -> String {
+    if report.reasons.is_empty() {
+        return String::from("<h2>Open pixels</h2>\n<p>There are none.</p>\n");
+    }
+    let mut table = String::from(
+        "<h2>Open pixels</h2>\n<p>On the boundary: 256 bits cannot tell the exact ray from one that lies exactly \
+         between two outcomes.</p>\n<div class=\"wide\"><table><tr><th>reason<th>pixels<th>on the boundary\
+         <th>explain the first</tr>\n",
+    );
+    for reason in &report.reasons {
+        let first = reason.examples.first();
+        let command = first.map_or(String::new(), |it| {
+            let [x, y] = it.pixel;
+            format!(
+                "<code>{}</code>",
+                escape(&format!("{explain}{x},{y} --interval"))
+            )
+        });
+        let _ = writeln!(
+            table,
+            "<tr><td>{}<td>{}<td>{}<td>{command}</tr>",
+            reason.text,
+            grouped(reason.pixels),
+            grouped(reason.on_boundary),
+        );
+    }
+    table + "</table></div>\n"
+}
+
+/// Bars of the widths of intervals; their lengths are logarithmic, so that few pixels are seen too.
+fn widths(report: &Report) -> String {
+    let mut chart = String::from(
+        "<h2>Widths of the intervals</h2>\n<p>Pixels by the width of their widest channel, of linear values from 0 \
+         to 1. The bars are logarithmic.</p>\n<table class=\"bars\">\n",
+    );
+    let log = |count: usize| libm::log10(1.0 + count as f64);
+    let most = report
+        .widths
+        .iter()
+        .map(|it| log(it.pixels))
+        .fold(1.0, f64::max);
+    for width in report.widths.iter().filter(|it| it.pixels > 0) {
+        let _ = writeln!(
+            chart,
+            "<tr><th>up to 10<sup>{}</sup><td><span style=\"width:{:.1}%\"></span><td>{}</tr>",
+            width.power,
+            100.0 * log(width.pixels) / most,
+            grouped(width.pixels),
+        );
+    }
+    chart + "</table>\n"
+}
+
+fn image([width, height]: [u16; 2], pixels: &[u8]) -> io::Result<String> {
+    let mut png = Vec::new();
+    write_png(&mut png, [width.into(), height.into()], pixels, None)?;
+    let data = base64::engine::general_purpose::STANDARD.encode(png);
+    Ok(format!(
+        "<img alt=\"\" width=\"{width}\" height=\"{height}\" src=\"data:image/png;base64,{data}\">"
+    ))
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}
+
+const HEAD: &str = "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
+    <meta name=\"viewport\" content=\"width=device-width\">\n<style>\n\
+    :root { color-scheme: light dark; }\n\
+    body { font: 15px/1.5 sans-serif; max-width: 1000px; margin: 2em auto; padding: 0 1em; }\n\
+    .lead { font-size: 1.25em; }\n\
+    .wide { overflow-x: auto; }\n\
+    table { border-collapse: collapse; }\n\
+    td, th { padding: 3px 10px; text-align: left; border-bottom: 1px solid #8884; white-space: nowrap; }\n\
+    .bars { width: 100%; }\n.bars td:nth-child(2) { width: 70%; }\n\
+    .bars span { display: block; height: 0.9em; background: #4a78c8; }\n\
+    .pictures { display: flex; flex-wrap: wrap; gap: 1.5em; }\nfigure { margin: 0; max-width: 100%; }\n\
+    img { max-width: 100%; height: auto; image-rendering: pixelated; }\nfigcaption { max-width: 34em; }\n</style>\n";

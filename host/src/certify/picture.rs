@@ -1,0 +1,307 @@
+//! The pixels of a picture, each enclosed.
+
+use super::crossing::{Ray, Start, exact};
+use super::deep::{self, Ball};
+use super::interval::Interval;
+use super::number::*;
+use super::reason::Reason;
+use super::search::{Open, Step, Tracer};
+use super::world::{NONE, World};
+use bytemuck::{Pod, Zeroable};
+use gridel_core::render::Pixel as _;
+use gridel_core::{Rgb888, Settings};
+use std::cell::{Cell, RefCell};
+
+/// Steps that a pixel is divided into on each axis.
+const SUBPIXELS: i64 = 256;
+
+/// How exactly a pixel was evaluated: bits of its numbers.
+pub const LEVELS: [usize; 3] = [53, 128, 256];
+
+/// Outcomes that are followed at each level.
+const BRANCHES: [u32; 3] = [12, 48, 192];
+
+/// An open comparison of 256 bits whose numbers differ by less than this is one of equals.
+const EQUAL: f64 = 1e-40;
+
+/// What is known of a pixel: 80 bytes, as they are kept between runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Enclosed {
+    /// Linear values that enclose the exact ones, red, green and blue: 1 is display white.
+    pub linear: [[f64; 2]; 3],
+    /// Where an open comparison is, in units.
+    pub point: [f32; 3],
+    /// The primitive of an open comparison, or [`NONE`].
+    pub primitive: u32,
+    /// The 8-bit values of the bounds.
+    pub low: [u8; 3],
+    pub high: [u8; 3],
+    /// The last level that was tried, an index of [`LEVELS`].
+    pub level: u8,
+    /// The reason for which the pixel is open, or 0.
+    pub reason: u8,
+    /// How many reflections and refractions lead to an open comparison.
+    pub depth: u8,
+    /// 1 where the exact picture lies on a boundary, as far as 256 bits tell.
+    pub on_boundary: u8,
+    /// 1 once it is evaluated.
+    pub done: u8,
+    pub spare: [u8; 5],
+}
+
+impl Enclosed {
+    /// The exact 8-bit values, if they are proved.
+    pub fn proved(&self) -> Option<[u8; 3]> {
+        (self.done == 1 && self.low == self.high).then_some(self.low)
+    }
+
+    /// How far apart the bounds are, of the worst channel.
+    pub fn width(&self) -> f64 {
+        let widths = self.linear.iter().map(|[low, high]| high - low);
+        widths.fold(0.0, f64::max)
+    }
+
+    pub fn reason(&self) -> Option<Reason> {
+        Reason::of_number(self.reason)
+    }
+
+    /// What the values of a format are by: 0 if they are the exact ones; `None` if that is open. A value outside of
+    /// the bounds is wrong by its distance at least.
+    pub fn error_of(&self, values: [u8; 3]) -> Option<u8> {
+        let off = |k: usize| {
+            let (low, high) = (self.low[k], self.high[k]);
+            low.saturating_sub(values[k])
+                .max(values[k].saturating_sub(high))
+        };
+        let most = off(0).max(off(1)).max(off(2));
+        (most > 0 || self.proved().is_some()).then_some(most)
+    }
+}
+
+/// The place of a sample in its pixel, in subpixels: the first two dimensions of Sobol's sequence, in the middle of
+/// their cells.
+fn within(index: u16, count: u16) -> [i64; 2] {
+    if count == 1 {
+        return [SUBPIXELS / 2; 2];
+    }
+    let first = (0..8).fold(0, |sum, bit| sum | i64::from(index >> bit & 1) << (7 - bit));
+    // Pascal's triangle modulo 2: column `bit` has an entry in row `row` if `row` holds the bits of... `bit`.
+    let second = (0..8_u32).fold(0_i64, |sum, bit| {
+        if index >> bit & 1 == 0 {
+            return sum;
+        }
+        let column = (0..8_u32).filter(|row| row & bit == *row);
+        sum ^ column.fold(0, |column, row| column | 1 << (7 - row))
+    });
+    let mut cells = 1;
+    while cells < i64::from(count) {
+        cells *= 2;
+    }
+    let half_cell = (SUBPIXELS / 2) / cells;
+    [first + half_cell, second + half_cell]
+}
+
+/// The linear value of an 8-bit code of sRGB (IEC 61966-2-1), 65535 being white.
+fn linear_of_code(code: u16) -> u16 {
+    let s = f64::from(code) / 255.0;
+    let linear = if s <= 0.04045 {
+        s / 12.92
+    } else {
+        libm::pow((s + 0.055) / 1.055, 2.4)
+    };
+    (linear * 65535.0 + 0.5) as u16
+}
+
+/// The linear value of a display value, by the blob's rule.
+fn from_display(value: u16) -> u16 {
+    let value = u32::from(value);
+    let code = (value + (value >> 15)) * 255;
+    let (below, part) = (code >> 16, code & 0xffff);
+    let low = u32::from(linear_of_code(below as u16));
+    let high = u32::from(linear_of_code((below + 1).min(255) as u16));
+    (low + (((high - low) * part + 0x8000) >> 16)) as u16
+}
+
+/// The 8-bit values of a picture's own 16-bit values.
+pub fn code(linear: [u16; 3]) -> [u8; 3] {
+    let Rgb888(code) = Rgb888::encode(linear, None);
+    code
+}
+
+/// The ray of a sample.
+pub fn primary_ray<N: Enclosure>(
+    world: &World<'_>,
+    settings: &Settings,
+    [x, y]: [u16; 2],
+    sample: u16,
+) -> Ray<N> {
+    let view = world.scene.view();
+    let [dx, dy] = within(sample, settings.samples);
+    let (x, y) = (i64::from(x) * SUBPIXELS + dx, i64::from(y) * SUBPIXELS + dy);
+    let [width, height] = [settings.width, settings.height].map(|side| i64::from(side) * SUBPIXELS);
+    // The direction times the height in subpixels: below 2^28 times 2^24, and three of that.
+    let direction = [0, 1, 2].map(|k| {
+        i64::from(view.forward[k]) * height
+            + i64::from(view.right[k]) * (2 * x - width)
+            + i64::from(view.up[k]) * (height - 2 * y)
+    });
+    Ray {
+        origin: view.eye.map(|x| N::scaled(x, 5)),
+        direction: exact(direction),
+        start: Start::Free,
+    }
+}
+
+/// One evaluation of a pixel.
+struct Evaluated {
+    /// `None` where it ended without a result.
+    linear: Option<[[f64; 2]; 3]>,
+    open: Vec<Open>,
+}
+
+fn evaluate<N: Enclosure>(
+    world: &World<'_>,
+    settings: &Settings,
+    pixel: [u16; 2],
+    level: usize,
+    steps: Option<&mut Vec<Step>>,
+) -> Evaluated {
+    let mut tracer = Tracer {
+        world,
+        depth: settings.depth,
+        is_slow: level > 0,
+        left: Cell::new(BRANCHES[level]),
+        open: RefCell::new(Vec::new()),
+        steps: steps.is_some().then(RefCell::default),
+    };
+    let black = [N::zero(); 3];
+    let mut sum = black;
+    let mut is_known = true;
+    for sample in 0..settings.samples {
+        tracer.left.set(BRANCHES[level]);
+        let ray = primary_ray::<N>(world, settings, pixel, sample);
+        match tracer.radiance(&ray, [N::one(); 3], 0) {
+            Ok(seen) => {
+                let limit = |x: N| x.at_least(N::zero()).at_most(N::one());
+                sum = plus(sum, seen.map(limit));
+            }
+            Err(_) => {
+                is_known = false;
+                break;
+            }
+        }
+    }
+    if settings.samples > 1 {
+        let part = (1 << 30) / i64::from(settings.samples);
+        sum = scale(sum, N::scaled(part, 30));
+    }
+    if let Some(steps) = steps {
+        steps.extend(
+            tracer
+                .steps
+                .take()
+                .into_iter()
+                .flat_map(RefCell::into_inner),
+        );
+    }
+    let open = tracer.open.take();
+    Evaluated {
+        linear: is_known.then(|| {
+            sum.map(|x| {
+                let [low, high] = x.bounds();
+                [low.clamp(0.0, 1.0), high.clamp(0.0, 1.0)]
+            })
+        }),
+        open,
+    }
+}
+
+/// The 8-bit value of a bound.
+fn code_of(world: &World<'_>, linear: [f64; 3]) -> [u8; 3] {
+    code(linear.map(|x| {
+        let value = (x * 65535.0 + 0.5).clamp(0.0, 65535.0) as u16;
+        if world.scene.view().display_values != 0 {
+            from_display(value)
+        } else {
+            value
+        }
+    }))
+}
+
+/// Encloses a pixel: with more bits until its 8-bit values are proved.
+pub fn enclose(world: &World<'_>, settings: &Settings, pixel: [u16; 2], levels: usize) -> Enclosed {
+    let mut enclosed = Enclosed {
+        linear: [[0.0, 1.0]; 3],
+        primitive: NONE,
+        high: [255; 3],
+        done: 1,
+        ..Enclosed::default()
+    };
+    for level in 0..levels.clamp(1, LEVELS.len()) {
+        let evaluated = at_level(world, settings, pixel, level, None);
+        enclosed.level = level as u8;
+        if let Some(linear) = evaluated.linear {
+            // Both hold the exact value, so what both enclose does.
+            for (known, [low, high]) in enclosed.linear.iter_mut().zip(linear) {
+                *known = [known[0].max(low), known[1].min(high)];
+            }
+        }
+        // What the sum and the product round does not reach the value that is cut off.
+        let margin = |x: f64, by: f64| (x + by).clamp(0.0, 1.0);
+        let rounded = 1e-15;
+        enclosed.low = code_of(world, enclosed.linear.map(|[low, _]| margin(low, -rounded)));
+        enclosed.high = code_of(
+            world,
+            enclosed.linear.map(|[_, high]| margin(high, rounded)),
+        );
+        if enclosed.low == enclosed.high {
+            enclosed.reason = 0;
+            enclosed.on_boundary = 0;
+            return enclosed;
+        }
+        let open = evaluated.open.first();
+        let reason = match open {
+            Some(open) => open.reason,
+            None if evaluated.linear.is_none() => Reason::Branches,
+            None => Reason::Rounding,
+        };
+        enclosed.reason = reason as u8;
+        enclosed.primitive = open.map_or(NONE, |open| open.primitive);
+        enclosed.depth = open.map_or(0, |open| open.depth);
+        enclosed.point = open.map_or([0.0; 3], |open| open.point.map(|x| x as f32));
+        let is_last = level + 1 == LEVELS.len();
+        let is_narrow = enclosed.width() < EQUAL;
+        // What 256 bits cannot tell apart is equal, as far as any of this can say.
+        enclosed.on_boundary = u8::from(is_last && (reason != Reason::Rounding || is_narrow));
+    }
+    enclosed
+}
+
+fn at_level(
+    world: &World<'_>,
+    settings: &Settings,
+    pixel: [u16; 2],
+    level: usize,
+    steps: Option<&mut Vec<Step>>,
+) -> Evaluated {
+    if level == 0 {
+        return evaluate::<Interval>(world, settings, pixel, level, steps);
+    }
+    deep::with_bits(LEVELS[level], || {
+        evaluate::<Ball>(world, settings, pixel, level, steps)
+    })
+}
+
+/// The rays behind a pixel and the numbers along them, at the level at which the pixel was decided.
+pub fn explain(
+    world: &World<'_>,
+    settings: &Settings,
+    pixel: [u16; 2],
+) -> (Enclosed, Vec<Step>, Vec<Open>) {
+    let enclosed = enclose(world, settings, pixel, LEVELS.len());
+    let mut steps = Vec::new();
+    let level = usize::from(enclosed.level);
+    let evaluated = at_level(world, settings, pixel, level, Some(&mut steps));
+    (enclosed, steps, evaluated.open)
+}

@@ -1,0 +1,65 @@
+//! Why a pixel is open.
+
+use serde::{Deserialize, Serialize};
+
+/// Why something is open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[repr(u8)]
+pub enum Reason {
+    /// Which surface a ray hits: at an edge, or where surfaces meet.
+    Hit = 1,
+    /// Whether a surface is in a shadow.
+    Shadow,
+    /// On which side of a surface a light is that it faces edge on.
+    Terminator,
+    /// Whether light is totally reflected.
+    CriticalAngle,
+    /// Which cell of a checkerboard a point lies in.
+    Checker,
+    /// Whether a ray brings enough to be traced.
+    Cutoff,
+    /// To which side of a triangle a ray leaves that its smooth normal sends.
+    Smooth,
+    /// Where a ray crosses a surface that it runs along.
+    Grazing,
+    /// Too many outcomes to follow.
+    Branches,
+    /// Which of two 8-bit values is nearer, though everything else is known.
+    Rounding,
+}
+
+impl Reason {
+    pub const ALL: [Self; 10] = [
+        Self::Hit,
+        Self::Shadow,
+        Self::Terminator,
+        Self::CriticalAngle,
+        Self::Checker,
+        Self::Cutoff,
+        Self::Smooth,
+        Self::Grazing,
+        Self::Branches,
+        Self::Rounding,
+    ];
+
+    pub fn of_number(number: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|&it| it as u8 == number)
+    }
+
+    /// The reason in words.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Hit => "edge of a hit, or surfaces that meet",
+            Self::Shadow => "edge of a shadow",
+            Self::Terminator => "light at a right angle to the normal",
+            Self::CriticalAngle => "critical angle of total reflection",
+            Self::Checker => "boundary of a checkerboard's cells",
+            Self::Cutoff => "cutoff of secondary rays",
+            Self::Smooth => "ray level with a smooth triangle",
+            Self::Grazing => "ray along a surface",
+            Self::Branches => "too many open comparisons",
+            Self::Rounding => "rounding to 8 bits",
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! What certifying a picture found: for the command, for manifests and for the page.
+
+use super::picture::{Enclosed, LEVELS, code, enclose};
+use super::reason::Reason;
+use super::world::{NONE, World};
+use gridel_core::{Format, Settings};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Rows that are evaluated between two looks at the clock.
+pub const ROWS_AT_ONCE: usize = 16;
+
+/// Encloses the pixels of a picture that are not yet done, some rows at a time. Calls `progress` after every row, from
+/// any thread, and `keep` after some rows, whose error ends the work.
+///
+/// # Errors
+/// Those of `keep`.
+///
+/// # Panics
+/// If there are not as many pixels as the settings say.
+pub fn certify<E>(
+    world: &World<'_>,
+    settings: &Settings,
+    pixels: &mut [Enclosed],
+    progress: &(dyn Fn() + Sync),
+    mut keep: impl FnMut(&[Enclosed]) -> Result<(), E>,
+) -> Result<(), E> {
+    let width = usize::from(settings.width);
+    assert_eq!(pixels.len(), width * usize::from(settings.height));
+    let rows: Vec<usize> = (0..usize::from(settings.height)).collect();
+    for some in rows.chunks(ROWS_AT_ONCE) {
+        let first = some[0] * width;
+        let part = &mut pixels[first..first + some.len() * width];
+        let is_new = part.iter().any(|pixel| pixel.done == 0);
+        part.par_chunks_mut(width).zip(some).for_each(|(row, &y)| {
+            for (x, pixel) in row.iter_mut().enumerate().filter(|(_, it)| it.done == 0) {
+                *pixel = enclose(world, settings, [x as u16, y as u16], LEVELS.len());
+            }
+            progress();
+        });
+        if is_new {
+            keep(pixels)?;
+        }
+    }
+    Ok(())
+}
+
+/// The report of a picture.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    pub size: [u16; 2],
+    /// Per pixel: it is the sampled picture that is certified, not the integral behind it.
+    pub samples: u16,
+    pub ray_depth: u8,
+    pub pixels: usize,
+    pub proved: usize,
+    /// Pixels proved, as a part of all.
+    pub certified: f64,
+    /// Pixels proved with numbers of 53, 128 and 256 bits.
+    pub proved_with_bits: Vec<(usize, usize)>,
+    /// Why the others are open.
+    pub reasons: Vec<OpenPixels>,
+    pub widths: Vec<Width>,
+    pub formats: Vec<FormatReport>,
+}
+
+/// The pixels that are open for one reason.
+#[derive(Clone, Debug, Serialize)]
+pub struct OpenPixels {
+    pub reason: Reason,
+    pub text: &'static str,
+    pub pixels: usize,
+    /// Of those, pixels whose ray lies on the boundary as far as 256 bits tell.
+    pub on_boundary: usize,
+    /// The first of them.
+    pub examples: Vec<OpenPixel>,
+}
+
+/// An open pixel.
+#[derive(Clone, Debug, Serialize)]
+pub struct OpenPixel {
+    pub pixel: [usize; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub primitive: Option<u32>,
+    /// In lattice units.
+    pub point: [f32; 3],
+    pub depth: u8,
+}
+
+/// Pixels whose interval is at most so wide.
+#[derive(Clone, Debug, Serialize)]
+pub struct Width {
+    /// The largest channel's width is at most this power of ten.
+    pub power: i32,
+    pub pixels: usize,
+}
+
+/// A number format against the exact picture.
+#[derive(Clone, Debug, Serialize)]
+pub struct FormatReport {
+    pub format: &'static str,
+    /// Pixels proved to be the exact ones.
+    pub equal: usize,
+    /// Pixels proved to be others.
+    pub different: usize,
+    pub open: usize,
+    /// The largest proved difference of a channel, in 255ths.
+    pub max_proved_error: u8,
+    /// The pixel with that difference.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub worst: Option<[usize; 2]>,
+    /// Pixels by their proved difference in 255ths, from 1.
+    pub by_error: Vec<(u8, usize)>,
+}
+
+/// Examples of each reason.
+const EXAMPLES: usize = 8;
+/// The narrowest power of ten that is counted on its own.
+const NARROWEST: i32 = -17;
+
+impl Report {
+    /// The report of pixels and of pictures in some formats, as 16-bit values.
+    pub fn of(
+        settings: &Settings,
+        pixels: &[Enclosed],
+        pictures: &[(Format, Vec<[u16; 3]>)],
+    ) -> Self {
+        let width = usize::from(settings.width);
+        let place = |index: usize| [index % width, index / width];
+        let proved = pixels.iter().filter(|it| it.proved().is_some()).count();
+        let with_bits = |level: usize| {
+            let with = |it: &&Enclosed| it.proved().is_some() && usize::from(it.level) == level;
+            (LEVELS[level], pixels.iter().filter(with).count())
+        };
+        let mut reasons = Vec::new();
+        for reason in Reason::ALL {
+            let is_open = |it: &Enclosed| it.proved().is_none() && it.reason() == Some(reason);
+            let open = || pixels.iter().enumerate().filter(|(_, it)| is_open(it));
+            let count = open().count();
+            if count == 0 {
+                continue;
+            }
+            let example = |(index, it): (usize, &Enclosed)| OpenPixel {
+                pixel: place(index),
+                primitive: (it.primitive != NONE).then_some(it.primitive),
+                point: it.point,
+                depth: it.depth,
+            };
+            reasons.push(OpenPixels {
+                reason,
+                text: reason.text(),
+                pixels: count,
+                on_boundary: open().filter(|(_, it)| it.on_boundary == 1).count(),
+                examples: open().take(EXAMPLES).map(example).collect(),
+            });
+        }
+        reasons.sort_by_key(|it| std::cmp::Reverse(it.pixels));
+        let power = |it: &Enclosed| match it.width() {
+            width if width > 0.0 => (libm::log10(width).ceil() as i32).clamp(NARROWEST, 0),
+            _ => NARROWEST,
+        };
+        let widths = (NARROWEST..=0).map(|of| Width {
+            power: of,
+            pixels: pixels.iter().filter(|it| power(it) == of).count(),
+        });
+        let formats = pictures.iter().map(|(format, picture)| {
+            let errors: Vec<Option<u8>> = pixels
+                .iter()
+                .zip(picture)
+                .map(|(it, &linear)| it.error_of(code(linear)))
+                .collect();
+            let most = errors.iter().flatten().copied().max().unwrap_or(0);
+            let with = |error: u8| errors.iter().filter(|&&it| it == Some(error)).count();
+            let worst = errors.iter().position(|&it| it == Some(most) && most > 0);
+            FormatReport {
+                format: format.name(),
+                equal: with(0),
+                different: errors.iter().flatten().filter(|&&it| it > 0).count(),
+                open: errors.iter().filter(|it| it.is_none()).count(),
+                max_proved_error: most,
+                worst: worst.map(place),
+                by_error: (1..=most)
+                    .map(|error| (error, with(error)))
+                    .filter(|(_, count)| *count > 0)
+                    .collect(),
+            }
+        });
+        Self {
+            size: [settings.width, settings.height],
+            samples: settings.samples,
+            ray_depth: settings.depth,
+            pixels: pixels.len(),
+            proved,
+            certified: proved as f64 / pixels.len().max(1) as f64,
+            proved_with_bits: (0..LEVELS.len()).map(with_bits).collect(),
+            reasons,
+            widths: widths.collect(),
+            formats: formats.collect(),
+        }
+    }
+}
+
+/// A picture of what is known: gray where all formats are proved equal, orange where one is proved different, blue where
+/// a pixel is open. As sRGB pixels.
+pub fn map(pixels: &[Enclosed], pictures: &[(Format, Vec<[u16; 3]>)]) -> Vec<u8> {
+    let color = |index: usize, it: &Enclosed| -> [u8; 3] {
+        let errors = pictures
+            .iter()
+            .map(|(_, all)| it.error_of(code(all[index])));
+        let most = errors.clone().flatten().max().unwrap_or(0);
+        match most {
+            2.. => [200, 30, 20],
+            1 => [240, 150, 40],
+            0 if it.proved().is_none() => [40, 90, 220],
+            _ => it.low.map(|x| 110 + x / 4),
+        }
+    };
+    let all = pixels.iter().enumerate();
+    all.flat_map(|(index, it)| color(index, it)).collect()
+}
+
+/// The exact picture: proved values, and the middle of what is known elsewhere. As sRGB pixels.
+pub fn exact_picture(pixels: &[Enclosed]) -> Vec<u8> {
+    let middle = |it: &Enclosed| [0, 1, 2].map(|k| it.low[k].midpoint(it.high[k]));
+    pixels.iter().flat_map(middle).collect()
+}

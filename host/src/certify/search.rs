@@ -1,0 +1,363 @@
+//! The search for hits: every crossing that may be the nearest.
+
+use super::crossing::{Crossing, Ray, compare};
+use super::hit::Hit;
+use super::interval::Interval;
+use super::number::*;
+use super::reason::Reason;
+use super::shapes;
+use super::world::{Form, Item, NONE, Slabs, Space, World};
+use gridel_core::Effects;
+use serde::Serialize;
+use std::cell::{Cell, RefCell};
+use std::cmp::Ordering;
+
+/// An open comparison: why, and where.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Open {
+    pub reason: Reason,
+    /// Reflections and refractions up to there.
+    pub depth: u8,
+    /// The primitive in scene-file order; [`NONE`] for none.
+    pub primitive: u32,
+    /// In scene units times the blob's scale: lattice units.
+    pub point: [f64; 3],
+}
+
+/// An evaluation that ended without a result.
+#[derive(Clone, Copy, Debug)]
+pub struct Stop;
+
+/// One ray of the tree behind a pixel, for `explain`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Step {
+    pub depth: u8,
+    pub event: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub primitive: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub object: Option<u32>,
+    /// What the event is about, each number between two.
+    pub values: Vec<(&'static str, Vec<[f64; 2]>)>,
+}
+
+/// A crossing of a primitive somewhere in the scene.
+#[derive(Clone, Copy)]
+pub struct Candidate<N> {
+    pub crossing: Crossing<N>,
+    pub instance: u32,
+    pub solid: u32,
+}
+
+/// Follows the rays of one sample.
+pub struct Tracer<'w, 's> {
+    pub world: &'w World<'s>,
+    pub depth: u8,
+    /// Whether numbers are so slow that intervals are asked first.
+    pub is_slow: bool,
+    /// How many outcomes may still be followed.
+    pub left: Cell<u32>,
+    pub open: RefCell<Vec<Open>>,
+    pub steps: Option<RefCell<Vec<Step>>>,
+}
+
+/// Most open comparisons that are recorded.
+const RECORDED: usize = 16;
+
+impl Tracer<'_, '_> {
+    pub fn note<N: Enclosure>(&self, reason: Reason, depth: u8, primitive: u32, point: Three<N>) {
+        let mut open = self.open.borrow_mut();
+        if open.len() < RECORDED {
+            let point = point.map(|x| x.middle() / 256.0);
+            open.push(Open {
+                reason,
+                depth,
+                primitive,
+                point,
+            });
+        }
+    }
+
+    /// Takes one more outcome into account.
+    ///
+    /// # Errors
+    /// If there were too many.
+    pub fn branch(&self) -> Result<(), Stop> {
+        let left = self.left.get();
+        if left == 0 {
+            return Err(Stop);
+        }
+        self.left.set(left - 1);
+        Ok(())
+    }
+
+    pub fn step<const COUNT: usize, N: Enclosure>(
+        &self,
+        depth: u8,
+        event: &'static str,
+        hit: Option<(u32, u32)>,
+        values: [(&'static str, &[N]); COUNT],
+    ) {
+        if let Some(steps) = &self.steps {
+            steps.borrow_mut().push(Step {
+                depth,
+                event,
+                primitive: hit.map(|it| it.0),
+                object: hit.map(|it| it.1),
+                values: values
+                    .into_iter()
+                    .map(|(name, numbers)| (name, numbers.iter().map(|x| x.bounds()).collect()))
+                    .collect(),
+            });
+        }
+    }
+
+    pub fn has(&self, effects: Effects) -> bool {
+        self.world.scene.effects().contains(effects)
+    }
+
+    /// Every crossing that may be the nearest, and whether the ray may hit nothing.
+    pub fn nearest<N: Enclosure>(
+        &self,
+        ray: &Ray<N>,
+        depth: u8,
+    ) -> Result<(Vec<Candidate<N>>, bool), Stop> {
+        let mut found: Vec<Candidate<N>> = Vec::new();
+        self.search(ray, f64::INFINITY, depth, &mut |candidate, end| {
+            found.push(candidate);
+            let [_, high] = candidate.crossing.t.bounds();
+            if candidate.crossing.sure {
+                end.min(high)
+            } else {
+                end
+            }
+        })?;
+        let world = self.world;
+        let solid = |it: &Candidate<N>| &world.space(it.instance).solids[it.solid as usize];
+        let plane = |it: &Candidate<N>| {
+            let plane = solid(it).planes[usize::from(it.crossing.part)];
+            (plane != NONE).then_some((it.instance, plane))
+        };
+        let primitive = |it: &Candidate<N>| (solid(it).primitive, it.solid);
+        // What lies in one plane is met at one t, and the first in the scene file counts.
+        let order = |a: &Candidate<N>, b: &Candidate<N>| {
+            let twins = a.instance == b.instance
+                && solid(a).twin == solid(b).twin
+                && a.crossing.part == b.crossing.part
+                && a.crossing.leaves == b.crossing.leaves;
+            if twins || plane(a).is_some() && plane(a) == plane(b) {
+                Some(Ordering::Equal)
+            } else {
+                compare(&a.crossing, &b.crossing)
+            }
+        };
+        let beats = |a: &Candidate<N>, b: &Candidate<N>| {
+            if (a.instance, a.solid) == (b.instance, b.solid)
+                && b.crossing.leaves
+                && !a.crossing.leaves
+            {
+                // A solid is entered before it is left.
+                return a.crossing.sure;
+            }
+            a.crossing.sure
+                && match order(a, b) {
+                    Some(Ordering::Less) => true,
+                    Some(Ordering::Equal) => primitive(a) < primitive(b),
+                    _ => false,
+                }
+        };
+        let is_left = |index: usize| !found.iter().any(|other| beats(other, &found[index]));
+        let mut left: Vec<Candidate<N>> = (0..found.len())
+            .filter(|&index| is_left(index))
+            .map(|index| found[index])
+            .collect();
+        let may_miss = !found.iter().any(|it| it.crossing.sure);
+        // Faces of one object in one plane look alike at their common edge.
+        let alike = |a: &Candidate<N>, b: &Candidate<N>| {
+            let is_plain = |it: &Candidate<N>| {
+                !matches!(
+                    solid(it).form,
+                    Form::Triangle {
+                        smooth: Some(_),
+                        ..
+                    } | Form::Cuboid { .. }
+                        | Form::Cone { .. }
+                )
+            };
+            plane(a).is_some()
+                && plane(a) == plane(b)
+                && solid(a).object == solid(b).object
+                && is_plain(a)
+                && is_plain(b)
+        };
+        let mut index = 0;
+        while index < left.len() {
+            if (0..index).any(|before| alike(&left[before], &left[index])) {
+                left.remove(index);
+            } else {
+                index += 1;
+            }
+        }
+        Ok((left, may_miss))
+    }
+
+    /// Calls a function with every crossing up to an end, which the function may bring nearer.
+    pub fn search<N: Enclosure>(
+        &self,
+        ray: &Ray<N>,
+        end: f64,
+        depth: u8,
+        visit: &mut dyn FnMut(Candidate<N>, f64) -> f64,
+    ) -> Result<(), Stop> {
+        let own = &self.world.own;
+        let mut end = end;
+        let mut instances = Vec::new();
+        self.search_space((own, NONE), (ray, depth), &mut end, visit, &mut instances)?;
+        for instance in instances {
+            let placed = &self.world.placed[instance as usize];
+            let space = &self.world.parts[placed.part];
+            let ray = placed.ray(ray);
+            self.search_space(
+                (space, instance),
+                (&ray, depth),
+                &mut end,
+                visit,
+                &mut Vec::new(),
+            )?;
+        }
+        Ok(())
+    }
+
+    fn search_space<N: Enclosure>(
+        &self,
+        (space, instance): (&Space, u32),
+        (ray, depth): (&Ray<N>, u8),
+        end: &mut f64,
+        visit: &mut dyn FnMut(Candidate<N>, f64) -> f64,
+        instances: &mut Vec<u32>,
+    ) -> Result<(), Stop> {
+        let outer = self.is_slow.then(|| {
+            let enclose = |v: Three<N>| {
+                v.map(|x| {
+                    let [low, high] = x.bounds();
+                    Interval::new(low, high)
+                })
+            };
+            Ray {
+                origin: enclose(ray.origin),
+                direction: enclose(ray.direction),
+                start: ray.start,
+            }
+        });
+        let mut crossings: Vec<Crossing<N>> = Vec::with_capacity(4);
+        let mut quick: Vec<Crossing<Interval>> = Vec::with_capacity(4);
+        let mut stopped = false;
+        let mut test = |number: u32, end: f64| -> f64 {
+            let solid = &space.solids[number as usize];
+            let named = (solid, instance);
+            if let Some(outer) = &outer {
+                quick.clear();
+                let missed = shapes::crossings(named, outer, &mut quick).is_ok()
+                    && quick.iter().all(|it| it.t.low > end);
+                if missed {
+                    return end;
+                }
+            }
+            crossings.clear();
+            if shapes::crossings(named, ray, &mut crossings).is_err() {
+                if !stopped {
+                    self.note(Reason::Grazing, depth, solid.primitive, ray.origin);
+                }
+                stopped = true;
+                return end;
+            }
+            let mut end = end;
+            for &crossing in &crossings {
+                if crossing.t.bounds()[0] <= end {
+                    let candidate = Candidate {
+                        crossing,
+                        instance,
+                        solid: number,
+                    };
+                    end = visit(candidate, end);
+                }
+            }
+            end
+        };
+        for &number in &space.unbounded {
+            *end = test(number, *end);
+        }
+        let mut last = *end;
+        let slabs = Slabs::of(ray.origin, ray.direction);
+        space.tree.walk(&slabs, *end, |item, end| {
+            last = match item {
+                Item::Solid(number) => test(number, end),
+                Item::Instance(number) => {
+                    instances.push(number);
+                    end
+                }
+            };
+            last
+        });
+        *end = last;
+        if stopped { Err(Stop) } else { Ok(()) }
+    }
+
+    /// The surface where a ray crosses it.
+    pub fn hit<N: Enclosure>(
+        &self,
+        candidate: &Candidate<N>,
+        ray: &Ray<N>,
+        depth: u8,
+    ) -> Result<Hit<N>, Stop> {
+        let Candidate {
+            crossing,
+            instance,
+            solid: number,
+        } = *candidate;
+        let solid = &self.world.space(instance).solids[number as usize];
+        let part = crossing.part;
+        let mut point = along(ray.origin, crossing.t, ray.direction);
+        let placed = self.world.placed.get(instance as usize);
+        let stop = || {
+            self.note(Reason::Grazing, depth, solid.primitive, point);
+            Stop
+        };
+        let normal = match placed {
+            None => shapes::normal(&solid.form, part, point).ok_or_else(stop)?,
+            Some(placed) => {
+                let there = placed.point(point);
+                let normal = shapes::normal(&solid.form, part, there).ok_or_else(stop)?;
+                unit(placed.normal(normal)).ok_or_else(stop)?
+            }
+        };
+        let front = if solid.form.is_flat() {
+            let towards = match crossing.fraction {
+                // The sign without what the length rounds.
+                Some([_, approach]) => approach,
+                None => dot(normal, ray.direction),
+            };
+            towards.sign().ok_or_else(stop)? == Ordering::Less
+        } else {
+            !crossing.leaves
+        };
+        if placed.is_none()
+            && let Some((axis, coordinate)) = shapes::face(&solid.form, part)
+        {
+            point[axis] = N::int(coordinate);
+        }
+        Ok(Hit {
+            t: crossing.t,
+            point,
+            normal,
+            front,
+            object: solid.object,
+            primitive: solid.primitive,
+            instance,
+            solid: number,
+            twin: solid.twin,
+            part,
+            plane: solid.planes[usize::from(part)],
+        })
+    }
+}

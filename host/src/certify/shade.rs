@@ -1,0 +1,315 @@
+//! The rules of effects, in exact arithmetic.
+
+use super::crossing::exact;
+use super::hit::{Hit, Seen, ratio_of};
+use super::number::*;
+use super::world::{Form, World};
+use gridel_core::format::limits::MAX_RAY_DEPTH;
+use gridel_core::format::record::Material;
+use gridel_core::geometry::smooth::LARGEST;
+use std::cmp::Ordering;
+
+/// How many surfaces light passes on its way to another one.
+pub const SURFACES: usize = 4 * MAX_RAY_DEPTH;
+
+/// The part of light that is left after a length of glass, in lattice steps.
+pub fn absorbed<N: Enclosure>(material: &Material, length: N) -> Three<N> {
+    // Coefficients have 32 fraction bits and count units of 256 steps.
+    material
+        .absorption
+        .map(|coefficient| (length * N::scaled(coefficient.into(), 40)).exp_neg())
+}
+
+/// Whether a point lies in an odd cell, looked up just beneath the surface; `None` if that is open.
+pub fn is_odd<N: Enclosure>(hit: &Hit<N>, material: &Material) -> Option<bool> {
+    let size = N::scaled(material.checker_size.into(), 5);
+    let mut is_odd = false;
+    for k in 0..3 {
+        let place = hit.point[k] - N::scaled(material.checker_origin[k].into(), 5);
+        let cell = (place.middle() / size.middle()).floor();
+        // The nearest boundary may be the cell's lower or its upper one.
+        let mut cell = N::float(cell);
+        let mut number = cell.middle() as i64;
+        match (place - cell * size).sign()? {
+            Ordering::Less => {
+                cell = cell - N::one();
+                number -= 1;
+                if (place - cell * size).sign()? == Ordering::Less {
+                    return None;
+                }
+            }
+            // Exactly between two cells, the normal decides what is beneath.
+            Ordering::Equal => {
+                if hit.normal[k].sign()? == Ordering::Greater {
+                    number -= 1;
+                }
+            }
+            Ordering::Greater => {
+                let above = (place - (cell + N::one()) * size).sign()?;
+                if above == Ordering::Greater {
+                    return None;
+                }
+                if above == Ordering::Equal && hit.normal[k].sign()? != Ordering::Greater {
+                    number += 1;
+                }
+            }
+        }
+        is_odd ^= number & 1 == 1;
+    }
+    Some(is_odd)
+}
+
+/// A ray of length 1 at a glass surface.
+pub struct Split<N> {
+    /// The part that is reflected.
+    pub reflected: N,
+    /// The direction of the rest; `None` where all is reflected.
+    pub refracted: Option<Three<N>>,
+    /// Whether it is open if all is reflected.
+    pub is_open: bool,
+}
+
+/// The reflected part, by Fresnel's equations.
+fn fresnel<N: Enclosure>(k: N, cos_in: N, cos_out: N) -> N {
+    let whole = N::zero().hull(N::one());
+    let part = |a: N, b: N| match (a - b).over(a + b) {
+        Some(amplitude) => within(amplitude.square(), whole),
+        // Both may be 0 where the surface is seen edge on.
+        None => whole,
+    };
+    (part(k * cos_in, cos_out).half() + part(cos_in, k * cos_out).half()).at_most(N::one())
+}
+
+/// What both enclose, where that is known to be so.
+fn within<N: Enclosure>(number: N, whole: N) -> N {
+    let ([low, high], [least, most]) = (number.bounds(), whole.bounds());
+    if low < least && high > most {
+        whole
+    } else {
+        number
+    }
+}
+
+/// The square of the sine for a cosine.
+fn sine_squared<N: Enclosure>(cos: N) -> N {
+    (N::one() - cos.square()).at_least(N::zero())
+}
+
+/// Splits a ray of length 1 at a surface by Snell's law; `k` is one over the index of refraction.
+pub fn split<N: Enclosure>(
+    k: N,
+    entering: bool,
+    direction: Three<N>,
+    normal: Three<N>,
+    cos_in: N,
+) -> Option<Split<N>> {
+    if (k - N::one()).sign() == Some(Ordering::Equal) {
+        return Some(Split {
+            reflected: N::zero(),
+            refracted: Some(direction),
+            is_open: false,
+        });
+    }
+    let sine = sine_squared(cos_in);
+    let mut is_open = false;
+    let (cos_out, scaled, lift);
+    if entering {
+        cos_out = (N::one() - k.square() * sine).sqrt();
+        (scaled, lift) = (k, k * cos_in - cos_out);
+    } else {
+        let total = k.square() - sine;
+        match positive(total) {
+            Some(false) => {
+                return Some(Split {
+                    reflected: N::one(),
+                    refracted: None,
+                    is_open: false,
+                });
+            }
+            Some(true) => {}
+            None => is_open = true,
+        }
+        cos_out = total.over(k.square())?.sqrt();
+        (scaled, lift) = (N::one(), cos_in - k * cos_out);
+    }
+    let mut reflected = fresnel(k, cos_in, cos_out);
+    if is_open {
+        reflected = reflected.hull(N::one());
+    }
+    Some(Split {
+        reflected,
+        refracted: Some([0, 1, 2].map(|i| scaled * direction[i] + lift * normal[i])),
+        is_open,
+    })
+}
+
+/// The part of light that passes a surface straight on, for shadows.
+pub fn filtered<N: Enclosure>(
+    hit: &Hit<N>,
+    material: &Material,
+    to_light: Three<N>,
+) -> Option<Three<N>> {
+    let transmit = material.transmit.map(ratio_of);
+    let k = ratio_of::<N>(material.inverse_ior);
+    if (k - N::one()).sign() == Some(Ordering::Equal) {
+        return Some(transmit);
+    }
+    let cos = dot(hit.normal, to_light).abs().at_most(N::one());
+    let cos_out = (N::one() - k.square() * sine_squared(cos)).sqrt();
+    let passed = N::one() - fresnel(k, cos, cos_out);
+    Some(scale(transmit, passed))
+}
+
+/// Adds the highlight of a light to what a surface reflects.
+pub fn highlight<N: Enclosure>(
+    seen: &Seen<'_, N>,
+    to_light: Three<N>,
+    reflected: Three<N>,
+) -> Option<Three<N>> {
+    let halfway = unit([0, 1, 2].map(|k| to_light[k].half() - seen.direction[k].half()))?;
+    let cos = dot(seen.normal, halfway).at_least(N::zero());
+    let mut power = N::one();
+    let (mut square, mut rest) = (cos.at_most(N::one()), seen.material.shininess);
+    while rest > 0 {
+        if rest & 1 == 1 {
+            power = power * square;
+        }
+        square = square.square();
+        rest >>= 1;
+    }
+    let highlight = seen.material.highlight.map(|x| ratio_of::<N>(x) * power);
+    Some([0, 1, 2].map(|k| (reflected[k] + highlight[k]).at_most(N::one())))
+}
+
+/// A smooth normal, turned until it is level with a ray of length 1 that meets it from behind.
+pub fn turned_to_ray<N: Enclosure>(normal: Three<N>, direction: Three<N>) -> Option<Three<N>> {
+    let behind = dot(normal, direction);
+    match behind.sign() {
+        Some(Ordering::Less) => Some(normal),
+        // Where it is open on which side, this holds both outcomes.
+        _ => unit(along(normal, -behind.at_least(N::zero()), direction)),
+    }
+}
+
+/// The coordinates of a stored normal.
+fn unfolded([x, y]: [i16; 2]) -> [i64; 3] {
+    let (x, y, largest) = (i64::from(x), i64::from(y), i64::from(LARGEST));
+    let z = largest - x.abs() - y.abs();
+    let signed = |rest: i64, of: i64| if of < 0 { -rest } else { rest };
+    if z < 0 {
+        [
+            signed(largest - y.abs(), x),
+            signed(largest - x.abs(), y),
+            z,
+        ]
+    } else {
+        [x, y, z]
+    }
+}
+
+/// A corner's normal as it is weighted: of nearly length 1, by the line and the step that define its length.
+fn corner_normal<N: Enclosure>(stored: [i16; 2]) -> Three<N> {
+    let v = unfolded(stored).map(|x| N::scaled(x, 15));
+    let square = norm2(v);
+    let root = N::scaled(2_128_961_606, 30) - N::scaled(1_114_232_640, 30) * square;
+    let step = N::scaled(3, 1) - (square * root.square()).half();
+    scale(v, root * step)
+}
+
+/// The triangle of a hit that has normals, and the point in its space.
+fn smooth<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<Smooth<N>> {
+    let solid = &world.space(hit.instance).solids[hit.solid as usize];
+    let Form::Triangle {
+        corners,
+        normal,
+        smooth: Some(normals),
+    } = solid.form
+    else {
+        return None;
+    };
+    let placed = world.placed.get(hit.instance as usize);
+    let point = placed.map_or(hit.point, |placed| placed.point(hit.point));
+    // Weights are areas, as they are seen along the largest component of the normal.
+    let size = normal.map(i64::abs);
+    let (i, j, across) = if size[0] >= size[1] && size[0] >= size[2] {
+        (1, 2, normal[0])
+    } else if size[1] >= size[2] {
+        (2, 0, normal[1])
+    } else {
+        (0, 1, normal[2])
+    };
+    let seen = corners.map(|corner| [N::int(corner[i]) - point[i], N::int(corner[j]) - point[j]]);
+    let area = |p: [N; 2], q: [N; 2]| p[0] * q[1] - p[1] * q[0];
+    let [a, b, c] = seen;
+    let areas = [area(b, c), area(c, a), area(a, b)];
+    let mut weights = [N::zero(); 3];
+    for (weight, area) in weights.iter_mut().zip(areas) {
+        *weight = area.over(N::int(across))?;
+    }
+    Some(Smooth {
+        corners,
+        normals,
+        point,
+        weights,
+    })
+}
+
+/// The interpolated normal on the side of the ray; `None` of what is not smooth.
+///
+/// `None` outside where the normals may cancel out.
+pub fn smooth_normal<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<Option<Three<N>>> {
+    let Some(smooth) = smooth(world, hit) else {
+        return Some(None);
+    };
+    let mut sum = [N::zero(); 3];
+    for (stored, weight) in smooth.normals.into_iter().zip(smooth.weights) {
+        sum = along(sum, weight, corner_normal(stored));
+    }
+    let mut normal = unit(sum)?;
+    if let Some(placed) = world.placed.get(hit.instance as usize) {
+        normal = unit(placed.normal(normal))?;
+    }
+    Some(Some(if hit.front { normal } else { opposite(normal) }))
+}
+
+/// The way from a hit out to the curved surface that its triangle stands for, and whether that lies above it.
+pub fn lift<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<(Option<bool>, Three<N>)> {
+    let nowhere = [N::zero(); 3];
+    let Some(smooth) = smooth(world, hit) else {
+        return Some((Some(false), nowhere));
+    };
+    let mut way = nowhere;
+    for k in 0..3 {
+        let stored = exact::<N>(unfolded(smooth.normals[k]));
+        let mut normal = unit(stored)?;
+        if !hit.front {
+            normal = opposite(normal);
+        }
+        let below = minus(exact(smooth.corners[k]), smooth.point);
+        let depth = dot(below, normal).at_least(N::zero());
+        way = along(way, depth * smooth.weights[k].at_least(N::zero()), normal);
+    }
+    let facing = hit.facing();
+    if let Some(placed) = world.placed.get(hit.instance as usize) {
+        if way.iter().all(|x| x.bounds() == [0.0, 0.0]) {
+            return Some((Some(false), nowhere));
+        }
+        // The transposed matrix serves as the inverse, as it does in the kernels.
+        let length = norm2(way).sqrt();
+        let direction = unit(way)?;
+        let mapped = placed.normal(direction);
+        let stretch = norm2(mapped).sqrt();
+        let mapped = unit(mapped)?;
+        way = scale(mapped, length.over(stretch)?);
+    }
+    Some((positive(dot(way, facing)), way))
+}
+
+/// A triangle with normals at a hit, in its own space.
+struct Smooth<N> {
+    corners: [[i64; 3]; 3],
+    normals: [[i16; 2]; 3],
+    point: Three<N>,
+    /// Of the corners; their sum is 1.
+    weights: Three<N>,
+}

@@ -1,0 +1,386 @@
+//! Where a ray crosses a primitive, and the surface there, by the formulas that define the shapes.
+//!
+//! Solids are closed. A ray that starts on a surface starts beside it by nothing: the t of its start is left out by
+//! what is known of it, not by a comparison.
+
+use super::cone;
+use super::crossing::{Crossing, Grazes, Ray, Start, axis_of, compare, exact, flat_normal};
+use super::number::*;
+use super::world::{Form, NONE, Placed, Solid};
+use std::cmp::Ordering;
+
+impl Placed {
+    /// A power of two and the matrix of integers.
+    fn rotate<N: Enclosure>(&self, v: Three<N>) -> Three<N> {
+        let power = N::float(f64::powi(2.0, self.exponent));
+        self.matrix.map(|row| dot(exact(row), v) * power)
+    }
+
+    /// A place of the scene in the part.
+    pub fn point<N: Enclosure>(&self, place: Three<N>) -> Three<N> {
+        self.rotate(minus(place, exact(self.center)))
+    }
+
+    /// A ray of the scene in the part; its t stays.
+    pub fn ray<N: Enclosure>(&self, ray: &Ray<N>) -> Ray<N> {
+        Ray {
+            origin: self.point(ray.origin),
+            direction: self.rotate(ray.direction),
+            start: ray.start,
+        }
+    }
+
+    /// A direction of the scene in the part, up to its length.
+    pub fn direction<N: Enclosure>(&self, way: Three<N>) -> Three<N> {
+        self.rotate(way)
+    }
+
+    /// A normal of the part in the scene, with the part's lattice steps per step along it as its length.
+    pub fn normal<N: Enclosure>(&self, normal: Three<N>) -> Three<N> {
+        let power = N::float(f64::powi(2.0, self.exponent));
+        let column = |k: usize| exact([self.matrix[0][k], self.matrix[1][k], self.matrix[2][k]]);
+        [0, 1, 2].map(|k| dot(column(k), normal) * power)
+    }
+}
+
+/// The crossings of a primitive ahead of a ray.
+///
+/// # Errors
+/// If the ray grazes the primitive so that it is open where it crosses it.
+pub fn crossings<N: Enclosure>(
+    (solid, instance): (&Solid, u32),
+    ray: &Ray<N>,
+    found: &mut Vec<Crossing<N>>,
+) -> Result<(), Grazes> {
+    let (plane, itself) = match ray.start {
+        Start::On {
+            instance: from,
+            twin,
+            part,
+            plane,
+            inward,
+        } if from == instance => (plane, (solid.twin == twin).then_some((part, inward))),
+        _ => (NONE, None),
+    };
+    let same_plane = |of: u32| of != NONE && of == plane;
+    match solid.form {
+        Form::Triangle {
+            corners, normal, ..
+        } => {
+            if same_plane(solid.planes[0]) || itself.is_some() {
+                return Ok(());
+            }
+            triangle(corners, normal, ray, found)
+        }
+        Form::Disc {
+            center,
+            normal,
+            radius,
+        } => {
+            if same_plane(solid.planes[0]) || itself.is_some() {
+                return Ok(());
+            }
+            disc((center, normal, radius), ray, found)
+        }
+        Form::Plane { point, normal } => {
+            if same_plane(solid.planes[0]) || itself.is_some() {
+                return Ok(());
+            }
+            let relative = minus(exact(point), ray.origin);
+            if let Some(crossing) = flat(exact(normal), relative, ray)? {
+                crossing.keep(found);
+            }
+            Ok(())
+        }
+        Form::Sphere { center, radius } => {
+            sphere(center, radius, itself, ray, found);
+            Ok(())
+        }
+        Form::Cuboid { lowest, highest } => {
+            if itself.is_some_and(|(_, inward)| !inward) {
+                return Ok(());
+            }
+            let at = solid.planes.map(same_plane);
+            cuboid([lowest, highest], at, ray, found)
+        }
+        Form::Cone { .. } => {
+            if itself.is_some_and(|(_, inward)| !inward) {
+                return Ok(());
+            }
+            let at = [
+                itself.is_some_and(|(part, _)| part == cone::MANTLE),
+                same_plane(solid.planes[1]) || itself.is_some_and(|(part, _)| part == cone::BASE),
+                same_plane(solid.planes[2]) || itself.is_some_and(|(part, _)| part == cone::APEX),
+            ];
+            cone::crossings(&solid.form, at, ray, found)
+        }
+    }
+}
+
+/// Where a ray crosses a plane; `None` if it runs along it.
+pub fn flat<N: Enclosure>(
+    normal: Three<N>,
+    relative: Three<N>,
+    ray: &Ray<N>,
+) -> Result<Option<Crossing<N>>, Grazes> {
+    let (above, approach) = (dot(normal, relative), dot(normal, ray.direction));
+    match approach.sign() {
+        Some(Ordering::Equal) => return Ok(None),
+        Some(_) => {}
+        None => return Err(Grazes),
+    }
+    let t = above.over(approach).ok_or(Grazes)?;
+    Ok(Some(Crossing {
+        t,
+        fraction: Some([above, approach]),
+        part: 0,
+        leaves: false,
+        sure: true,
+    }))
+}
+
+fn triangle<N: Enclosure>(
+    corners: [[i64; 3]; 3],
+    normal: [i64; 3],
+    ray: &Ray<N>,
+    found: &mut Vec<Crossing<N>>,
+) -> Result<(), Grazes> {
+    if normal == [0; 3] {
+        return Ok(());
+    }
+    let [a, b, c] = corners.map(|corner| minus(exact(corner), ray.origin));
+    let (mut above, mut below, mut open) = (false, false, false);
+    for (p, q) in [(b, c), (c, a), (a, b)] {
+        match dot(ray.direction, cross(p, q)).sign() {
+            Some(Ordering::Greater) => above = true,
+            Some(Ordering::Less) => below = true,
+            Some(Ordering::Equal) => {}
+            None => open = true,
+        }
+        if above && below {
+            return Ok(());
+        }
+    }
+    if let Some(mut crossing) = flat(exact(normal), a, ray)? {
+        crossing.sure = !open;
+        crossing.keep(found);
+    }
+    Ok(())
+}
+
+fn disc<N: Enclosure>(
+    (center, normal, radius): ([i64; 3], [i64; 3], i64),
+    ray: &Ray<N>,
+    found: &mut Vec<Crossing<N>>,
+) -> Result<(), Grazes> {
+    let relative = minus(exact(center), ray.origin);
+    // Not if the line stays away from the disc's sphere.
+    let radius = N::int(radius);
+    let length = norm2(ray.direction);
+    let closest = dot(relative, ray.direction).over(length).ok_or(Grazes)?;
+    let apart = norm2(along(relative, -closest, ray.direction));
+    if (radius.square() - apart).sign() == Some(Ordering::Less) {
+        return Ok(());
+    }
+    let Some(mut crossing) = flat(exact(normal), relative, ray)? else {
+        return Ok(());
+    };
+    let apart = norm2(along(relative, -crossing.t, ray.direction));
+    match (radius.square() - apart).sign() {
+        Some(Ordering::Less) => return Ok(()),
+        Some(_) => {}
+        None => crossing.sure = false,
+    }
+    crossing.keep(found);
+    Ok(())
+}
+
+fn sphere<N: Enclosure>(
+    center: [i64; 3],
+    radius: i64,
+    itself: Option<(u8, bool)>,
+    ray: &Ray<N>,
+    found: &mut Vec<Crossing<N>>,
+) {
+    let crossing = |t: N, leaves: bool, sure: bool| Crossing {
+        t,
+        fraction: None,
+        part: 0,
+        leaves,
+        sure,
+    };
+    let relative = minus(exact(center), ray.origin);
+    let length = norm2(ray.direction);
+    let Some(closest) = dot(relative, ray.direction).over(length) else {
+        return;
+    };
+    match itself {
+        Some((_, false)) => return,
+        // The other root is 0.
+        Some((_, true)) => return crossing(closest + closest, true, true).keep(found),
+        None => {}
+    }
+    let apart = norm2(along(relative, -closest, ray.direction));
+    let square = N::int(radius).square() - apart;
+    let sure = match square.sign() {
+        Some(Ordering::Less) => return,
+        sign => sign.is_some(),
+    };
+    let Some(half) = square.over(length).map(N::sqrt) else {
+        return;
+    };
+    crossing(closest - half, false, sure).keep(found);
+    crossing(closest + half, true, sure).keep(found);
+}
+
+/// Of several crossings the last, or the first if `sign` is less, each that may be it.
+fn extreme<N: Enclosure>(all: &[Crossing<N>], sign: Ordering) -> Vec<Crossing<N>> {
+    let beaten = |index: usize| {
+        (0..all.len()).any(|other| {
+            // At one and the same t the earlier axis counts.
+            match compare(&all[other], &all[index]) {
+                Some(order) if order == sign => true,
+                Some(Ordering::Equal) => other < index,
+                _ => false,
+            }
+        })
+    };
+    let left = (0..all.len()).filter(|&index| !beaten(index));
+    left.map(|index| all[index]).collect()
+}
+
+fn cuboid<N: Enclosure>(
+    [lowest, highest]: [[i64; 3]; 2],
+    at: [bool; 6],
+    ray: &Ray<N>,
+    found: &mut Vec<Crossing<N>>,
+) -> Result<(), Grazes> {
+    let (mut enters, mut leaves) = (Vec::with_capacity(3), Vec::with_capacity(3));
+    let (mut sure, mut grazes) = (true, false);
+    for k in 0..3 {
+        let to = |side: usize, coordinate: i64| {
+            if at[2 * k + side] {
+                N::zero()
+            } else {
+                N::int(coordinate) - ray.origin[k]
+            }
+        };
+        let (below, above) = (to(0, lowest[k]), to(1, highest[k]));
+        let slope = ray.direction[k];
+        let face = |distance: N, part: usize, leaves: bool| {
+            let t = distance.over(slope)?;
+            Some(Crossing {
+                t,
+                fraction: Some([distance, slope]),
+                part: part as u8,
+                leaves,
+                sure: true,
+            })
+        };
+        let (near, far) = match slope.sign() {
+            Some(Ordering::Greater) => (face(below, 2 * k, false), face(above, 2 * k + 1, true)),
+            Some(Ordering::Less) => (face(above, 2 * k + 1, false), face(below, 2 * k, true)),
+            Some(Ordering::Equal) => {
+                match (below.sign(), above.sign()) {
+                    (Some(Ordering::Greater), _) | (_, Some(Ordering::Less)) => return Ok(()),
+                    (Some(_), Some(_)) => {}
+                    _ => sure = false,
+                }
+                continue;
+            }
+            None => {
+                grazes = true;
+                continue;
+            }
+        };
+        enters.push(near.ok_or(Grazes)?);
+        leaves.push(far.ok_or(Grazes)?);
+    }
+    for enter in &enters {
+        // Between the faces of one axis it is known, also where they are one and the same.
+        for leave in leaves.iter().filter(|it| it.part / 2 != enter.part / 2) {
+            match compare(enter, leave) {
+                Some(Ordering::Greater) => return Ok(()),
+                Some(_) => {}
+                None => sure = false,
+            }
+        }
+    }
+    if grazes {
+        let behind = |it: &Crossing<N>| positive(it.t) == Some(false);
+        return if leaves.iter().any(behind) {
+            Ok(())
+        } else {
+            Err(Grazes)
+        };
+    }
+    for all in [
+        extreme(&enters, Ordering::Greater),
+        extreme(&leaves, Ordering::Less),
+    ] {
+        for crossing in &all {
+            Crossing {
+                sure: sure && all.len() == 1,
+                ..*crossing
+            }
+            .keep(found);
+        }
+    }
+    Ok(())
+}
+
+/// The normal of a primitive, of length 1, at a point of its surface: outward, or to the front. `None` where it is
+/// open, at the tip of a cone.
+pub fn normal<N: Enclosure>(form: &Form, part: u8, point: Three<N>) -> Option<Three<N>> {
+    match *form {
+        Form::Triangle { normal, .. } | Form::Disc { normal, .. } | Form::Plane { normal, .. } => {
+            flat_normal(normal)
+        }
+        Form::Sphere { center, .. } => unit(minus(point, exact(center))),
+        Form::Cuboid { .. } => {
+            let mut normal = [0; 3];
+            normal[usize::from(part / 2)] = if part.is_multiple_of(2) { -1 } else { 1 };
+            Some(exact(normal))
+        }
+        Form::Cone { .. } => cone::normal(form, part, point),
+    }
+}
+
+/// The axis and the coordinate of a face that lies across an axis.
+pub fn face(form: &Form, part: u8) -> Option<(usize, i64)> {
+    match *form {
+        Form::Triangle {
+            normal,
+            corners: [point, ..],
+            ..
+        }
+        | Form::Disc {
+            normal,
+            center: point,
+            ..
+        }
+        | Form::Plane { normal, point } => axis_of(normal).map(|k| (k, point[k])),
+        Form::Cuboid { lowest, highest } => {
+            let k = usize::from(part / 2);
+            Some((
+                k,
+                if part.is_multiple_of(2) {
+                    lowest[k]
+                } else {
+                    highest[k]
+                },
+            ))
+        }
+        _ => None,
+    }
+}
+
+impl Form {
+    /// Whether it has no inside.
+    pub fn is_flat(&self) -> bool {
+        matches!(
+            self,
+            Form::Triangle { .. } | Form::Disc { .. } | Form::Plane { .. }
+        )
+    }
+}

@@ -1,0 +1,488 @@
+//! A blob as exact arithmetic sees it: integers, and boxes that hold what they are the boxes of.
+//!
+//! Lengths are in steps of the storage lattice, 1/256 unit.
+
+use super::number::Enclosure;
+use gridel_core::format::instance::MATRIX_BITS;
+use gridel_core::format::record::UnitBox;
+use gridel_core::geometry::Geometry;
+use gridel_core::{Effects, Kind, Scene};
+use std::collections::HashMap;
+
+/// The effects that are known here.
+pub const KNOWN: Effects = Effects::SHADOW
+    .with(Effects::HIGHLIGHT)
+    .with(Effects::MIRROR)
+    .with(Effects::GLASS)
+    .with(Effects::ABSORPTION)
+    .with(Effects::CHECKER)
+    .with(Effects::SMOOTH);
+
+/// No plane, and no instance.
+pub const NONE: u32 = u32::MAX;
+
+/// Why a scene cannot be certified.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Unknown {
+    #[error("certify does not know the effect `{0}` yet")]
+    Effect(&'static str),
+    #[error("certify does not know the shape `{0}` yet")]
+    Shape(&'static str),
+    #[error("certify does not know the primitive {0} of the kind `{1}`")]
+    Primitive(usize, &'static str),
+}
+
+/// A primitive.
+#[derive(Clone, Debug)]
+pub struct Solid {
+    pub form: Form,
+    /// Its number in scene-file order, which decides between hits at one place; of a part's with those before it.
+    pub primitive: u32,
+    pub object: u32,
+    /// Its planes, for what is flat or has flat faces: primitives that share a number lie in one plane.
+    pub planes: [u32; 6],
+    /// The first primitive of the very same form.
+    pub twin: u32,
+}
+
+/// The form of a primitive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Form {
+    Triangle {
+        corners: [[i64; 3]; 3],
+        /// Of any length, exactly.
+        normal: [i64; 3],
+        /// Those of the corners, as they are stored.
+        smooth: Option<[[i16; 2]; 3]>,
+    },
+    Sphere {
+        center: [i64; 3],
+        radius: i64,
+    },
+    Disc {
+        center: [i64; 3],
+        normal: [i64; 3],
+        radius: i64,
+    },
+    Plane {
+        point: [i64; 3],
+        normal: [i64; 3],
+    },
+    Cuboid {
+        lowest: [i64; 3],
+        highest: [i64; 3],
+    },
+    Cone {
+        base: [i64; 3],
+        /// From the base's center to that of the other cap.
+        axis: [i64; 3],
+        base_radius: i64,
+        apex_radius: i64,
+    },
+}
+
+/// A place where a part stands.
+#[derive(Clone, Copy, Debug)]
+pub struct Placed {
+    pub part: usize,
+    pub matrix: [[i64; 3]; 3],
+    pub center: [i64; 3],
+    pub exponent: i32,
+}
+
+/// What a space holds that has a box.
+#[derive(Clone, Copy, Debug)]
+pub enum Item {
+    Solid(u32),
+    Instance(u32),
+}
+
+/// The primitives of a scene or of a part, and a hierarchy of boxes around them.
+#[derive(Clone, Debug, Default)]
+pub struct Space {
+    pub solids: Vec<Solid>,
+    /// Those without a box.
+    pub unbounded: Vec<u32>,
+    pub tree: Tree,
+}
+
+/// A whole scene.
+pub struct World<'s> {
+    pub scene: &'s Scene<'s>,
+    pub own: Space,
+    pub parts: Vec<Space>,
+    pub placed: Vec<Placed>,
+    pub effects: Effects,
+}
+
+impl<'s> World<'s> {
+    /// Reads a scene.
+    ///
+    /// # Errors
+    /// If something of it is not known here.
+    pub fn of(scene: &'s Scene<'s>) -> Result<Self, Unknown> {
+        let effects = scene.effects_with_parts();
+        let strange = effects.without(KNOWN);
+        if let Some(name) = strange.names().next() {
+            return Err(Unknown::Effect(name));
+        }
+        if strange != Effects::NONE {
+            return Err(Unknown::Effect("of a later version"));
+        }
+        let mut parts = Vec::new();
+        for (number, part) in scene.parts().iter().enumerate() {
+            let first = scene.first_primitive_of_part(number).unwrap_or(0);
+            parts.push(Space::of(
+                part,
+                |own| (first + own, scene.object(first + own)),
+                Vec::new(),
+            )?);
+        }
+        let mut placed = Vec::new();
+        let mut boxes = Vec::new();
+        for (index, instance) in (0..).zip(scene.instances()) {
+            let part = usize::from(instance.part);
+            placed.push(Placed {
+                part,
+                matrix: instance.matrix.map(|row| row.map(i64::from)),
+                center: instance.center.map(i64::from),
+                exponent: i32::from(instance.exponent) - MATRIX_BITS as i32,
+            });
+            let around = scene.parts().get(part);
+            let around = around.and_then(|part| instance.around(part.bounds()));
+            boxes.extend(around.map(|around| (Bounds::of(&around), Item::Instance(index))));
+        }
+        let own = Space::of(scene, |own| (own, scene.object(own)), boxes)?;
+        Ok(Self {
+            scene,
+            own,
+            parts,
+            placed,
+            effects,
+        })
+    }
+
+    /// The space of an instance, or the scene's own.
+    pub fn space(&self, instance: u32) -> &Space {
+        match self.placed.get(instance as usize) {
+            Some(placed) => &self.parts[placed.part],
+            None => &self.own,
+        }
+    }
+}
+
+impl Space {
+    fn of(
+        scene: &Scene<'_>,
+        numbers: impl Fn(u32) -> (u32, u32),
+        mut boxes: Vec<(Bounds, Item)>,
+    ) -> Result<Self, Unknown> {
+        let mut space = Self::default();
+        let mut planes = Planes::default();
+        let mut twins = HashMap::new();
+        for kind in Kind::ALL {
+            for slot in 0..scene.count(kind) {
+                let unknown = Unknown::Primitive(slot, kind.name());
+                let geometry = scene.geometry(kind, slot).ok_or(unknown)?;
+                let form = form(scene, slot, geometry).ok_or(Unknown::Shape(kind.name()))?;
+                let (primitive, object) = numbers(scene.primitive(kind, slot as u32));
+                let index = space.solids.len() as u32;
+                space.solids.push(Solid {
+                    form,
+                    primitive,
+                    object,
+                    planes: planes.of(&form),
+                    twin: *twins.entry(form).or_insert(index),
+                });
+                match scene.primitive_bounds(kind, slot) {
+                    Some(bounds) if kind.is_bounded() => {
+                        boxes.push((Bounds::of(&bounds), Item::Solid(index)));
+                    }
+                    _ => space.unbounded.push(index),
+                }
+            }
+        }
+        space.tree = Tree::of(boxes);
+        Ok(space)
+    }
+}
+
+fn form(scene: &Scene<'_>, slot: usize, geometry: Geometry) -> Option<Form> {
+    let wide = |v: [i32; 3]| v.map(i64::from);
+    Some(match geometry {
+        Geometry::Triangle(corners) => {
+            let corners = corners.map(wide);
+            let edge = |to: usize| [0, 1, 2].map(|k| corners[to][k] - corners[0][k]);
+            let (p, q) = (edge(1), edge(2));
+            let normal = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| p[i] * q[j] - p[j] * q[i]);
+            Form::Triangle {
+                corners,
+                normal,
+                smooth: scene.corner_normals(slot),
+            }
+        }
+        Geometry::Sphere { center, radius } => Form::Sphere {
+            center: wide(center),
+            radius: radius.into(),
+        },
+        Geometry::Disc(disc) => Form::Disc {
+            center: wide(disc.center),
+            normal: wide(disc.normal),
+            radius: disc.radius.into(),
+        },
+        Geometry::Plane(plane) => Form::Plane {
+            point: wide(plane.point),
+            normal: wide(plane.normal),
+        },
+        Geometry::Box(cuboid) => Form::Cuboid {
+            lowest: wide(cuboid.lowest),
+            highest: wide(cuboid.highest),
+        },
+        Geometry::Cone(cone) => Form::Cone {
+            base: wide(cone.base),
+            axis: [0, 1, 2].map(|k| i64::from(cone.apex[k]) - i64::from(cone.base[k])),
+            base_radius: cone.base_radius.into(),
+            apex_radius: cone.apex_radius.into(),
+        },
+        _ => return None,
+    })
+}
+
+/// The planes of a space, so that primitives in one plane are known by integers.
+#[derive(Default)]
+struct Planes(HashMap<([i64; 3], i128), u32>);
+
+impl Planes {
+    fn of(&mut self, form: &Form) -> [u32; 6] {
+        let mut planes = [NONE; 6];
+        match *form {
+            Form::Triangle {
+                corners: [point, ..],
+                normal,
+                ..
+            }
+            | Form::Disc {
+                center: point,
+                normal,
+                ..
+            }
+            | Form::Plane { point, normal } => planes[0] = self.number(point, normal),
+            Form::Cuboid { lowest, highest } => {
+                for (face, plane) in planes.iter_mut().enumerate() {
+                    let side = if face % 2 == 0 { lowest } else { highest };
+                    let mut normal = [0; 3];
+                    normal[face / 2] = 1;
+                    *plane = self.number(side, normal);
+                }
+            }
+            Form::Cone { base, axis, .. } => {
+                planes[1] = self.number(base, axis);
+                planes[2] = self.number([0, 1, 2].map(|k| base[k] + axis[k]), axis);
+            }
+            Form::Sphere { .. } => {}
+        }
+        planes
+    }
+
+    fn number(&mut self, point: [i64; 3], normal: [i64; 3]) -> u32 {
+        let divisor = normal.iter().fold(0, |a, &b| gcd(a, b.unsigned_abs()));
+        if divisor == 0 {
+            return NONE;
+        }
+        let first = normal.iter().find(|&&x| x != 0).map_or(1, |x| x.signum());
+        let reduced = normal.map(|x| x / divisor as i64 * first);
+        let offset = (0..3)
+            .map(|k| i128::from(reduced[k]) * i128::from(point[k]))
+            .sum();
+        let next = self.0.len() as u32;
+        *self.0.entry((reduced, offset)).or_insert(next)
+    }
+}
+
+fn gcd(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+/// A box in lattice steps, low and high on every axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    pub low: [f64; 3],
+    pub high: [f64; 3],
+}
+
+/// By how much boxes are larger than what they hold, in steps: far more than the walk rounds.
+const MARGIN: f64 = 1.0;
+
+impl Bounds {
+    fn of(units: &UnitBox) -> Self {
+        Self {
+            low: units.0.map(|[low, _]| f64::from(low) * 256.0 - MARGIN),
+            high: units.0.map(|[_, high]| f64::from(high) * 256.0 + MARGIN),
+        }
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            low: [0, 1, 2].map(|k| self.low[k].min(other.low[k])),
+            high: [0, 1, 2].map(|k| self.high[k].max(other.high[k])),
+        }
+    }
+}
+
+/// A hierarchy of boxes: halves along the longest side.
+#[derive(Clone, Debug, Default)]
+pub struct Tree {
+    nodes: Vec<Node>,
+    items: Vec<Item>,
+}
+
+#[derive(Clone, Debug)]
+struct Node {
+    bounds: Bounds,
+    /// The first child, or the first item.
+    first: u32,
+    /// The number of items; 0 for a node with two children side by side.
+    count: u32,
+}
+
+/// Most items of a leaf.
+const LEAF: usize = 2;
+
+impl Tree {
+    fn of(mut boxes: Vec<(Bounds, Item)>) -> Self {
+        let mut tree = Self::default();
+        if boxes.is_empty() {
+            return tree;
+        }
+        tree.nodes.push(Node {
+            bounds: around(&boxes),
+            first: 0,
+            count: 0,
+        });
+        tree.split(0, &mut boxes);
+        tree
+    }
+
+    fn split(&mut self, node: usize, boxes: &mut [(Bounds, Item)]) {
+        if boxes.len() <= LEAF {
+            self.nodes[node].first = self.items.len() as u32;
+            self.nodes[node].count = boxes.len() as u32;
+            self.items.extend(boxes.iter().map(|&(_, item)| item));
+            return;
+        }
+        let middle = |it: &Bounds, k: usize| it.low[k] + it.high[k];
+        let spread = |k: usize| {
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            for (it, _) in boxes.iter() {
+                (low, high) = (low.min(middle(it, k)), high.max(middle(it, k)));
+            }
+            high - low
+        };
+        let spreads = [spread(0), spread(1), spread(2)];
+        let axis = if spreads[0] >= spreads[1] && spreads[0] >= spreads[2] {
+            0
+        } else if spreads[1] >= spreads[2] {
+            1
+        } else {
+            2
+        };
+        let half = boxes.len() / 2;
+        boxes.select_nth_unstable_by(half, |(a, _), (b, _)| {
+            middle(a, axis).total_cmp(&middle(b, axis))
+        });
+        let (left, right) = boxes.split_at_mut(half);
+        let first = self.nodes.len();
+        for side in [&*left, &*right] {
+            self.nodes.push(Node {
+                bounds: around(side),
+                first: 0,
+                count: 0,
+            });
+        }
+        self.nodes[node].first = first as u32;
+        self.split(first, left);
+        self.split(first + 1, right);
+    }
+
+    /// Calls a function with every item whose box a ray may meet before an end, which the function may bring nearer.
+    pub fn walk(&self, ray: &Slabs, mut end: f64, mut visit: impl FnMut(Item, f64) -> f64) {
+        let mut stack = Vec::with_capacity(64);
+        if let Some(root) = self.nodes.first()
+            && let Some(near) = ray.enters(&root.bounds, end)
+        {
+            stack.push((0_u32, near));
+        }
+        while let Some((index, near)) = stack.pop() {
+            if near > end {
+                continue;
+            }
+            let node = &self.nodes[index as usize];
+            if node.count > 0 {
+                let first = node.first as usize;
+                for &item in &self.items[first..first + node.count as usize] {
+                    end = visit(item, end);
+                }
+                continue;
+            }
+            let child = |child: u32| {
+                let near = ray.enters(&self.nodes[child as usize].bounds, end);
+                near.map(|near| (child, near))
+            };
+            let (left, right) = (child(node.first), child(node.first + 1));
+            match (left, right) {
+                (Some(left), Some(right)) if left.1 <= right.1 => stack.extend([right, left]),
+                (left, right) => stack.extend(left.into_iter().chain(right)),
+            }
+        }
+    }
+}
+
+fn around(boxes: &[(Bounds, Item)]) -> Bounds {
+    let first = boxes[0].0;
+    boxes.iter().fold(first, |all, (it, _)| all.with(*it))
+}
+
+/// A ray for tests of boxes: floats that enclose its numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Slabs {
+    origin: [[f64; 2]; 3],
+    /// The inverse of the direction where that has a sign, which comes with it.
+    inverse: [Option<[f64; 2]>; 3],
+}
+
+/// More than what one test of a box rounds, as a part of a t.
+const SLACK: f64 = 1e-14;
+
+impl Slabs {
+    pub fn of<N: Enclosure>(origin: [N; 3], direction: [N; 3]) -> Self {
+        Self {
+            origin: origin.map(N::bounds),
+            inverse: direction.map(|x| {
+                let [low, high] = x.bounds();
+                (low > 0.0 || high < 0.0).then(|| [1.0 / high, 1.0 / low])
+            }),
+        }
+    }
+
+    /// At or before where the ray enters a box; `None` if it misses it, or enters it beyond the end.
+    fn enters(&self, bounds: &Bounds, end: f64) -> Option<f64> {
+        let (mut near, mut far) = (0.0_f64, end);
+        for k in 0..3 {
+            let Some([low, high]) = self.inverse[k] else {
+                continue;
+            };
+            let [first, last] = self.origin[k];
+            // Distances to the nearer side and to the farther one, at least and at most.
+            let (to_near, to_far, low, high) = if low > 0.0 {
+                (bounds.low[k] - last, bounds.high[k] - first, low, high)
+            } else {
+                (first - bounds.high[k], last - bounds.low[k], -high, -low)
+            };
+            let enter = to_near * if to_near >= 0.0 { low } else { high };
+            let leave = to_far * if to_far >= 0.0 { high } else { low };
+            near = near.max(enter - enter.abs() * SLACK);
+            far = far.min(leave + leave.abs() * SLACK);
+        }
+        (near <= far).then_some(near)
+    }
+}

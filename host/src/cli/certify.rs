@@ -1,0 +1,310 @@
+//! `gridel certify`: encloses the exact picture, and measures how far each number format is from it.
+
+use super::arguments::{self, GeometryOptions, PictureOptions, distinct, quoted};
+use super::failure::Failure;
+use super::output::{print, print_json_warned, write_files};
+use super::progress::Progress;
+use super::source::Source;
+use clap::Args;
+use gridel_core::{Format, Settings, Structure};
+use gridel_host::certify::{
+    Enclosed, Pictures, Report, World, certify, exact_picture, map, page, sentence,
+};
+use gridel_host::compile;
+use gridel_host::output::write_whole;
+use gridel_host::picture::write_png;
+use gridel_host::render::{Job, render};
+use gridel_host::table::{Align, Table, grouped};
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Prove pixels: enclose the exact picture, and say how far each number format is from it
+///
+/// A blob defines one exact picture: its geometry, camera, samples, lights and effects, evaluated in
+/// real arithmetic. For each pixel this computes an interval that contains the exact value. A pixel
+/// is proved if its interval gives one 8-bit value. Pixels that stay open are computed again with
+/// 128 and 256 bits. The result is the sampled picture, with the scene's samples per pixel, and not
+/// the integral behind it.
+///
+/// For each number format every pixel is proved equal, proved different, or open with a reason and a
+/// place.
+///
+/// Writes certify.html (the page), certify.json, map.png and exact.png to the folder, and
+/// certify.state, from which an interrupted run continues.
+#[derive(Args)]
+#[command(after_help = super::failure::EXIT_CODES)]
+pub struct Arguments {
+    /// Blob or scene file, or `-` for standard input
+    #[arg(value_name = "BLOB|SCENE")]
+    input: PathBuf,
+
+    /// Number format to compare; give it again for each further one [default: all]
+    #[arg(long, value_name = "NAME", value_parser = arguments::format())]
+    format: Vec<Format>,
+
+    /// Folder for the page, the report and the pictures [default: certify-SCENE]
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+
+    /// Print the report as JSON
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    picture: PictureOptions,
+
+    #[command(flatten)]
+    geometry: GeometryOptions,
+}
+
+/// The names of the files.
+const PAGE: &str = "certify.html";
+const JSON: &str = "certify.json";
+const MAP: &str = "map.png";
+const EXACT: &str = "exact.png";
+const STATE: &str = "certify.state";
+
+/// How often the state is written.
+const OFTEN: Duration = Duration::from_secs(5);
+
+/// The JSON output.
+#[derive(Serialize)]
+struct Printed<'r> {
+    folder: String,
+    #[serde(flatten)]
+    report: &'r Report,
+}
+
+/// Certifies a picture.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let input = &arguments.input;
+    let compiling = compile::Options {
+        structures: vec![Structure::DualSplit],
+        ..compile::Options::default()
+    };
+    let options = arguments.geometry.clone().into();
+    let source = Source::open(input, &options, None, compiling)?;
+    let scene = source.scene()?;
+    source.warn_of_collapsed();
+    let structure = source.structure(&scene, None)?;
+    let settings = arguments.picture.settings(&scene);
+    let world = World::of(&scene).map_err(|unknown| {
+        Failure::rejected(
+            format!("{}: {unknown}", input.display()),
+            "leave it out of the scene, or use `gridel accuracy`, which measures without proof",
+        )
+    })?;
+    let stem = input.file_stem().unwrap_or_default().display().to_string();
+    let folder = match &arguments.output {
+        Some(folder) => folder.clone(),
+        None => PathBuf::from(format!("certify-{stem}")),
+    };
+    fs::create_dir_all(&folder).map_err(|error| Failure::writing(&folder, &error))?;
+
+    // Formats first: they reject settings that no picture has, in a moment.
+    let formats = match &arguments.format[..] {
+        [] => Format::ALL.to_vec(),
+        asked => distinct(asked),
+    };
+    let mut pictures = Vec::new();
+    for format in formats {
+        let job = Job::whole(format, structure, settings);
+        let picture = render(&scene, &job, &|| ()).map_err(|error| {
+            Failure::usage(
+                error.to_string(),
+                "change the option, or the scene file's `[render]`",
+            )
+        })?;
+        pictures.push((format, picture.pixels));
+    }
+
+    let state = State {
+        path: folder.join(STATE),
+        key: key(scene.header().checksum, &settings),
+    };
+    let count = usize::from(settings.width) * usize::from(settings.height);
+    let mut pixels = state.read(count)?;
+    let progress = Progress::steps("certifying", settings.height.into());
+    let mut written = Instant::now();
+    certify(
+        &world,
+        &settings,
+        &mut pixels,
+        &|| progress.step(),
+        |pixels| {
+            if written.elapsed() < OFTEN {
+                return Ok(());
+            }
+            written = Instant::now();
+            state.write(pixels)
+        },
+    )?;
+    drop(progress);
+    state.write(&pixels)?;
+
+    let report = Report::of(&settings, &pixels, &pictures);
+    let command = explain_command(arguments, &settings);
+    write_results(&folder, &stem, (&report, &pixels, &pictures), &command)?;
+    if arguments.json {
+        let folder = folder.display().to_string();
+        let report = &report;
+        print_json_warned(&Printed { folder, report }, &source.warnings)
+    } else {
+        print(text(&folder, &report, &command))
+    }
+}
+
+/// What is certified, so that the state of another picture is not continued.
+fn key(checksum: u32, settings: &Settings) -> String {
+    let Settings {
+        width,
+        height,
+        samples,
+        depth,
+        ..
+    } = settings;
+    format!(
+        "gridel {} certify 1 blob {checksum:08x} size {width}x{height} samples {samples} depth {depth}\n",
+        env!("CARGO_PKG_VERSION")
+    )
+}
+
+/// The file from which an interrupted run continues: a line with the key, then the pixels.
+struct State {
+    path: PathBuf,
+    key: String,
+}
+
+impl State {
+    /// The pixels of a run before this one; none are done if there was none, or of another picture.
+    fn read(&self, count: usize) -> Result<Vec<Enclosed>, Failure> {
+        let mut pixels = vec![Enclosed::default(); count];
+        let bytes = match fs::read(&self.path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(pixels),
+            Err(error) => return Err(Failure::reading(&self.path, &error)),
+        };
+        let kept: &mut [u8] = bytemuck::cast_slice_mut(&mut pixels);
+        if let Some(rest) = bytes.strip_prefix(self.key.as_bytes())
+            && rest.len() == kept.len()
+        {
+            kept.copy_from_slice(rest);
+        }
+        Ok(pixels)
+    }
+
+    fn write(&self, pixels: &[Enclosed]) -> Result<(), Failure> {
+        let bytes: &[u8] = bytemuck::cast_slice(pixels);
+        let all = |out: &mut dyn io::Write| {
+            out.write_all(self.key.as_bytes())?;
+            out.write_all(bytes)
+        };
+        write_whole(&self.path, all).map_err(|error| Failure::writing(&self.path, &error))
+    }
+}
+
+type Found<'f> = (&'f Report, &'f [Enclosed], &'f [(Format, Vec<[u16; 3]>)]);
+
+fn write_results(
+    folder: &Path,
+    name: &str,
+    (report, pixels, pictures): Found<'_>,
+    command: &str,
+) -> Result<(), Failure> {
+    let size = report.size.map(u32::from);
+    let (map, exact) = (map(pixels, pictures), exact_picture(pixels));
+    let shown = Pictures {
+        map: &map,
+        exact: &exact,
+    };
+    let failed =
+        |error: io::Error| Failure::failed(error.to_string(), "report this as a fault of gridel");
+    let page = page(name, report, &shown, command).map_err(failed)?;
+    let json = serde_json::to_string_pretty(report).map_err(|error| failed(error.into()))?;
+    let [page_path, json_path, map_path, exact_path] =
+        [PAGE, JSON, MAP, EXACT].map(|name| folder.join(name));
+    write_files(&[
+        (&page_path, &|out| out.write_all(page.as_bytes())),
+        (&json_path, &|out| writeln!(out, "{json}")),
+        (&map_path, &|out| write_png(out, size, &map, None)),
+        (&exact_path, &|out| write_png(out, size, &exact, None)),
+    ])
+}
+
+/// The command that explains a pixel, up to its place.
+fn explain_command(arguments: &Arguments, settings: &Settings) -> String {
+    let GeometryOptions {
+        lattice_bits,
+        room,
+        import,
+    } = &arguments.geometry;
+    let bits = lattice_bits.map_or(String::new(), |bits| format!(" --lattice-bits {bits}"));
+    let room = room.map_or(String::new(), |room| format!(" --room {room}"));
+    let Settings {
+        width,
+        height,
+        samples,
+        depth,
+        ..
+    } = settings;
+    format!(
+        "gridel explain {}{}{bits}{room} --size {width}x{height} --samples {samples} --depth {depth} --pixel ",
+        quoted(&arguments.input.to_string_lossy()),
+        import.written(),
+    )
+}
+
+fn text(folder: &Path, report: &Report, command: &str) -> String {
+    let mut text = sentence(report) + "\n\n";
+    let mut table = Table::new([
+        ("format", Align::Left),
+        ("proved equal", Align::Right),
+        ("proved different", Align::Right),
+        ("open", Align::Right),
+        ("largest proved error", Align::Right),
+    ]);
+    for format in &report.formats {
+        table.row([
+            format.format.to_owned(),
+            grouped(format.equal),
+            grouped(format.different),
+            grouped(format.open),
+            format!("{}/255", format.max_proved_error),
+        ]);
+    }
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{table}");
+    if !report.reasons.is_empty() {
+        let mut table = Table::new([
+            ("open because of", Align::Left),
+            ("pixels", Align::Right),
+            ("on the boundary", Align::Right),
+        ]);
+        for reason in &report.reasons {
+            table.row([
+                reason.text.to_owned(),
+                grouped(reason.pixels),
+                grouped(reason.on_boundary),
+            ]);
+        }
+        let _ = writeln!(text, "{table}");
+        for reason in &report.reasons {
+            if let Some(first) = reason.examples.first() {
+                let [x, y] = first.pixel;
+                let _ = writeln!(text, "  {command}{x},{y} --interval");
+            }
+        }
+        text.push('\n');
+    }
+    let page = folder.join(PAGE);
+    let _ = write!(
+        text,
+        "It is the sampled picture that is certified. The page: {}",
+        page.display()
+    );
+    text + "\n"
+}

@@ -1,0 +1,203 @@
+//! Scenes without some of their effects.
+//!
+//! An effect is what its scene calls for it with: a scene without that calls for nothing, and its blob has no byte
+//! and its program no instruction of it. Each effect has a row below, which takes away what calls for it.
+
+use super::{Diffuse, Material, Normals, Scene};
+use gridel_core::Effects;
+use gridel_core::format::track::TrackTarget;
+
+/// Takes away what calls for an effect.
+type Removal = fn(&mut Scene);
+
+/// For every effect: what shows where it was, and its removal.
+const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
+    (
+        Effects::SHADOW,
+        "lights shine through all objects",
+        |scene| scene.render.shadows = false,
+    ),
+    (
+        Effects::HIGHLIGHT,
+        "surfaces show their diffuse color alone under a light",
+        |scene| each_material(scene, |material| material.highlight = [0.0; 3]),
+    ),
+    (
+        Effects::MIRROR,
+        "mirrors show their diffuse color and highlights alone",
+        |scene| {
+            each_material(scene, |material| material.mirror = [0.0; 3]);
+            remove_tracks(scene, TrackTarget::MaterialMirror);
+        },
+    ),
+    (
+        Effects::GLASS,
+        "glass is opaque and shows its diffuse color and highlights alone",
+        |scene| {
+            each_material(scene, |material| material.transmit = [0.0; 3]);
+            remove_tracks(scene, TrackTarget::MaterialTransmit);
+        },
+    ),
+    (
+        Effects::ABSORPTION,
+        "glass is as clear in its depth as at its surface",
+        |scene| each_material(scene, |material| material.absorption = [0.0; 3]),
+    ),
+    (
+        Effects::CHECKER,
+        "checkerboards have the mean of their two colors",
+        |scene| {
+            each_material(scene, |material| {
+                if let Diffuse::Checker { even, odd, .. } = material.diffuse {
+                    let mean = [0, 1, 2].map(|channel| 0.5 * (even[channel] + odd[channel]));
+                    material.diffuse = Diffuse::Plain(mean);
+                }
+            });
+        },
+    ),
+    (Effects::SMOOTH, "meshes show their faces", |scene| {
+        let in_parts = scene.parts.iter_mut().flat_map(|part| &mut part.objects);
+        for object in scene.objects.iter_mut().chain(in_parts) {
+            object.normals = Normals::default();
+        }
+    }),
+];
+
+fn each_material(scene: &mut Scene, change: impl Fn(&mut Material)) {
+    scene.materials.iter_mut().for_each(change);
+}
+
+fn remove_tracks(scene: &mut Scene, target: TrackTarget) {
+    scene.tracks.retain(|track| track.target != target);
+}
+
+impl Scene {
+    /// Takes away all that calls for some effects: the blob has no byte of them, and the program no code. What calls for
+    /// others stays, but for what depends on them: without glass nothing absorbs.
+    ///
+    /// ```
+    /// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+    /// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+    /// use gridel_core::Effects;
+    /// use gridel_host::compile::{Options, compile};
+    ///
+    /// let mut scene = imported.scene;
+    /// scene.remove_effects(Effects::SHADOW);
+    /// let blob = compile(&scene, &Options::default())?.blob;
+    /// assert_eq!(blob.scene()?.effects(), Effects::NONE);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn remove_effects(&mut self, effects: Effects) {
+        for (effect, _, remove) in REMOVALS {
+            if effects.contains(effect) {
+                remove(self);
+            }
+        }
+    }
+}
+
+/// Leaves one effect out, and returns the names of the materials and objects that lose it; `None` for a scene that does
+/// not call for it.
+pub fn leave_out(scene: &mut Scene, effect: Effects) -> Option<Vec<String>> {
+    let before = scene.clone();
+    scene.remove_effects(effect);
+    if *scene == before {
+        return None;
+    }
+    let materials = before.materials.iter().zip(&scene.materials);
+    let materials = materials.filter(|(old, new)| old != new);
+    let objects = before.all_objects().zip(scene.all_objects());
+    let objects = objects.filter(|(old, new)| old != new);
+    let names = materials.map(|(old, _)| format!("material `{}`", old.name));
+    let names = names.chain(objects.map(|(old, _)| format!("object `{}`", old.name)));
+    Some(names.collect())
+}
+
+/// What shows where a single effect was, as part of a sentence.
+///
+/// ```
+/// use gridel_core::Effects;
+/// use gridel_host::scene::shown_without;
+///
+/// assert_eq!(shown_without(Effects::SHADOW), "lights shine through all objects");
+/// ```
+pub fn shown_without(effect: Effects) -> &'static str {
+    let row = REMOVALS.iter().find(|(of, ..)| *of == effect);
+    row.map_or("", |(_, shown, _)| shown)
+}
+
+/// The effect of a name: the name of its Cargo feature.
+pub fn effect_named(name: &str) -> Option<Effects> {
+    let row = Effects::NAMED.into_iter().find(|(_, own)| *own == name);
+    row.map(|(effect, _)| effect)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::{Options, compile};
+    use crate::scene::read;
+
+    /// Calls for every effect.
+    const ALL: &str = "
+        [[light]]
+        kind = 'point'
+        position = [4, 5, 6]
+        color = [1, 1, 1]
+        [material.all]
+        diffuse = [0.5, 0.5, 0.5]
+        highlight = [0.3, 0.3, 0.3]
+        mirror = [0.2, 0.2, 0.2]
+        transmit = [0.4, 0.4, 0.4]
+        absorption = [0.1, 0.2, 0.3]
+        [material.squares]
+        checker = { even = [1, 1, 1], odd = [0, 0, 0], size = 0.5 }
+        [[object]]
+        kind = 'sphere'
+        center = [0, 0, 0]
+        radius = 1
+        material = 'all'
+        [[object]]
+        kind = 'mesh'
+        vertices = [[0, 0, 0], [2, 0, 0.1], [2, 2, 0], [0, 2, 0.1]]
+        faces = [[0, 1, 2], [0, 2, 3]]
+        smooth = 90
+        material = 'squares'
+    ";
+
+    fn scene() -> Scene {
+        let imported = read("all.toml".as_ref(), ALL.into(), &Default::default());
+        imported.unwrap().scene
+    }
+
+    fn effects(scene: &Scene) -> Effects {
+        let blob = compile(scene, &Options::default()).unwrap().blob;
+        blob.scene().unwrap().effects()
+    }
+
+    /// A new effect needs what calls for it in the scene above, and a row in the table of removals.
+    #[test]
+    fn scene_without_an_effect_does_not_call_for_it() {
+        assert_eq!(effects(&scene()), Effects::ALL);
+        for (effect, name) in Effects::NAMED {
+            let mut scene = scene();
+            scene.remove_effects(effect);
+            let left = effects(&scene);
+            assert!(!left.contains(effect), "{name}: {left}");
+            assert_eq!(leave_out(&mut scene, effect), None, "{name}");
+            let depends = match effect {
+                Effects::GLASS => Effects::ABSORPTION,
+                _ => Effects::NONE,
+            };
+            assert_eq!(
+                left,
+                Effects::ALL.without(effect).without(depends),
+                "{name}"
+            );
+            assert!(!shown_without(effect).is_empty(), "{name}");
+        }
+        let mut scene = scene();
+        scene.remove_effects(Effects::ALL);
+        assert_eq!(effects(&scene), Effects::NONE);
+    }
+}

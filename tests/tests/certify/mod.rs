@@ -1,0 +1,219 @@
+//! Certified pixels: every exact value lies in its interval, and what is made too narrow is noticed.
+
+mod exact;
+
+use exact::Exact;
+use gridel_core::{Effects, Format, Scene, Settings, Structure};
+use gridel_host::blob::Blob;
+use gridel_host::certify::{Enclosed, Report, World, certify, code, enclose};
+use gridel_host::render::{Job, render};
+use gridel_host::scene::{Camera, Shape};
+use gridel_host::shape::exact::Real;
+use gridel_tests::scenes;
+use rayon::prelude::*;
+use std::convert::Infallible;
+
+/// Fixtures that are known to `certify` and to the 320-bit evaluator: no torus, no instances, no smooth normals.
+fn known() -> Vec<(String, Blob)> {
+    let fixtures = scenes::fixtures().into_iter();
+    let blobs = fixtures.map(|(name, scene)| (name, scenes::blob(&scene, 24)));
+    let mut known: Vec<(String, Blob)> = blobs
+        .filter(|(_, blob)| {
+            blob.scene().is_ok_and(|scene| {
+                let is_plain = !scene.effects().contains(Effects::SMOOTH);
+                is_plain && scene.instances().is_empty() && World::of(&scene).is_ok()
+            })
+        })
+        .collect();
+    known.sort_by(|(a, _), (b, _)| a.cmp(b));
+    assert!(known.len() >= 8, "{} fixtures", known.len());
+    known
+}
+
+fn settings(scene: &Scene<'_>, size: [u16; 2], samples: u16) -> Settings {
+    Settings {
+        width: size[0],
+        height: size[1],
+        samples,
+        ..Settings::of(scene)
+    }
+}
+
+fn certified(scene: &Scene<'_>, settings: &Settings) -> Vec<Enclosed> {
+    let world = World::of(scene).expect("a scene that is known");
+    let count = usize::from(settings.width) * usize::from(settings.height);
+    let mut pixels = vec![Enclosed::default(); count];
+    let Ok(()) = certify(&world, settings, &mut pixels, &|| (), |_| {
+        Ok::<_, Infallible>(())
+    });
+    pixels
+}
+
+fn holds(bounds: [[f64; 2]; 3], exact: &[Real; 3]) -> bool {
+    let holds = |k: usize| Real::of(bounds[k][0]) <= exact[k] && exact[k] <= Real::of(bounds[k][1]);
+    holds(0) && holds(1) && holds(2)
+}
+
+/// Pixels of all scenes together; `GRIDEL_FULL=1` takes a hundred times as many.
+fn pixels_per_scene(scenes: usize) -> usize {
+    let all = if std::env::var_os("GRIDEL_FULL").is_some() {
+        100_000
+    } else {
+        1_000
+    };
+    all / scenes + 1
+}
+
+/// With the intervals of double precision, and with more bits where pixels need it.
+#[test]
+fn every_exact_value_lies_in_its_interval() {
+    let known = known();
+    let count = pixels_per_scene(known.len());
+    let mut noticed = 0;
+    for (name, blob) in &known {
+        let scene = blob.scene().expect("a scene");
+        let settings = settings(&scene, [400, 300], 1);
+        let world = World::of(&scene).expect("a scene that is known");
+        let exact = Exact::of(&scene, settings);
+        let results: Vec<(bool, bool)> = (0..count)
+            .into_par_iter()
+            .map(|number| {
+                // Spread by the golden ratio and its like.
+                let part =
+                    |by: f64, size: u16| ((number as f64 * by).fract() * f64::from(size)) as u16;
+                let pixel = [part(0.754_877_666, 400), part(0.569_840_291, 300)];
+                let value = exact.pixel(pixel);
+                for levels in [1, 3] {
+                    let enclosed = enclose(&world, &settings, pixel, levels);
+                    assert!(
+                        holds(enclosed.linear, &value),
+                        "{name} {pixel:?}: {enclosed:?} does not hold {:?}",
+                        value.each_ref().map(Real::to_f64)
+                    );
+                }
+                let enclosed = enclose(&world, &settings, pixel, 1);
+                let narrowed = enclosed
+                    .linear
+                    .map(|[low, high]| [low + (high - low) * 0.8, high]);
+                (enclosed.width() > 0.0, !holds(narrowed, &value))
+            })
+            .collect();
+        noticed += results.iter().filter(|(_, noticed)| *noticed).count();
+    }
+    // Intervals that are made too narrow on purpose are caught.
+    assert!(
+        noticed > 100,
+        "{noticed} of the narrowed intervals were noticed"
+    );
+}
+
+/// The share of each fixture, and no format that is off by much where pixels are proved.
+#[test]
+fn fixtures_are_certified_and_f64_is_right_where_they_are_proved() {
+    for (name, scene) in scenes::fixtures() {
+        let blob = scenes::blob(&scene, 24);
+        let scene = blob.scene().expect("a scene");
+        if let Err(unknown) = World::of(&scene) {
+            assert!(
+                ["stress-torus", "turntable"].contains(&&*name),
+                "{name}: {unknown}"
+            );
+            continue;
+        }
+        let settings = settings(&scene, [64, 48], 2);
+        let pixels = certified(&scene, &settings);
+        let job = Job::whole(Format::F64, Structure::DualSplit, settings);
+        let picture = render(&scene, &job, &|| ()).expect("a picture");
+        let pictures = [(Format::F64, picture.pixels)];
+        let report = Report::of(&settings, &pixels, &pictures);
+        eprintln!("{name}: {:.3} % proved", 100.0 * report.certified);
+        assert!(report.certified >= 0.98, "{name}: {:?}", report.reasons);
+        let different = report.formats[0].different;
+        assert!(
+            different * 500 <= report.pixels,
+            "{name}: {:?}",
+            report.formats
+        );
+        let open: usize = report.reasons.iter().map(|it| it.pixels).sum();
+        assert_eq!(open + report.proved, report.pixels, "{name}");
+    }
+}
+
+/// A value outside of the bounds is proved different, by how much it is off at least.
+#[test]
+fn errors_of_formats_are_counted_from_the_bounds() {
+    let pixel = |low: u8, high: u8| Enclosed {
+        low: [low; 3],
+        high: [high; 3],
+        done: 1,
+        ..Enclosed::default()
+    };
+    assert_eq!(pixel(7, 7).error_of([7; 3]), Some(0));
+    assert_eq!(pixel(7, 7).error_of([7, 9, 7]), Some(2));
+    assert_eq!(pixel(7, 9).error_of([8; 3]), None);
+    assert_eq!(pixel(7, 9).error_of([5, 8, 8]), Some(2));
+    assert_eq!(code([65_535, 0, 14_146]), [255, 0, 128]);
+}
+
+/// Open pixels are named: a wall of two colors, whose edge runs exactly through the middles of pixels.
+#[test]
+fn rays_exactly_on_a_boundary_are_decided_or_said_to_be_on_it() {
+    let mut file = scenes::of([Shape::Mesh {
+        vertices: [[-4.0, -4.0], [4.0, -4.0], [4.0, 4.0], [-4.0, 4.0]]
+            .map(|[x, y]| glam::DVec3::new(x, y, 0.0))
+            .to_vec(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+    }]);
+    file.camera = Some(Camera {
+        eye: glam::DVec3::new(0.0, 0.0, 9.0),
+        target: glam::DVec3::ZERO,
+        up: glam::DVec3::Y,
+        fov_degrees: 40.0,
+    });
+    let blob = scenes::blob(&file, 24);
+    let scene = blob.scene().expect("a scene");
+    // The diagonal of the square is that of the picture.
+    let pixels = certified(&scene, &settings(&scene, [33, 33], 1));
+    let open = pixels.iter().filter(|it| it.proved().is_none()).count();
+    assert_eq!(open, 0);
+}
+
+/// README's table of proved pixels is what is measured.
+#[test]
+fn the_table_in_the_readme_is_measured() {
+    let readme = include_str!("../../../README.md");
+    let (_, table) = readme.split_once("<!-- certified -->\n").expect("a table");
+    let (table, _) = table.split_once("<!-- end -->").expect("an end");
+    let mut rows = String::from(
+        "| scene | `fixed` | `f32` | `f64` | largest proved error |\n|---|---|---|---|---|\n",
+    );
+    for name in ["glass-chess", "cornell", "c60"] {
+        let mut fixtures = scenes::fixtures().into_iter();
+        let (_, scene) = fixtures.find(|(it, _)| it == name).expect("a fixture");
+        let blob = scenes::blob(&scene, 24);
+        let scene = blob.scene().expect("a scene");
+        let settings = settings(&scene, [160, 120], 1);
+        let pixels = certified(&scene, &settings);
+        let pictures = Format::ALL.map(|format| {
+            let job = Job::whole(format, Structure::DualSplit, settings);
+            let picture = render(&scene, &job, &|| ()).expect("a picture");
+            (format, picture.pixels)
+        });
+        let formats = Report::of(&settings, &pixels, &pictures).formats;
+        let shares = formats.iter().map(|format| {
+            let share = 100.0 * format.equal as f64 / pixels.len() as f64;
+            format!("{share:.2} %")
+        });
+        let shares: Vec<String> = shares.collect();
+        let errors: Vec<String> = formats
+            .iter()
+            .map(|format| format!("{}/255", format.max_proved_error))
+            .collect();
+        rows += &format!(
+            "| {name} | {} | {} |\n",
+            shares.join(" | "),
+            errors.join(", ")
+        );
+    }
+    assert_eq!(table, rows, "paste this:\n{rows}");
+}
