@@ -37,8 +37,8 @@ impl Observer for Observed<'_> {
         self.counters.instances(number);
     }
 
-    fn radiance(&mut self, brought: [f64; 3]) {
-        for (sum, brought) in self.radiance.iter_mut().zip(brought) {
+    fn radiance(&mut self, brought: impl FnOnce() -> [f64; 3]) {
+        for (sum, brought) in self.radiance.iter_mut().zip(brought()) {
             *sum += brought;
         }
     }

@@ -49,9 +49,10 @@ pub trait Observer {
     /// Instances were entered.
     #[inline(always)]
     fn instances(&mut self, _: u32) {}
-    /// A ray brought radiance to its sample: red, green and blue, 1 being display white.
+    /// A ray brought radiance to its sample: red, green and blue, 1 being display white. Programs whose observer does
+    /// not ask for it convert nothing.
     #[inline(always)]
-    fn radiance(&mut self, _: [f64; 3]) {}
+    fn radiance(&mut self, _: impl FnOnce() -> [f64; 3]) {}
     /// A ray was cast: a [`Ray`](crate::Ray) of some number format.
     #[inline(always)]
     fn ray<R: Any>(&mut self, _: RayKind, _: &R) {}

@@ -247,7 +247,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         } else {
             brought
         };
-        self.count.radiance(brought.to_f64());
+        self.count.radiance(|| brought.to_f64());
         if C::ENABLED {
             self.count.event(Event::Added {
                 source,

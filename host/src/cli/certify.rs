@@ -22,7 +22,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Prove pixels: enclose the exact picture, and say how far each number format is from it
+/// Prove how far each number format is from the exact picture
 ///
 /// A blob defines one exact picture: its geometry, camera, samples, lights and effects, evaluated in
 /// real arithmetic. For each pixel this computes an interval that contains the exact value. A pixel
