@@ -1,5 +1,7 @@
 //! Images for textures: PNG and JPEG.
 
+use super::Color;
+use super::texture::linear_of_srgb;
 use std::fmt;
 use std::io::Cursor;
 
@@ -71,6 +73,31 @@ impl Image {
     /// Pixels row by row, the upper row first: red, green, blue and alpha in sRGB.
     pub fn pixels(&self) -> &[[u8; 4]] {
         &self.pixels
+    }
+
+    /// Returns the mean of all pixels, as linear light.
+    ///
+    /// ```
+    /// use gridel_host::scene::Image;
+    ///
+    /// let image = Image::new("half", 2, 1, vec![[0, 0, 0, 255], [255, 0, 255, 255]]).unwrap();
+    /// assert_eq!(image.mean(), [0.5, 0.0, 0.5]);
+    /// ```
+    pub fn mean(&self) -> Color {
+        let mut counts = [[0_u64; 256]; 3];
+        for pixel in &self.pixels {
+            for (counts, channel) in counts.iter_mut().zip(pixel) {
+                counts[usize::from(*channel)] += 1;
+            }
+        }
+        counts.map(|counts| {
+            let linear = |value: usize| linear_of_srgb(value as f64 / 255.0);
+            let sum = counts.iter().enumerate();
+            let sum: f64 = sum
+                .map(|(value, &count)| count as f64 * linear(value))
+                .sum();
+            sum / self.pixels.len() as f64
+        })
     }
 
     /// Reads a PNG or JPEG file, told apart by their content.

@@ -130,6 +130,28 @@ pub enum Diffuse {
     },
 }
 
+impl Diffuse {
+    /// Its colors times another, channel by channel.
+    #[must_use]
+    pub(super) fn weighted(self, by: Color) -> Self {
+        let times = |color: Color| [0, 1, 2].map(|channel: usize| color[channel] * by[channel]);
+        match self {
+            Self::Plain(color) => Self::Plain(times(color)),
+            Self::Checker {
+                even,
+                odd,
+                size,
+                origin,
+            } => Self::Checker {
+                even: times(even),
+                odd: times(odd),
+                size,
+                origin,
+            },
+        }
+    }
+}
+
 /// One object: a shape and its material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {

@@ -10,7 +10,10 @@ mod payload;
 use super::importer::{Importer, Input, stem};
 use super::polygon::{self, MAX_CONCAVE};
 use super::text::{Warnings, check_encoding};
-use super::{Attributes, linear_of_srgb, Imported, Material, Normals, Object, Scene, SceneError, Shape, SourceSpan};
+use super::{
+    Attributes, Imported, Material, Normals, Object, Scene, SceneError, Shape, SourceSpan,
+    linear_of_srgb,
+};
 use glam::DVec3;
 use gridel_core::Up;
 use payload::{Payload, Skipped};

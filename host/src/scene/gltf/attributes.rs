@@ -30,7 +30,9 @@ impl Importer<'_> {
             let colors = self.buffers.colors(&accessor)?;
             as_many(colors.len(), "colors")?;
             let clear = colors.iter().filter(|it| it[3] < 1.0).count();
-            let solid = colors.iter().map(|&[r, g, b, _]| [r, g, b].map(|it| it.clamp(0.0, 1.0)));
+            let solid = colors
+                .iter()
+                .map(|&[r, g, b, _]| [r, g, b].map(|it| it.clamp(0.0, 1.0)));
             attributes.colors = solid.collect();
             self.warn_of(usize::from(clear > 0), "the alpha of COLOR_0 is ignored");
         }
@@ -78,7 +80,9 @@ impl Importer<'_> {
         if !ignored.is_empty() {
             let all: Vec<&str> = ignored.iter().map(|it| *it.0).collect();
             let all = all.join(", ");
-            self.warn(format!("textures of material {name:?} are not drawn: {all}"));
+            self.warn(format!(
+                "textures of material {name:?} are not drawn: {all}"
+            ));
         }
         let Some(info) = surface.base_color_texture() else {
             return Ok(None);
@@ -96,7 +100,8 @@ impl Importer<'_> {
             WrappingMode::ClampToEdge => Wrap::Clamp,
         };
         let transform = info.texture_transform().map(|it| {
-            let [scale, offset] = [it.scale(), it.offset()].map(|it| DVec2::from(it.map(f64::from)));
+            let [scale, offset] =
+                [it.scale(), it.offset()].map(|it| DVec2::from(it.map(f64::from)));
             texture_transform(scale, it.rotation().into(), offset)
         });
         Ok(Some(Texture {
@@ -115,7 +120,10 @@ impl Importer<'_> {
         let what = format!("image {}", image.index());
         let bytes = match image.source() {
             Source::View { view, .. } => self.buffers.view(&view).ok_or_else(|| {
-                let cause = format!("{what} reads buffer view {}, which its buffer lacks", view.index());
+                let cause = format!(
+                    "{what} reads buffer view {}, which its buffer lacks",
+                    view.index()
+                );
                 self.error(cause, "copy the file again, as binary, or export it again")
             })?,
             Source::Uri { uri, .. } => &fetch(self.path, &what, uri, self.access)?,

@@ -7,10 +7,10 @@ use crate::scene::access::Access;
 use crate::scene::text::read_file;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use gltf::Document;
 use gltf::accessor::sparse::IndexType;
 use gltf::accessor::{Accessor, DataType, Dimensions};
 use gltf::buffer::{Source, View};
-use gltf::Document;
 use std::collections::HashMap;
 use std::path::Path;
 use std::rc::Rc;
@@ -42,7 +42,9 @@ impl<'a> Buffers<'a> {
                     Source::Uri(uri) => match files.get(uri) {
                         Some(bytes) => Rc::clone(bytes),
                         None => {
-                            let bytes: Rc<[u8]> = fetch(path, &format!("buffer {}", buffer.index()), uri, access)?.into();
+                            let bytes: Rc<[u8]> =
+                                fetch(path, &format!("buffer {}", buffer.index()), uri, access)?
+                                    .into();
                             files.insert(uri.to_owned(), Rc::clone(&bytes));
                             bytes
                         }
@@ -102,9 +104,9 @@ impl<'a> Buffers<'a> {
             DataType::F32 => |bytes, k| f32::from_bits(narrow::<4>(&bytes[4 * k..])).into(),
             DataType::I8 => |bytes, k| (f64::from(bytes[k] as i8) / 127.0).max(-1.0),
             DataType::U8 => |bytes, k| f64::from(bytes[k]) / 255.0,
-            DataType::I16 => |bytes, k| {
-                (f64::from(narrow::<2>(&bytes[2 * k..]) as i16) / 32767.0).max(-1.0)
-            },
+            DataType::I16 => {
+                |bytes, k| (f64::from(narrow::<2>(&bytes[2 * k..]) as i16) / 32767.0).max(-1.0)
+            }
             DataType::U16 => |bytes, k| f64::from(narrow::<2>(&bytes[2 * k..])) / 65535.0,
             DataType::U32 => |_, _| f64::NAN,
         };
@@ -147,7 +149,9 @@ impl<'a> Buffers<'a> {
     pub(super) fn coordinates(&self, accessor: &Accessor<'_>) -> Result<Vec<[f64; 2]>, SceneError> {
         let is_pair = accessor.dimensions() == Dimensions::Vec2;
         let number = self.channel(accessor, is_pair, "texture coordinates")?;
-        let found = self.values(accessor, [0.0; 2], |bytes| [number(bytes, 0), number(bytes, 1)])?;
+        let found = self.values(accessor, [0.0; 2], |bytes| {
+            [number(bytes, 0), number(bytes, 1)]
+        })?;
         // Not a number, nor infinite: the file was warned of.
         let finite = |it: f64| if it.is_finite() { it } else { 0.0 };
         Ok(found.into_iter().map(|it| it.map(finite)).collect())
@@ -161,9 +165,7 @@ impl<'a> Buffers<'a> {
         what: &str,
     ) -> Result<fn(&[u8], usize) -> f64, SceneError> {
         let found: Option<fn(&[u8], usize) -> f64> = match accessor.data_type() {
-            DataType::F32 => {
-                Some(|bytes, k| f32::from_bits(narrow::<4>(&bytes[4 * k..])).into())
-            }
+            DataType::F32 => Some(|bytes, k| f32::from_bits(narrow::<4>(&bytes[4 * k..])).into()),
             DataType::U8 => Some(|bytes, k| f64::from(bytes[k]) / 255.0),
             DataType::U16 => Some(|bytes, k| f64::from(narrow::<2>(&bytes[2 * k..])) / 65535.0),
             _ => None,

@@ -20,10 +20,12 @@ mod place;
 mod shared;
 mod view;
 
-use super::importer::{Choices, Importer as Entry, Input};
 use super::access::Access;
+use super::importer::{Choices, Importer as Entry, Input};
 use super::text::Warnings;
-use super::{Attributes, Choice, Image, Imported, Normals, Object, Scene, SceneError, Shape, SourceSpan};
+use super::{
+    Attributes, Choice, Image, Imported, Normals, Object, Scene, SceneError, Shape, SourceSpan,
+};
 use animation::Motion;
 use buffers::{Buffers, MOST};
 use glam::{DMat4, DVec3};

@@ -22,8 +22,8 @@ mod view;
 use super::importer::{Importer as Entry, Input};
 use super::text::{Source, Warnings};
 use super::{Color, Diffuse, Imported, Light, Material, Scene, SceneError};
-use gridel_core::Up;
 use glam::DVec3;
+use gridel_core::Up;
 use reader::{Line, Lines};
 use std::collections::{BTreeSet, HashMap};
 

@@ -20,8 +20,8 @@ use super::size::Size;
 use super::text::{Source, Warnings};
 use super::texture::Images;
 use super::{Attributes, Color, Imported, Material, Normals, Object, Scene, SceneError, Shape};
-use gridel_core::Up;
 use glam::{DVec2, DVec3};
+use gridel_core::Up;
 use parser::{NO_NORMAL, Parsed, Part};
 use std::collections::{HashMap, HashSet};
 
@@ -267,7 +267,8 @@ impl Mesher<'_> {
                 let (outline, rest) = of_texture.split_at(face.corners);
                 of_texture = rest;
                 if !self.add_coordinates(&mut attributes, outline, &result.triangles) {
-                    let sentence = "a face has texture coordinates that the file lacks, and no texture";
+                    let sentence =
+                        "a face has texture coordinates that the file lacks, and no texture";
                     warnings.add(source, face.line, sentence);
                 }
             }
@@ -325,7 +326,8 @@ impl PartNormals {
         let is_missing = outline.iter().any(|it| *it as usize >= all.len());
         let is_complete = is_flat || !is_missing;
         if is_flat || is_missing {
-            self.triangles.extend(triangles.iter().map(|_| Normals::FLAT));
+            self.triangles
+                .extend(triangles.iter().map(|_| Normals::FLAT));
             return is_complete;
         }
         let number = |corner: &u32| {

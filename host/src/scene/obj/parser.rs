@@ -1,7 +1,7 @@
 //! The lines of an OBJ file: vertices, and parts of faces that share a name and a material.
 
-use crate::scene::{Color, SceneError, linear_of_srgb};
 use crate::scene::text::{Source, Warnings};
+use crate::scene::{Color, SceneError, linear_of_srgb};
 use glam::{DVec2, DVec3};
 
 #[derive(Default)]
@@ -329,7 +329,8 @@ impl<'a> Parser<'a> {
         if let Some(line) = self.smoothing
             && self.parsed.parts.iter().all(|part| part.normals.is_empty())
         {
-            let sentence = "smoothing groups are ignored; for smooth normals use `--normals smooth=40`";
+            let sentence =
+                "smoothing groups are ignored; for smooth normals use `--normals smooth=40`";
             warnings.add(self.source, line, sentence);
         }
         Ok(self.parsed)

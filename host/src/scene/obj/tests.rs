@@ -298,7 +298,10 @@ fn faces_are_smooth_where_all_corners_have_normals() {
     let normals = &scene.objects[0].normals;
     let flat = Normals::FLAT;
     // The file's face of its own normals is flat, too.
-    assert_eq!(normals.triangles, [[0, 1, 2], flat, flat, flat, flat, flat, flat]);
+    assert_eq!(
+        normals.triangles,
+        [[0, 1, 2], flat, flat, flat, flat, flat, flat]
+    );
     assert_eq!(normals.vectors[0], DVec3::Z);
     assert!((normals.vectors[1] - DVec3::new(1.0, 0.0, 1.0).normalize()).length() < 1e-15);
     assert_eq!(

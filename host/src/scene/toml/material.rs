@@ -1,7 +1,7 @@
 //! The `[material.NAME]` tables, and looking materials up by name.
 
-use super::source::{Name, Source, nearest};
 use super::shape::pair;
+use super::source::{Name, Source, nearest};
 use super::value::Value;
 use crate::scene::texture::{Images, texture_transform};
 use crate::scene::{Diffuse, Image, Material, SceneError, Texture, Wrap};

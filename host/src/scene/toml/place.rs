@@ -7,7 +7,8 @@ use super::material::Palette;
 use super::source::Source;
 use crate::scene::size::{MOST_PRIMITIVES, Size, primitives};
 use crate::scene::{
-    Instance, Joint, Normals, NormalsChoice, Object, Part, Placement, Scene, SceneError, Shape, Track,
+    Instance, Joint, Normals, NormalsChoice, Object, Part, Placement, Scene, SceneError, Shape,
+    Track,
 };
 use crate::shape::transform::OUT_OF_RANGE;
 use glam::DAffine3;

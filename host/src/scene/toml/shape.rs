@@ -15,7 +15,9 @@ pub(super) fn keys(kind: &str) -> &'static [&'static str] {
     match kind {
         "triangle" => &["vertices", "colors", "coordinates"],
         "mesh" => &["vertices", "faces", "smooth", "colors", "coordinates"],
-        _ => Shape::kinds().find(|(name, _)| *name == kind).map_or(&[], |(_, keys)| keys),
+        _ => Shape::kinds()
+            .find(|(name, _)| *name == kind)
+            .map_or(&[], |(_, keys)| keys),
     }
 }
 
@@ -62,7 +64,9 @@ pub(super) fn attributes(shape: &Shape, fields: &Fields<'_>) -> Result<Attribute
 /// Two numbers.
 pub(super) fn pair(value: Value<'_>) -> Result<DVec2, SceneError> {
     let mistyped = || value.mistyped("two numbers", "`[0.5, 1]`");
-    let numbers = value.items("two numbers, such as `[0.5, 1]`").map_err(|_| mistyped())?;
+    let numbers = value
+        .items("two numbers, such as `[0.5, 1]`")
+        .map_err(|_| mistyped())?;
     let numbers: Vec<f64> = numbers.map(Value::number).collect::<Result<_, _>>()?;
     match numbers[..] {
         [u, v] => Ok(DVec2::new(u, v)),

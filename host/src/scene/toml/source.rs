@@ -1,7 +1,7 @@
 //! The text of a TOML file, and errors and places in it.
 
 use crate::scene::text::{check_encoding, read_file};
-use crate::scene::{SourceSpan, SceneError};
+use crate::scene::{SceneError, SourceSpan};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
