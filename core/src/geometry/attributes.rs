@@ -2,8 +2,9 @@
 //!
 //! **Storage.** A color takes four bytes per vertex: red, green and blue as square roots of linear light, of which 255
 //! is 1, and alpha. So a step is at most one of a display, and decoding is one multiplication. Texture coordinates take
-//! four bytes per vertex where all lie in -2 to 2 (14 fraction bits), else eight (20 fraction bits, -2048 to 2048). The
-//! vertices that have them come first; others are white, or at 0.
+//! four bytes per vertex where all lie in -2 to 2 (14 fraction bits), else eight (20 fraction bits, -1024 to 1024). The
+//! lowest u of all stands for none. Vertices behind the last that has a color are white, and those behind the last that
+//! has coordinates have none. A triangle has a texture if its three vertices have coordinates.
 //!
 //! **Interpolation.** The weights of the corners are computed in the number format, as for [smooth
 //! normals](crate::geometry::smooth), and become integers with 30 fraction bits. Everything behind them is integer
@@ -140,15 +141,22 @@ impl<'a> Coordinates<'a> {
         }
     }
 
-    /// Those of a vertex with [`COORDINATE_BITS`] fraction bits.
+    /// Those of three vertices with [`COORDINATE_BITS`] fraction bits; `None` where one has none.
     #[inline(always)]
-    pub(crate) fn get(&self, vertex: usize) -> [i32; 2] {
+    pub(crate) fn corners(&self, vertices: [usize; 3]) -> Option<[[i32; 2]; 3]> {
+        let [a, b, c] = vertices;
         match self {
             Self::Short(all) => {
-                let found = all.get(vertex).copied().unwrap_or_default();
-                found.map(|it| i32::from(it) << (COORDINATE_BITS - 14))
+                let get = |vertex: usize| {
+                    let found = all.get(vertex).filter(|it| it[0] != i16::MIN)?;
+                    Some(found.map(|it| i32::from(it) << (COORDINATE_BITS - 14)))
+                };
+                Some([get(a)?, get(b)?, get(c)?])
             }
-            Self::Long(all) => all.get(vertex).copied().unwrap_or_default(),
+            Self::Long(all) => {
+                let get = |vertex: usize| all.get(vertex).filter(|it| it[0] != i32::MIN).copied();
+                Some([get(a)?, get(b)?, get(c)?])
+            }
         }
     }
 }

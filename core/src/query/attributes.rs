@@ -9,8 +9,8 @@ use crate::scene::Scene;
 use crate::target::{TEXTURE, VERTEX_COLORS};
 
 impl<N: Number> Hit<N> {
-    /// Returns the texture coordinates at the hit, u to the right and v down: a multiple of 2^-20 each, from -2048 to
-    /// 2048. `scene` is that of the query. `None` unless the hit is of a mesh in a scene with texture coordinates.
+    /// Returns the texture coordinates at the hit, u to the right and v down: a multiple of 2^-20 each, from -1024 to
+    /// 1024. `scene` is that of the query. `None` unless the hit is of a mesh in a scene with texture coordinates.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -36,11 +36,8 @@ impl<N: Number> Hit<N> {
             return None;
         }
         let (shapes, vertices, weights) = self.weights(scene)?;
-        let all = shapes.coordinates();
-        if all.len() == 0 {
-            return None;
-        }
-        Some(weights.coordinates(vertices.map(|vertex| all.get(vertex))))
+        let corners = shapes.coordinates().corners(vertices)?;
+        Some(weights.coordinates(corners))
     }
 
     /// The color of the vertices at the hit: linear ratios with 30 fraction bits. `None` where there is none.

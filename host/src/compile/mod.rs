@@ -55,6 +55,7 @@ pub use report::{Report, TableStats};
 pub(crate) use shading_data::light_record;
 pub use shading_data::radiance;
 pub use structures::{takes_hierarchy, usual_budget};
+pub use textures::TextureFigures;
 pub use wide::Quality;
 
 pub use crate::scene::TICKS_PER_SECOND;
@@ -289,6 +290,7 @@ fn compile_as(
         bytes,
         longest_list,
         effects: shading_data.required_by.clone(),
+        textures: shading_data.texture_figures.clone(),
         supplied: shading_data.supplied.clone(),
         setup,
         tables,

@@ -7,10 +7,12 @@
 use super::CompileError;
 use super::section::{Section, section};
 use crate::scene::{Image, Material, Texture, Wrap, linear_of_srgb};
+use crate::table::{grouped, printable};
 use gridel_core::format::SectionKind;
 use gridel_core::format::record;
 use serde::Serialize;
 use std::collections::{HashMap, HashSet};
+use std::fmt;
 use std::sync::Arc;
 
 /// Most texels of a side.
@@ -31,6 +33,20 @@ pub struct TextureFigures {
     /// `palette`, `rgb565` or `rgb888`.
     pub form: &'static str,
     pub bytes: u64,
+}
+
+impl fmt::Display for TextureFigures {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            name,
+            width,
+            height,
+            form,
+            bytes,
+        } = self;
+        let (name, bytes) = (printable(name), grouped(*bytes));
+        write!(f, "{name}, {width} x {height}, {form}, {bytes} bytes")
+    }
 }
 
 /// A channel of linear light as a blob holds it; of scenes whose colors are display values, the channel itself counts.

@@ -92,8 +92,8 @@ pub struct Corners {
     coordinates: Vec<Option<[[i32; 2]; 3]>>,
 }
 
-/// How far texture coordinates reach: 2048 repetitions.
-pub const MOST_COORDINATE: f64 = 2048.0;
+/// How far texture coordinates reach, so that the difference of two has 32 bits: 1024 repetitions.
+pub const MOST_COORDINATE: f64 = 1024.0;
 
 impl Corners {
     /// Those of a mesh, whose attributes are in place. `None` where texture coordinates are out of range.
@@ -226,25 +226,56 @@ mod tests {
             DVec3::new(0.0, -0.6, -0.8),
         ];
         let normals = vectors.map(|it| encode(it.to_array()));
-        let found = |point| decoded(normal_at(point, corners, normals.map(Some)).unwrap());
+        let smooth = |normal: Option<Stored>| Corner {
+            normal,
+            ..Corner::default()
+        };
+        let all = normals.map(|it| smooth(Some(it)));
+        let found = |point| decoded(corner_at(point, corners, all).normal.unwrap());
         for (corner, vector) in corners.into_iter().zip(vectors) {
             assert!((found(corner) - vector).length() < 1e-4);
         }
         let halfway = unit(DVec3::new(0.3, 0.0, 0.9));
         assert!((found([512, 0, 0]) - halfway).length() < 1e-4);
-        let flat = [Some(normals[0]), None, Some(normals[1])];
-        assert_eq!(normal_at([0, 0, 0], corners, flat), None);
+        let flat = [Some(normals[0]), None, Some(normals[1])].map(smooth);
+        assert_eq!(corner_at([512, 0, 0], corners, flat).normal, None);
+    }
+
+    #[test]
+    fn colors_and_coordinates_are_mixed_along_the_edge() {
+        let places = [[0, 0, 0], [1024, 0, 0], [0, 1024, 0]];
+        let corner = |color, coordinates| Corner {
+            normal: None,
+            color: Some(color),
+            coordinates,
+        };
+        let corners = [
+            corner([0, 0, 0, 255], Some([0, 0])),
+            corner([255, 0, 0, 255], Some([1 << 20, -4])),
+            corner([0, 255, 0, 255], None),
+        ];
+        assert_eq!(corner_at([1024, 0, 0], places, corners), corners[1]);
+        let halfway = corner_at([512, 0, 0], places, corners);
+        // The root of half the light.
+        let half = corner([180, 0, 0, 255], Some([1 << 19, -2]));
+        assert_eq!(halfway, half);
+        assert_eq!(corner_at([0, 512, 0], places, corners).coordinates, None);
     }
 
     #[test]
     fn places_with_different_normals_are_different_vertices() {
         let mut vertices = Vertices::default();
-        let numbers = [None, Some([1, 2]), None, Some([1, 2]), Some([2, 1])];
-        let numbers = numbers.map(|normal| vertices.number([7, 8, 9], normal));
+        let smooth = |normal: [i16; 2]| Corner {
+            normal: Some(normal),
+            ..Corner::default()
+        };
+        let plain = Corner::default();
+        let numbers = [plain, smooth([1, 2]), plain, smooth([1, 2]), smooth([2, 1])];
+        let numbers = numbers.map(|corner| vertices.number([7, 8, 9], corner));
         assert_eq!(numbers, [0, 1, 0, 1, 2]);
-        assert_eq!(vertices.get(0), ([7, 8, 9], None));
-        let (places, normals) = vertices.into_parts();
+        assert_eq!(vertices.get(0), ([7, 8, 9], plain));
+        let (places, corners) = vertices.into_parts();
         assert_eq!(places, [[7, 8, 9]; 3]);
-        assert_eq!(normals, [None, Some([1, 2]), Some([2, 1])]);
+        assert_eq!(corners, [plain, smooth([1, 2]), smooth([2, 1])]);
     }
 }

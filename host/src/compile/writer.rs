@@ -256,13 +256,17 @@ fn carried(corners: &[Corner]) -> Vec<Section> {
     let colors: Vec<_> = colors.map(|it| it.color.unwrap_or([255; 4])).collect();
     let coordinates = until(|it| it.coordinates.is_some()).iter();
     let coordinates: Vec<_> = coordinates
-        .map(|it| it.coordinates.unwrap_or_default())
+        .map(|it| it.coordinates.unwrap_or([i32::MIN; 2]))
         .collect();
-    // With 14 fraction bits.
-    let short = |it: i32| i16::try_from((i64::from(it) + (1 << 5)) >> 6).ok();
-    let narrow = coordinates
-        .iter()
-        .map(|&[u, v]| Some([short(u)?, short(v)?]));
+    // With 14 fraction bits; the lowest number stands for none.
+    let short = |it: i32| {
+        let rounded = i16::try_from((i64::from(it) + (1 << 5)) >> 6).ok();
+        rounded.filter(|it| *it != i16::MIN)
+    };
+    let narrow = coordinates.iter().map(|&[u, v]| match u {
+        i32::MIN => Some([i16::MIN; 2]),
+        _ => Some([short(u)?, short(v)?]),
+    });
     let coordinates = match narrow.collect::<Option<Vec<_>>>() {
         Some(narrow) => section(SectionKind::TextureCoordinates, &narrow),
         None => section(SectionKind::TextureCoordinates, &coordinates),

@@ -52,6 +52,10 @@ pub struct Ray {
     pub absorbed: Option<[f64; 3]>,
     /// The smooth normal that the surface is shaded with.
     pub smooth: Option<[f64; 3]>,
+    /// The color of the vertices that weights the diffuse color: linear ratios.
+    pub vertex_color: Option<[f64; 3]>,
+    /// The texture that weights the diffuse color.
+    pub texture: Option<Textured>,
     pub lights: Vec<Lighting>,
     /// The radiance that it adds to the sample, its weight included.
     pub added: [f64; 3],
@@ -65,6 +69,17 @@ pub struct Ray {
     pub too_deep: bool,
     /// Rays that it causes, by their places.
     pub children: Vec<usize>,
+}
+
+/// A texture at a hit.
+#[derive(Clone, Debug, Serialize)]
+pub struct Textured {
+    /// Where the texture is looked up, u to the right and v down.
+    pub coordinates: [f64; 2],
+    /// The nearest texel, counted from the upper left one, or the upper left one of the four that are mixed.
+    pub texel: [u32; 2],
+    /// Linear ratios.
+    pub color: [f64; 3],
 }
 
 /// A ray that was not cast.
@@ -252,6 +267,8 @@ impl<'t> Reader<'t> {
             hit: None,
             absorbed: None,
             smooth: None,
+            vertex_color: None,
+            texture: None,
             lights: Vec::new(),
             added: [0.0; 3],
             background: false,
@@ -311,6 +328,18 @@ impl Ray {
             }
             Event::Absorbed { weight } => self.absorbed = Some(weight),
             Event::Smooth { normal } => self.smooth = Some(normal),
+            Event::VertexColor { color } => self.vertex_color = Some(color),
+            Event::Textured {
+                coordinates,
+                texel,
+                color,
+            } => {
+                self.texture = Some(Textured {
+                    coordinates,
+                    texel,
+                    color,
+                });
+            }
             Event::BehindTriangle => {
                 if let Some(lighting) = self.lights.last_mut() {
                     lighting.outcome = LightOutcome::BehindTriangle;

@@ -69,10 +69,21 @@ fn coordinates_keep_their_fraction_bits_at_both_ends() {
         Weights([0, 1 << 30]).coordinates([[0, 0], [0, 0], [-most, 5]]),
         [-most, 5]
     );
-    let short = [[i16::MAX, i16::MIN]];
-    assert_eq!(
-        Coordinates::Short(&short).get(0),
-        [i32::from(i16::MAX) << 6, -(2 << 20)]
-    );
-    assert_eq!(Coordinates::Short(&short).get(1), [0, 0]);
+}
+
+#[test]
+fn triangle_with_a_vertex_without_coordinates_has_none() {
+    let short = [[i16::MAX, -i16::MAX], [1, 2], [-3, i16::MIN], [i16::MIN; 2]];
+    let short = Coordinates::Short(&short);
+    let most = i32::from(i16::MAX) << 6;
+    let expected = [[most, -most], [64, 128], [-192, -(2 << 20)]];
+    assert_eq!(short.corners([0, 1, 2]), Some(expected));
+    assert_eq!(short.corners([0, 1, 3]), None);
+    assert_eq!(short.corners([4, 1, 0]), None);
+    let long = [[i32::MAX, i32::MIN], [0, 0], [i32::MIN, 0]];
+    let long = Coordinates::Long(&long);
+    assert_eq!(long.corners([1, 1, 0]), Some([[0, 0], [0, 0], [i32::MAX, i32::MIN]]));
+    assert_eq!(long.corners([1, 2, 0]), None);
+    assert_eq!(long.corners([1, 0, 3]), None);
+    assert_eq!(Coordinates::default().corners([0; 3]), None);
 }

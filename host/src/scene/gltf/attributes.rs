@@ -8,6 +8,7 @@ use glam::{DAffine2, DVec2};
 use gltf::image::Source;
 use gltf::texture::{MagFilter, WrappingMode};
 use gltf::{Primitive, Semantic};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 impl Importer<'_> {
@@ -38,7 +39,7 @@ impl Importer<'_> {
         }
         let material = part.material();
         let texture = material.pbr_metallic_roughness().base_color_texture();
-        let Some(texture) = texture else {
+        let Some(texture) = texture.filter(|it| it.texture().source().is_some()) else {
             return Ok(attributes);
         };
         let transformed = texture.texture_transform().and_then(|it| it.tex_coord());
@@ -92,7 +93,15 @@ impl Importer<'_> {
                 "the texture of material {name:?} weights its diffuse color alone, not what it mirrors or lets through"
             ));
         }
-        let image = self.image(&info.texture().source())?;
+        let Some(source) = info.texture().source() else {
+            self.warn(format!(
+                "the texture of material {name:?} names no image that Gridel reads; its plain color is used"
+            ));
+            return Ok(None);
+        };
+        let Some(image) = self.image(&source)? else {
+            return Ok(None);
+        };
         let sampler = info.texture().sampler();
         let wrap = |mode: WrappingMode| match mode {
             WrappingMode::Repeat => Wrap::Repeat,
@@ -112,27 +121,39 @@ impl Importer<'_> {
         }))
     }
 
-    /// Reads an image, each once.
-    fn image(&mut self, image: &gltf::Image<'_>) -> Result<Arc<Image>, SceneError> {
+    /// Reads an image, each once; `None` for a file that is not there.
+    fn image(&mut self, image: &gltf::Image<'_>) -> Result<Option<Arc<Image>>, SceneError> {
         if let Some(known) = self.images.get(&image.index()) {
-            return Ok(Arc::clone(known));
+            return Ok(known.clone());
         }
         let what = format!("image {}", image.index());
         let bytes = match image.source() {
-            Source::View { view, .. } => self.buffers.view(&view).ok_or_else(|| {
-                let cause = format!(
-                    "{what} reads buffer view {}, which its buffer lacks",
-                    view.index()
-                );
-                self.error(cause, "copy the file again, as binary, or export it again")
-            })?,
-            Source::Uri { uri, .. } => &fetch(self.path, &what, uri, self.access)?,
+            Source::View { view, .. } => match self.buffers.view(&view) {
+                Some(bytes) => Cow::Borrowed(bytes),
+                None => {
+                    let number = view.index();
+                    let cause =
+                        format!("{what} reads buffer view {number}, which its buffer lacks");
+                    let remedy = "copy the file again, as binary, or export it again";
+                    return Err(self.error(cause, remedy));
+                }
+            },
+            Source::Uri { uri, .. } => match fetch(self.path, &what, uri, self.access) {
+                Ok(bytes) => Cow::Owned(bytes),
+                // As with textures of OBJ files: it was often left behind.
+                Err(error) if error.cause.contains("cannot be read") => {
+                    self.warn(format!("{}; the plain color is used", error.cause));
+                    self.images.insert(image.index(), None);
+                    return Ok(None);
+                }
+                Err(error) => return Err(error),
+            },
         };
         let name = image.name().map_or_else(|| what.clone(), str::to_owned);
-        let decoded = Image::decode(&name, bytes)
+        let decoded = Image::decode(&name, &bytes)
             .map_err(|[cause, remedy]| self.error(format!("{what} ({name:?}) {cause}"), &remedy))?;
-        let decoded = Arc::new(decoded);
-        self.images.insert(image.index(), Arc::clone(&decoded));
+        let decoded = Some(Arc::new(decoded));
+        self.images.insert(image.index(), decoded.clone());
         Ok(decoded)
     }
 }

@@ -147,7 +147,7 @@ struct Importer<'a> {
     place: SourceSpan,
     buffers: Buffers<'a>,
     access: &'a Access,
-    images: HashMap<usize, Arc<Image>>,
+    images: HashMap<usize, Option<Arc<Image>>>,
     scene: Scene,
     /// Materials in use, by their number in the file; the default has none.
     materials: HashMap<Option<usize>, usize>,
