@@ -34,6 +34,7 @@ mod shapes;
 mod spd;
 mod structures;
 mod tables;
+mod textures;
 mod tracks;
 mod transforms;
 mod verify;

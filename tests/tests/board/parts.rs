@@ -2,12 +2,12 @@
 //! small scene with and without it.
 
 use crate::scenes::{Compiled, compile_with, small};
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use gridel_core::{Kind, Structure};
 use gridel_host::compile::Options;
 use gridel_host::scene::{
-    Camera, Diffuse, Instance, Light, Material, Normals, Object, Part, Placement, Scene, Shape,
-    SourceSpan,
+    Camera, Diffuse, Image, Instance, Light, Material, Normals, Object, Part, Placement, Scene,
+    Shape, SourceSpan, Texture,
 };
 use gridel_host::shape::{Cuboid, Sphere};
 use gridel_tests::shapes::examples;
@@ -21,7 +21,7 @@ const TRIANGLE: &str = Kind::Triangle.name();
 const INSTANCES: &str = "instances";
 
 /// A part's name, and how to require it.
-type Effects = [(&'static str, fn(&mut Scene)); 7];
+type Effects = [(&'static str, fn(&mut Scene)); 9];
 
 const EFFECTS: Effects = [
     ("shadow", |scene| scene.render.shadows = true),
@@ -42,6 +42,16 @@ const EFFECTS: Effects = [
     }),
     ("smooth", |scene| {
         scene.objects.iter_mut().for_each(make_smooth);
+    }),
+    ("vertex-colors", |scene| {
+        scene.objects.iter_mut().for_each(paint);
+    }),
+    ("texture", |scene| {
+        scene.objects.iter_mut().for_each(paper);
+        let pixels = (0..64).map(|it| [4 * it, 255 - it, 3 * (it & 15), 255]);
+        let image = Image::new("gradients", 8, 8, pixels.collect());
+        let image = image.expect("as many pixels");
+        scene.materials[0].texture = Some(Texture::of(image.into()));
     }),
 ];
 
@@ -168,6 +178,27 @@ fn make_smooth(object: &mut Object) {
     let face = (b - a).cross(c - a).normalize();
     let leaning = vertices.iter().map(|&it| 2.0 * face + (it - center));
     object.normals = Normals::given(leaning.collect(), triangles.clone(), (vertices, triangles));
+}
+
+/// Gives the vertices of a mesh colors.
+fn paint(object: &mut Object) {
+    if let Shape::Mesh { vertices, .. } = &object.shape {
+        let colors = (0..vertices.len()).map(|it| [0.3, 0.2 * (it % 5) as f64, 0.9]);
+        object.attributes.colors = colors.collect();
+    }
+}
+
+/// Gives the vertices of a mesh texture coordinates.
+fn paper(object: &mut Object) {
+    if let Shape::Mesh {
+        vertices,
+        triangles,
+    } = &object.shape
+    {
+        let coordinates = vertices.iter().map(|it| DVec2::new(it.x, it.y));
+        object.attributes.coordinates = coordinates.collect();
+        object.attributes.triangles.clone_from(triangles);
+    }
 }
 
 /// Moves all objects into a part, and places that.

@@ -192,6 +192,8 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
         ("absorption", "glass"),
         ("checker", "base"),
         ("smooth", "base"),
+        ("vertex-colors", "base"),
+        ("texture", "base"),
         ("sphere, triangle, shadow", "base"),
     ];
     let mut table = String::from(

@@ -82,7 +82,10 @@ fn triangle_with_a_vertex_without_coordinates_has_none() {
     assert_eq!(short.corners([4, 1, 0]), None);
     let long = [[i32::MAX, i32::MIN], [0, 0], [i32::MIN, 0]];
     let long = Coordinates::Long(&long);
-    assert_eq!(long.corners([1, 1, 0]), Some([[0, 0], [0, 0], [i32::MAX, i32::MIN]]));
+    assert_eq!(
+        long.corners([1, 1, 0]),
+        Some([[0, 0], [0, 0], [i32::MAX, i32::MIN]])
+    );
     assert_eq!(long.corners([1, 2, 0]), None);
     assert_eq!(long.corners([1, 0, 3]), None);
     assert_eq!(Coordinates::default().corners([0; 3]), None);

@@ -139,7 +139,9 @@ fn concave_faces_keep_their_area() {
 fn material(text: &str) -> (Material, Vec<String>) {
     let mut warnings = Warnings::default();
     let source = Source::from_bytes(Path::new("t.mtl"), text.into());
-    let mut all = mtl::read(&source, &mut warnings).unwrap();
+    let access = Access::of(Path::new("t.mtl"), false);
+    let mut images = Images::new(&access);
+    let mut all = mtl::read(&source, &mut images, &mut warnings).unwrap();
     (all.remove(0).1, warnings.into_sentences())
 }
 
@@ -175,7 +177,9 @@ fn materials() {
 fn material_faults_name_their_own_file() {
     let fault = |text: &str| {
         let source = Source::from_bytes(Path::new("t.mtl"), text.into());
-        mtl::read(&source, &mut Warnings::default())
+        let access = Access::of(Path::new("t.mtl"), false);
+        let mut images = Images::new(&access);
+        mtl::read(&source, &mut images, &mut Warnings::default())
             .unwrap_err()
             .to_string()
     };
@@ -322,9 +326,7 @@ fn ignored_smoothing_causes_one_warning() {
     let text = format!("{colored}vn 0 0 1\nvn 0 0 1\ns off\ns 0\ns 1\nusemap off\nf 1 2 3\n");
     assert_eq!(
         read(&text).unwrap().warnings,
-        [
-            "t.obj:8: smoothing groups are ignored; for smooth normals use `--normals smooth=40`",
-        ]
+        ["t.obj:8: smoothing groups are ignored; for smooth normals use `--normals smooth=40`",]
     );
 }
 
@@ -390,7 +392,10 @@ fn colors_of_vertices_are_taken_from_srgb() {
     let imported = read(text).unwrap();
     let colors = &imported.scene.objects[0].attributes.colors;
     let half = linear_of_srgb(0.5);
-    assert_eq!(*colors, [[1.0, 0.0, half], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    assert_eq!(
+        *colors,
+        [[1.0, 0.0, half], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    );
     assert_eq!(imported.warnings, [] as [&str; 0]);
 }
 
@@ -401,7 +406,11 @@ fn textured(faces: &str, material: &str) -> Result<Imported, SceneError> {
     let corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0\n";
     let text = format!("mtllib t.mtl\n{corners}usemtl m\n{faces}");
     std::fs::write(&path, text).unwrap();
-    std::fs::write(folder.path().join("t.mtl"), format!("newmtl m\n{material}\n")).unwrap();
+    std::fs::write(
+        folder.path().join("t.mtl"),
+        format!("newmtl m\n{material}\n"),
+    )
+    .unwrap();
     let pixels = [[255, 0, 0, 255], [0, 0, 255, 255]];
     let image = crate::scene::image::tests::png_of(2, 1, &pixels);
     std::fs::write(folder.path().join("two colors.png"), image).unwrap();
@@ -434,7 +443,10 @@ fn textures_are_read_with_their_options() {
     let attributes = placed.scene.objects[0].attributes.placed_on(Some(texture));
     // u becomes 2 u + 0.25; v, upwards, 3 v + 0.5.
     let corner = attributes.coordinates[2];
-    assert!((corner - DVec2::new(2.25, 1.0 - 3.5)).length() < 1e-12, "{corner}");
+    assert!(
+        (corner - DVec2::new(2.25, 1.0 - 3.5)).length() < 1e-12,
+        "{corner}"
+    );
     assert_eq!(placed.warnings.len(), 1);
     assert!(placed.warnings[0].ends_with("the option -bm of a texture is ignored"));
 }
@@ -449,7 +461,12 @@ fn faces_without_texture_coordinates_have_none() {
     let [warning] = &imported.warnings[..] else {
         panic!("{:?}", imported.warnings);
     };
-    assert!(warning.ends_with("t.obj:13: a face has texture coordinates that the file lacks, and no texture"), "{warning}");
+    assert!(
+        warning.ends_with(
+            "t.obj:13: a face has texture coordinates that the file lacks, and no texture"
+        ),
+        "{warning}"
+    );
 }
 
 #[test]
@@ -460,7 +477,10 @@ fn textures_that_cannot_be_read_are_named() {
     let [warning] = &missing.warnings[..] else {
         panic!("{:?}", missing.warnings);
     };
-    assert!(warning.contains("t.mtl:3") && warning.contains("none.png"), "{warning}");
+    assert!(
+        warning.contains("t.mtl:3") && warning.contains("none.png"),
+        "{warning}"
+    );
     for (statement, expected) in [
         ("map_Kd broken.png", "is neither PNG nor JPEG"),
         ("map_Kd ../two.png", "outside of the scene's folder"),
@@ -468,6 +488,9 @@ fn textures_that_cannot_be_read_are_named() {
         ("map_Kd", "names no file"),
     ] {
         let error = textured(square, statement).unwrap_err().to_string();
-        assert!(error.contains("t.mtl:2") && error.contains(expected), "{error}");
+        assert!(
+            error.contains("t.mtl:2") && error.contains(expected),
+            "{error}"
+        );
     }
 }

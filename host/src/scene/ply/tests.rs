@@ -356,7 +356,9 @@ fn vertices_bring_their_normals() {
 fn colors_of_vertices_are_taken_from_srgb() {
     for (kind, most) in [("uchar", "255"), ("ushort", "65535"), ("float", "1")] {
         let channels = ["red", "green", "blue", "alpha"];
-        let properties = channels.map(|name| format!("property {kind} {name}\n")).concat();
+        let properties = channels
+            .map(|name| format!("property {kind} {name}\n"))
+            .concat();
         let text = with_properties(&properties, "").replace("comment TextureFile a.png\n", "");
         let rows = format!(
             "0 0 0 {most} 0 0 {most}\n1 0 0 0 {most} 0 {most}\n0 1 0 0 0 {most} {most}\n3 0 1 2\n"

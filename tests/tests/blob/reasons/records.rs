@@ -1,7 +1,9 @@
 //! The view, lights, materials, primitives and objects.
 
 use super::{Errors, Forgery, everything};
-use gridel_core::format::record::{Light, Material, Sphere24, Vertex24, View};
+use gridel_core::format::record::{
+    Light, Material, Sphere24, SurfaceMaps, Texture, Vertex24, View,
+};
 use gridel_core::format::{Effects, Field, Reason, SectionKind};
 use gridel_core::geometry::cone::Cone;
 use gridel_core::geometry::cuboid::Cuboid;
@@ -61,11 +63,61 @@ pub(super) fn shading_data() -> Errors {
         });
     }
     errors.reason("material 0", Reason::SpareNotZero, |it| {
-        it.change(SectionKind::Materials, 0, |it: &mut Material| it.spare = 1)
+        it.change(SectionKind::Materials, 0, |it: &mut Material| {
+            it.maps = 1 << 15
+        })
     });
     errors.reason("material 0", Reason::MissingEffect, |it| {
         it.header().effects &= !Effects::MIRROR.0
     });
+    errors
+}
+
+/// Textures, and what leads to them.
+pub(super) fn textures() -> Errors {
+    let mut errors = everything();
+    errors.field("material 0", Field::Maps, |it| {
+        it.change(SectionKind::Materials, 0, |it: &mut Material| it.maps = 2)
+    });
+    errors.reason("material 0", Reason::MissingMaps, |it| {
+        it.change(SectionKind::Materials, 0, |it: &mut Material| {
+            it.maps = Material::MAPS_TEXTURE
+        })
+    });
+    errors.field("maps 0 of surface-maps", Field::TextureNumber, |it| {
+        it.change(SectionKind::SurfaceMaps, 0, |it: &mut SurfaceMaps| {
+            it.color = 2
+        })
+    });
+    errors.reason("maps 0 of surface-maps", Reason::SpareNotZero, |it| {
+        it.change(SectionKind::SurfaceMaps, 0, |it: &mut SurfaceMaps| {
+            it.spare = 1
+        })
+    });
+    let fields: [Forgery<Texture>; 8] = [
+        (Field::TextureWidth, &|it| it.width = 0),
+        (Field::TextureWidth, &|it| it.width = 4097),
+        (Field::TextureHeight, &|it| it.height = 0),
+        (Field::TextureForm, &|it| it.form = 4),
+        (Field::TextureFilter, &|it| it.filter = 2),
+        (Field::TextureWrap, &|it| it.wrap[1] = 3),
+        (Field::FirstTexel, &|it| it.first = 1),
+        (Field::FirstTexel, &|it| it.height += 1),
+    ];
+    for (field, forge) in fields {
+        errors.field("texture 0", field, |it| {
+            it.change(SectionKind::Textures, 0, forge)
+        });
+    }
+    for effect in [Effects::VERTEX_COLORS, Effects::TEXTURE] {
+        let place = match effect {
+            Effects::TEXTURE => "material 2",
+            _ => "section vertex-colors",
+        };
+        errors.reason(place, Reason::MissingEffect, |it| {
+            it.header().effects &= !effect.0
+        });
+    }
     errors
 }
 

@@ -162,7 +162,9 @@ fn textured() -> Value {
     document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": 0});
     let coordinates: [u16; 8] = [0, 0, 65535, 0, 65535, 65535, 0, 32768];
     let coordinates = coordinates.iter().flat_map(|it| it.to_le_bytes());
-    let colors: [u8; 16] = [255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 51, 51, 51, 127];
+    let colors: [u8; 16] = [
+        255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 51, 51, 51, 127,
+    ];
     let more: Vec<u8> = coordinates.chain(colors).collect();
     document["buffers"][1] = json!({"byteLength": 32,
         "uri": format!("data:application/octet-stream;base64,{}", STANDARD.encode(more))});
@@ -182,7 +184,10 @@ fn base_color_textures_have_their_sampler_and_transform() {
     let made = scene(&document);
     let texture = made.materials[0].texture.clone().unwrap();
     assert_eq!(texture.image.pixels()[1], [0, 0, 255, 255]);
-    assert_eq!((texture.wrap, texture.bilinear), ([Wrap::Clamp, Wrap::Mirror], false));
+    assert_eq!(
+        (texture.wrap, texture.bilinear),
+        ([Wrap::Clamp, Wrap::Mirror], false)
+    );
     let attributes = &made.objects[0].attributes;
     assert_eq!(attributes.triangles, [[0, 1, 2], [0, 2, 3]]);
     assert_eq!(attributes.coordinates[2].to_array(), [1.0, 1.0]);
@@ -199,9 +204,15 @@ fn base_color_textures_have_their_sampler_and_transform() {
     // The matrix of the extension: translation * rotation * scale, with the rotation [[c, s], [-s, c]].
     let placed = made.objects[0].attributes.placed_on(Some(&texture));
     let corner = placed.coordinates[1];
-    assert!((corner - glam::DVec2::new(0.5, 0.25 - 2.0)).length() < 1e-6, "{corner}");
+    assert!(
+        (corner - glam::DVec2::new(0.5, 0.25 - 2.0)).length() < 1e-6,
+        "{corner}"
+    );
     let corner = placed.coordinates[2];
-    assert!((corner - glam::DVec2::new(3.5, 0.25 - 2.0)).length() < 1e-6, "{corner}");
+    assert!(
+        (corner - glam::DVec2::new(3.5, 0.25 - 2.0)).length() < 1e-6,
+        "{corner}"
+    );
 }
 
 #[test]
@@ -210,12 +221,16 @@ fn colors_of_vertices_are_linear() {
     document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(3);
     let made = scene(&document);
     let colors = &made.objects[0].attributes.colors;
-    assert_eq!(colors[..3], [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    assert_eq!(
+        colors[..3],
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    );
     assert_eq!(colors[3], [0.2; 3]);
     assert_eq!(warnings(&document), ["the alpha of COLOR_0 is ignored"]);
     document["accessors"][3]["count"] = json!(3);
     assert!(cause(&document).contains("4 vertices and 3 colors"));
-    document["accessors"][3] = json!({"bufferView": 3, "componentType": 5121, "count": 4, "type": "SCALAR"});
+    document["accessors"][3] =
+        json!({"bufferView": 3, "componentType": 5121, "count": 4, "type": "SCALAR"});
     assert!(cause(&document).contains("is to hold colors"));
 }
 
@@ -224,7 +239,10 @@ fn images_that_cannot_be_read_are_named() {
     let mut document = textured();
     document["images"] = json!([{"uri": "none.png"}]);
     let found = warnings(&document);
-    assert!(found.len() == 1 && found[0].contains("none.png"), "{found:?}");
+    assert!(
+        found.len() == 1 && found[0].contains("none.png"),
+        "{found:?}"
+    );
     assert_eq!(scene(&document).materials[0].texture, None);
     document["images"] = json!([{"uri": "../none.png"}]);
     assert!(cause(&document).contains("outside of the scene's folder"));
@@ -235,5 +253,8 @@ fn images_that_cannot_be_read_are_named() {
     let mut document = textured();
     document["meshes"][0]["primitives"][0]["attributes"] = json!({"POSITION": 0});
     let found = warnings(&document);
-    assert!(found.len() == 1 && found[0].contains("no TEXCOORD_0"), "{found:?}");
+    assert!(
+        found.len() == 1 && found[0].contains("no TEXCOORD_0"),
+        "{found:?}"
+    );
 }
