@@ -35,7 +35,7 @@ const PICTURE: [u16; 2] = [90, 70];
 
 /// Random colors, whose numbers of columns and rows are no powers of two.
 fn image() -> Image {
-    let mut random = Random::new(19);
+    let mut random = Random(19);
     let mut channel = || random.below(256) as u8;
     let pixels = (0..35).map(|_| [channel(), channel(), channel(), 255]);
     Image::new("random", 7, 5, pixels.collect()).expect("as many pixels")
@@ -235,32 +235,29 @@ fn colors_and_textures_weight_the_diffuse_color_together() {
 }
 
 fn coordinates_are_interpolated<N: Number>(scene: &Scene<'_>) {
-    let bounds = scene.bounds().0;
-    let [[left, lowest, _], [right, highest, _]] =
-        [0, 1].map(|side| bounds[side].map(|it| f64::from(it)));
-    let mut random = Random::new(7);
+    let sides = scene.bounds().0.map(|side| side.map(f64::from));
+    let header = scene.header();
+    let unit = f64::from(header.unit_exponent).exp2();
+    let mut random = Random(7);
+    let mut compared = 0;
     for _ in 0..500 {
-        let place = [random.signed(), random.signed()];
-        let x = left + 0.5 * (place[0] + 1.0) * (right - left);
-        let y = lowest + 0.5 * (place[1] + 1.0) * (highest - lowest);
-        let ray = UnitRay::new([x, y, 0.25 * (right - left)], [0.0, 0.0, -1.0]);
+        let [x, y, z] = sides.map(|[low, high]| low + (high - low) * random.unit());
+        let ray = UnitRay::new([x, y, z.abs() + 64.0], [0.0, 0.0, -1.0]);
         let ray = ray.ready::<N>(scene).expect("a ray");
         let Some(hit) = closest::<N, List>(scene, &ray, &mut NoCount) else {
             continue;
         };
-        let [x, y, _] = point_of(&hit);
-        let place = [
-            2.0 * (x - left) / (right - left) - 1.0,
-            2.0 * (y - lowest) / (highest - lowest) - 1.0,
-        ];
+        compared += 1;
+        let point = point_of(&hit);
+        let place = [0, 1].map(|axis: usize| header.origin[axis] + point[axis] * unit);
         let found = hit.mapped_coordinates(scene).expect("a texture");
         let expected = interpolated(place, SQUARE.map(|[.., u, v]| [u, v]));
         for (found, expected) in found.into_iter().zip(expected) {
             // Coordinates of this square are stored with 14 fraction bits.
-            let tolerance = 1e-4;
-            assert!((found - expected).abs() < tolerance, "{found} {expected}");
+            assert!((found - expected).abs() < 1e-4, "{found} {expected}");
         }
     }
+    assert!(compared > 200, "{compared} hits");
 }
 
 #[test]

@@ -135,7 +135,7 @@ impl Effects {
     }
 
     /// This set under a condition, else none.
-    pub(crate) const fn only_if(self, condition: bool) -> Effects {
+    pub const fn only_if(self, condition: bool) -> Effects {
         if condition { self } else { Effects::NONE }
     }
 
