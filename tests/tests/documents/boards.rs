@@ -220,6 +220,16 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
 }
 
 #[test]
+fn memory_page_shows_recorded_cost_per_hit() {
+    let mut table = String::from("| effect | instructions per hit |\n|---|---|\n");
+    for effect in ["vertex-colors", "texture"] {
+        let each = on_board(effect, "mps2-an386", "f32")("hit-instructions");
+        table += &format!("| {effect} | {each} |\n");
+    }
+    holds_table(MEMORY, "per-hit", &table);
+}
+
+#[test]
 fn memory_page_shows_recorded_cost_of_small_code() {
     let mut table = String::from(
         "| build | code, bytes | vector table, bytes | call stack, bytes | load | \
