@@ -41,6 +41,9 @@ macro_rules! effects {
             /// Textures: the diffuse color of a mesh is weighted by that of an image.
             TEXTURE = 8, "texture", Texture in texture, casts 0,
                 required by "a material with a texture";
+            /// Alpha: parts of a texture let rays and light pass straight on. One more ray per hit.
+            ALPHA = 9, "alpha", Alpha in alpha, casts 1,
+                required by "an opaque material with a texture whose alpha is used";
         }
     };
 }
@@ -128,7 +131,7 @@ impl Effects {
     /// use gridel_core::Effects;
     ///
     /// let opaque = Effects::ALL.without(Effects::GLASS).without(Effects::ABSORPTION);
-    /// assert_eq!(opaque.to_string(), "shadow, highlight, mirror, checker, smooth, vertex-colors, texture");
+    /// assert_eq!(opaque.to_string(), "shadow, highlight, mirror, checker, smooth, vertex-colors, texture, alpha");
     /// ```
     pub const fn without(self, other: Effects) -> Effects {
         Effects(self.0 & !other.0)

@@ -138,6 +138,11 @@ pub enum Event {
         /// The texture's color: linear ratios.
         color: [f64; 3],
     },
+    /// The surface that was hit is there in part; the rest of the ray goes straight on.
+    Alpha {
+        /// How much of it is there, 0 to 1.
+        alpha: f64,
+    },
     /// The light that was just considered, which the smooth normal faces, lies behind the triangle, and does not
     /// reach it.
     BehindTriangle,

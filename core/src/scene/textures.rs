@@ -16,8 +16,11 @@ impl Material {
     /// The bit of [`maps`](Self::maps) for a texture of the diffuse color.
     pub const MAPS_TEXTURE: u16 = 1 << 12;
 
+    /// The bit of [`maps`](Self::maps) for a texture whose alpha is used.
+    pub const MAPS_ALPHA: u16 = 1 << 13;
+
     /// All bits of [`maps`](Self::maps) for effects.
-    pub(crate) const MAPS_FLAGS: u16 = Self::MAPS_TEXTURE;
+    pub(crate) const MAPS_FLAGS: u16 = Self::MAPS_TEXTURE | Self::MAPS_ALPHA;
 }
 
 /// The textures of a scene.
@@ -60,7 +63,6 @@ impl<'a> Textures<'a> {
             let at = At { section, index };
             let most = self.textures.len() as i64;
             at.within(Field::TextureNumber, maps.color.into(), 0, most)?;
-            at.ensure(maps.spare == 0, Reason::SpareNotZero)?;
         }
         let section = SectionKind::Textures;
         for (index, texture) in self.textures.iter().enumerate() {
@@ -90,41 +92,19 @@ impl<'a> Textures<'a> {
     /// Cost: 4 texels of a bilinear texture, 1 of another.
     #[inline(always)]
     pub(crate) fn lookup(&self, texture: &Texture, [u, v]: [i32; 2]) -> Texel {
-        let [width, height] = [texture.width, texture.height].map(u32::from);
-        let u = wrapped(u, texture.wrap[0]);
-        let v = wrapped(v, texture.wrap[1]);
-        if texture.filter == 0 {
-            // At most 2^20 - 1 times 4096.
-            let x = u.wrapping_mul(width) >> COORDINATE_BITS;
-            let y = v.wrapping_mul(height) >> COORDINATE_BITS;
-            let color = self.texel(texture, y.wrapping_mul(width).wrapping_add(x));
-            return Texel {
-                color: color.map(|root| linear(square(root) << 16)),
-                place: [x, y],
-            };
-        }
-        let ([left, right], across) = neighbors(u, width, texture.wrap[0] == 0);
-        let ([upper, lower], down) = neighbors(v, height, texture.wrap[1] == 0);
-        let (above, below) = (upper.wrapping_mul(width), lower.wrapping_mul(width));
-        // Weights with 16 fraction bits, whose sum is 1.
-        let both = across.wrapping_mul(down);
-        let weights = [
-            (1_u32 << 16)
-                .wrapping_add(both)
-                .wrapping_sub(across.wrapping_add(down) << 8),
-            (across << 8).wrapping_sub(both),
-            (down << 8).wrapping_sub(both),
-            both,
-        ];
-        let places = [
-            above.wrapping_add(left),
-            above.wrapping_add(right),
-            below.wrapping_add(left),
-            below.wrapping_add(right),
-        ];
+        let (places, weights, place) = match taps(texture, [u, v]) {
+            Taps::Nearest(index, place) => {
+                let color = self.texel(texture, index);
+                return Texel {
+                    color: color.map(|root| linear(square(root) << 16)),
+                    place,
+                };
+            }
+            Taps::Mixed(places, weights, place) => (places, weights, place),
+        };
         let mut sum = [0_u32; 3];
-        for (place, weight) in places.into_iter().zip(weights) {
-            let texel = self.texel(texture, place);
+        for (index, weight) in places.into_iter().zip(weights) {
+            let texel = self.texel(texture, index);
             for (sum, root) in sum.iter_mut().zip(texel) {
                 // In all at most 255^2 2^16, which has 32 bits.
                 *sum = sum.wrapping_add(square(root).wrapping_mul(weight));
@@ -132,17 +112,55 @@ impl<'a> Textures<'a> {
         }
         Texel {
             color: sum.map(linear),
-            place: [left, upper],
+            place,
         }
+    }
+
+    /// The alpha of a texture at coordinates with [`COORDINATE_BITS`] fraction bits: a ratio with 30 fraction bits.
+    #[inline(always)]
+    pub(crate) fn alpha(&self, texture: &Texture, at: [i32; 2]) -> i32 {
+        ratio(match taps(texture, at) {
+            Taps::Nearest(index, _) => self.texel_alpha(texture, index) << 16,
+            Taps::Mixed(places, weights, _) => {
+                let all = places.into_iter().zip(weights);
+                all.fold(0, |sum, (index, weight)| {
+                    let alpha = self.texel_alpha(texture, index);
+                    sum.wrapping_add(alpha.wrapping_mul(weight))
+                })
+            }
+        })
+    }
+
+    /// The alpha of a texel, of 255.
+    #[inline(always)]
+    fn texel_alpha(&self, texture: &Texture, index: u32) -> u32 {
+        if !matches!(texture.form, 0 | 3) {
+            return 255;
+        }
+        let [.., alpha] = self.bytes(self.place(texture, index));
+        u32::from(alpha)
+    }
+
+    /// Where the bytes of a texel are, or those of its color in the palette.
+    #[inline(always)]
+    fn place(&self, texture: &Texture, index: u32) -> usize {
+        let start = (texture.first as usize).wrapping_add(texture.palette_bytes());
+        let at = (index as usize)
+            .wrapping_mul(texture.texel_bytes())
+            .wrapping_add(start);
+        if texture.form != 0 {
+            return at;
+        }
+        let [entry] = self.bytes(at);
+        usize::from(entry)
+            .wrapping_mul(4)
+            .wrapping_add(texture.first as usize)
     }
 
     /// The color of a texel, as roots of 8 bits.
     #[inline(always)]
     fn texel(&self, texture: &Texture, index: u32) -> [u8; 3] {
-        let start = (texture.first as usize).wrapping_add(texture.palette_bytes());
-        let at = (index as usize)
-            .wrapping_mul(texture.texel_bytes())
-            .wrapping_add(start);
+        let at = self.place(texture, index);
         if texture.form == 1 {
             let [low, high] = self.bytes(at);
             let packed = u32::from(low) | u32::from(high) << 8;
@@ -155,14 +173,6 @@ impl<'a> Textures<'a> {
                 five(packed & 31),
             ];
         }
-        let at = if texture.form == 0 {
-            let [entry] = self.bytes(at);
-            usize::from(entry)
-                .wrapping_mul(4)
-                .wrapping_add(texture.first as usize)
-        } else {
-            at
-        };
         self.bytes(at)
     }
 
@@ -172,6 +182,54 @@ impl<'a> Textures<'a> {
         let rest = self.texels.get(at..).unwrap_or_default();
         rest.first_chunk().copied().unwrap_or([0; N])
     }
+}
+
+/// What of a texture is looked up at coordinates: places of texels, their weights with 16 fraction bits, and column and
+/// row of the first.
+enum Taps {
+    Nearest(u32, [u32; 2]),
+    Mixed([u32; 4], [u32; 4], [u32; 2]),
+}
+
+#[inline(always)]
+fn taps(texture: &Texture, [u, v]: [i32; 2]) -> Taps {
+    let [width, height] = [texture.width, texture.height].map(u32::from);
+    let u = wrapped(u, texture.wrap[0]);
+    let v = wrapped(v, texture.wrap[1]);
+    if texture.filter == 0 {
+        // At most 2^20 - 1 times 4096.
+        let x = u.wrapping_mul(width) >> COORDINATE_BITS;
+        let y = v.wrapping_mul(height) >> COORDINATE_BITS;
+        return Taps::Nearest(y.wrapping_mul(width).wrapping_add(x), [x, y]);
+    }
+    let ([left, right], across) = neighbors(u, width, texture.wrap[0] == 0);
+    let ([upper, lower], down) = neighbors(v, height, texture.wrap[1] == 0);
+    let (above, below) = (upper.wrapping_mul(width), lower.wrapping_mul(width));
+    let both = across.wrapping_mul(down);
+    // Their sum is 1.
+    let weights = [
+        (1_u32 << 16)
+            .wrapping_add(both)
+            .wrapping_sub(across.wrapping_add(down) << 8),
+        (across << 8).wrapping_sub(both),
+        (down << 8).wrapping_sub(both),
+        both,
+    ];
+    let places = [
+        above.wrapping_add(left),
+        above.wrapping_add(right),
+        below.wrapping_add(left),
+        below.wrapping_add(right),
+    ];
+    Taps::Mixed(places, weights, [left, upper])
+}
+
+/// A ratio with 30 fraction bits from a number of 8 bits, of which 255 stands for 1, with 16 fraction bits.
+#[inline(always)]
+pub(crate) fn ratio(number_q16: u32) -> i32 {
+    // 2^62 / (255 2^16), rounded up, so that 255 is 1 exactly.
+    const SCALE: u64 = (1_u64 << 62).div_ceil(255 << 16);
+    (u64::from(number_q16).wrapping_mul(SCALE) >> 32) as i32
 }
 
 #[inline(always)]

@@ -1,12 +1,12 @@
 //! Textures as a blob holds them, within a budget of bytes.
 //!
 //! Without a budget an image of at most 256 colors becomes a palette, and any other RGB888. With one, the image that
-//! takes the most bytes is made coarser until all fit: RGB565, then a palette of 256 colors, then half the size, again and
+//! takes the most bytes is made coarser until all fit: RGB565 (not where alpha is used), then a palette of 256 colors, then half the size, again and
 //! again. Images wider or higher than 4096 are halved in any case.
 
 use super::CompileError;
 use super::section::{Section, section};
-use crate::scene::{Image, Material, Texture, Wrap, linear_of_srgb};
+use crate::scene::{Alpha, Image, Material, Texture, Wrap, linear_of_srgb};
 use crate::table::{grouped, printable};
 use gridel_core::format::SectionKind;
 use gridel_core::format::record;
@@ -20,8 +20,8 @@ const MOST_SIDE: u32 = 4096;
 /// Most colors of a palette.
 const COLORS: usize = 256;
 
-/// A color as roots of linear light.
-type Roots = [u8; 3];
+/// A color as roots of linear light, and alpha.
+type Roots = [u8; 4];
 
 /// How a texture is stored.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -30,7 +30,7 @@ pub struct TextureFigures {
     pub name: String,
     pub width: u32,
     pub height: u32,
-    /// `palette`, `rgb565` or `rgb888`.
+    /// `palette`, `rgb565`, `rgb888` or `rgba8888`.
     pub form: &'static str,
     pub bytes: u64,
 }
@@ -73,7 +73,10 @@ fn srgb_of_linear(linear: f64) -> f64 {
 #[derive(Debug, Default)]
 pub struct Textures {
     images: Vec<Arc<Image>>,
+    /// For each image, whether its alpha is used.
+    has_alpha: Vec<bool>,
     textures: Vec<(usize, Texture)>,
+    maps: Vec<record::SurfaceMaps>,
 }
 
 impl Textures {
@@ -82,22 +85,48 @@ impl Textures {
         let Some(texture) = &material.texture else {
             return 0;
         };
+        let alpha = material.alpha.filter(|_| material.transmit == [0.0; 3]);
         let known = self.images.iter().position(|it| *it == texture.image);
         let image = known.unwrap_or_else(|| {
             self.images.push(Arc::clone(&texture.image));
+            self.has_alpha.push(false);
             self.images.len() - 1
         });
+        self.has_alpha[image] |= alpha.is_some();
         let same = |(number, other): &(usize, Texture)| {
             *number == image && other.wrap == texture.wrap && other.bilinear == texture.bilinear
         };
         let known = self.textures.iter().position(same);
-        let number = known.unwrap_or_else(|| {
+        let color = known.unwrap_or_else(|| {
             self.textures.push((image, texture.clone()));
             self.textures.len() - 1
         });
+        let of_255 = |it: f64| (it.clamp(0.0, 1.0) * 255.0).round() as u8;
+        let (cutoff, opacity) = match alpha {
+            None => (0, 0),
+            Some(Alpha::Blend(factor)) => (0, of_255(factor)),
+            // Alpha of 8 bits that is as large or larger.
+            Some(Alpha::CutOut(least)) => {
+                ((least.clamp(0.0, 1.0) * 255.0).ceil().max(1.0) as u8, 255)
+            }
+        };
         // Too many are an error later.
-        let number = (number + 1).min(record::Material::MAPS_NUMBER.into());
-        number as u16 | record::Material::MAPS_TEXTURE
+        let limit = |number: usize| (number + 1).min(record::Material::MAPS_NUMBER.into()) as u16;
+        let maps = record::SurfaceMaps {
+            color: limit(color),
+            cutoff,
+            opacity,
+        };
+        let known = self.maps.iter().position(|it| *it == maps);
+        let number = known.unwrap_or_else(|| {
+            self.maps.push(maps);
+            self.maps.len() - 1
+        });
+        let uses_alpha = match alpha {
+            Some(_) => record::Material::MAPS_ALPHA,
+            None => 0,
+        };
+        limit(number) | record::Material::MAPS_TEXTURE | uses_alpha
     }
 
     /// The sections, and how each image is stored.
@@ -106,7 +135,8 @@ impl Textures {
         display_values: bool,
         budget: Option<u64>,
     ) -> Result<(Vec<Section>, Vec<TextureFigures>), CompileError> {
-        let (count, most) = (self.textures.len(), record::Material::MAPS_NUMBER.into());
+        let most = record::Material::MAPS_NUMBER.into();
+        let count = self.textures.len().max(self.maps.len());
         if count > most {
             let what = "textures";
             return Err(CompileError::TooMany { what, count, most });
@@ -118,8 +148,9 @@ impl Textures {
             let channel = it as f64 / 255.0;
             root(linear_of_srgb(channel), display_values)
         });
-        let images = self.images.iter();
-        let mut images: Vec<Stored> = images.map(|it| Stored::of(it, &roots)).collect();
+        let images = self.images.iter().zip(&self.has_alpha);
+        let images = images.map(|(image, has_alpha)| Stored::of(image, *has_alpha, &roots));
+        let mut images: Vec<Stored> = images.collect();
         let total = |images: &[Stored]| images.iter().map(Stored::bytes).sum::<u64>();
         while budget.is_some_and(|most| total(&images) > most) {
             let largest = images.iter_mut().max_by_key(|it| it.bytes());
@@ -157,7 +188,6 @@ impl Textures {
             }
         });
         let textures: Vec<_> = textures.collect();
-        let maps = (1..=textures.len() as u16).map(|color| record::SurfaceMaps { color, spare: 0 });
         let figures = images.iter().map(|it| TextureFigures {
             name: it.name.clone(),
             width: it.width,
@@ -166,7 +196,7 @@ impl Textures {
             bytes: it.bytes(),
         });
         let sections = vec![
-            section(SectionKind::SurfaceMaps, &maps.collect::<Vec<_>>()),
+            section(SectionKind::SurfaceMaps, &self.maps),
             section(SectionKind::Textures, &textures),
             section(SectionKind::Texels, &texels),
         ];
@@ -180,6 +210,7 @@ enum Form {
     Palette = 0,
     Rgb565 = 1,
     Rgb888 = 2,
+    Rgba8888 = 3,
 }
 
 impl Form {
@@ -188,6 +219,7 @@ impl Form {
             Self::Palette => "palette",
             Self::Rgb565 => "rgb565",
             Self::Rgb888 => "rgb888",
+            Self::Rgba8888 => "rgba8888",
         }
     }
 }
@@ -198,20 +230,29 @@ struct Stored {
     width: u32,
     height: u32,
     pixels: Vec<Roots>,
+    has_alpha: bool,
     form: Form,
 }
 
 impl Stored {
-    fn of(image: &Image, roots: &[u8; 256]) -> Self {
+    fn of(image: &Image, has_alpha: bool, roots: &[u8; 256]) -> Self {
         let [width, height] = image.size();
         let pixels = image.pixels().iter();
-        let pixels = pixels.map(|&[r, g, b, _]| [r, g, b].map(|it| roots[usize::from(it)]));
+        let has_alpha = has_alpha && !image.is_opaque();
+        let pixels = pixels.map(|&[r, g, b, alpha]| {
+            let [r, g, b] = [r, g, b].map(|it| roots[usize::from(it)]);
+            [r, g, b, if has_alpha { alpha } else { 255 }]
+        });
         let mut stored = Self {
             name: image.name.clone(),
             width,
             height,
             pixels: pixels.collect(),
-            form: Form::Rgb888,
+            has_alpha,
+            form: match has_alpha {
+                true => Form::Rgba8888,
+                false => Form::Rgb888,
+            },
         };
         while stored.width > MOST_SIDE || stored.height > MOST_SIDE {
             stored.halve();
@@ -248,14 +289,18 @@ impl Stored {
     fn make_coarser(&mut self) -> bool {
         match self.form {
             Form::Rgb888 => self.form = Form::Rgb565,
-            Form::Rgb565 if self.bytes_as(Form::Palette) < self.bytes() => {
+            Form::Rgb565 | Form::Rgba8888 if self.bytes_as(Form::Palette) < self.bytes() => {
                 self.form = Form::Palette;
             }
             _ if self.width * self.height == 1 => return false,
             _ => {
                 self.halve();
-                if self.bytes_as(Form::Rgb565) < self.bytes() {
-                    self.form = Form::Rgb565;
+                let direct = match self.has_alpha {
+                    true => Form::Rgba8888,
+                    false => Form::Rgb565,
+                };
+                if self.bytes_as(direct) < self.bytes() {
+                    self.form = direct;
                 }
             }
         }
@@ -268,7 +313,7 @@ impl Stored {
         let mut pixels = Vec::with_capacity((width * height) as usize);
         for y in 0..height {
             for x in 0..width {
-                let mut sum = [0_u32; 3];
+                let (mut sum, mut alpha) = ([0_u32; 3], 0);
                 for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
                     let x = (2 * x + dx).min(self.width - 1);
                     let y = (2 * y + dy).min(self.height - 1);
@@ -276,8 +321,10 @@ impl Stored {
                     for (sum, root) in sum.iter_mut().zip(pixel) {
                         *sum += u32::from(root) * u32::from(root);
                     }
+                    alpha += u32::from(pixel[3]);
                 }
-                pixels.push(sum.map(|it| libm::sqrt(f64::from(it) / 4.0).round() as u8));
+                let [r, g, b] = sum.map(|it| libm::sqrt(f64::from(it) / 4.0).round() as u8);
+                pixels.push([r, g, b, ((alpha + 2) / 4) as u8]);
             }
         }
         (self.width, self.height, self.pixels) = (width, height, pixels);
@@ -286,9 +333,14 @@ impl Stored {
     /// Palette and texels.
     fn encoded(&self) -> Vec<u8> {
         match self.form {
-            Form::Rgb888 => self.pixels.as_flattened().to_vec(),
+            Form::Rgb888 => self
+                .pixels
+                .iter()
+                .flat_map(|it| [it[0], it[1], it[2]])
+                .collect(),
+            Form::Rgba8888 => self.pixels.as_flattened().to_vec(),
             Form::Rgb565 => {
-                let pack = |&[r, g, b]: &Roots| {
+                let pack = |&[r, g, b, _]: &Roots| {
                     let bits = |root: u8, most: u32| (u32::from(root) * most + 127) / 255;
                     let packed = bits(r, 31) << 11 | bits(g, 63) << 5 | bits(b, 31);
                     (packed as u16).to_le_bytes()
@@ -298,7 +350,7 @@ impl Stored {
             Form::Palette => {
                 let palette = palette(&self.pixels);
                 let mut bytes: Vec<u8> = Vec::with_capacity(self.bytes() as usize);
-                bytes.extend(palette.iter().flat_map(|&[r, g, b]| [r, g, b, 255]));
+                bytes.extend(palette.as_flattened());
                 bytes.resize(4 * COLORS, 0);
                 let mut nearest: HashMap<Roots, u8> = HashMap::new();
                 bytes.extend(self.pixels.iter().map(|pixel| {
@@ -317,7 +369,7 @@ impl Stored {
 fn distance(a: &Roots, b: &Roots) -> u32 {
     let apart = |k: usize| u32::from(a[k].abs_diff(b[k])).pow(2);
     // Green looks brightest, and blue darkest.
-    3 * apart(0) + 6 * apart(1) + apart(2)
+    3 * apart(0) + 6 * apart(1) + apart(2) + 6 * apart(3)
 }
 
 /// At most [`COLORS`] colors for pixels: all of them, or the means of boxes by Heckbert's median cut (1982).
@@ -337,7 +389,7 @@ fn palette(pixels: &[Roots]) -> Vec<Roots> {
         };
         // The longest side of all boxes is cut.
         let sides = boxes.iter().enumerate().flat_map(|(number, colors)| {
-            [0, 1, 2].map(|k: usize| (range(colors, k), std::cmp::Reverse(number), k))
+            [0, 1, 2, 3].map(|k: usize| (range(colors, k), std::cmp::Reverse(number), k))
         });
         let Some((1.., std::cmp::Reverse(number), axis)) = sides.max() else {
             break;
@@ -356,7 +408,7 @@ fn palette(pixels: &[Roots]) -> Vec<Roots> {
     }
     let mean = |colors: &Vec<(Roots, u64)>| {
         let count: u64 = colors.iter().map(|(_, count)| count).sum();
-        [0, 1, 2].map(|k: usize| {
+        [0, 1, 2, 3].map(|k: usize| {
             let sum: u64 = colors
                 .iter()
                 .map(|(color, count)| u64::from(color[k]) * count)
@@ -437,7 +489,7 @@ mod tests {
 
     #[test]
     fn palette_of_few_colors_is_exact() {
-        let pixels: Vec<Roots> = (0..=255).map(|it| [it, 255 - it, 7]).collect();
+        let pixels: Vec<Roots> = (0..=255).map(|it| [it, 255 - it, 7, it / 2]).collect();
         let mut found = palette(&pixels);
         found.sort_unstable();
         assert_eq!(found, pixels);

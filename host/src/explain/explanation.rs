@@ -56,6 +56,8 @@ pub struct Ray {
     pub vertex_color: Option<[f64; 3]>,
     /// The texture that weights the diffuse color.
     pub texture: Option<Textured>,
+    /// How much of the surface is there, where the alpha of a texture says so.
+    pub alpha: Option<f64>,
     pub lights: Vec<Lighting>,
     /// The radiance that it adds to the sample, its weight included.
     pub added: [f64; 3],
@@ -269,6 +271,7 @@ impl<'t> Reader<'t> {
             smooth: None,
             vertex_color: None,
             texture: None,
+            alpha: None,
             lights: Vec::new(),
             added: [0.0; 3],
             background: false,
@@ -328,6 +331,7 @@ impl Ray {
             }
             Event::Absorbed { weight } => self.absorbed = Some(weight),
             Event::Smooth { normal } => self.smooth = Some(normal),
+            Event::Alpha { alpha } => self.alpha = Some(alpha),
             Event::VertexColor { color } => self.vertex_color = Some(color),
             Event::Textured {
                 coordinates,

@@ -252,6 +252,13 @@ impl Shown<'_> {
                 color(texture.color)
             )?;
         }
+        if let Some(alpha) = ray.alpha {
+            let alpha = significant(alpha);
+            writeln!(
+                f,
+                "{indent}  its alpha is {alpha}; the rest of the ray goes straight on"
+            )?;
+        }
         if let Some(weight) = ray.absorbed {
             writeln!(
                 f,

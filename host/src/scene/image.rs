@@ -100,6 +100,18 @@ impl Image {
         })
     }
 
+    /// Returns whether every pixel is opaque.
+    ///
+    /// ```
+    /// use gridel_host::scene::Image;
+    ///
+    /// let image = Image::new("half", 2, 1, vec![[0, 0, 0, 255], [0, 0, 0, 254]]).unwrap();
+    /// assert!(!image.is_opaque());
+    /// ```
+    pub fn is_opaque(&self) -> bool {
+        self.pixels.iter().all(|pixel| pixel[3] == 255)
+    }
+
     /// Reads a PNG or JPEG file, told apart by their content.
     pub(super) fn decode(name: &str, bytes: &[u8]) -> Result<Self, Fault> {
         let (width, height, pixels) = if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {

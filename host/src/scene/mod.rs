@@ -44,7 +44,8 @@ pub use importer::Importer;
 pub(crate) use joint::JointTracks;
 pub use joint::{LARGEST_SCALE, LEAST_SCALE};
 pub use model::{
-    Camera, Color, Diffuse, Instance, Joint, Light, Material, Object, Part, RenderSettings, Scene,
+    Alpha, Camera, Color, Diffuse, Instance, Joint, Light, Material, Object, Part, RenderSettings,
+    Scene,
 };
 pub use normals::{Normals, NormalsChoice};
 pub use options::{

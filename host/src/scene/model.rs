@@ -115,6 +115,17 @@ pub struct Material {
     pub absorption: Color,
     /// The image that weights the diffuse color of meshes with texture coordinates.
     pub texture: Option<Texture>,
+    /// How the alpha of the texture is used; glass ignores it.
+    pub alpha: Option<Alpha>,
+}
+
+/// How the alpha of a texture is used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Alpha {
+    /// It is how much of the surface is there; times a factor, 0 to 1.
+    Blend(f64),
+    /// Less than this, above 0, is not there, and the rest is opaque.
+    CutOut(f64),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -250,6 +261,7 @@ impl Default for Material {
             ior: 1.5,
             absorption: [0.0; 3],
             texture: None,
+            alpha: None,
         }
     }
 }

@@ -68,12 +68,18 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
         "surfaces have their diffuse color weighted by the mean of the image",
         |scene| {
             each_material(scene, |material| {
+                material.alpha = None;
                 if let Some(texture) = material.texture.take() {
                     let mean = texture.image.mean();
                     material.diffuse = material.diffuse.weighted(mean);
                 }
             });
         },
+    ),
+    (
+        Effects::ALPHA,
+        "textures are opaque, also where they were not there",
+        |scene| each_material(scene, |material| material.alpha = None),
     ),
 ];
 
@@ -155,7 +161,7 @@ pub fn effect_named(name: &str) -> Option<Effects> {
 mod tests {
     use super::*;
     use crate::compile::{Options, compile};
-    use crate::scene::{Image, Texture, read};
+    use crate::scene::{Alpha, Image, Texture, read};
 
     /// Calls for every effect.
     const ALL: &str = "
@@ -189,7 +195,8 @@ mod tests {
         let imported = read("all.toml".as_ref(), ALL.into(), &Default::default());
         let mut scene = imported.unwrap().scene;
         let image = Image::new("two", 2, 1, vec![[0, 0, 0, 255], [255; 4]]);
-        scene.materials[0].texture = image.map(|it| Texture::of(it.into()));
+        scene.materials[1].texture = image.map(|it| Texture::of(it.into()));
+        scene.materials[1].alpha = Some(Alpha::Blend(0.5));
         scene
     }
 
@@ -210,6 +217,7 @@ mod tests {
             assert_eq!(leave_out(&mut scene, effect), None, "{name}");
             let depends = match effect {
                 Effects::GLASS => Effects::ABSORPTION,
+                Effects::TEXTURE => Effects::ALPHA,
                 _ => Effects::NONE,
             };
             assert_eq!(

@@ -80,6 +80,7 @@ fn small_scene() -> gridel_host::scene::Scene {
     scene.materials.push(Material {
         name: String::from("image"),
         texture: Some(Texture::of(image.into())),
+        alpha: Some(Alpha::Blend(0.9)),
         ..Material::default()
     });
     let plain = scene.objects.iter_mut().filter(|it| it.material == 0);

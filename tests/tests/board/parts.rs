@@ -6,8 +6,8 @@ use glam::{DQuat, DVec2, DVec3};
 use gridel_core::{Kind, Structure};
 use gridel_host::compile::Options;
 use gridel_host::scene::{
-    Camera, Diffuse, Image, Instance, Light, Material, Normals, Object, Part, Placement, Scene,
-    Shape, SourceSpan, Texture,
+    Alpha, Camera, Diffuse, Image, Instance, Light, Material, Normals, Object, Part, Placement,
+    Scene, Shape, SourceSpan, Texture,
 };
 use gridel_host::shape::{Cuboid, Sphere};
 use gridel_tests::shapes::examples;
@@ -21,7 +21,7 @@ const TRIANGLE: &str = Kind::Triangle.name();
 const INSTANCES: &str = "instances";
 
 /// A part's name, and how to require it.
-type Effects = [(&'static str, fn(&mut Scene)); 9];
+type Effects = [(&'static str, fn(&mut Scene)); 10];
 
 const EFFECTS: Effects = [
     ("shadow", |scene| scene.render.shadows = true),
@@ -46,14 +46,21 @@ const EFFECTS: Effects = [
     ("vertex-colors", |scene| {
         scene.objects.iter_mut().for_each(paint);
     }),
-    ("texture", |scene| {
-        scene.objects.iter_mut().for_each(paper);
-        let pixels = (0..64).map(|it| [4 * it, 255 - it, 3 * (it & 15), 255]);
-        let image = Image::new("gradients", 8, 8, pixels.collect());
-        let image = image.expect("as many pixels");
-        scene.materials[0].texture = Some(Texture::of(image.into()));
+    ("texture", |scene| hang(scene, |_| 255)),
+    ("alpha", |scene| {
+        hang(scene, |it| 4 * it);
+        scene.materials[0].alpha = Some(Alpha::CutOut(0.5));
     }),
 ];
+
+/// Gives all meshes a texture with this alpha.
+fn hang(scene: &mut Scene, alpha: fn(u8) -> u8) {
+    scene.objects.iter_mut().for_each(paper);
+    let pixels = (0..64).map(|it| [4 * it, 255 - it, 3 * (it & 15), alpha(it)]);
+    let image = Image::new("gradients", 8, 8, pixels.collect());
+    let image = image.expect("as many pixels");
+    scene.materials[0].texture = Some(Texture::of(image.into()));
+}
 
 /// The base, and a scene for every shape and effect beside it. Scenes for shapes have no effects,
 /// and those for effects no other shapes; absorption comes with the glass that it is in.

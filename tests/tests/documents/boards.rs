@@ -157,6 +157,7 @@ fn program(part: &str) -> Vec<Footprint> {
     let parts = match part {
         "base" => vec!["triangle"],
         "absorption" => vec!["triangle", "glass", "absorption"],
+        "alpha" => vec!["triangle", "texture", "alpha"],
         "sphere, triangle, shadow" => vec!["triangle", "sphere", "shadow"],
         part => vec!["triangle", part],
     };
@@ -194,6 +195,7 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
         ("smooth", "base"),
         ("vertex-colors", "base"),
         ("texture", "base"),
+        ("alpha", "texture"),
         ("sphere, triangle, shadow", "base"),
     ];
     let mut table = String::from(

@@ -11,8 +11,10 @@ records! {
     pub struct SurfaceMaps {
         /// The texture that weights the diffuse color, counted from 1; 0 for none.
         pub color: u16,
-        /// Zero.
-        pub spare: u16,
+        /// Where the texture's alpha is used: 0 for blending, else what alpha, of 255, is opaque; less is not there.
+        pub cutoff: u8,
+        /// Where the texture's alpha is used: a factor of it, of which 255 is 1.
+        pub opacity: u8,
     }
 
     /// An image, and how it is looked up. Colors are square roots of linear light: 255 is 1.

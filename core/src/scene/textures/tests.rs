@@ -179,7 +179,10 @@ fn textures_beyond_their_texels_are_rejected() {
         },
         99
     ));
-    let maps = [SurfaceMaps { color: 2, spare: 0 }];
+    let maps = [SurfaceMaps {
+        color: 2,
+        ..SurfaceMaps::zeroed()
+    }];
     let textures = Textures {
         maps: &maps,
         textures: &[texture],
@@ -204,4 +207,39 @@ fn largest_texture_is_looked_up_at_its_last_texel() {
         ..texture
     };
     assert_eq!(look_up(&texels, texture, [1.0, 1.0]), WHITE);
+}
+
+#[test]
+fn alpha_is_that_of_palettes_and_wide_texels_alone() {
+    let colors: Vec<u8> = [0, 85, 170, 255]
+        .iter()
+        .flat_map(|&alpha| [9, 9, 9, alpha])
+        .collect();
+    let mut indexed = colors.clone();
+    indexed.resize(1024, 0);
+    indexed.extend([0, 1, 2, 3]);
+    let packed = [9; 12].to_vec();
+    for filter in [0, 1] {
+        for (form, texels) in [(0, &indexed), (1, &packed), (2, &packed), (3, &colors)] {
+            let texture = image(form, filter, 0);
+            let textures = Textures {
+                maps: &[],
+                textures: &[texture],
+                texels,
+            };
+            textures.validate().expect("valid");
+            let at = |u: f64, v: f64| {
+                let at = [u, v].map(|it| (it * f64::from(ONE)) as i32);
+                f64::from(textures.alpha(&texture, at)) / f64::from(1 << 30)
+            };
+            let has_alpha = matches!(form, 0 | 3);
+            let expected = |alpha: f64| if has_alpha { alpha } else { 1.0 };
+            let near = |found: f64, alpha: f64| (found - expected(alpha)).abs() < 1e-8;
+            assert!(near(at(0.25, 0.25), 0.0) && near(at(0.75, 0.75), 1.0));
+            assert!(near(at(0.75, 0.25), 85.0 / 255.0));
+            if filter == 1 {
+                assert!(near(at(0.5, 0.5), 0.5), "{form}");
+            }
+        }
+    }
 }

@@ -167,6 +167,7 @@ impl Statements {
             ior: density.clamp(1.0, 4.0),
             absorption: [0.0; 3],
             texture: self.texture.clone(),
+            alpha: None,
         }
     }
 }

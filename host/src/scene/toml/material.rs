@@ -2,9 +2,9 @@
 
 use super::shape::pair;
 use super::source::{Name, Source, nearest};
-use super::value::Value;
+use super::value::{Fields, Value};
 use crate::scene::texture::{Images, texture_transform};
-use crate::scene::{Diffuse, Image, Material, SceneError, Texture, Wrap};
+use crate::scene::{Alpha, Diffuse, Image, Material, SceneError, Texture, Wrap};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -19,6 +19,8 @@ const KEYS: &[&str] = &[
     "ior",
     "absorption",
     "texture",
+    "alpha",
+    "cutoff",
 ];
 
 /// The materials of a scene, each with a name of its own.
@@ -124,8 +126,41 @@ fn material(table: Value<'_>, images: &mut Images<'_>) -> Result<Material, Scene
         ior: fields.or("ior", default.ior, |value| value.number_in(1.0..=4.0))?,
         absorption: fields.or("absorption", default.absorption, Value::coefficients)?,
         texture: fields.or("texture", None, |value| texture(value, images).map(Some))?,
+        alpha: alpha(&fields)?,
         ..default
     })
+}
+
+/// How the alpha of the texture is used, which glass ignores.
+fn alpha(fields: &Fields<'_>) -> Result<Option<Alpha>, SceneError> {
+    let cutoff = fields.get("cutoff");
+    let Some(value) = fields.get("alpha") else {
+        return match cutoff {
+            None => Ok(None),
+            Some(cutoff) => Err(cutoff.error(
+                "`cutoff` is for textures that are cut out",
+                "write `alpha = \"cutout\"` beside it",
+            )),
+        };
+    };
+    if fields.get("texture").is_none() {
+        let remedy = "add a `texture`, or write a pane as `transmit = 0.5` and `ior = 1`";
+        return Err(value.error("`alpha` is that of a texture, and there is none", remedy));
+    }
+    if fields.get("transmit").is_some() {
+        let remedy = "remove `alpha` or `transmit`";
+        return Err(value.error("glass has no `alpha`: it lets light through", remedy));
+    }
+    let blends = value.word(&["blend", "cutout"])? == "blend";
+    match cutoff {
+        Some(cutoff) if blends => Err(cutoff.error(
+            "`cutoff` is for textures that are cut out",
+            "remove it, or write `alpha = \"cutout\"`",
+        )),
+        _ if blends => Ok(Some(Alpha::Blend(1.0))),
+        None => Ok(Some(Alpha::CutOut(0.5))),
+        Some(cutoff) => cutoff.number_in(0.002..=1.0).map(Alpha::CutOut).map(Some),
+    }
 }
 
 /// A file's name, or a table with it and options.

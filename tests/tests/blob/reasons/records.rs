@@ -89,11 +89,6 @@ pub(super) fn textures() -> Errors {
             it.color = 2
         })
     });
-    errors.reason("maps 0 of surface-maps", Reason::SpareNotZero, |it| {
-        it.change(SectionKind::SurfaceMaps, 0, |it: &mut SurfaceMaps| {
-            it.spare = 1
-        })
-    });
     let fields: [Forgery<Texture>; 8] = [
         (Field::TextureWidth, &|it| it.width = 0),
         (Field::TextureWidth, &|it| it.width = 4097),
@@ -109,10 +104,10 @@ pub(super) fn textures() -> Errors {
             it.change(SectionKind::Textures, 0, forge)
         });
     }
-    for effect in [Effects::VERTEX_COLORS, Effects::TEXTURE] {
+    for effect in [Effects::VERTEX_COLORS, Effects::TEXTURE, Effects::ALPHA] {
         let place = match effect {
-            Effects::TEXTURE => "material 2",
-            _ => "section vertex-colors",
+            Effects::VERTEX_COLORS => "section vertex-colors",
+            _ => "material 2",
         };
         errors.reason(place, Reason::MissingEffect, |it| {
             it.header().effects &= !effect.0
