@@ -3,6 +3,7 @@
 use glam::{DQuat, DVec2, DVec3};
 use gridel_core::{Effects, Format, List, NoCount, Number, Scene, Settings, Structure};
 use gridel_host::blob::Blob;
+use gridel_host::certify::{World, enclose};
 use gridel_host::compile::{Options, compile};
 use gridel_host::render::{Aov, Job, Values, render, render_aovs, render_linear};
 use gridel_host::scene::{
@@ -470,6 +471,46 @@ fn light_shines_through_what_is_cut_out() {
             assert_near(found, expected, 0.004, format.name());
         }
     }
+}
+
+/// The exact picture of textures: what double precision shows lies in the intervals, but for its own rounding.
+#[test]
+fn textured_pixels_are_certified() {
+    for (wrap, bilinear) in [
+        (Wrap::Repeat, true),
+        (Wrap::Mirror, false),
+        (Wrap::Clamp, true),
+    ] {
+        let mut scene = textured(wrap, bilinear);
+        scene.objects[0].attributes.colors = COLORS.to_vec();
+        let blob = blob_of(&scene);
+        let scene = blob.scene().expect("valid");
+        let world = World::of(&scene).expect("a scene that is known");
+        let settings = settings(&scene);
+        let job = Job::whole(Format::F64, Structure::DualSplit, settings);
+        let picture = render_linear(&scene, &job, &|| ())
+            .expect("a picture")
+            .pixels;
+        let (mut open, mut outside) = (0, 0);
+        for (pixel, found) in picture.iter().enumerate() {
+            let place = [pixel % 90, pixel / 90].map(|it| it as u16);
+            let enclosed = enclose(&world, &settings, place, 1);
+            open += usize::from(enclosed.width() > 1e-6);
+            let pairs = found.iter().map(|it| f64::from(*it)).zip(enclosed.linear);
+            let is_outside =
+                |(found, [low, high]): (f64, [f64; 2])| found < low - 1e-6 || found > high + 1e-6;
+            outside += usize::from(pairs.into_iter().any(is_outside));
+        }
+        // A texel or a weight that is another by rounding is rare.
+        assert!(outside < 10, "{outside} pixels outside of their intervals");
+        // Pixels on the edge between both triangles.
+        assert!(open < 200, "{open} open pixels");
+    }
+    let alpha = blob_of(&before_a_wall([9; 4], Alpha::Blend(1.0)));
+    let error = World::of(&alpha.scene().expect("valid"))
+        .err()
+        .expect("unknown");
+    assert!(error.to_string().contains("`alpha`"), "{error}");
 }
 
 /// A real file with a texture: pixels of several colors, the same in all formats but for rounding.

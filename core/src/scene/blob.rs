@@ -199,6 +199,34 @@ impl<'a> Scene<'a> {
         Some(self.space.shapes.smooth_triangle(slot)?.normals)
     }
 
+    /// The colors of a triangle's corners (see [`attributes`](crate::geometry::attributes)), given by the triangle's
+    /// slot; `None` where no corner has one.
+    pub fn corner_colors(&self, slot: usize) -> Option<[[u8; 4]; 3]> {
+        let all = self.space.shapes.colors();
+        let vertices = self.space.shapes.triangles.corners(slot)?;
+        let has_color = vertices.iter().any(|&vertex| vertex < all.len());
+        let color = |vertex: usize| all.get(vertex).copied().unwrap_or([255; 4]);
+        has_color.then(|| vertices.map(color))
+    }
+
+    /// The texture coordinates of a triangle's corners, with 20 fraction bits, given by the triangle's slot; `None` where
+    /// a corner has none.
+    pub fn corner_coordinates(&self, slot: usize) -> Option<[[i32; 2]; 3]> {
+        let vertices = self.space.shapes.triangles.corners(slot)?;
+        self.space.shapes.coordinates().corners(vertices)
+    }
+
+    /// The color of a material's texture at coordinates with 20 fraction bits: linear ratios with 30 fraction bits.
+    /// `None` of a material without a texture.
+    pub fn texture_color(&self, material: &Material, coordinates: [i32; 2]) -> Option<[i32; 3]> {
+        if !self.effects.contains(Effects::TEXTURE) || material.maps & Material::MAPS_TEXTURE == 0 {
+            return None;
+        }
+        let textures = self.textures.get()?;
+        let texture = textures.texture(textures.maps_of(material)?.color)?;
+        Some(textures.lookup(texture, coordinates).color)
+    }
+
     /// A primitive as it lies on the lattice, given by its kind and its slot among those of that kind.
     pub fn geometry(&self, kind: Kind, slot: usize) -> Option<Geometry> {
         self.space.shapes.geometry(kind, slot)

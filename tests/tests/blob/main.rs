@@ -15,7 +15,9 @@ use gridel_core::{Format, Hit, List, NoCount, Number, Scene, Settings};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_host::render::{Job, render};
-use gridel_host::scene::{Attributes, Camera, Diffuse, Image, Light, Material, Shape, Texture};
+use gridel_host::scene::{
+    Alpha, Attributes, Camera, Diffuse, Image, Light, Material, Shape, Texture,
+};
 use gridel_host::shape::{Plane, Torus};
 use gridel_tests::effort::step;
 use gridel_tests::fuzz::{moves, sealed, speaks};

@@ -1,7 +1,7 @@
 //! Colors of vertices, texture coordinates, and textures.
 
-use super::Importer;
 use super::buffers::fetch;
+use super::{Importer, material};
 use crate::scene::texture::texture_transform;
 use crate::scene::{Attributes, Image, Material, SceneError, Texture, Wrap};
 use glam::{DAffine2, DVec2};
@@ -62,8 +62,39 @@ impl Importer<'_> {
         Ok(attributes)
     }
 
+    /// The material of a primitive, each read once.
+    pub(super) fn material(&mut self, part: &Primitive<'_>) -> Result<usize, SceneError> {
+        let material = part.material();
+        if let Some(&known) = self.materials.get(&material.index()) {
+            return Ok(known);
+        }
+        let plain = material::read(&material, false);
+        let texture = self.texture(&material, &plain)?;
+        let is_opaque = texture.as_ref().is_none_or(|it| it.image.is_opaque());
+        let alpha = material::alpha(&material).filter(|_| !is_opaque);
+        let made = match alpha {
+            None => plain,
+            Some(_) => material::read(&material, true),
+        };
+        let made = Material {
+            texture,
+            alpha,
+            ..made
+        };
+        if alpha.is_some() && made.transmit != [0.0; 3] {
+            let name = &made.name;
+            self.warn(format!(
+                "the alpha of the texture of material {name:?} is ignored, because it is glass"
+            ));
+        }
+        let number = self.scene.materials.len();
+        self.scene.materials.push(made);
+        self.materials.insert(material.index(), number);
+        Ok(number)
+    }
+
     /// The texture of the base color.
-    pub(super) fn texture(
+    fn texture(
         &mut self,
         material: &gltf::Material<'_>,
         made: &Material,

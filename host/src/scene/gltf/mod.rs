@@ -375,36 +375,6 @@ impl Importer<'_> {
         Ok(objects)
     }
 
-    fn material(&mut self, part: &Primitive<'_>) -> Result<usize, SceneError> {
-        let material = part.material();
-        if let Some(&known) = self.materials.get(&material.index()) {
-            return Ok(known);
-        }
-        let plain = material::read(&material, false);
-        let texture = self.texture(&material, &plain)?;
-        let is_opaque = texture.as_ref().is_none_or(|it| it.image.is_opaque());
-        let alpha = material::alpha(&material).filter(|_| !is_opaque);
-        let made = match alpha {
-            None => plain,
-            Some(_) => material::read(&material, true),
-        };
-        let made = Material {
-            texture,
-            alpha,
-            ..made
-        };
-        if alpha.is_some() && made.transmit != [0.0; 3] {
-            let name = &made.name;
-            self.warn(format!(
-                "the alpha of the texture of material {name:?} is ignored, because it is glass"
-            ));
-        }
-        let number = self.scene.materials.len();
-        self.scene.materials.push(made);
-        self.materials.insert(material.index(), number);
-        Ok(number)
-    }
-
     /// The triangles of a part of a mesh in world space, if it has any.
     fn mesh(
         &mut self,

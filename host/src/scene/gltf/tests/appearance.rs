@@ -258,3 +258,39 @@ fn images_that_cannot_be_read_are_named() {
         "{found:?}"
     );
 }
+
+#[test]
+fn alpha_modes_of_textures() {
+    let mut document = textured();
+    let pixels = [[255, 0, 0, 255], [0, 0, 255, 9]];
+    let image = STANDARD.encode(crate::scene::image::tests::png_of(2, 1, &pixels));
+    let clear = json!({"uri": format!("data:image/png;base64,{image}")});
+    let alpha_of = |document: &Value| scene(document).materials[0].alpha;
+    let set = |document: &mut Value, mode: &str, factor: f64, cutoff: f64| {
+        document["materials"][0]["alphaMode"] = json!(mode);
+        document["materials"][0]["alphaCutoff"] = json!(cutoff);
+        let surface = &mut document["materials"][0]["pbrMetallicRoughness"];
+        surface["baseColorFactor"] = json!([1, 1, 1, factor]);
+    };
+    // An opaque image leaves a pane.
+    set(&mut document, "BLEND", 0.25, 0.5);
+    assert_eq!(alpha_of(&document), None);
+    assert_eq!(scene(&document).materials[0].transmit, [0.75; 3]);
+    document["images"][0] = clear;
+    assert_eq!(alpha_of(&document), Some(Alpha::Blend(0.25)));
+    assert_eq!(scene(&document).materials[0].transmit, [0.0; 3]);
+    for (mode, factor, cutoff, expected) in [
+        ("OPAQUE", 0.5, 0.5, None),
+        ("MASK", 1.0, 0.5, Some(Alpha::CutOut(0.5))),
+        ("MASK", 0.5, 0.25, Some(Alpha::CutOut(0.5))),
+        ("MASK", 0.5, 0.75, Some(Alpha::Blend(0.0))),
+        ("MASK", 0.5, 0.0, None),
+    ] {
+        set(&mut document, mode, factor, cutoff);
+        assert_eq!(alpha_of(&document), expected, "{mode} {factor} {cutoff}");
+        assert_eq!(
+            scene(&document).materials[0].diffuse,
+            Diffuse::Plain([1.0; 3])
+        );
+    }
+}
