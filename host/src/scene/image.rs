@@ -1,7 +1,6 @@
 //! Images for textures: PNG and JPEG.
 
 use super::Color;
-use super::texture::linear_of_srgb;
 use std::fmt;
 use std::io::Cursor;
 
@@ -213,6 +212,19 @@ fn pixel(channels: &[u8]) -> [u8; 4] {
         [red, green, blue] => [red, green, blue, 255],
         [red, green, blue, alpha, ..] => [red, green, blue, alpha],
         [] => [0; 4],
+    }
+}
+
+/// A channel in sRGB, 0 to 1, as linear light (IEC 61966-2-1).
+///
+/// ```
+/// assert!((gridel_host::scene::linear_of_srgb(0.5) - 0.21404).abs() < 1e-5);
+/// ```
+pub fn linear_of_srgb(encoded: f64) -> f64 {
+    if encoded <= 0.04045 {
+        encoded / 12.92
+    } else {
+        libm::pow((encoded + 0.055) / 1.055, 2.4)
     }
 }
 

@@ -39,7 +39,7 @@ mod words;
 pub use crate::shape::Shape;
 pub use attributes::Attributes;
 pub use error::SceneError;
-pub use image::Image;
+pub use image::{Image, linear_of_srgb};
 pub use importer::Importer;
 pub(crate) use joint::JointTracks;
 pub use joint::{LARGEST_SCALE, LEAST_SCALE};
@@ -54,7 +54,7 @@ pub use options::{
 pub use placement::Placement;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
-pub use texture::{Texture, Wrap, linear_of_srgb};
+pub use texture::{Texture, Wrap};
 pub use track::{Interpolation, Key, TICKS_PER_SECOND, Track, TrackTarget};
 pub use without::{effect_named, leave_out, shown_without};
 

@@ -93,16 +93,3 @@ impl<'a> Images<'a> {
         Ok(image)
     }
 }
-
-/// A channel in sRGB, 0 to 1, as linear light (IEC 61966-2-1).
-///
-/// ```
-/// assert!((gridel_host::scene::linear_of_srgb(0.5) - 0.21404).abs() < 1e-5);
-/// ```
-pub fn linear_of_srgb(encoded: f64) -> f64 {
-    if encoded <= 0.04045 {
-        encoded / 12.92
-    } else {
-        libm::pow((encoded + 0.055) / 1.055, 2.4)
-    }
-}
