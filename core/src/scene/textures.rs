@@ -5,7 +5,7 @@
 
 use crate::format::range::{At, Ranges};
 use crate::format::record::{Material, SurfaceMaps, Texture};
-use crate::format::{BlobError, Field, Reason, SectionKind, Sections};
+use crate::format::{BlobError, Field, SectionKind, Sections};
 use crate::geometry::attributes::{COORDINATE_BITS, linear};
 use crate::scene::Scene;
 
@@ -137,7 +137,7 @@ impl<'a> Textures<'a> {
         if !matches!(texture.form, 0 | 3) {
             return 255;
         }
-        let [.., alpha] = self.bytes(self.place(texture, index));
+        let [_, _, _, alpha] = self.bytes(self.place(texture, index));
         u32::from(alpha)
     }
 
