@@ -248,6 +248,7 @@ impl<'a> Importer<'a> {
             ior: ior.clamp(1.0, 4.0),
             absorption: [0.0; 3],
             texture: None,
+            alpha: None,
         });
         self.materials.insert(key, index);
         let left = (1.0 - kd - ks - transmit).max(0.0);
