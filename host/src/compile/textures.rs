@@ -452,7 +452,7 @@ mod tests {
             (Some(12_288), "rgb888", 64),
             (Some(12_287), "rgb565", 64),
             (Some(8191), "palette", 64),
-            (Some(5119), "rgb565", 32),
+            (Some(5119), "palette", 32),
             (Some(2047), "rgb565", 16),
             (Some(2), "rgb565", 1),
         ] {

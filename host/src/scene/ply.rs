@@ -62,7 +62,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         }
     }
     payload.warn(&mut warnings);
-    let attributes = attributes(&vertices);
+    let attributes = attributes(path, &vertices, &mut warnings);
     let (shape, normals) = mesh(path, &vertices, &faces, &strips, &mut warnings)?;
     let scene = Scene {
         materials: vec![Material::default()],
@@ -88,9 +88,14 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
 }
 
 /// The colors of vertices, if all have one.
-fn attributes(vertices: &[Vertex]) -> Attributes {
+fn attributes(path: &Path, vertices: &[Vertex], warnings: &mut Warnings) -> Attributes {
     let is_colored = |vertex: &Vertex| vertex.color.iter().all(|it| it.is_finite());
     if !vertices.iter().all(is_colored) {
+        let has_channel = |vertex: &Vertex| vertex.color.iter().any(|it| it.is_finite());
+        if vertices.iter().any(has_channel) {
+            let sentence = "colors of vertices without red, green or blue are ignored";
+            warnings.add_times(SourceSpan::of(path), 1, sentence);
+        }
         return Attributes::default();
     }
     let linear = |channel: f64| linear_of_srgb(channel.clamp(0.0, 1.0));

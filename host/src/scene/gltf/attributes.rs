@@ -106,8 +106,21 @@ impl Importer<'_> {
             material.normal_texture().is_some(),
             material.occlusion_texture().is_some(),
             material.emissive_texture().is_some(),
+            material
+                .transmission()
+                .is_some_and(|it| it.transmission_texture().is_some()),
+            material
+                .volume()
+                .is_some_and(|it| it.thickness_texture().is_some()),
         ];
-        let names = ["metallic-roughness", "normal", "occlusion", "emissive"];
+        let names = [
+            "metallic-roughness",
+            "normal",
+            "occlusion",
+            "emissive",
+            "transmission",
+            "thickness",
+        ];
         let ignored: Vec<_> = names.iter().zip(others).filter(|it| it.1).collect();
         if !ignored.is_empty() {
             let all: Vec<&str> = ignored.iter().map(|it| *it.0).collect();

@@ -151,6 +151,10 @@ fn textures_without_a_source_are_read() {
     assert!(cause(&document).contains("baseColorTexture"));
 }
 
+fn push(document: &mut Value, list: &str, value: Value) {
+    document[list].as_array_mut().unwrap().push(value);
+}
+
 /// The square with texture coordinates 0, 1/2, 1 in 16 bits, colors in 8 bits, and a texture of two by one texels.
 fn textured() -> Value {
     let mut document = document();
@@ -166,14 +170,34 @@ fn textured() -> Value {
         255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 51, 51, 51, 127,
     ];
     let more: Vec<u8> = coordinates.chain(colors).collect();
-    document["buffers"][1] = json!({"byteLength": 32,
-        "uri": format!("data:application/octet-stream;base64,{}", STANDARD.encode(more))});
-    document["bufferViews"][2] = json!({"buffer": 1, "byteLength": 16});
-    document["bufferViews"][3] = json!({"buffer": 1, "byteOffset": 16, "byteLength": 16});
-    document["accessors"][2] = json!({"bufferView": 2, "componentType": 5123, "normalized": true,
-        "count": 4, "type": "VEC2"});
-    document["accessors"][3] = json!({"bufferView": 3, "componentType": 5121, "normalized": true,
-        "count": 4, "type": "VEC4"});
+    push(
+        &mut document,
+        "buffers",
+        json!({"byteLength": 32,
+        "uri": format!("data:application/octet-stream;base64,{}", STANDARD.encode(more))}),
+    );
+    push(
+        &mut document,
+        "bufferViews",
+        json!({"buffer": 1, "byteLength": 16}),
+    );
+    push(
+        &mut document,
+        "bufferViews",
+        json!({"buffer": 1, "byteOffset": 16, "byteLength": 16}),
+    );
+    push(
+        &mut document,
+        "accessors",
+        json!({"bufferView": 2, "componentType": 5123, "normalized": true,
+        "count": 4, "type": "VEC2"}),
+    );
+    push(
+        &mut document,
+        "accessors",
+        json!({"bufferView": 3, "componentType": 5121, "normalized": true,
+        "count": 4, "type": "VEC4"}),
+    );
     document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = json!(2);
     document
 }
