@@ -178,6 +178,11 @@ impl<'a> Scene<'a> {
         self.space.shapes.coordinates().len()
     }
 
+    /// Number of maps.
+    pub(crate) fn maps(&self) -> usize {
+        self.textures.get().map_or(0, |it| it.maps.len())
+    }
+
     /// The textures.
     pub fn textures(&self) -> &'a [Texture] {
         self.textures.get().map_or(&[], |it| it.textures)

@@ -7,7 +7,6 @@ use crate::format::range::{At, Ranges};
 use crate::format::record::{Material, SurfaceMaps, Texture};
 use crate::format::{BlobError, Field, SectionKind, Sections};
 use crate::geometry::attributes::{COORDINATE_BITS, linear};
-use crate::scene::Scene;
 
 impl Material {
     /// The bits of [`maps`](Self::maps) that are a number.
@@ -38,13 +37,6 @@ pub(crate) struct Texel {
     pub(crate) color: [i32; 3],
     /// The nearest texel, or the upper left one of four.
     pub(crate) place: [u32; 2],
-}
-
-impl Scene<'_> {
-    /// Number of maps.
-    pub(crate) fn maps(&self) -> usize {
-        self.textures.get().map_or(0, |it| it.maps.len())
-    }
 }
 
 impl<'a> Textures<'a> {

@@ -1,7 +1,7 @@
 //! What meshes carry beside shape and normals: colors of vertices, and texture coordinates.
 
 use super::normals::cofactors;
-use super::{Color, Texture};
+use super::texture::Texture;
 use glam::{DAffine3, DVec2};
 
 /// Colors of vertices, and texture coordinates of corners; empty for a mesh that has neither.
@@ -14,7 +14,7 @@ use glam::{DAffine3, DVec2};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Attributes {
     /// For each vertex its linear color, 0 to 1; empty for none.
-    pub colors: Vec<Color>,
+    pub colors: Vec<[f64; 3]>,
     /// Texture coordinates: u to the right, v down; 1 is the width or the height of the image.
     pub coordinates: Vec<DVec2>,
     /// For each triangle which of the coordinates its corners have; [`Attributes::NONE`] for none. As many as the mesh

@@ -1,6 +1,5 @@
 //! Images for textures: PNG and JPEG.
 
-use super::Color;
 use std::fmt;
 use std::io::Cursor;
 
@@ -82,7 +81,7 @@ impl Image {
     /// let image = Image::new("half", 2, 1, vec![[0, 0, 0, 255], [255, 0, 255, 255]]).unwrap();
     /// assert_eq!(image.mean(), [0.5, 0.0, 0.5]);
     /// ```
-    pub fn mean(&self) -> Color {
+    pub fn mean(&self) -> [f64; 3] {
         let mut counts = [[0_u64; 256]; 3];
         for pixel in &self.pixels {
             for (counts, channel) in counts.iter_mut().zip(pixel) {

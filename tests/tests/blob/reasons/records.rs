@@ -84,7 +84,7 @@ pub(super) fn textures() -> Errors {
             it.maps = Material::MAPS_TEXTURE
         })
     });
-    errors.field("maps 0 of surface-maps", Field::TextureNumber, |it| {
+    errors.field("maps 0", Field::TextureNumber, |it| {
         it.change(SectionKind::SurfaceMaps, 0, |it: &mut SurfaceMaps| {
             it.color = 2
         })
